@@ -12,7 +12,7 @@ from eyas.cli.app import app
 from eyas.core.errors import EyasError
 from eyas.evaluation.comparison import differences, text_of
 from eyas.evaluation.plan import EvaluationPlan, batches
-from eyas.evaluation.protocol import PROTOCOLS
+from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import read_records
 from eyas.evaluation.result import NO_INTERVALS, load_run, table
 from eyas.evaluation.rows import rows_of, thirds

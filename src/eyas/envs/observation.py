@@ -100,16 +100,25 @@ class Observer:
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
 
-    def look(self, chosen: NDArray[np.int32], begun: NDArray[np.bool_]) -> None:
+    def look(
+        self,
+        chosen: NDArray[np.int32],
+        begun: NDArray[np.bool_],
+        covered: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Observe some trackers.
 
         Args:
             chosen: The trackers, shape (V,).
             begun: Whether the episode of each has just begun, shape (V,).
+            covered: Whose cameras show nothing: black, infinitely far, sky, shape (V,); None:
+                nobody's.
         """
         if self._draws:
             picture = self._picture.first(len(chosen))
             self._simulation.view.draw(chosen, picture)
+            if covered is not None and covered.any():
+                _cover(picture, covered)
             if picture.rgb is not None:
                 self._stack.add(picture.rgb, chosen, begun)
             for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
@@ -142,3 +151,13 @@ class Observer:
         """Return a copy of the latest observation of a tracker."""
         copies = {part.value: array[tracker].copy() for part, array in self._latest.items()}
         return copies if len(copies) > 1 else next(iter(copies.values()))
+
+
+def _cover(picture: Picture, covered: NDArray[np.bool_]) -> None:
+    """Make pictures show what a camera sees through a closed lid."""
+    if picture.rgb is not None:
+        picture.rgb[covered] = 0
+    if picture.depth is not None:
+        picture.depth[covered] = np.inf
+    if picture.class_id is not None:
+        picture.class_id[covered] = ObjectClass.SKY

@@ -25,11 +25,18 @@ class EpisodeSpec(NamedTuple):
     """Heading of the drone relative to its target's at the start [rad]."""
     seed: int
     """Seed of which it is the first episode."""
+    traffic: int | None = None
+    """Seed of the recorded traffic in which it happens; None: the one of the protocol."""
+    variant: str = ""
+    """Which of the versions of one episode it is, in protocols that have several."""
 
     @property
     def name(self) -> str:
         """A unique name, for example `citystreet/day/SUMO_VEHICLE/90/1000001`."""
-        return "/".join((*self.place, f"{math.degrees(self.direction):.0f}", str(self.seed)))
+        words = [*self.place, f"{math.degrees(self.direction):.0f}", str(self.seed)]
+        if self.traffic is not None:
+            words.append(f"traffic-{self.traffic}")
+        return "/".join((*words, self.variant) if self.variant else words)
 
 
 def episodes_of(

@@ -22,6 +22,8 @@ from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
+from eyas.evaluation.scenario import Scenario
+from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -43,7 +45,7 @@ def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]
 def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
     # Without biases the target is in the middle. They are sampled last, so nothing else changes.
     start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
-    protocol = replace(protocol, changes={**protocol.changes, "start": start})
+    protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants={})
     settings = protocol.settings
     ticks = round(_PERIOD * 500)
     looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))
@@ -82,6 +84,11 @@ class BatchFlight:
         self._episodes, self._protocol, self._policy = episodes, protocol, policy
         self._delay = delay
         self._batch = EpisodeBatch(episodes, protocol, policy.env)
+        make = protocol.scenario
+        self._scenario = (
+            Scenario(len(episodes)) if make is None else make(self._batch, protocol, episodes)
+        )
+        self._radio = Radio(episodes, protocol) if protocol.team else None
         self._meter = Meter(self._batch, protocol)
         self._actions = make_actions(policy.env.actions, policy.env.speeds)
         count = len(episodes)
@@ -100,22 +107,30 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes)
+        start = Start(seeds, self._boxes, self._scenario.told())
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
+            self._batch.covered[:] = self._scenario.covered(step)
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
             self._batch.advance(self._commands, self._active)
             self._meter.measure(self._active)
+            self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
             if watcher is not None:
                 watcher(self._batch, self._meter)
-            if len(ended := np.flatnonzero(~self._active & ~told)):
+            if len(ended := np.flatnonzero(self._scenario.over(self._active) & ~told)):
                 told[ended] = True
                 yield [
-                    self._meter.record(row, self._episodes[row], clear[row], self._failed.get(row))
+                    self._meter.record(
+                        row,
+                        self._episodes[row],
+                        clear[row],
+                        self._failed.get(row),
+                        self._scenario.figures(row),
+                    )
                     for row in ended.tolist()
                 ]
             if not self._active.any():
@@ -133,7 +148,9 @@ class BatchFlight:
         if not deciding.any():
             return
         self._batch.look(deciding, np.full(len(deciding), step == 0))
-        sight = PolicyInput(self._batch.observations, deciding, self._batch.snapshot)
+        batch = self._batch
+        heard = None if self._radio is None else self._radio.heard()
+        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -143,6 +160,8 @@ class BatchFlight:
         for row, failure in decision.failed.items():
             self._fail(row, failure)
         deciding &= self._active
+        if self._radio is not None and decision.messages is not None:
+            self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
         period, repeat = self._protocol.period, self._policy.env.action_repeat
         for row in np.flatnonzero(deciding & self._active).tolist():
@@ -173,6 +192,8 @@ class BatchFlight:
         self._active[row] = False
 
     def _boxes(self) -> NDArray[np.int32]:
+        if not self._protocol.first_box:
+            return np.zeros((len(self._episodes), 4), np.int32)
         image = self._policy.env.observation
         size = image.height, image.width
         boxes: NDArray[np.int32] = self._batch.gathered(lambda group: group.subjects(size)[1])

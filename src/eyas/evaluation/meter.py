@@ -114,7 +114,7 @@ class _Measured(NamedTuple):
     acceleration: Floats
     """Of the drone [m/s^2], shape (N, 3)."""
     target: Floats
-    """Its centre, east and north [m], shape (N, 2)."""
+    """Its centre, east, north and up [m], shape (N, 3)."""
     middle: Floats
     """What the middle of the picture shows, east and north [m], shape (N, 2)."""
 
@@ -126,7 +126,7 @@ def _measured(group: EpisodeGroup) -> _Measured:
         reason=episodes.reason,
         position=trackers.position,
         acceleration=trackers.acceleration,
-        target=targets.centre[:, :2],
+        target=targets.centre,
         middle=episodes.view_centre[:, :2],
     )
 
@@ -140,6 +140,8 @@ class _Sums(NamedTuple):
     """[m], shape (N,)."""
     jerk: Floats
     """Squared jerk [m^2/s^6], shape (N,)."""
+    height: Floats
+    """Height above the target [m], shape (N,)."""
     shares: Floats
     """Looks with a visible pixel, and visible shares, shape (N, 2)."""
 
@@ -157,7 +159,7 @@ class Meter:
         self._batch, self._protocol = batch, protocol
         self._reward = np.zeros((count, steps))
         self._trace = np.zeros((count, steps // _TRACE, 4))
-        self._sums = _Sums(np.zeros(count), np.zeros(count), np.zeros(count), np.zeros((count, 2)))
+        self._sums = _Sums(*(np.zeros((count, *own)) for own in ((), (), (), (), (2,))))
         self.length = np.zeros(count, np.int64)
         """Control steps flown, shape (N,)."""
         self.reason = np.zeros(count, np.int64)
@@ -172,22 +174,28 @@ class Meter:
         self._reward[rows, step] = now.reward[rows]
         self.length[rows] += 1
         self.reason[rows] = now.reason[rows]
-        place, target = now.position[rows], now.target[rows]
+        place, target = now.position[rows], now.target[rows, :2]
         sums.error[rows] += np.linalg.norm(target - now.middle[rows], axis=1)
         sums.path[rows] += np.linalg.norm(place - last.position[rows], axis=1)
         change = (now.acceleration[rows] - last.acceleration[rows]) / self._protocol.period
         sums.jerk[rows] += np.square(change).sum(axis=1)
+        sums.height[rows] += place[:, 2] - now.target[rows, 2]
         self._last = now
         # All active flights have begun together, so that they have flown equally many steps.
         if len(rows) and (step[0] + 1) % _TRACE == 0:
             self._trace[rows, step[0] // _TRACE] = np.concatenate((place[:, :2], target), axis=1)
         if len(rows) and (step[0] + 1) % LOOK == 0:
-            pixels = self._batch.gathered(lambda group: group.subjects()[0])[rows]
+            pixels = self._batch.pixels()[rows]
             sums.shares[rows, 0] += pixels[:, 0] > 0
             sums.shares[rows, 1] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
 
     def record(
-        self, row: int, episode: EpisodeSpec, clear: float, failure: Failure | None
+        self,
+        row: int,
+        episode: EpisodeSpec,
+        clear: float,
+        failure: Failure | None,
+        figures: dict[str, float | None],
     ) -> EpisodeRecord:
         """Return the record of a flight that has ended.
 
@@ -196,6 +204,7 @@ class Meter:
             episode: The episode.
             clear: See `EpisodeRecord`.
             failure: What its policy has failed with, if it has.
+            figures: Those that only the protocol has.
         """
         protocol, length = self._protocol, int(self.length[row])
         reward, flown = self._reward[row, :length], max(length, 1)
@@ -207,6 +216,8 @@ class Meter:
             **episode.place._asdict(),
             direction=episode.direction,
             seed=episode.seed,
+            traffic=episode.traffic,
+            variant=episode.variant,
             error=None if failure is None else failure.line,
             traceback=None if failure is None else failure.traceback,
             reason=reason.name.lower() if failure is None else "policy_failed",
@@ -220,8 +231,10 @@ class Meter:
             crashed=reason in _CRASHES,
             centre_error=float(self._sums.error[row]) / flown,
             path=float(self._sums.path[row]),
+            height=float(self._sums.height[row]) / flown,
             jerk=float(np.sqrt(self._sums.jerk[row] / flown)),
             published=published(reward, protocol.steps, episode.seed),
+            figures=figures,
             trace=self._trace_of(row, length // _TRACE),
         )
 

@@ -14,11 +14,11 @@ from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
-from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place, episodes_of
-from eyas.evaluation.episode_batch import episodes_with_neighbours
+from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
 from eyas.evaluation.policies.table import fingerprint, open_policy
-from eyas.evaluation.protocol import Protocol, protocol_named
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord
 from eyas.world.maps import MAPS
 
@@ -62,7 +62,8 @@ class EvaluationPlan(Config):
         """Number of all episodes; nothing that the plan names is loaded to know it."""
         places = len(self.maps) * len(self.weathers) * len(self.targets)
         each = self.episodes or self.rules.episodes
-        return places * len(self.rules.directions) * each
+        versions = max(len(self.rules.variants), 1)
+        return places * len(self.rules.directions) * each * versions
 
     @property
     def command(self) -> str:
@@ -134,11 +135,10 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         for target in plan.targets
     ]
     count = plan.episodes or protocol.episodes
-    if protocol.alike:
-        episodes = episodes_with_neighbours(places, protocol, count, plan.seed)
-    else:
-        episodes = episodes_of(places, protocol.directions, count, plan.seed)
+    episodes = protocol.choose(places, protocol, count, plan.seed)
     size = 1 if plan.latency == "measured" else plan.batch
+    if protocol.team:
+        size = max(size // len(protocol.variants), 1) * len(protocol.variants)
     return [episodes[at : at + size] for at in range(0, len(episodes), size)]
 
 
@@ -175,6 +175,11 @@ def check(plan: EvaluationPlan) -> None:
         EyasError: A name or a setting is wrong.
     """
     delay_from(plan.latency)
+    if plan.latency == "measured" and plan.rules.team:
+        raise ConfigError(
+            f"--latency: 'measured' is not allowed in protocol '{plan.protocol}': the answers of a "
+            "team are not made one by one; measure in 'long', and use the file of latencies"
+        )
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
         raise ConfigError("--map, --weather: a name is there twice")
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)

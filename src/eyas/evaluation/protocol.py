@@ -1,29 +1,40 @@
-"""Protocols: the settings in which all policies fly, with a hash that tells them apart."""
+"""A protocol: the settings in which all policies fly, with a hash that tells them apart."""
 
 import hashlib
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.config import updated
-from eyas.core.errors import UnknownNameError
 from eyas.envs.config import EnvConfig
-from eyas.evaluation.episode import EpisodeSpec
+from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
 from eyas.sim.config import SimConfig
 from eyas.traffic.config import Demand
 
-__all__ = ["PROTOCOLS", "Protocol", "protocol_named"]
+if TYPE_CHECKING:
+    from eyas.evaluation.episode_batch import EpisodeBatch
+    from eyas.evaluation.scenario import Scenario
+
+__all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "in_order"]
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
-_NEVER = 2**31 - 1
+NEVER = 2**31 - 1
+"""As `done.no_reward_steps`: a lost target does not end the episode."""
+
+Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]
+"""Chooses the episodes of places: so many for each place and direction, from a first seed on. More
+episodes include the fewer ones, and the seeds do not depend on the places."""
+
+MakeScenario = Callable[["EpisodeBatch", "Protocol", Sequence[EpisodeSpec]], "Scenario"]
+"""Makes what happens in a batch of flights beside the flights."""
 
 _FIXED = set(SimConfig.model_fields) - {"seed", "same_target"}
 """Settings that are part of a protocol: all of the simulation, none of its uses. Each drone has a
@@ -55,6 +66,16 @@ def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, An
     return both
 
 
+def in_order(
+    places: Sequence[Place], protocol: "Protocol", count: int, first_seed: int
+) -> list[EpisodeSpec]:
+    """Choose the episodes of consecutive seeds, whatever happens in them; see `Chooser`."""
+    episodes = episodes_of(list(places), protocol.directions, count, first_seed)
+    if not protocol.variants:
+        return episodes
+    return [each._replace(variant=own) for each in episodes for own in protocol.variants]
+
+
 @dataclass(frozen=True)
 class Protocol:
     """A protocol; its settings are those of the preset `dat-eval`, with changes."""
@@ -67,8 +88,22 @@ class Protocol:
     """Start directions [rad]."""
     episodes: int = 10
     """Default number of episodes for each place and direction."""
+    columns: tuple[str, ...] = ("cr", "tsr", "seen", "visible")
+    """The figures that are printed; the files have all."""
+    rank: str = "tsr"
+    """The figure by which a leaderboard ranks."""
     alike: bool = False
-    """Whether all vehicles look like the target, and another one is near it at the start."""
+    """Whether all others of the target's kind look like it."""
+    choose: Chooser = in_order
+    """Which its episodes are."""
+    scenario: MakeScenario | None = None
+    """What happens in its flights beside the flights."""
+    variants: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Versions of each episode, with changes of the settings; none: there is one."""
+    team: bool = False
+    """Whether the variants are drones that follow one target together."""
+    first_box: bool = True
+    """Whether policies are told the target's true box in the first picture."""
 
     @cached_property
     def settings(self) -> EyasConfig:
@@ -104,7 +139,9 @@ class Protocol:
                 group = group.get(each, {})
             group.pop(name, None)
         meaning = {name: value for name, value in settings.items() if value != {}}
-        content = [meaning, self.directions, self.alike]
+        content = [meaning, self.directions, self.alike, self.first_box]
+        content += [self.variants, self.team] if self.variants else []
+        content += [_name_of(self.choose), _name_of(self.scenario)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
     def settings_of(self, episode: EpisodeSpec, env: EnvConfig) -> EyasConfig:
@@ -115,59 +152,17 @@ class Protocol:
             env: What the policy sees and how it acts.
         """
         place = episode.place
-        changes = {
+        changes: dict[str, Any] = {
             "world": {"map": place.map, "weather": place.weather},
             "target": place.target,
             "start": {"direction": episode.direction},
         }
-        return updated(self.settings, changes).model_copy(update={"env": env})
+        if episode.traffic is not None:
+            changes["traffic"] = {"seed": episode.traffic}
+        own = self.variants.get(episode.variant, {})
+        return updated(self.settings, _joined(changes, own)).model_copy(update={"env": env})
 
 
-PROTOCOLS: Mapping[str, Protocol] = {
-    protocol.name: protocol
-    for protocol in (
-        Protocol("paper", "the published test: 3 s, figures CR and TSR"),
-        Protocol(
-            "long",
-            "60 s: when is the target lost, and is it found again?",
-            {
-                "traffic": {"demand": "keep_alive"},
-                "done": {"total_steps": 30_000, "no_reward_steps": _NEVER},
-            },
-        ),
-        Protocol(
-            "search",
-            "20 s: the target starts out of view, 12 to 25 m beside the middle",
-            {
-                "traffic": {"demand": "keep_alive"},
-                "start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}},
-                "done": {"total_steps": 10_000, "no_reward_steps": _NEVER},
-            },
-        ),
-        Protocol(
-            "distractor",
-            "20 s: all vehicles have the target's model and colour, and one is beside it",
-            {
-                "traffic": {"demand": "keep_alive"},
-                "done": {"total_steps": 10_000, "no_reward_steps": _NEVER},
-            },
-            alike=True,
-        ),
-    )
-}
-"""The protocols by name."""
-
-
-def protocol_named(name: str, place: str = "--protocol") -> Protocol:
-    """Return a protocol.
-
-    Args:
-        name: Its name.
-        place: Option or setting with the name, for the message.
-
-    Raises:
-        UnknownNameError: There is no such protocol.
-    """
-    if name not in PROTOCOLS:
-        raise UnknownNameError(place, name, PROTOCOLS)
-    return PROTOCOLS[name]
+def _name_of(made: Callable[..., object] | None) -> str:
+    """Return what stands for a function in a hash; what it does is in the digest of the program."""
+    return "" if made is None else made.__qualname__

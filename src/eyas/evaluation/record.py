@@ -45,6 +45,10 @@ class EpisodeRecord(Config):
     direction: float
     """[rad]"""
     seed: int
+    traffic: int | None = None
+    """Seed of the recorded traffic; None: the one of the protocol."""
+    variant: str = ""
+    """See `eyas.evaluation.episode.EpisodeSpec`."""
     error: str | None = None
     """What the policy failed with; its figures count what it had reached until then."""
     traceback: str | None = None
@@ -81,8 +85,12 @@ class EpisodeRecord(Config):
     """Mean distance of the target from the point in the middle of the picture."""
     path: float
     """Length of the drone's path."""
+    height: float
+    """Mean height above the target's middle."""
     jerk: float
     """Root mean square [m/s^3]: how rough the flight is."""
+    figures: dict[str, float | None]
+    """Those that only the protocol has, see docs/evaluation.md; None: not defined here."""
     published: Published
     trace: Trace
 

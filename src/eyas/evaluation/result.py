@@ -11,13 +11,13 @@ from eyas.core.config import validated
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.evaluation.plan import Stamp
+from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord, read_records
 from eyas.evaluation.rows import TableRow, rows_of
 from eyas.evaluation.statistics import Estimate
 from eyas.settings.file import read_settings
 
 __all__ = [
-    "COLUMNS",
     "EPISODES",
     "NO_INTERVALS",
     "RESULT",
@@ -32,14 +32,6 @@ __all__ = [
 
 STAMP, EPISODES, RESULT, ROWS = "run.json", "episodes.jsonl", "result.json", "result.csv"
 """Files of an evaluation's folder."""
-
-COLUMNS = {
-    "paper": ("cr", "tsr", "seen", "visible"),
-    "long": ("kept", "tsr", "losses", "search_time", "crashed", "centre_error"),
-    "search": ("to_find", "tsr", "kept", "losses", "search_time", "crashed"),
-    "distractor": ("kept", "tsr", "seen", "losses", "crashed", "centre_error"),
-}
-"""The columns that are printed; the files have all."""
 
 NO_INTERVALS = (
     "Rows with the same seeds in several places have no intervals: these episodes are not "
@@ -77,7 +69,7 @@ def table(rows: Sequence[TableRow], protocol: str) -> str:
 
     Rows in which seeds repeat have no intervals, see `eyas.evaluation.rows.strata_of`.
     """
-    columns = COLUMNS[protocol]
+    columns = protocol_named(protocol).columns
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     lines = [["", "n", *heads]]
     for row in rows:

@@ -1,6 +1,7 @@
 """The rows of a table: all episodes, and those of each map, condition, target and visibility."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -89,6 +90,8 @@ def rows_of(
             the episodes that it would not have dropped.
     """
     figures = dict(FIGURES)
+    own = dict.fromkeys(name for record in records for name in record.figures)
+    figures |= {name: partial(_own_figure, name) for name in own}
     if as_published:
         records = [record for record in records if record.published.cr > 0.0]
         figures["cr"] = lambda record: record.published.cr
@@ -98,6 +101,10 @@ def rows_of(
         for group, name, chosen in groups_of(records)
         if chosen
     ]
+
+
+def _own_figure(name: str, record: EpisodeRecord) -> float | None:
+    return record.figures.get(name)
 
 
 def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:

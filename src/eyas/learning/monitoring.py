@@ -13,7 +13,8 @@ from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
-from eyas.evaluation.protocol import Protocol, protocol_named
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols import protocol_named
 from eyas.learning.network import TrackingNetwork
 from eyas.settings.config import EyasConfig
 from eyas.world.maps import MAPS

@@ -9,9 +9,9 @@ from typing import NamedTuple
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.evaluation.plan import Stamp
-from eyas.evaluation.protocol import PROTOCOLS
+from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import EpisodeRecord
-from eyas.evaluation.result import COLUMNS, STAMP, UNITS, cell, load_run
+from eyas.evaluation.result import STAMP, UNITS, cell, load_run
 from eyas.evaluation.rows import TableRow, rows_of
 
 __all__ = ["run"]
@@ -90,7 +90,7 @@ def _section(entries: Sequence[_Entry]) -> str:
     """Return a table of evaluations with the same episodes, the best first."""
     stamp, records = entries[0].stamp, entries[0].records
     plan = stamp.plan
-    columns = COLUMNS[plan.protocol]
+    columns = plan.rules.columns
     ranked = sorted(entries, key=_rank)
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     head = _cells("th", ["policy", "latency [ms]", *heads, "failed", "command"])
@@ -109,8 +109,7 @@ def _section(entries: Sequence[_Entry]) -> str:
 
 def _rank(entry: _Entry) -> tuple[float, str]:
     figures = entry.row.figures
-    name = "cr" if entry.stamp.plan.protocol == "paper" else "tsr"
-    return -figures[name].mean, entry.stamp.plan.policy
+    return -figures[entry.stamp.plan.rules.rank].mean, entry.stamp.plan.policy
 
 
 def _line(entry: _Entry, columns: Sequence[str]) -> str:

@@ -70,13 +70,14 @@ class Episodes:
         self._episodes, self._targets = snapshot.episodes, snapshot.targets
         self._models = _model_table()
         self._rules = _rules(config, int(traffic.duration / PHYSICS_STEP))
+        self._sides = _sides(config, worlds)
         self._draw = Held(
             EpisodeSampling(
                 snapshot,
                 worlds.of,
                 worlds.leader,
                 worlds.lasting,
-                _sides(config, worlds),
+                self._sides,
                 worlds.looks,
                 worlds.look_table,
                 self._models,
@@ -106,6 +107,10 @@ class Episodes:
         self._streams.seed[trackers] = seeds
         self._streams.number[trackers] = 0
         self._episodes.number[trackers] = -1
+
+    def turn_starts(self, angles: NDArray[np.float64]) -> None:
+        """Add angles to the start directions of all trackers [rad], shape (N,)."""
+        self._sides[:] = angles
 
     def continue_from(self, other: "Episodes") -> None:
         """Continue the sequences of episodes of another simulation with as many trackers."""

@@ -109,6 +109,12 @@ class Simulation:
         """
         self._episodes.reseed_alone(trackers, seeds)
 
+    def turn_starts(self, angles: Floats) -> None:
+        """Add angles to the start directions of all trackers [rad], shape (N,), from the next reset
+        on.
+        """
+        self._episodes.turn_starts(angles)
+
     def continue_from(self, other: "Simulation") -> None:
         """Continue the sequences of episodes of another simulation with as many trackers, whose
         worlds are their own.

@@ -46,8 +46,26 @@ class Each:
         with running("--policy", self._path):
             self._own = [self._make() for _ in start.seeds]
             if hasattr(self._own[0], "reset"):
-                for own, box in zip(self._own, start.boxes().tolist(), strict=True):
-                    own.reset(tuple(box))
+                self._tell(start)
+
+    def _tell(self, start: Start) -> None:
+        """Give each policy what the parameters of its `reset` ask for."""
+        names = set(inspect.signature(self._own[0].reset).parameters)
+        words = names & {"words", "attributes"}
+        boxes = None if words and "box" not in names else start.boxes().tolist()
+        for row, own in enumerate(self._own):
+            if not words:
+                assert boxes is not None
+                own.reset(tuple(boxes[row]))
+                continue
+            told: dict[str, Any] = {} if boxes is None else {"box": tuple(boxes[row])}
+            if "words" in names:
+                told["words"] = "" if start.told is None else start.told.words[row]
+            if "attributes" in names:
+                told["attributes"] = (
+                    None if start.told is None else start.told.attributes[row].copy()
+                )
+            own.reset(**told)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Ask the policies of those who decide."""

@@ -12,6 +12,7 @@ from eyas.core.config import shown, updated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
+from eyas.evaluation.scenario import Told
 from eyas.state.snapshot import Snapshot
 
 __all__ = [
@@ -36,7 +37,10 @@ class Start(NamedTuple):
     """Seed of each episode, shape (N,)."""
     boxes: Callable[[], NDArray[np.int32]]
     """Returns the true box of each target in its first picture, visible or hidden: left, top,
-    right, bottom, the last two exclusive [pixels]; all 0 if it is outside, shape (N, 4)."""
+    right, bottom, the last two exclusive [pixels]; all 0 if it is outside, or if the protocol does
+    not tell it, shape (N, 4)."""
+    told: Told | None = None
+    """What is told in words; None where the protocol has no words."""
 
 
 class PolicyInput(NamedTuple):
@@ -49,6 +53,12 @@ class PolicyInput(NamedTuple):
     memories of theirs must not change."""
     snapshot: Callable[[], Snapshot]
     """Returns the true state of all N: for oracles."""
+    visible: Callable[[], NDArray[np.float64]]
+    """Returns the share of each target that its camera sees now, 0 while the camera is covered,
+    shape (N,): for oracles."""
+    heard: NDArray[np.float64] | None = None
+    """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
+    None where drones fly alone."""
 
 
 class Failure(NamedTuple):
@@ -73,6 +83,8 @@ class Decision(NamedTuple):
     """An action for each drone, shape (N, ...) or a list; those who do not decide are not read."""
     failed: Mapping[int, Failure] = {}  # never changed
     """Drones whose policy has failed, and how; their episodes end."""
+    messages: NDArray[np.float64] | None = None
+    """What each drone tells its mates, shape (N, numbers); None: nothing new."""
 
 
 class Policy(Protocol):

@@ -13,8 +13,8 @@ from eyas.envs.actions import make_actions
 from eyas.envs.observation import Observer
 from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.sight import subjects, visible_shares
 from eyas.modes.demo.flight import DemoFlight
-from eyas.state.draw import DrawStage, Picture
 
 __all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
 
@@ -118,7 +118,8 @@ class PolicyController:
             if isinstance(observation, dict)
             else observation[None]
         )
-        sight = PolicyInput(batch, np.ones(1, np.bool_), lambda: self._simulation.snapshot)
+        sim = self._simulation
+        sight = PolicyInput(batch, np.ones(1, np.bool_), lambda: sim.snapshot, self._visible)
         try:
             decision = self._policy.act(sight)
         except Exception as error:  # whatever a user's code raises; the demo goes on
@@ -129,10 +130,10 @@ class PolicyController:
         return self._actions.commands(decision.actions), self._steps
 
     def _boxes(self) -> NDArray[np.int32]:
-        picture = Picture.create(1, *self._size, rgb=False, class_id=True, subject=True)
-        self._simulation.draw(np.zeros(1, np.int32), picture, until=DrawStage.RASTERISING)
-        assert picture.subject_box is not None
-        return picture.subject_box
+        return subjects(self._simulation, np.zeros(1, np.int32), self._size)[1]
+
+    def _visible(self) -> NDArray[np.float64]:
+        return visible_shares(subjects(self._simulation, np.zeros(1, np.int32))[0])
 
 
 class BoxController:

@@ -14,10 +14,10 @@ from eyas.envs.config import ActionKind
 from eyas.envs.observation import Observation, Observer
 from eyas.evaluation.policies.policy import Failure, Policy, PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.sight import subjects, visible_shares
 from eyas.exports.frame import RecordedAction
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
-from eyas.state.draw import DrawStage, Picture
 from eyas.state.snapshot import Snapshot
 
 __all__ = ["PolicyPilot"]
@@ -80,7 +80,9 @@ class PolicyPilot:
 
     def _decide(self, tracker: int) -> None:
         sight = PolicyInput(
-            self._observed(tracker), np.ones(1, np.bool_), lambda: self._of(tracker)
+            *(self._observed(tracker), np.ones(1, np.bool_)),
+            snapshot=lambda: self._of(tracker),
+            visible=lambda: self._visible(tracker),
         )
         try:
             decision = self._policies[tracker].act(sight)
@@ -115,7 +117,7 @@ class PolicyPilot:
         """Return the true box of a tracker's target in its first picture, see `Start.boxes`."""
         image = self._env.observation
         size = image.height, image.width
-        picture = Picture.create(1, *size, rgb=False, class_id=True, subject=True)
-        self._sim.draw(np.array([tracker], np.int32), picture, until=DrawStage.RASTERISING)
-        assert picture.subject_box is not None
-        return picture.subject_box
+        return subjects(self._sim, np.array([tracker], np.int32), size)[1]
+
+    def _visible(self, tracker: int) -> NDArray[np.float64]:
+        return visible_shares(subjects(self._sim, np.array([tracker], np.int32))[0])

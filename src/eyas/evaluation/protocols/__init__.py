@@ -1,0 +1,30 @@
+"""The protocols by name."""
+
+from collections.abc import Mapping
+
+from eyas.core.errors import UnknownNameError
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
+from eyas.evaluation.protocols.published import PAPER
+from eyas.evaluation.protocols.team import PAIR, TEAM
+
+__all__ = ["PROTOCOLS", "protocol_named"]
+
+PROTOCOLS: Mapping[str, Protocol] = {
+    protocol.name: protocol for protocol in (PAPER, LONG, SEARCH, DISTRACTOR, PAIR, TEAM)
+}
+
+
+def protocol_named(name: str, place: str = "--protocol") -> Protocol:
+    """Return a protocol.
+
+    Args:
+        name: Its name.
+        place: Option or setting with the name, for the message.
+
+    Raises:
+        UnknownNameError: There is no such protocol.
+    """
+    if name not in PROTOCOLS:
+        raise UnknownNameError(place, name, PROTOCOLS)
+    return PROTOCOLS[name]
