@@ -15,6 +15,7 @@ from eyas.world.maps.recipe import (
     MIXED_FILE,
     TEST_TOWNS,
     TRAFFIC_FILE,
+    drivers_file,
     respawn_file,
     town_traffic_file,
 )
@@ -44,7 +45,15 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
         if name.removesuffix("-bare") in ("citystreet", "downtown", "village")
     }
     canonical = {respawn_file(size) for size in RESPAWN_GROUPS}
-    assert set(files[1:]) == canonical | mixed | tests | towns
+    lost = {
+        drivers_file(drivers)
+        for drivers, maps in {
+            "hiding": ("citystreet", "downtown", "village"),
+            "evading": ("citystreet", "downtown"),
+        }.items()
+        if name in maps
+    }
+    assert set(files[1:]) == canonical | mixed | tests | towns | lost
     assert recipe.shipped("no such file") is None
 
 

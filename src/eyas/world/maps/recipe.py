@@ -30,6 +30,7 @@ __all__ = [
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
+    "drivers_file",
     "network_file",
     "respawn_file",
     "town_traffic_file",
@@ -71,6 +72,15 @@ def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
     """Return the file in a map's package with traffic for tests."""
     town = f"-{map_seed}" if map_seed else ""
     return f"traffic{town}-seed-{traffic_seed}.npz"
+
+
+def drivers_file(drivers: str) -> str:
+    """Return the file in a map's package with the canonical traffic of drivers who want to be lost.
+
+    Args:
+        drivers: How they behave, a value of `traffic.drivers`.
+    """
+    return f"traffic-{drivers}.npz"
 
 
 def respawn_file(group_size: int) -> str:
