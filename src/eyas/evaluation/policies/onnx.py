@@ -47,6 +47,8 @@ class OnnxPolicy:
         MissingExtraError: onnxruntime is not installed.
     """
 
+    told: frozenset[str] = frozenset()
+
     def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
         self._session = _session(path)
         described = self._session.get_modelmeta().custom_metadata_map.get(METADATA, "{}")
