@@ -91,7 +91,7 @@ class BatchFlight:
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
-            self._batch.advance(self._commands, self._active)
+            self._batch.advance(self._held(), self._active)
             self._meter.measure(self._active)
             self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
@@ -112,6 +112,12 @@ class BatchFlight:
             if not self._active.any():
                 return
         raise AssertionError("the number of steps ends each episode")
+
+    def _held(self) -> NDArray[np.float64]:
+        """Return the commands, those that climb inside the protocol's heights."""
+        if not self._commands[:, 2].any():
+            return self._commands
+        return self._protocol.envelope.held(self._commands, self._batch.heights())
 
     def _answer(self, step: int) -> None:
         """Let those actions hold whose latency is over."""

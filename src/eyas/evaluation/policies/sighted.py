@@ -83,6 +83,7 @@ class SightOracle:
     """
 
     sampled = False
+    told = frozenset({"truth"})
 
     def __init__(self, changes: Mapping[str, Any], predictor: Predictor) -> None:
         self.env = env_config(BLIND, {**changes, "actions": "discrete"})
