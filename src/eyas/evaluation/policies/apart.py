@@ -208,7 +208,7 @@ class ApartPolicy:
         seeds = start.seeds if self.sampled else np.zeros_like(start.seeds)
         boxes = start.boxes() if "box" in self.told else np.zeros((len(seeds), 4), np.int32)
         head: dict[str, Any] = {"begin": True, "words": None}
-        arrays = [seeds, boxes]
+        arrays: list[Array] = [seeds, boxes]
         if start.told is not None:
             head["words"] = list(start.told.words)
             arrays.append(start.told.attributes)

@@ -5,13 +5,14 @@ from collections.abc import Mapping
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
-from eyas.evaluation.protocols.published import PAPER
+from eyas.evaluation.protocols.published import PAPER, STANDARD, UNSEEN
 from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
 PROTOCOLS: Mapping[str, Protocol] = {
-    protocol.name: protocol for protocol in (PAPER, LONG, SEARCH, DISTRACTOR, PAIR, TEAM)
+    protocol.name: protocol
+    for protocol in (PAPER, STANDARD, UNSEEN, LONG, SEARCH, DISTRACTOR, PAIR, TEAM)
 }
 
 
