@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.program import code_of
+from eyas.sim.cover import cover_of
 from eyas.traffic.library import _recorded
 from eyas.traffic.network import build_network
 from eyas.traffic.record import record
@@ -80,9 +81,9 @@ def is_the_same(recipe: MapRecipe, path: Path) -> bool:
     old = RecordingFile.read(path).load()
     origin = old.provenance  # which tells SUMO's version, too
     town, config = origin.map_seed, origin.config
-    new = record(
-        *(origin.map_name, town, recipe.roads(town), config, origin.duration, config.seed or 0)
-    )
+    cover = cover_of(origin.map_name, town) if origin.cover else ()
+    roads, span = recipe.roads(town), origin.duration
+    new = record(origin.map_name, town, roads, config, span, config.seed or 0, cover=cover)
     return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in MOVES)
 
 

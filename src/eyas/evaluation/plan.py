@@ -4,6 +4,7 @@ import json
 import re
 import shlex
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +17,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.rng import TEST_SEEDS
 from eyas.evaluation.delay import Measured, delay_from
 from eyas.evaluation.entry import Entry, entry_of
-from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place
+from eyas.evaluation.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
 from eyas.evaluation.policies.apart import open_apart, runs_code
 from eyas.evaluation.policies.policy import Policy
@@ -30,6 +31,7 @@ from eyas.world.maps import MAPS
 __all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "opened", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
+Seed = Annotated[int, Field(ge=0, lt=2**62)]
 
 
 class EvaluationPlan(Config):
@@ -43,10 +45,10 @@ class EvaluationPlan(Config):
     targets: Names = ("SUMO_VEHICLE",)
     episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
     """For each place and start direction; None: the protocol's number."""
-    seed: Annotated[int, Field(ge=0, lt=2**62)] = FIRST_SEED
-    """Seed of the first episode."""
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (FIRST_SEED,)
+    """Seed of the first episode of each set of episodes."""
     latency: str = "0"
-    """Milliseconds, the path of a file with one latency in each line, or `measured`."""
+    """Milliseconds, a profile, the path of a file with one latency in each line, or `measured`."""
     sampled: bool = False
     """Whether a network's actions are sampled instead of the best ones."""
     in_process: bool = False
@@ -79,15 +81,21 @@ class EvaluationPlan(Config):
         places = len(self.maps) * len(self.weathers) * len(self.targets)
         each = self.episodes or self.rules.episodes
         versions = max(len(self.rules.variants), 1)
-        return places * len(self.rules.directions) * each * versions
+        return places * len(self.rules.directions) * each * versions * len(self.seeds)
 
     @property
     def command(self) -> str:
         """The command that repeats it."""
         told = self.model_dump(
-            exclude_defaults=True, exclude={"env", "settings", "sampled", "in_process", "policy"}
+            exclude_defaults=True,
+            exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"},
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
+        if self.seeds != (FIRST_SEED,):
+            words += [
+                "--seeds" if len(self.seeds) > 1 else "--seed",
+                ",".join(map(str, self.seeds)),
+            ]
         for name, value in told.items():
             if isinstance(value, tuple):
                 option = f"--{name.removesuffix('s')}"
@@ -146,7 +154,10 @@ def folder_name(plan: EvaluationPlan) -> str:
 
 
 def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
-    """Return the episodes that are flown together; an interrupted batch is flown again whole."""
+    """Return the episodes that are flown together; an interrupted batch is flown again whole.
+
+    Those of one set are the same as if it were flown alone.
+    """
     protocol = plan.rules
     places = [
         Place(name, weather, target)
@@ -155,11 +166,14 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         for target in plan.targets
     ]
     count = plan.episodes or protocol.episodes
-    episodes = protocol.choose(places, protocol, count, plan.seed)
     size = 1 if plan.latency == "measured" else plan.batch
     if protocol.team:
         size = max(size // len(protocol.variants), 1) * len(protocol.variants)
-    return [episodes[at : at + size] for at in range(0, len(episodes), size)]
+    found = []
+    for seed in plan.seeds:
+        episodes = protocol.choose(places, protocol, count, seed)
+        found += [episodes[at : at + size] for at in range(0, len(episodes), size)]
+    return found
 
 
 def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
@@ -222,6 +236,12 @@ def check(plan: EvaluationPlan) -> Entry:
         )
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
         raise ConfigError("--map, --weather: a name is there twice")
+    first = sorted(plan.seeds)
+    if any(later - seed < SETS_APART for seed, later in pairwise(first)):
+        raise ConfigError(
+            f"--seeds: {', '.join(map(str, plan.seeds))}: sets could share episodes; allowed: "
+            f"first seeds that differ by {SETS_APART} or more"
+        )
     policy, entry = opened(plan)
     if plan.rules.elsewhere:
         _refuse_taught(plan)

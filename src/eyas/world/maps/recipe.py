@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
 
 __all__ = [
     "ATTRIBUTION_FILE",
+    "DENSE_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
     "PLAN_FILE",
@@ -29,6 +30,7 @@ __all__ = [
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
+    "drivers_file",
     "network_file",
     "respawn_file",
     "town_traffic_file",
@@ -54,6 +56,9 @@ MIXED_FILE = "traffic-mixed.npz"
 """File in a city's package with the canonical recording of all classes of vehicles."""
 
 
+DENSE_FILE = "traffic-dense.npz"
+"""File in a city's package with the same classes in dense traffic, eight times as many."""
+
 TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
 """Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
 
@@ -67,6 +72,15 @@ def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
     """Return the file in a map's package with traffic for tests."""
     town = f"-{map_seed}" if map_seed else ""
     return f"traffic{town}-seed-{traffic_seed}.npz"
+
+
+def drivers_file(drivers: str) -> str:
+    """Return the file in a map's package with the canonical traffic of drivers who want to be lost.
+
+    Args:
+        drivers: How they behave, a value of `traffic.drivers`.
+    """
+    return f"traffic-{drivers}.npz"
 
 
 def respawn_file(group_size: int) -> str:
