@@ -90,7 +90,7 @@ def differences(
     if not common:
         raise DataFileError("not comparable: the two have no episode in common")
     figures, found = figures_of(protocol), []
-    for group, name, records in groups_of(common):
+    for group, name, records in groups_of(common, protocol.groups):
         clusters = clusters_in(records)
         for figure in COMPARED:
             read, high = figures[figure]

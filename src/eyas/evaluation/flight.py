@@ -2,28 +2,23 @@
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.cache.cached import cached
-from eyas.core.cache.folder import Kind
-from eyas.core.clock import physics_steps
 from eyas.core.errors import ActionError
 from eyas.envs.actions import make_actions
-from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
-from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
+from eyas.evaluation.episode_batch import EpisodeBatch
+from eyas.evaluation.from_above import shares_from_above
+from eyas.evaluation.messages import Radio
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.scenario import Scenario
-from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -32,30 +27,9 @@ _PERIOD = 0.128
 
 
 def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]:
-    """Return the mean share of each target that nothing hides from a drone exactly above it.
-
-    Kept in the cache, since it depends on the episodes only.
-    """
-    make = partial(_measured_shares, episodes, protocol)
-    made = cached(Kind.OCCLUSION, make, (protocol.hash, *episodes), of=np.ndarray)
-    shares: list[float] = np.asarray(made).tolist()
+    """Return the mean share of each target that nothing hides from a drone exactly above it."""
+    shares: list[float] = shares_from_above(episodes, protocol, _PERIOD).mean(axis=1).tolist()
     return shares
-
-
-def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
-    # Without biases the target is in the middle. They are sampled last, so nothing else changes.
-    start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
-    protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants={})
-    settings = protocol.settings
-    ticks = round(_PERIOD * 500)
-    looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))
-    shares = np.zeros(len(episodes))
-    for group in episode_groups(episodes, protocol, EnvConfig()):
-        for _ in range(looks):
-            group.simulation.carry(ticks)
-            pixels, _ = group.subjects()
-            shares[group.rows] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
-    return shares / max(looks, 1)
 
 
 Mask = NDArray[np.bool_]
@@ -107,7 +81,9 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes, self._scenario.told())
+        words = self._scenario.told()
+        self._batch.tell(words)
+        start = Start(seeds, self._boxes, words, self._batch.roads)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
@@ -150,7 +126,10 @@ class BatchFlight:
         self._batch.look(deciding, np.full(len(deciding), step == 0))
         batch = self._batch
         heard = None if self._radio is None else self._radio.heard()
-        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
+        sight = PolicyInput(
+            *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
+            heard=heard,
+        )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun

@@ -1,6 +1,6 @@
 """The rows of a table: all episodes, and those of each map, condition, target and visibility."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -102,6 +102,10 @@ def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
     return [names[number] for number in third.tolist()]
 
 
+Groups = Mapping[str, Callable[[EpisodeRecord], str]]
+"""What each record belongs to, by the name of the group of rows."""
+
+
 def rows_of(
     records: Sequence[EpisodeRecord], protocol: Protocol, *, as_published: bool = False
 ) -> list[TableRow]:
@@ -119,7 +123,7 @@ def rows_of(
     shares = _shares_among(records)
     horizon = protocol.steps * protocol.period
     rows = []
-    for group, name, chosen in groups_of(records):
+    for group, name, chosen in groups_of(records, protocol.groups):
         if chosen:
             found = _means(chosen, figures)
             tsr = [figures["tsr"].read(record) for record in chosen]
@@ -129,7 +133,9 @@ def rows_of(
     return rows
 
 
-def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
+def groups_of(
+    records: Sequence[EpisodeRecord], groups: Groups
+) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
     """Yield group, name and records of each row; a group of one row is left out."""
     yield "all", "all", list(records)
     solvable = [record for record in records if record.solvable]
@@ -141,6 +147,7 @@ def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list
         "weather": [record.weather for record in records],
         "target": [record.target for record in records],
         "visibility": thirds(records),
+        **{name: [belongs(record) for record in records] for name, belongs in groups.items()},
     }
     for group, labels in labels_of.items():
         for label in sorted(set(labels)) if len(set(labels)) > 1 else ():
@@ -198,9 +205,7 @@ def _own(records: list[EpisodeRecord], shares: dict[str, bool]) -> dict[str, Est
         clusters = clusters_in(own)
         if is_share:
             found[name] = mean_of(values, clusters, 1.0)
-        elif min(values) >= 0.0:
-            found[name] = mean_of(values, clusters)
-        else:
+        else:  # as of a difference, which has no limits that are known
             array = np.array(values)
             spread = difference_interval(array, clusters, None)
             found[name] = Estimate(len(array), clusters.count, float(array.mean()), spread)

@@ -10,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.own_code import imported, running, takes
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.observation import Observation
+from eyas.evaluation.messages import MESSAGE
 from eyas.evaluation.policies.policy import (
     Decision,
     Failure,
@@ -31,7 +32,8 @@ class Each:
 
     Args:
         make: Returns the policy of an episode: a function of its observation, or an object with
-            `act(observation)` and, if it wants the target's first box, `reset(box)`.
+            `act(observation)` and, if it wants the target's first box, `reset(box)`; in a team, it
+            may `hear(messages)` before and `say()` after it acts.
         env: What it sees, and what its actions mean.
         path: Where its code is, for messages.
     """
@@ -45,6 +47,7 @@ class Each:
         """Make the policy of each episode; a box tracker gets the box in its first picture."""
         with running("--policy", self._path):
             self._own = [self._make() for _ in start.seeds]
+            self._said = np.full((len(self._own), MESSAGE), np.nan)
             if hasattr(self._own[0], "reset"):
                 self._tell(start)
 
@@ -71,15 +74,20 @@ class Each:
         """Ask the policies of those who decide."""
         actions: list[Any] = [no_action(self.env)] * len(self._own)
         failed = {}
+        messages = None if sight.heard is None else self._said
         for row in np.flatnonzero(sight.deciding).tolist():
             own = self._own[row]
             try:
+                if sight.heard is not None and hasattr(own, "hear"):
+                    own.hear(sight.heard[row].copy())
                 actions[row] = getattr(own, "act", own)(one_of(sight.observation, row))
+                if messages is not None and hasattr(own, "say"):
+                    messages[row] = own.say()
             except KeyboardInterrupt:
                 raise
             except BaseException as error:  # whatever a user's code raises ends only its episode
                 failed[row] = Failure.of(error)
-        return Decision(actions, failed)
+        return Decision(actions, failed, messages)
 
 
 class Whole:

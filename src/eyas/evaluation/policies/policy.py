@@ -13,6 +13,7 @@ from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
 from eyas.evaluation.scenario import Told
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
 
 __all__ = [
@@ -41,6 +42,8 @@ class Start(NamedTuple):
     not tell it, shape (N, 4)."""
     told: Told | None = None
     """What is told in words; None where the protocol has no words."""
+    roads: Callable[[], list[RoadNetwork]] = list
+    """Returns the roads around each drone, N, one object for those on the same map: for oracles."""
 
 
 class PolicyInput(NamedTuple):
@@ -56,6 +59,8 @@ class PolicyInput(NamedTuple):
     visible: Callable[[], NDArray[np.float64]]
     """Returns the share of each target that its camera sees now, 0 while the camera is covered,
     shape (N,): for oracles."""
+    covered: NDArray[np.bool_]
+    """Whose camera shows nothing now, so that the picture is black, shape (N,)."""
     heard: NDArray[np.float64] | None = None
     """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
     None where drones fly alone."""
