@@ -153,9 +153,7 @@ def test_dropped_failures_are_caught(board, caplog):
 
 
 def test_what_another_build_has_flown_is_not_verifiable(board):
-    said = json.loads((board / "hover" / "run.json").read_text())
-    said["build"]["rooms"]["sim"] = "0"
-    (board / "hover" / "run.json").write_text(json.dumps(said))
+    edit_build(board / "hover", "sim")
     found = only(board / "hover")
     assert found.verdict is Verdict.UNKNOWN
     assert "differs from this one in sim" in found.why
@@ -243,6 +241,19 @@ def test_oracles_are_not_ranked_with_the_others(board):
     assert "Oracles" not in text
     assert text.index("<td>follow</td>") < text.index("<td>hover</td>")
     assert "<td>pixels</td>" in text
+
+
+def edit_build(folder, room):
+    said = json.loads((folder / "run.json").read_text())
+    said["build"]["rooms"][room] = "0"
+    (folder / "run.json").write_text(json.dumps(said))
+
+
+def test_what_other_programs_have_flown_stands_in_tables_of_its_own(board):
+    edit_build(board / "hover", "exports")  # writes films, flies nothing
+    assert shown(board).count("<h2>") == 1
+    edit_build(board / "hover", "sim")
+    assert shown(board).count("<h2>") == 2
 
 
 def test_the_page_tells_seeds_hardware_and_latency(board):

@@ -49,7 +49,12 @@ _Seeds = Annotated[
     ),
 ]
 _Latency = Annotated[
-    str, typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured.")
+    str,
+    typer.Option(
+        "--latency",
+        help="Milliseconds, a published system's (openfly, spf, ...), a file with one in each line, "
+        "or measured.",
+    ),
 ]
 _LatencyCurve = Annotated[
     bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")

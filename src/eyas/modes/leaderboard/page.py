@@ -57,7 +57,7 @@ def run(folder: Path, out: Path) -> str:
     for entry in entries_in(folder):
         stamp = entry.stamp
         names = ",".join(sorted(record.name for record in entry.records))
-        key = (stamp.plan.protocol, stamp.protocol, stamp.build.id, names)
+        key = (stamp.plan.protocol, stamp.protocol, stamp.program, names)
         tables.setdefault(key, []).append(entry)
         count += 1
     if not tables:
@@ -77,8 +77,8 @@ def _section(entries: Sequence[Entry]) -> str:
         f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
         f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.targets))}; "
         f"{len(first.records)} episodes, seeds from {starts}; protocol "
-        f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, build "
-        f"<code>{stamp.build.id}</code></p>\n"
+        f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, program "
+        f"<code>{stamp.program}</code></p>\n"
     )
     oracles = [entry for entry in entries if entry.kind == PRIVILEGED]
     tables = _table([entry for entry in entries if entry.kind != PRIVILEGED])
