@@ -20,8 +20,9 @@ _Policy = Annotated[
     str,
     typer.Option(
         "--policy",
-        help="random, hover, follow, servo, a box tracker (csrt, kcf, mosse, medianflow, "
-        "nano, stay), a shipped network, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
+        help="random, hover, follow, sighted, constant-velocity, road-graph, servo, a box tracker "
+        "(csrt, kcf, mosse, medianflow, nano, stay), a shipped network, a file (.onnx, .zip, "
+        ".pt, .pt2), or package.module:name.",
     ),
 ]
 _Protocol = Annotated[str, typer.Option("--protocol", help="paper, long, search or distractor.")]
@@ -52,8 +53,7 @@ _Latency = Annotated[
     str,
     typer.Option(
         "--latency",
-        help="Milliseconds, a published system's (openfly, spf, ...), a file with one in each line, "
-        "or measured.",
+        help="Milliseconds, a published system's (openfly, spf, ...), a file of them, or measured.",
     ),
 ]
 _LatencyCurve = Annotated[
@@ -61,6 +61,13 @@ _LatencyCurve = Annotated[
 ]
 _Sample = Annotated[
     bool, typer.Option("--sample", help="Sample a network's actions instead of taking the best.")
+]
+_InProcess = Annotated[
+    bool,
+    typer.Option(
+        "--in-process",
+        help="Fly your own code in this process, for a debugger: the class is then privileged.",
+    ),
 ]
 _Batch = Annotated[int, typer.Option("--batch", help="Episodes flown together.")]
 _Changes = Annotated[
@@ -104,6 +111,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     latency: _Latency = "0",
     latency_curve: _LatencyCurve = False,
     sample: _Sample = False,
+    in_process: _InProcess = False,
     batch: _Batch = 64,
     set_: _Changes = None,
     out: _Out = None,
@@ -130,6 +138,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         "weathers": weathers or ["day"],
         "targets": targets or ["SUMO_VEHICLE"],
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
+        "in_process": in_process,
     }
     changes = _changes(set_ or [])
     values |= {"env": changes.pop("env", {}), "settings": changes}

@@ -12,8 +12,12 @@ from eyas.envs.actions import make_actions
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch
+<<<<<<< HEAD
 from eyas.evaluation.from_above import shares_from_above
 from eyas.evaluation.messages import Radio
+=======
+from eyas.evaluation.from_above import seen_from_above
+>>>>>>> w-lost
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
@@ -28,7 +32,8 @@ _PERIOD = 0.128
 
 def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]:
     """Return the mean share of each target that nothing hides from a drone exactly above it."""
-    shares: list[float] = shares_from_above(episodes, protocol, _PERIOD).mean(axis=1).tolist()
+    seen = seen_from_above(episodes, protocol, _PERIOD)
+    shares: list[float] = seen.shares.mean(axis=1).tolist()
     return shares
 
 
@@ -91,7 +96,7 @@ class BatchFlight:
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
-            self._batch.advance(self._commands, self._active)
+            self._batch.advance(self._held(), self._active)
             self._meter.measure(self._active)
             self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
@@ -112,6 +117,12 @@ class BatchFlight:
             if not self._active.any():
                 return
         raise AssertionError("the number of steps ends each episode")
+
+    def _held(self) -> NDArray[np.float64]:
+        """Return the commands, those that climb inside the protocol's heights."""
+        if not self._commands[:, 2].any():
+            return self._commands
+        return self._protocol.envelope.held(self._commands, self._batch.heights())
 
     def _answer(self, step: int) -> None:
         """Let those actions hold whose latency is over."""

@@ -6,6 +6,7 @@ Kept in the cache, since it depends on the episodes only.
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,28 +20,35 @@ from eyas.evaluation.episode_batch import episode_groups
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.sight import visible_shares
 
-__all__ = ["shares_from_above"]
+__all__ = ["FromAbove", "seen_from_above"]
 
 Floats = NDArray[np.float64]
 
 
-def shares_from_above(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) -> Floats:
-    """Return the share of each target that nothing hides, at looks throughout its episode.
+class FromAbove(NamedTuple):
+    """N targets at K looks; look k is at (k + 1) periods."""
+
+    shares: Floats
+    """Share of each that nothing hides, shape (N, K)."""
+    places: Floats
+    """Centre of each, east and north [m], shape (N, K, 2)."""
+
+
+def seen_from_above(
+    episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float
+) -> FromAbove:
+    """Return what is seen of the targets of N episodes.
 
     Args:
         episodes: N episodes.
         protocol: Their protocol.
         period: Time from the start to the first look, and between two [s].
-
-    Returns:
-        Shape (N, K); look k is at (k + 1) * `period`.
     """
-    make = partial(_shares, episodes, protocol, period)
-    made = cached(Kind.OCCLUSION, make, (protocol.hash, period, *episodes), of=NDArray[np.float64])
-    return np.asarray(made)
+    make = partial(_seen, episodes, protocol, period)
+    return cached(Kind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
 
 
-def _shares(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) -> Floats:
+def _seen(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) -> FromAbove:
     # Without biases the target is in the middle. They are sampled last, so nothing else changes.
     own = {
         name: {group: values for group, values in changes.items() if group != "start"}
@@ -50,9 +58,11 @@ def _shares(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) 
     protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants=own)
     ticks = round(period / PHYSICS_STEP)
     looks = max(protocol.settings.done.total_steps // ticks, 1)
-    shares = np.zeros((len(episodes), looks))
+    shape = len(episodes), looks
+    seen = FromAbove(np.zeros(shape), np.zeros((*shape, 2)))
     for group in episode_groups(episodes, protocol, EnvConfig()):
         for look in range(looks):
             group.simulation.carry(ticks)
-            shares[group.rows, look] = visible_shares(group.subjects()[0])
-    return shares
+            seen.shares[group.rows, look] = visible_shares(group.subjects()[0])
+            seen.places[group.rows, look] = group.simulation.snapshot.targets.centre[:, :2]
+    return seen

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.core.rng import stream
 from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
-from eyas.evaluation.from_above import shares_from_above
+from eyas.evaluation.from_above import seen_from_above
 from eyas.evaluation.protocol import Protocol
 
 __all__ = [
@@ -45,6 +46,10 @@ _MOST = 3
 _PERIOD = 0.25
 """Time between two looks [s]."""
 
+_FAR = 12.0
+"""Least distance between where a target vanishes and where it comes out [m]. Nearer, a drone that
+waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
+
 _STEADY = 0.5
 """Shorter glimpses than this do not end a loss [s]."""
 
@@ -73,7 +78,7 @@ def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:
     """Return when a target is out of sight.
 
     Args:
-        shares: Visible share of it at each look, as from `shares_from_above`, shape (K,).
+        shares: Visible share of it at each look, as from `seen_from_above`, shape (K,).
         period: Time between two looks [s].
     """
     hidden = np.concatenate([[False], shares < LEAST_VISIBLE, [False]])
@@ -91,23 +96,31 @@ def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> lis
     """Return the losses of each episode; none where it is not one of the protocol.
 
     An episode of the protocol has one to three of 4 to 12 s each and none that is longer; its
-    target is visible at the start, and the last loss ends early enough for a search. Shorter ones
-    do not count.
+    target is visible at the start, comes out of each loss far from where it vanished, and the last
+    loss ends early enough for a search. Shorter ones do not count.
     """
     length = protocol.steps * protocol.period
+    seen = seen_from_above(episodes, protocol, _PERIOD)
     found = []
-    for shares in shares_from_above(episodes, protocol, _PERIOD):
+    for shares, places in zip(*seen, strict=True):
         spans = hidden_spans(shares)
         losses = [loss for loss in spans if loss.end - loss.start >= _LENGTH[0]]
         fits = (
             1 <= len(losses) <= _MOST
-            and all(loss.end - loss.start <= _LENGTH[1] for loss in losses)
+            and spans[0].start >= 1.0
             and losses[0].start >= _BEGUN
             and losses[-1].end <= length - SEARCH_LIMIT
-            and not any(loss.start < 1.0 for loss in spans)
+            and all(loss.end - loss.start <= _LENGTH[1] for loss in losses)
+            and all(_moved(places, loss) >= _FAR for loss in losses)
         )
         found.append(losses if fits else [])
     return found
+
+
+def _moved(places: Floats, loss: Loss) -> float:
+    """Return the distance between where a target vanishes and where it comes out [m]."""
+    first, last = round(loss.start / _PERIOD) - 1, round(loss.end / _PERIOD) - 1
+    return float(exact.hypot(*(places[last] - places[max(first - 1, 0)])))
 
 
 def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Loss]]:
@@ -118,10 +131,8 @@ def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[
     """
     plain = [episode._replace(variant="") for episode in episodes]
     alike = list(dict.fromkeys(plain))
-    onsets = {
-        episode: _onsets(shares >= LEAST_VISIBLE, episode.seed)
-        for episode, shares in zip(alike, shares_from_above(alike, protocol, _PERIOD), strict=True)
-    }
+    visible = seen_from_above(alike, protocol, _PERIOD).shares >= LEAST_VISIBLE
+    onsets = {one: _onsets(own, one.seed) for one, own in zip(alike, visible, strict=True)}
     return [
         [Loss(start, start + COVERED.get(episode.variant, 0.0)) for start in onsets[same]]
         for episode, same in zip(episodes, plain, strict=True)

@@ -15,15 +15,18 @@ from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
+from eyas.evaluation.entry import Entry, entry_of
 from eyas.evaluation.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
-from eyas.evaluation.policies.table import fingerprint, open_policy
+from eyas.evaluation.policies.apart import open_apart, runs_code
+from eyas.evaluation.policies.policy import Policy
+from eyas.evaluation.policies.table import BUILT_IN, fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord
 from eyas.world.maps import MAPS
 
-__all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
+__all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "opened", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Seed = Annotated[int, Field(ge=0, lt=2**62)]
@@ -46,6 +49,8 @@ class EvaluationPlan(Config):
     """Milliseconds, a profile, the path of a file with one latency in each line, or `measured`."""
     sampled: bool = False
     """Whether a network's actions are sampled instead of the best ones."""
+    in_process: bool = False
+    """Whether code of a user's flies in the process of the simulator, which it could read."""
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same
@@ -71,7 +76,8 @@ class EvaluationPlan(Config):
     def command(self) -> str:
         """The command that repeats it."""
         told = self.model_dump(
-            exclude_defaults=True, exclude={"env", "settings", "sampled", "policy", "seeds"}
+            exclude_defaults=True,
+            exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"},
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
         if self.seeds != (FIRST_SEED,):
@@ -87,6 +93,8 @@ class EvaluationPlan(Config):
                 words += [f"--{name}", str(value)]
         if self.sampled:
             words.append("--sample")
+        if self.in_process:
+            words.append("--in-process")
         for key, value in _flat("", {"env": self.env, **self.settings}):
             text = value if isinstance(value, str) else json.dumps(value)
             words += ["--set", f"{key}={text}"]
@@ -109,6 +117,8 @@ class Stamp(Config):
     policy: str | None
     """Hash of the policy's file; None if it has none."""
     plan: EvaluationPlan
+    entry: Entry | None = None
+    """What the policy sees and may do; None where nobody has opened it yet."""
 
     @property
     def program(self) -> str:
@@ -160,6 +170,23 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
     return found
 
 
+def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
+    """Return the policy of a plan, and what a result says of it.
+
+    Code of a user's, and files that may hold some, fly in a process of their own.
+
+    Raises:
+        EyasError: It cannot be loaded, or may not act as it wants in this protocol.
+    """
+    foreign = plan.policy not in BUILT_IN and runs_code(plan.policy)
+    apart = foreign and not plan.in_process
+    make = open_apart if apart else open_policy
+    policy = make(plan.policy, plan.env, sampled=plan.sampled)
+    plan.rules.envelope.refuse(policy.env, plan.protocol)
+    beside = foreign and plan.in_process
+    return policy, entry_of(policy, plan.latency, apart=apart, beside=beside)
+
+
 def fly_batch(
     plan: EvaluationPlan,
     episodes: list[EpisodeSpec],
@@ -179,15 +206,15 @@ def fly_batch(
     """
     delay = delay_from(plan.latency)
     assert len(episodes) == 1 or not isinstance(delay, Measured)
-    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    policy, _ = opened(plan)
     flight = BatchFlight(episodes, plan.rules, policy, delay)
     yield from flight.fly(watcher)
     if answers is not None:
         answers += flight.answers
 
 
-def check(plan: EvaluationPlan) -> None:
-    """Refuse a plan that cannot be flown, before anything is written.
+def check(plan: EvaluationPlan) -> Entry:
+    """Refuse a plan that cannot be flown, before anything is written; else return its entry.
 
     Raises:
         EyasError: A name or a setting is wrong.
@@ -206,13 +233,14 @@ def check(plan: EvaluationPlan) -> None:
             f"--seeds: {', '.join(map(str, plan.seeds))}: sets could share episodes; allowed: "
             f"first seeds that differ by {SETS_APART} or more"
         )
-    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    policy, entry = opened(plan)
     for name in plan.maps:
         for weather in plan.weathers:
             for target in plan.targets:
                 episode = EpisodeSpec(Place(name, weather, target), 0.0, 0)
                 MAPS.get(name).light(weather)  # refuses unknown names
                 plan.rules.settings_of(episode, policy.env)  # refuses wrong ones
+    return entry
 
 
 def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:

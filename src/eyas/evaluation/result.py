@@ -110,6 +110,7 @@ def write_result(
         **made.model_dump(mode="json", exclude={"plan"}),
         "build_id": made.build.id,
         "protocol_name": made.plan.protocol,
+        "class": None if made.entry is None else made.entry.entry_class,
         "as_published": as_published,
         "plan": made.plan.model_dump(mode="json"),
         "command": made.plan.command + (" --as-published" if as_published else ""),

@@ -72,12 +72,12 @@ def run(  # noqa: PLR0913  # choices of the user's
     Raises:
         EyasError: A setting is wrong, or the folder is taken.
     """
-    check(plan)
+    entry = check(plan)
     if plots:
         require_matplotlib()
     if videos:
         pyav("--videos")
-    made = stamp(plan)
+    made = stamp(plan).model_copy(update={"entry": entry})
     with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
         _fly(plan, out, records, flier, quiet=quiet)
@@ -91,7 +91,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     if not quiet:
         print(
             f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}, "
-            f"build {made.build.id}"
+            f"build {made.build.id}, class {entry.entry_class}"
         )
         print(table(rows, plan.protocol))
     _tell_failures(flown)
@@ -125,6 +125,11 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
         old, new = getattr(found, name), getattr(made, name)
         if old != new:
             raise OutputError(f"{out}: cannot be continued: its {name} was {old}, now it is {new}")
+    if found.entry != made.entry:
+        raise OutputError(
+            f"{out}: cannot be continued: what its policy sees or does has changed; replace it "
+            "with --overwrite"
+        )
     old_plan, new_plan = found.plan.model_dump(), made.plan.model_dump()
     for name in old_plan:
         if old_plan[name] != new_plan[name]:

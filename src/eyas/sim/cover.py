@@ -20,9 +20,10 @@ __all__ = ["cover_of", "hidden_stretches"]
 _HEIGHT = 22.0
 """Height of the drone above the road, as in the protocols [m]."""
 
-_ASIDE = 4.5
-"""How far beside the car it is, so that its camera, which looks down by 1.37 rad, centres it [m].
-A drone may be on any side, so a place is hidden only if all four sides see none of it."""
+_ASIDE = (4.5, 10.0)
+"""How far beside the car it is [m]: so that its camera, which looks down by 1.37 rad, centres the
+car, and so that the car is at the edge of the picture. A drone may be on any side, so a place is
+hidden only if all four sides see none of it: else, who flies on sees the car under a crown."""
 
 _STEP = 1.0
 """Between two places on a lane that are looked at [m]."""
@@ -84,7 +85,8 @@ def _hidden(
 
     roof = np.stack([raised(middle + aside * left, _ROOF) for aside in _POINTS], axis=1)
     seen = [
-        clearance.in_sight(raised(middle + _ASIDE * side, _HEIGHT), roof)
+        clearance.in_sight(raised(middle + aside * side, _HEIGHT), roof)
+        for aside in _ASIDE
         for side in (ahead, -ahead, left, -left)
     ]
     return np.asarray(~np.any(seen, axis=(0, 2)))

@@ -24,13 +24,14 @@ _AHEAD = (15.0, 40.0)
 """Drivers decide to hide where a stretch begins so far ahead: nearer, SUMO could not stop in it
 [m]."""
 
-_SLACK = 1.0
-"""How much shorter than a car a stretch may be: 15 % of one may show [m]."""
+_ROOM = 3.0
+"""How much longer than the vehicle a stretch must be: who stands in a shorter one is seen where he
+vanished, by a drone that waits there [m]."""
 
 _LONG = 20.0
 """Least length of a stretch for being slow in it: through a shorter one it would be a crawl [m]."""
 
-_LOST = (4.5, 10.5)
+_LOST = (4.5, 9.0)
 """Shortest and longest time for which a driver wants to be hidden [s]."""
 
 _CRUISE = 12.0
@@ -125,7 +126,7 @@ class Manoeuvres:
     def ahead(self, lane: str, place: float, length: float) -> Stretch | None:
         """Return a stretch that begins ahead of a place on a lane, with room for a vehicle."""
         for stretch in self._cover.get(lane, ()):
-            roomy = stretch.end - stretch.start >= length - _SLACK
+            roomy = stretch.end - stretch.start >= length + _ROOM
             if roomy and _AHEAD[0] <= stretch.start - place <= _AHEAD[1]:
                 return stretch
         return None
@@ -168,7 +169,7 @@ class Driver:
                 yield
                 continue
             yield from self._hide(stretch)
-            yield from self.waiting(self._between(10.0, 40.0))
+            yield from self.waiting(self._between(5.0, 25.0))
 
     def evading(self, links: RoadLinks) -> Running:
         """Drive, and do something else every few seconds."""
@@ -202,8 +203,8 @@ class Driver:
         if stretch.end - stretch.start >= _LONG and self._rng.random() < 0.5:
             yield from self._creep(stretch, lost)
             return
-        room = max(stretch.end - stretch.start - length, 0.0)
-        place = min(stretch.start + length + room * self._rng.random(), stretch.end + _SLACK)
+        room = stretch.end - stretch.start - length
+        place = stretch.start + length + room * self._rng.random()
         edge, _, lane = stretch.lane.rpartition("_")
         standing = max(lost - room / _CRUISE, 3.0)
         if self._asked(self._vehicle.setStop, edge, place, int(lane), standing):

@@ -23,6 +23,8 @@ from eyas.evaluation.policies.simple import HOVER
 
 __all__ = ["Each", "Whole", "load_callable"]
 
+_IN_WORDS = frozenset({"words", "attributes"})
+
 SETTINGS = "env_settings"
 """Attribute of a user's policy: changes of the defaults of `env`."""
 
@@ -36,26 +38,33 @@ class Each:
             may `hear(messages)` before and `say()` after it acts.
         env: What it sees, and what its actions mean.
         path: Where its code is, for messages.
+        told: What its `reset` asks for.
     """
 
     sampled = False
 
-    def __init__(self, make: Callable[[], Any], env: EnvConfig, path: str) -> None:
-        self.env, self._make, self._path = env, make, path
+    def __init__(
+        self,
+        make: Callable[[], Any],
+        env: EnvConfig,
+        path: str,
+        told: frozenset[str] = frozenset(),
+    ) -> None:
+        self.env, self._make, self._path, self.told = env, make, path, told
 
     def begin(self, start: Start) -> None:
         """Make the policy of each episode; a box tracker gets the box in its first picture."""
         with running("--policy", self._path):
             self._own = [self._make() for _ in start.seeds]
             self._said = np.full((len(self._own), MESSAGE), np.nan)
-            if hasattr(self._own[0], "reset"):
+            if self.told:
                 self._tell(start)
 
     def _tell(self, start: Start) -> None:
         """Give each policy what the parameters of its `reset` ask for."""
-        names = set(inspect.signature(self._own[0].reset).parameters)
-        words = names & {"words", "attributes"}
-        boxes = None if words and "box" not in names else start.boxes().tolist()
+        names = self.told
+        words = names & _IN_WORDS
+        boxes = start.boxes().tolist() if "box" in names else None
         for row, own in enumerate(self._own):
             if not words:
                 assert boxes is not None
@@ -94,6 +103,7 @@ class Whole:
     """Calls one function with the observations of all episodes; it cannot tell them apart."""
 
     sampled = False
+    told: frozenset[str] = frozenset()
 
     def __init__(self, function: Callable[[Any], Any], env: EnvConfig, path: str) -> None:
         self.env, self._function, self._path = env, function, path
@@ -105,6 +115,16 @@ class Whole:
         """Call the function."""
         with running("--policy", self._path):
             return Decision(self._function(sight.observation))
+
+
+def _asked_for(found: type) -> frozenset[str]:
+    """Return what the `reset` of a class wants to be told: the first box, unless it names words."""
+    reset = getattr(found, "reset", None)
+    if reset is None:
+        return frozenset()
+    names = frozenset(inspect.signature(reset).parameters)
+    wanted = names & (_IN_WORDS | {"box"})
+    return wanted if wanted & _IN_WORDS else frozenset({"box"})
 
 
 def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or four
@@ -149,7 +169,7 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
         )
     env = env_config(getattr(found, SETTINGS, {}), changes)
     if made:
-        return Each(found, env, path)
+        return Each(found, env, path, _asked_for(found))
     if getattr(found, "batched", False):
         return Whole(found, env, path)
     return Each(lambda: found, env, path)

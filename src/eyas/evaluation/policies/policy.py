@@ -21,6 +21,7 @@ __all__ = [
     "Decision",
     "Failure",
     "Policy",
+    "PolicyFailedError",
     "PolicyInput",
     "Start",
     "env_config",
@@ -77,8 +78,22 @@ class Failure(NamedTuple):
     @classmethod
     def of(cls, error: BaseException, *, traced: bool = True) -> "Failure":
         """Return an error that was raised; `traced`: by the policy's own code."""
+        if isinstance(error, PolicyFailedError):
+            return error.failure
         line = " ".join(f"{type(error).__name__}: {error}".split())[:500]
         return cls(line, "".join(format_exception(error)) if traced else None)
+
+
+class PolicyFailedError(Exception):
+    """A policy has failed elsewhere, in its own process.
+
+    Args:
+        failure: What with.
+    """
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(failure.line)
+        self.failure = failure
 
 
 class Decision(NamedTuple):
@@ -99,6 +114,9 @@ class Policy(Protocol):
     """What it sees, and what its actions mean."""
     sampled: bool
     """Whether its actions are sampled at random, from the seeds of the episodes."""
+    told: frozenset[str]
+    """What it is told beside its observations: `box`, the target's first box; `words` and
+    `attributes`; `truth`, the true state."""
 
     def begin(self, start: Start) -> None:
         """Forget everything: N episodes begin."""

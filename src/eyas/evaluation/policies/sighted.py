@@ -83,6 +83,7 @@ class SightOracle:
     """
 
     sampled = False
+    told = frozenset({"truth"})
 
     def __init__(self, changes: Mapping[str, Any], predictor: Predictor) -> None:
         self.env = env_config(BLIND, {**changes, "actions": "discrete"})
@@ -114,11 +115,15 @@ class SightOracle:
             yaw,
             sight.covered,
         )
-        error = self._predictor.places(clue) - middle
+        error = self._places(clue, sight) - middle
         sine, cosine = exact.sin(yaw), exact.cos(yaw)
         ahead = cosine * error[:, 0] + sine * error[:, 1]
         left = -sine * error[:, 0] + cosine * error[:, 1]
         return Decision(towards(np.stack((ahead, left), axis=-1), self.env))
+
+    def _places(self, clue: Clue, sight: PolicyInput) -> Floats:
+        """Return where to fly, east and north [m], shape (N, 2)."""
+        return self._predictor.places(clue)
 
     def _look(self, sight: PolicyInput) -> None:
         """Remember how the targets move that are visible."""

@@ -21,6 +21,7 @@ BUILT_IN = {
     "sighted": f"{_ROOM}.road_search:sighted",
     "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
     "road-graph": f"{_ROOM}.predictors:road_graph",
+    "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:servo",
     **{
         name: f"{_ROOM}.boxes:{name}"

@@ -60,10 +60,7 @@ _LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
         Drivers.HIDING: TrafficConfig(),
         Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX),
     },
-    "downtown": {
-        Drivers.HIDING: TrafficConfig(),
-        Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX),
-    },
+    "downtown": {Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX)},
 }
 """Maps that ship recordings of drivers who want to be lost: those where something hides them."""
 
