@@ -86,7 +86,9 @@ def test_each_place_has_a_hundred_episodes():
     for protocol in PROTOCOLS.values():
         told = protocol.name == "referring" or protocol.team  # of which each is one observation
         versions = 1 if told else max(len(protocol.variants), 1)
-        assert 96 <= protocol.episodes * len(protocol.directions) * versions <= 108, protocol.name
+        episodes = protocol.episodes * len(protocol.directions) * versions
+        least = 48 if protocol.name == "recover-camera" else 96  # with two losses each
+        assert least <= episodes <= 108, protocol.name
 
 
 def test_what_the_protocol_fixes_is_refused():

@@ -12,12 +12,8 @@ from eyas.envs.actions import make_actions
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch
-<<<<<<< HEAD
-from eyas.evaluation.from_above import shares_from_above
-from eyas.evaluation.messages import Radio
-=======
 from eyas.evaluation.from_above import seen_from_above
->>>>>>> w-lost
+from eyas.evaluation.messages import Radio
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
