@@ -16,9 +16,10 @@ from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import read_records
 from eyas.evaluation.result import FEW_SEEDS, NO_INTERVALS, load_run, table
 from eyas.evaluation.rows import rows_of, thirds
-from eyas.modes import evaluation_films, leaderboard
+from eyas.modes import evaluation_films
 from eyas.modes.evaluate import run
 from eyas.modes.evaluation_films import chosen_flights
+from eyas.modes.leaderboard import page as leaderboard
 
 
 @pytest.fixture(scope="module")

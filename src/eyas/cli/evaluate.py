@@ -59,7 +59,11 @@ _Seeds = Annotated[
     ),
 ]
 _Latency = Annotated[
-    str, typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured.")
+    str,
+    typer.Option(
+        "--latency",
+        help="Milliseconds, a published system's (openfly, spf, ...), a file of them, or measured.",
+    ),
 ]
 _LatencyCurve = Annotated[
     bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
@@ -234,15 +238,47 @@ def compare(
     typer.echo(text_of(found))
 
 
-def leaderboard(
-    folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
-    ],
+leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")
+_Entries = Annotated[
+    Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
+]
+
+
+@leaderboard.command()
+def page(
+    folder: _Entries,
     out: Annotated[
         Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
     ] = None,
 ) -> None:
     """Write a page that ranks all evaluations in a folder."""
-    from eyas.modes.leaderboard import run
+    from eyas.modes.leaderboard.page import run
 
     typer.echo(run(folder, out or folder / "index.html"))
+
+
+@leaderboard.command()
+def verify(
+    folder: _Entries,
+    share: Annotated[
+        float, typer.Option("--share", help="Part of the episodes; at least one batch.")
+    ] = 0.1,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Which episodes; by default drawn afresh.")
+    ] = None,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Run the code that entries name or bring.")
+    ] = False,
+) -> None:
+    """Fly some episodes of each evaluation again, and mark those whose records are equal.
+
+    The exit code is 1 if the records of one are not those of its flights.
+    """
+    from eyas.modes.leaderboard.verify import Verdict, verify
+
+    found = []
+    for finding in verify(folder, share=share, seed=seed, trust=trust):
+        typer.echo(finding.line)
+        found.append(finding.verdict)
+    if Verdict.DIFFERENT in found:
+        raise typer.Exit(1)

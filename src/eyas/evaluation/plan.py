@@ -131,6 +131,11 @@ class Stamp(Config):
     entry: Entry | None = None
     """What the policy sees and may do; None where nobody has opened it yet."""
 
+    @property
+    def program(self) -> str:
+        """Twelve hexadecimal digits that differ between programs that fly and measure."""
+        return self.build.id_without(_NOT_FLOWN)
+
     def other_build(self, other: "Stamp") -> str:
         """Return in words what differs in the programs that fly; nothing if nothing does."""
         networks = self.policy is not None or other.policy is not None

@@ -205,9 +205,7 @@ def _own(records: list[EpisodeRecord], shares: dict[str, bool]) -> dict[str, Est
         clusters = clusters_in(own)
         if is_share:
             found[name] = mean_of(values, clusters, 1.0)
-        elif min(values) >= 0.0:
-            found[name] = mean_of(values, clusters)
-        else:
+        else:  # as of a difference, which has no limits that are known
             array = np.array(values)
             spread = difference_interval(array, clusters, None)
             found[name] = Estimate(len(array), clusters.count, float(array.mean()), spread)
