@@ -19,6 +19,8 @@ BUILT_IN = {
     "hover": f"{_ROOM}.simple:hover",
     "follow": f"{_ROOM}.follow:follow",
     "servo": f"{_ROOM}.servo:servo",
+    "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
+    "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
         name: f"{_ROOM}.boxes:{name}"
         for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
