@@ -9,10 +9,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.evaluation.policies.blobs import Blobs, blobs_in, coloured, salient
+from eyas.evaluation.policies.blobs import Blobs, blobs_in, coloured, painted, salient
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.evaluation.steering import ground_offset, ground_width, towards
-from eyas.targets.colour_names import COLOUR_NAMES
 from eyas.targets.grammar.attributes import claim_of
 from eyas.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
 from eyas.targets.grammar.in_view import BodyWord
@@ -20,23 +19,24 @@ from eyas.targets.grammar.in_view import BodyWord
 __all__ = ["AttributeServo", "attribute_servo", "salient_servo"]
 
 Floats = NDArray[np.float64]
+Picture = NDArray[np.uint8]
 
 _SIZE: Final = (126, 168)
 """Height and width of its pictures [pixels]: a car is 20 pixels long."""
 
-_LENGTHS: Final = {
-    BodyWord.VEHICLE: 4.6,
-    BodyWord.CAR: 4.6,
-    BodyWord.SEDAN: 4.8,
-    BodyWord.SUV: 4.7,
-    BodyWord.HATCHBACK: 4.4,
-    BodyWord.SMALL_CAR: 3.5,
-    BodyWord.VAN: 6.8,
-    BodyWord.BUS: 9.6,
-    BodyWord.TRUCK: 3.0,
-    BodyWord.MOTORCYCLE: 1.8,
+_SHAPES: Final = {
+    BodyWord.VEHICLE: (4.2, 1.4),
+    BodyWord.CAR: (4.2, 1.4),
+    BodyWord.SEDAN: (4.4, 1.4),
+    BodyWord.SUV: (4.2, 1.5),
+    BodyWord.HATCHBACK: (4.0, 1.4),
+    BodyWord.SMALL_CAR: (3.1, 1.2),
+    BodyWord.VAN: (6.6, 1.8),
+    BodyWord.BUS: (9.5, 2.4),
+    BodyWord.TRUCK: (3.0, 2.5),
+    BodyWord.MOTORCYCLE: (1.6, 0.6),
 }
-"""Lengths of the painted part [m]: of a truck, the cab."""
+"""Length and width of what is painted, as blobs are measured [m]: of a truck, the cab."""
 
 _WATCHED: Final = 1.0
 """How long it watches what moves, if the words are about that [s]."""
@@ -70,7 +70,8 @@ class _Drone:
 
     def __init__(self, claim: Claim | None) -> None:
         self.claim = claim
-        self.colour = None if claim is None else _paint(claim.colour)
+        self.colour: Floats | None = None
+        """Of what it follows without words, as seen [0 to 255]."""
         self.own = np.zeros(2)
         """Its way so far, ahead and left [m]."""
         self.time = 0.0
@@ -115,7 +116,7 @@ class AttributeServo:
         for row in np.flatnonzero(sight.deciding).tolist():
             drone = self._drones[row]
             drone.own += self._moved[row]
-            self._look(drone, pictures[row] / 255.0, period)
+            self._look(drone, pictures[row], period)
             drone.time += period
             if drone.track is not None:
                 track = drone.track
@@ -128,32 +129,45 @@ class AttributeServo:
         self._moved = period * steps[actions]
         return Decision(actions)
 
-    def _look(self, drone: _Drone, picture: Floats, period: float) -> None:
+    def _look(self, drone: _Drone, picture: Picture, period: float) -> None:
         """Find the target in a picture, or choose it."""
         if drone.track is not None:
             _follow(drone, self._blobs(drone, picture), period)
         elif not self._listens:
             blobs = blobs_in(salient(picture), self._scale)
             if len(blobs.length):
-                drone.colour = picture[blobs.labels == 1].mean(axis=0)
+                column, row = blobs.place[0].astype(int)
+                near = picture[max(row - 2, 0) : row + 3, max(column - 2, 0) : column + 3]
+                drone.colour = near.reshape(-1, 3).mean(axis=0)
                 drone.track = _Track(self._places(blobs)[0], np.zeros(2), 0.0)
         elif drone.claim is not None:
             blobs = self._blobs(drone, picture)
             if len(blobs.length):
                 self._choose(drone, drone.claim, blobs, picture)
 
-    def _blobs(self, drone: _Drone, picture: Floats) -> Blobs:
-        mask = salient(picture) if drone.colour is None else coloured(picture, drone.colour)
-        return blobs_in(mask, self._scale)
+    def _blobs(self, drone: _Drone, picture: Picture) -> Blobs:
+        if drone.colour is not None:
+            return blobs_in(coloured(picture, drone.colour), self._scale)
+        claim = drone.claim
+        assert claim is not None
+        told = (claim.doing, claim.place, claim.bearing)
+        alike = any(each is not None for each in told)  # all that fit have one body
+        each = _SHAPES[claim.body][0] if alike and claim.body in _SHAPES else None
+        return self._painted(claim.colour, picture, each)
+
+    def _painted(self, name: str | None, picture: Picture, each: float | None = None) -> Blobs:
+        """Return the blobs of a colour; None: of all that is colourful."""
+        mask = salient(picture) if name is None else painted(picture, name)
+        return blobs_in(mask, self._scale, each, apart=each is None)
 
     def _places(self, blobs: Blobs) -> Floats:
         """Return where blobs are from the point in the middle of the picture: ahead, left [m]."""
         return ground_offset(blobs.place[:, 0], blobs.place[:, 1], _SIZE)
 
-    def _choose(self, drone: _Drone, claim: Claim, blobs: Blobs, picture: Floats) -> None:
+    def _choose(self, drone: _Drone, claim: Claim, blobs: Blobs, picture: Picture) -> None:
         """Begin to follow the blob that fits a claim best."""
         places = self._places(blobs) + drone.own
-        error = np.abs(np.log(blobs.length / _LENGTHS.get(claim.body, 4.6)))
+        error = _unlike(blobs, claim.body)
         velocity = np.zeros_like(places)
         if claim.place is not None:
             near = error < error.min() + 0.5
@@ -170,15 +184,12 @@ class AttributeServo:
         best = int(error.argmin())
         drone.track = _Track(places[best], velocity[best], 0.0)
 
-    def _misfit(self, claim: Claim, blobs: Blobs, picture: Floats) -> Floats:
+    def _misfit(self, claim: Claim, blobs: Blobs, picture: Picture) -> Floats:
         """Return how badly each blob is where a claim says from its reference."""
-        paint = _paint(claim.other_colour)
-        mask = salient(picture) if paint is None else coloured(picture, paint)
-        others, places = blobs_in(mask, self._scale), self._places(blobs)
-        wanted = _LENGTHS.get(claim.other_body or BodyWord.CAR, 4.6)
+        others, places = self._painted(claim.other_colour, picture), self._places(blobs)
         if not len(others.length):
             return np.zeros(len(places))
-        alike = np.abs(np.log(others.length / wanted))
+        alike = _unlike(others, claim.other_body or BodyWord.CAR)
         best = np.full(len(places), np.inf)
         for middle, axis, length, unlike in zip(
             self._places(others), others.axis, others.length, alike.tolist(), strict=True
@@ -197,8 +208,12 @@ class AttributeServo:
         return np.where(np.isinf(best), 10.0, best)
 
 
-def _paint(name: str | None) -> Floats | None:
-    return None if name is None else np.array(COLOUR_NAMES[name])
+def _unlike(blobs: Blobs, body: BodyWord) -> Floats:
+    """Return how much the shapes of blobs differ from that of a body, shape (B,)."""
+    length, width = _SHAPES.get(body, _SHAPES[BodyWord.CAR])
+    long, wide = np.abs(np.log(blobs.length / length)), np.abs(np.log(blobs.width / width))
+    unlike: Floats = long + 0.5 * wide
+    return unlike
 
 
 def _follow(drone: _Drone, blobs: Blobs, period: float) -> None:
