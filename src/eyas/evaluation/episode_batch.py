@@ -19,7 +19,9 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import reliefs
 from eyas.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["EpisodeBatch", "EpisodeGroup", "episode_groups"]
@@ -141,6 +143,24 @@ class EpisodeBatch:
         is covered.
         """
         return np.where(self.covered, 0.0, visible_shares(self.pixels()))
+
+    def roads(self) -> list[RoadNetwork]:
+        """Return the roads around each drone, N; those on the same map share one object."""
+        found: dict[int, RoadNetwork] = {}
+        for group in self.groups:
+            found |= dict.fromkeys(group.rows.tolist(), group.simulation.scene.network)
+        return [found[row] for row in range(self.count)]
+
+    def heights(self) -> NDArray[np.float64]:
+        """Return how high each drone is above the ground below it [m], shape (N,)."""
+
+        def above(group: EpisodeGroup) -> NDArray[np.float64]:
+            terrain = group.simulation.scene.terrain
+            place = group.simulation.snapshot.trackers.position
+            heights: NDArray[np.float64] = place[:, 2] - reliefs(terrain, place[:, :2])
+            return heights - terrain.floor
+
+        return self.gathered(above)
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:
         """Return what a function reads of each group, in the order of the episodes, (N, ...).

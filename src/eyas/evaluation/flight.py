@@ -2,28 +2,23 @@
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.cache.cached import cached
-from eyas.core.cache.folder import Kind
-from eyas.core.clock import physics_steps
 from eyas.core.errors import ActionError
 from eyas.envs.actions import make_actions
-from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
-from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
+from eyas.evaluation.episode_batch import EpisodeBatch
+from eyas.evaluation.from_above import seen_from_above
+from eyas.evaluation.messages import Radio
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.scenario import Scenario
-from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -32,30 +27,10 @@ _PERIOD = 0.128
 
 
 def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]:
-    """Return the mean share of each target that nothing hides from a drone exactly above it.
-
-    Kept in the cache, since it depends on the episodes only.
-    """
-    make = partial(_measured_shares, episodes, protocol)
-    made = cached(Kind.OCCLUSION, make, (protocol.hash, *episodes), of=np.ndarray)
-    shares: list[float] = np.asarray(made).tolist()
+    """Return the mean share of each target that nothing hides from a drone exactly above it."""
+    seen = seen_from_above(episodes, protocol, _PERIOD)
+    shares: list[float] = seen.shares.mean(axis=1).tolist()
     return shares
-
-
-def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
-    # Without biases the target is in the middle. They are sampled last, so nothing else changes.
-    start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
-    protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants={})
-    settings = protocol.settings
-    ticks = round(_PERIOD * 500)
-    looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))
-    shares = np.zeros(len(episodes))
-    for group in episode_groups(episodes, protocol, EnvConfig()):
-        for _ in range(looks):
-            group.simulation.carry(ticks)
-            pixels, _ = group.subjects()
-            shares[group.rows] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
-    return shares / max(looks, 1)
 
 
 Mask = NDArray[np.bool_]
@@ -107,9 +82,9 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        told_words = self._scenario.told()
-        self._batch.tell(told_words)
-        start = Start(seeds, self._boxes, told_words)
+        words = self._scenario.told()
+        self._batch.tell(words)
+        start = Start(seeds, self._boxes, words, self._batch.roads)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
@@ -117,7 +92,7 @@ class BatchFlight:
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
-            self._batch.advance(self._commands, self._active)
+            self._batch.advance(self._held(), self._active)
             self._meter.measure(self._active)
             self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
@@ -139,6 +114,12 @@ class BatchFlight:
                 return
         raise AssertionError("the number of steps ends each episode")
 
+    def _held(self) -> NDArray[np.float64]:
+        """Return the commands, those that climb inside the protocol's heights."""
+        if not self._commands[:, 2].any():
+            return self._commands
+        return self._protocol.envelope.held(self._commands, self._batch.heights())
+
     def _answer(self, step: int) -> None:
         """Let those actions hold whose latency is over."""
         effective = self._effective <= step
@@ -152,7 +133,10 @@ class BatchFlight:
         self._batch.look(deciding, np.full(len(deciding), step == 0))
         batch = self._batch
         heard = None if self._radio is None else self._radio.heard()
-        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
+        sight = PolicyInput(
+            *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
+            heard=heard,
+        )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -165,12 +149,15 @@ class BatchFlight:
         if self._radio is not None and decision.messages is not None:
             self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        period, repeat = self._protocol.period, self._policy.env.action_repeat
+        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
         for row in np.flatnonzero(deciding & self._active).tolist():
-            # Rounded up to control steps; rounding errors of the quotient are not.
-            late = int(np.ceil(self._delay.next(row, taken) / period - 1e-9))
+            late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late
             self._ready[row] = step + max(late, repeat)
+
+    def _control_steps(self, seconds: float) -> int:
+        """Return a time, rounded up to control steps; rounding errors of the quotient are not."""
+        return int(np.ceil(seconds / self._protocol.period - 1e-9))
 
     def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's
         """Set the next commands; those whose action is not allowed fail."""

@@ -4,13 +4,14 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.config import updated
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.envelope import ENVELOPE, Envelope
 from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
@@ -91,9 +92,9 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
-    episodes: int = 10
-    """Default number of episodes for each place and direction."""
-    columns: tuple[str, ...] = ("cr", "tsr", "seen", "visible")
+    episodes: int = 25
+    """Default number of episodes for each place and direction: a hundred for each place."""
+    columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
@@ -113,6 +114,8 @@ class Protocol:
     """Whether the variants are drones that follow one target together."""
     first_box: bool = True
     """Whether policies are told the target's true box in the first picture."""
+    envelope: Envelope = ENVELOPE
+    """What drones may do."""
 
     @cached_property
     def settings(self) -> EyasConfig:
@@ -150,7 +153,7 @@ class Protocol:
         meaning = {name: value for name, value in settings.items() if value != {}}
         content = [meaning, self.directions, self.alike, self.first_box]
         content += [self.variants, self.team] if self.variants else []
-        content += [_name_of(self.choose), _name_of(self.scenario)]
+        content += [astuple(self.envelope), _name_of(self.choose), _name_of(self.scenario)]
         content += [] if self.stage is None else [_name_of(self.stage)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 

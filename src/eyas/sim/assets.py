@@ -12,6 +12,7 @@ from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
+from eyas.sim.cover import cover_of
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
@@ -23,7 +24,7 @@ from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
-from eyas.traffic.config import Demand, Source, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
 from eyas.traffic.net_file import SumoNet
@@ -140,6 +141,7 @@ def _live(
         kind_index,
         STANDARD_DURATION,
         others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
+        cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )
 
 
@@ -155,7 +157,11 @@ def _vehicles(
         return None
     recipe = MAPS.get(map_name)
     file = find_file(
-        recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped_traffic()
+        recipe.roads(seed),
+        config,
+        trackers=trackers,
+        shipped=recipe.shipped_traffic(),
+        cover=partial(cover_of, map_name, seed),
     )
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
     begin_ahead(f"from eyas.sim.scenes import paint; paint({sorted({*kind.tolist()})})")

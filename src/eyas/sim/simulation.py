@@ -19,6 +19,7 @@ from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
+from eyas.state.scene import Scene
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.kind import Colour, Looks
 from eyas.task.clearance import Clearance
@@ -125,6 +126,11 @@ class Simulation:
     def episode_key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return self._episodes.key(tracker)
+
+    @property
+    def scene(self) -> Scene:
+        """All that stands still around the trackers."""
+        return self._assets.scene
 
     @property
     def steps_left(self) -> int:

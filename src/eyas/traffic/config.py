@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
-__all__ = ["Demand", "Mix", "Source", "TrafficConfig", "VehicleType"]
+__all__ = ["Demand", "Drivers", "Mix", "Source", "TrafficConfig", "VehicleType"]
 
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
@@ -66,6 +66,17 @@ class Demand(StrEnum):
     instant, as in the original."""
 
 
+class Drivers(StrEnum):
+    """How drivers behave."""
+
+    NORMAL = "normal"
+    """As SUMO's do."""
+    HIDING = "hiding"
+    """Now and then one stays for a few seconds under what hides him from above."""
+    EVADING = "evading"
+    """Drivers of cars want to be lost: they brake, dash, weave, turn back, and hide."""
+
+
 class TrafficConfig(Config):
     """Settings of the traffic that SUMO simulates; `traffic=live` is short for its `source`."""
 
@@ -74,6 +85,8 @@ class TrafficConfig(Config):
     """Where the traffic comes from."""
     demand: Demand = Demand.KEEP_ALIVE
     """When vehicles enter and leave."""
+    drivers: Drivers = Drivers.NORMAL
+    """How drivers behave (keep_alive)."""
     vehicle_type: VehicleType | Mix = VehicleType.PASSENGER
     """Class of all vehicles, or the share of each class."""
     max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
@@ -111,4 +124,6 @@ class TrafficConfig(Config):
             raise ValueError("route_length must hold the shortest and then the longest")
         if self.source is Source.LIVE and self.recording is not None:
             raise ValueError("recording must be left out where source is 'live'")
+        if self.drivers is not Drivers.NORMAL and self.demand is not Demand.KEEP_ALIVE:
+            raise ValueError("drivers must be 'normal' where demand is 'respawn'")
         return self

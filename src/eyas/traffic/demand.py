@@ -16,6 +16,7 @@ __all__ = [
     "endless_walk",
     "lasting_edges",
     "random_trips",
+    "walk_from",
     "without_turnarounds",
 ]
 
@@ -82,8 +83,14 @@ def endless_walk(
         distance: A distance longer than any vehicle can drive in the recording [m].
         rng: Generator for the start and the turns.
     """
+    return walk_from(edges[int(rng.integers(len(edges)))], links, edges, distance, rng)
+
+
+def walk_from(
+    edge: str, links: RoadLinks, edges: Route, distance: float, rng: np.random.Generator
+) -> Route:
+    """Return a random walk that begins with an edge; the other arguments as of `endless_walk`."""
     inside = set(edges)
-    edge = edges[int(rng.integers(len(edges)))]
     walk, length = [edge], links.length[edge]
     while length < distance:
         following = [name for name in links.successors[edge] if name in inside]

@@ -14,9 +14,11 @@ from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.core.program import code_of
+from eyas.core.rng import TEST_SEEDS
 from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Demand, Mix, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
+from eyas.traffic.cover import Cover, cover_hash
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
 from eyas.traffic.recording import Provenance, Recording, check_map
@@ -29,8 +31,11 @@ __all__ = [
     "CANONICAL_SEED",
     "DENSE_DURATION",
     "DENSE_VEHICLES",
+    "EVADING_MIX",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
+    "TEST_DURATION",
+    "TEST_TRAFFIC",
     "find_file",
     "find_recording",
     "record_canonical",
@@ -59,9 +64,18 @@ m now and then (with 160, never), and citystreet, which has room for 399, still 
 
 DENSE_DURATION = 300.0
 """Length of these: as many vehicle hours as in the others [s]."""
+EVADING_MIX = Mix(passenger=0.75, bus=0.15, truck=0.1)
+"""Classes of vehicles in the shipped recordings of drivers who evade: no trailers, whose tails
+swing into cars that turn round beside them."""
 
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
+
+TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
+"""Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""
+
+TEST_DURATION = 300.0
+"""Least length of a recording with such a seed: their episodes are short, but many [s]."""
 
 
 def find_file(
@@ -69,8 +83,9 @@ def find_file(
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
+    cover: Callable[[], Cover] = tuple,
 ) -> RecordingFile:
     """Return the file of the recording to replay: the named, the shipped, a cached or a new one.
 
@@ -80,8 +95,10 @@ def find_file(
         graph: Roads to drive on.
         config: Settings of the traffic.
         trackers: Number of trackers in a world, which determines the least size of a group.
-        duration: Smallest duration of a cached or new recording [s].
+        duration: Smallest duration of the recording [s]; None: that of its seed.
         shipped: Files of the recordings that come with the map.
+        cover: Returns the stretches of lanes in which drivers hide; called where they do and no
+            recording is shipped.
 
     Raises:
         DataFileError: The named recording cannot be read or is of another map.
@@ -95,6 +112,8 @@ def find_file(
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(_lasting(config, trackers), seed, trackers)
+    if duration is None:
+        duration = TEST_DURATION if seed >= TEST_SEEDS else STANDARD_DURATION
     _tell_raised(config, wanted, trackers)
     others: dict[RecordingFile, Provenance] = {}
     for file in shipped:
@@ -112,13 +131,14 @@ def find_file(
                 *(others[roomy].config.group_size or 0, trackers, wanted.group_size or 0),
             )
             return roomy
-    kept = _cached(graph, wanted, duration)
+    known = cover() if wanted.drivers is not Drivers.NORMAL else ()
+    kept = _cached(graph, wanted, duration, known)
     if kept is not None:
         return kept
     reason = _reason(others.values(), graph, wanted, duration)
     if not config.update_routes:
         reason = f"although traffic.update_routes (Sumo_Params.rou_update) is false, {reason}"
-    return _new(graph, wanted, duration, reason)
+    return _new(graph, wanted, duration, known, reason)
 
 
 def find_recording(
@@ -126,7 +146,7 @@ def find_recording(
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
 ) -> Recording:
     """Return the recording of `find_file`."""
@@ -139,9 +159,10 @@ def record_canonical(
     config: TrafficConfig | None = None,
     progress: Callable[[float], None] | None = None,
     *,
+    cover: Cover = (),
     duration: float = STANDARD_DURATION,
 ) -> None:
-    """Record canonical traffic of a map (its seed 0), to be shipped with it.
+    """Record traffic of a map, to be shipped with it.
 
     For developers of a map, after a change in its roads.
 
@@ -150,18 +171,20 @@ def record_canonical(
         path: The file.
         config: Settings of the traffic; None: the default.
         progress: Called with the completed share, 0 to 1.
-        duration: Length of the recording [s].
+        duration: Its length [s].
+        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
     name, seed, chosen = graph.map_name, graph.seed, config or TrafficConfig()
-    made = record(name, seed, graph, chosen, duration, CANONICAL_SEED, progress)
+    sampled = CANONICAL_SEED if chosen.seed is None else chosen.seed
+    made = record(name, seed, graph, chosen, duration, sampled, progress, cover=cover)
     save(made, path)
 
 
-def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Path:
+def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float, cover: Cover) -> Path:
     """Return the path of a recording in the cache.
 
     It does not depend on the version of SUMO, so that users without SUMO can use recordings made
@@ -171,6 +194,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
         graph: Roads to drive on.
         wanted: Settings of the traffic, from `resolved`.
         duration: Length of the recording [s].
+        cover: The stretches of lanes in which drivers hide.
     """
     content = {
         "roads": graph_hash(graph),
@@ -178,6 +202,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
         "duration": duration,
         "warm_up": WARM_UP,
         "options": options(wanted),
+        "cover": cover_hash(cover),
         "code": code_of(_recorded),
     }
     key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
@@ -238,9 +263,11 @@ def _fits(origin: Provenance, graph: RoadGraph, wanted: TrafficConfig) -> bool:
     return (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
 
 
-def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> RecordingFile | None:
+def _cached(
+    graph: RoadGraph, wanted: TrafficConfig, duration: float, cover: Cover
+) -> RecordingFile | None:
     """Return a recording from the cache; None if it is missing or damaged, or of other traffic."""
-    path = _cache_file(graph, wanted, duration)
+    path = _cache_file(graph, wanted, duration, cover)
     try:
         kept = RecordingFile.read(path)
         origin = kept.load().provenance  # whole, or it is recorded again
@@ -281,16 +308,18 @@ def _differences(
     return told
 
 
-def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) -> RecordingFile:
+def _new(
+    graph: RoadGraph, wanted: TrafficConfig, duration: float, cover: Cover, reason: str
+) -> RecordingFile:
     """Return a new recording, and keep it in the cache."""
-    limit, path = cache_limit(), _cache_file(graph, wanted, duration)
+    limit, path = cache_limit(), _cache_file(graph, wanted, duration, cover)
     version = sumo_version("new traffic, as no recording fits the settings,")
     _LOG.warning(
         "recording %.0f s of traffic on '%s' with SUMO %s, once, %s; kept in %s",
         *(duration, graph.map_name, version, reason, path),
     )
     assert wanted.seed is not None
-    data = _recorded(graph, wanted, duration, wanted.seed)
+    data = _recorded(graph, wanted, duration, wanted.seed, cover)
     try:
         write_entry(path, [data], limit)
     except OSError as error:
@@ -298,5 +327,8 @@ def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) 
     return RecordingFile(data, str(path))
 
 
-def _recorded(graph: RoadGraph, wanted: TrafficConfig, duration: float, seed: int) -> bytes:
-    return to_bytes(record(graph.map_name, graph.seed, graph, wanted, duration, seed))
+def _recorded(
+    graph: RoadGraph, wanted: TrafficConfig, duration: float, seed: int, cover: Cover
+) -> bytes:
+    name, map_seed = graph.map_name, graph.seed
+    return to_bytes(record(name, map_seed, graph, wanted, duration, seed, cover=cover))

@@ -19,11 +19,11 @@ from eyas.state.motion import SAMPLE, ActorState, Motion, joined
 from eyas.state.roads import RoadGraph
 from eyas.state.terrain import Terrain
 from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.cover import Cover
 from eyas.traffic.fleet import fleet_of
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.live_tracks import LiveTracks
-from eyas.traffic.network import network_xml
-from eyas.traffic.record import WARM_UP
+from eyas.traffic.record import WARM_UP, roads_for
 from eyas.traffic.recorded import table_of
 from eyas.traffic.smoothing import runs
 from eyas.traffic.source import Stays
@@ -55,6 +55,7 @@ class LiveSumo:
         kind: Function of the name of a class that returns its index, see `Motion.kind`.
         duration: Last time [s].
         others: Motions of those who are in the world besides; only vehicles are targets.
+        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -63,7 +64,7 @@ class LiveSumo:
 
     live: Final = True
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  # the last two are rare
         self,
         graph: RoadGraph,
         config: TrafficConfig,
@@ -72,10 +73,11 @@ class LiveSumo:
         duration: float,
         *,
         others: Sequence[Motion] = (),
+        cover: Cover = (),
     ) -> None:
         _check_alone()
         fleet = fleet_of(config, WARM_UP + duration)
-        self._run = SumoRun(network_xml(graph), config, fleet)
+        self._run = SumoRun(roads_for(config, graph), config, fleet, cover)
         self._end = weakref.finalize(self, self._run.close)
         self._lasting = config.demand is Demand.KEEP_ALIVE
         self._terrain = terrain

@@ -77,8 +77,12 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
     )
 
 
-def network_xml(graph: RoadGraph) -> bytes:
+def network_xml(graph: RoadGraph, *, turnarounds: bool = False) -> bytes:
     """Return SUMO's network file of a graph; equal graphs give equal bytes.
+
+    Args:
+        graph: The roads.
+        turnarounds: Whether one can turn round at junctions. Lanes and junctions are the same.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -99,8 +103,10 @@ def network_xml(graph: RoadGraph) -> bytes:
         nodes.write_text(_node_xml(graph.nodes), encoding="utf-8")
         edges.write_text(_edge_xml(graph.edges), encoding="utf-8")
         files = ("-n", str(nodes), "-e", str(edges), "-o", str(out))
+        banned = OPTIONS.index("--no-turnarounds")
+        options = OPTIONS[:banned] + OPTIONS[banned + 2 :] if turnarounds else OPTIONS
         done = subprocess.run(
-            [str(netconvert), *files, *OPTIONS],
+            [str(netconvert), *files, *options],
             env=sumo_environment(),
             capture_output=True,
             text=True,

@@ -6,7 +6,8 @@ from importlib.metadata import version
 import numpy as np
 
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, TrafficConfig
+from eyas.traffic.cover import Cover, cover_hash
 from eyas.traffic.fleet import fleet_of, simplest
 from eyas.traffic.network import graph_hash, network_xml
 from eyas.traffic.recording import (
@@ -21,7 +22,7 @@ from eyas.traffic.smoothing import held
 from eyas.traffic.sumo import RATE, Drive, drive, options
 from eyas.traffic.sumo_install import sumo_version
 
-__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved"]
+__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved", "roads_for"]
 
 WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
@@ -38,6 +39,8 @@ def record(  # noqa: PLR0913  # everything a recording depends on
     duration: float,
     seed: int,
     progress: Callable[[float], None] | None = None,
+    *,
+    cover: Cover = (),
 ) -> Recording:
     """Return a new recording, the same for the same arguments and SUMO version.
 
@@ -49,16 +52,28 @@ def record(  # noqa: PLR0913  # everything a recording depends on
         duration: Length of the recording [s].
         seed: Seed of SUMO and of the routes.
         progress: Called with the completed share, 0 to 1.
+        cover: The stretches of lanes in which drivers hide, where they do.
 
     Raises:
         MissingExtraError: SUMO is not installed.
         ConfigError: The roads have no room for the requested traffic.
     """
     config = resolved(config, seed)
-    origin = provenance(map_name, map_seed, graph_hash(graph), config, duration)
+    cover = cover if config.drivers is not Drivers.NORMAL else ()
+    origin = provenance(map_name, map_seed, graph_hash(graph), config, duration, cover)
     span = (WARM_UP, WARM_UP + duration)
-    raw = drive(network_xml(graph), config, fleet_of(config, span[1]), span, progress)
+    fleet = fleet_of(config, span[1])
+    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress)
     return _as_recording(raw, origin)
+
+
+def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
+    """Return SUMO's network file of a map's roads; who evades may turn round at junctions.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    return network_xml(graph, turnarounds=config.drivers is Drivers.EVADING)
 
 
 def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConfig:
@@ -70,7 +85,7 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
         trackers: Number of trackers in a world, which determines the least size of a group.
     """
     seen: dict[str, object] = {
-        name: getattr(config, name) for name in ("demand", "max_vehicles", "max_speed")
+        name: getattr(config, name) for name in ("demand", "drivers", "max_vehicles", "max_speed")
     }
     seen |= {
         "vehicle_type": simplest(config.vehicle_type),
@@ -89,7 +104,12 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
 
 
 def provenance(
-    map_name: str, map_seed: int, roads: str, config: TrafficConfig, duration: float
+    map_name: str,
+    map_seed: int,
+    roads: str,
+    config: TrafficConfig,
+    duration: float,
+    cover: Cover = (),
 ) -> Provenance:
     """Return the provenance of a recording made by this version.
 
@@ -99,6 +119,7 @@ def provenance(
         roads: Hash of its road graph.
         config: Settings from `resolved`.
         duration: Length of the recording [s].
+        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -111,6 +132,7 @@ def provenance(
         duration=duration,
         warm_up=WARM_UP,
         options=options(config),
+        cover=cover_hash(cover),
         sumo_version=sumo_version(),
         eyas_version=version("eyas"),
     )

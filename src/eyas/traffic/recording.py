@@ -44,6 +44,8 @@ class Provenance:
     """SUMO's options."""
     sumo_version: str
     eyas_version: str
+    cover: str = ""
+    """Digest of the stretches of lanes in which drivers hide; empty where they don't."""
 
 
 @dataclass(slots=True)

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.core.scratch import scratch
-from eyas.traffic.config import Demand, TrafficConfig, VehicleType
+from eyas.traffic.config import Demand, Drivers, TrafficConfig, VehicleType
+from eyas.traffic.cover import Cover
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
+from eyas.traffic.drivers import Manoeuvres
 from eyas.traffic.entrance import ActorSlots, Entrance
 from eyas.traffic.fleet import Fleet, vehicle_types
 from eyas.traffic.sumo_install import import_libsumo
@@ -84,6 +86,7 @@ def drive(
     network: bytes,
     config: TrafficConfig,
     fleet: Fleet,
+    cover: Cover,
     span: tuple[float, float],
     progress: Callable[[float], None] | None,
 ) -> Drive:
@@ -93,6 +96,7 @@ def drive(
         network: SUMO's network file.
         config: Settings of the traffic; the seed is a number.
         fleet: The vehicles.
+        cover: The stretches of lanes in which drivers hide.
         span: First and last time of the samples [s].
         progress: Called with the completed share, 0 to 1, each simulated second.
 
@@ -102,7 +106,7 @@ def drive(
             for all who never leave: told before the whole time is simulated.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
-    with closing(SumoRun(network, config, fleet)) as run:
+    with closing(SumoRun(network, config, fleet, cover)) as run:
         result = Drive.create(steps - skipped + 1, run.actors, run.vehicle_length)
         for step in range(1, steps + 1):
             run.advance()
@@ -136,13 +140,16 @@ class SumoRun:
         network: SUMO's network file.
         config: Settings of the traffic; the seed is a number.
         fleet: The vehicles.
+        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.
         ConfigError: SUMO already runs another simulation in this process, or the roads are too few.
     """
 
-    def __init__(self, network: bytes, config: TrafficConfig, fleet: Fleet) -> None:
+    def __init__(
+        self, network: bytes, config: TrafficConfig, fleet: Fleet, cover: Cover = ()
+    ) -> None:
         self.actors = vehicle_types(config)
         classes = tuple(dict.fromkeys(self.actors))
         self._slots = ActorSlots(self.actors)
@@ -153,6 +160,8 @@ class SumoRun:
             self.vehicle_length = np.array([length[name] for name in self.actors], np.float64)
             links = {name: _read_links(self.sumo, name) for name in classes}
             self._entrance = Entrance(self.sumo, fleet(links), self.actors, config.demand)
+            usual = config.drivers is Drivers.NORMAL
+            self._manoeuvres = None if usual else Manoeuvres(self.sumo, config, cover, links)
             self._stack = stack.pop_all()
 
     def close(self) -> None:
@@ -165,8 +174,10 @@ class SumoRun:
         self.sumo.simulationStep()
         self._steps += 1
         entered = self._entrance.entered
-        here = (int(name) for name in self.sumo.vehicle.getIDList())
-        self._slots.advance({vehicle: entered[vehicle] for vehicle in here})
+        here = {vehicle: entered[vehicle] for vehicle in map(int, self.sumo.vehicle.getIDList())}
+        self._slots.advance(here)
+        if self._manoeuvres is not None:
+            self._manoeuvres.advance(self._steps / RATE, here)
 
     def read(self, result: Drive, sample: int) -> None:
         """Write the poses of the vehicles as a sample that is empty so far."""

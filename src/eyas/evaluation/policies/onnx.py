@@ -71,6 +71,7 @@ class OnnxPolicy:
                 f"output 'next_x'; it has {', '.join(inputs)} and {', '.join(outputs)}"
             )
         self._remembers_action, self._is_told = _LAST in inputs, _TOLD in inputs
+        self.told = frozenset({_TOLD}) if self._is_told else frozenset()
         self._shapes = {name: inputs[name][1:] for name in memories}
         self._outputs = [outputs[0], *(_NEXT + name for name in memories)]
 

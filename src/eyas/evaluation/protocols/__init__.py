@@ -6,14 +6,15 @@ from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER
+from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
 from eyas.evaluation.protocols.referring import REFERRING
 from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
-PROTOCOLS: Mapping[str, Protocol] = {
-    protocol.name: protocol for protocol in (PAPER, LONG, SEARCH, DISTRACTOR, PAIR, TEAM, REFERRING)
-}
+_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, REFERRING, PAIR, TEAM)
+
+PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}
 
 
 def protocol_named(name: str, place: str = "--protocol") -> Protocol:

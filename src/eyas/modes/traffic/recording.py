@@ -11,14 +11,18 @@ from rich.console import Console
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.progress import sumo_progress
 from eyas.modes.traffic.seeds import RecordingJob, record_all
-from eyas.traffic.config import Demand, Mix, TrafficConfig
+from eyas.sim.cover import cover_of
+from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
     DENSE_DURATION,
     DENSE_VEHICLES,
+    EVADING_MIX,
     RESPAWN_GROUPS,
     STANDARD_DURATION,
+    TEST_DURATION,
+    TEST_TRAFFIC,
     record_canonical,
 )
 from eyas.traffic.network import build_network
@@ -30,9 +34,13 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import (
     DENSE_FILE,
     MIXED_FILE,
-    NETWORK_FILE,
+    TEST_TOWNS,
     TRAFFIC_FILE,
+    MapRecipe,
+    drivers_file,
+    network_file,
     respawn_file,
+    town_traffic_file,
 )
 from eyas.world.roads.network_file import save_network
 
@@ -40,6 +48,21 @@ __all__ = ["describe", "run", "run_canonical"]
 
 _CITIES = ("citystreet", "downtown")
 """Maps that ship a recording of a mixed fleet."""
+
+_TESTED = ("citystreet", "desert", "downtown", "farmland", "lake", "village")
+"""Maps that ship traffic for the protocol `standard`."""
+
+_WITH_TOWNS = ("citystreet", "downtown", "village")
+"""Maps of which other towns ship, for the protocol `unseen`."""
+_LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
+    "village": {Drivers.HIDING: TrafficConfig()},
+    "citystreet": {
+        Drivers.HIDING: TrafficConfig(),
+        Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX),
+    },
+    "downtown": {Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX)},
+}
+"""Maps that ship recordings of drivers who want to be lost: those where something hides them."""
 
 
 def run(  # noqa: PLR0913  # one parameter for each option
@@ -119,20 +142,42 @@ def run_canonical(world: WorldConfig) -> None:
         raise ConfigError(
             f"world.map: {world.map!r} is not part of a package, so nothing can be shipped with it"
         )
-    folder, graph = Path(str(recipe.folder)), recipe.roads(0)
-    save_network(folder / NETWORK_FILE, build_network(graph))
-    shipped = {TRAFFIC_FILE: TrafficConfig()}
+    folder = Path(str(recipe.folder))
+    for seed in (0, *(TEST_TOWNS if recipe.name in _WITH_TOWNS else ())):
+        save_network(folder / network_file(seed), build_network(recipe.roads(seed)))
+    for name, town, config, duration in _shipped_recordings(recipe):
+        cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, town)
+        with sumo_progress() as progress:
+            record_canonical(
+                recipe.roads(town),
+                folder / name,
+                config,
+                progress,
+                cover=cover,
+                duration=duration,
+            )
+        _report(folder / name, "a shipped recording")
+
+
+def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficConfig, float]]:
+    """Yield the recordings that ship with a map: file, seed of the map, settings, length [s]."""
+    yield TRAFFIC_FILE, 0, TrafficConfig(), STANDARD_DURATION
     for size in RESPAWN_GROUPS:
-        shipped[respawn_file(size)] = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
+        groups = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
+        yield respawn_file(size), 0, groups, STANDARD_DURATION
     if recipe.name in _CITIES:
         mixed = TrafficConfig(vehicle_type=CANONICAL_MIX)
+        yield MIXED_FILE, 0, mixed, STANDARD_DURATION
         dense = mixed.model_copy(update={"max_vehicles": DENSE_VEHICLES})
-        shipped |= {MIXED_FILE: mixed, DENSE_FILE: dense}
-    for name, config in shipped.items():
-        duration = DENSE_DURATION if name == DENSE_FILE else STANDARD_DURATION
-        with sumo_progress() as progress:
-            record_canonical(graph, folder / name, config, progress, duration=duration)
-        _report(folder / name, "a shipped recording")
+        yield DENSE_FILE, 0, dense, DENSE_DURATION
+    for drivers, config in _LOST_DRIVERS.get(recipe.name, {}).items():
+        own = config.model_copy(update={"drivers": drivers})
+        yield drivers_file(drivers), 0, own, STANDARD_DURATION
+    for seed in TEST_TRAFFIC if recipe.name in _TESTED else ():
+        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), 2.0 * TEST_DURATION
+    for town in TEST_TOWNS if recipe.name in _WITH_TOWNS else ():
+        seed = TEST_TRAFFIC[0]
+        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), TEST_DURATION
 
 
 def _report(path: Path, what: str) -> None:

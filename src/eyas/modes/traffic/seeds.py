@@ -11,7 +11,8 @@ from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
 from typing import Any
 
-from eyas.traffic.config import TrafficConfig
+from eyas.sim.cover import cover_of
+from eyas.traffic.config import Drivers, TrafficConfig
 from eyas.traffic.record import record
 from eyas.traffic.recording_file import save
 from eyas.world.config import WorldConfig
@@ -90,6 +91,8 @@ def _record_one(index: int, job: RecordingJob) -> tuple[Path, str]:
 def _record(job: RecordingJob, progress: Callable[[float], None]) -> tuple[Path, str]:
     graph = MAPS.get(job.world.map).roads(job.world.seed)
     name, seed = graph.map_name, graph.seed
-    made = record(name, seed, graph, job.config, job.duration, job.seed, progress)
+    usual = job.config.drivers is Drivers.NORMAL
+    cover = () if usual else cover_of(job.world.map, job.world.seed)
+    made = record(name, seed, graph, job.config, job.duration, job.seed, progress, cover=cover)
     save(made, job.path)
     return job.path, f"{made.actors} vehicles, {made.duration:g} s"

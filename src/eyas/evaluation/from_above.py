@@ -1,0 +1,68 @@
+"""What a drone exactly above its target would see of it: what is the place's, and not the policy's.
+
+Kept in the cache, since it depends on the episodes only.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.core.clock import PHYSICS_STEP
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.episode import EpisodeSpec
+from eyas.evaluation.episode_batch import episode_groups
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.sight import visible_shares
+
+__all__ = ["FromAbove", "seen_from_above"]
+
+Floats = NDArray[np.float64]
+
+
+class FromAbove(NamedTuple):
+    """N targets at K looks; look k is at (k + 1) periods."""
+
+    shares: Floats
+    """Share of each that nothing hides, shape (N, K)."""
+    places: Floats
+    """Centre of each, east and north [m], shape (N, K, 2)."""
+
+
+def seen_from_above(
+    episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float
+) -> FromAbove:
+    """Return what is seen of the targets of N episodes.
+
+    Args:
+        episodes: N episodes.
+        protocol: Their protocol.
+        period: Time from the start to the first look, and between two [s].
+    """
+    make = partial(_seen, episodes, protocol, period)
+    return cached(Kind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
+
+
+def _seen(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) -> FromAbove:
+    # Without biases the target is in the middle. They are sampled last, so nothing else changes.
+    own = {
+        name: {group: values for group, values in changes.items() if group != "start"}
+        for name, changes in protocol.variants.items()
+    }
+    start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
+    protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants=own)
+    ticks = round(period / PHYSICS_STEP)
+    looks = max(protocol.settings.done.total_steps // ticks, 1)
+    shape = len(episodes), looks
+    seen = FromAbove(np.zeros(shape), np.zeros((*shape, 2)))
+    for group in episode_groups(episodes, protocol, EnvConfig()):
+        for look in range(looks):
+            group.simulation.carry(ticks)
+            seen.shares[group.rows, look] = visible_shares(group.subjects()[0])
+            seen.places[group.rows, look] = group.simulation.snapshot.targets.centre[:, :2]
+    return seen
