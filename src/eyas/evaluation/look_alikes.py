@@ -71,6 +71,9 @@ know it, but a reader sees it. From above all differ from roads, and from dark g
 _BYSTANDERS: Final = ("yellow", "blue", "white", "grey")
 """Further colours of all others."""
 
+_TOLD_FROM_ABOVE: Final = (BodyWord.SMALL_CAR, BodyWord.VAN)
+"""Bodies of cars that their lengths tell from others; that of an SUV is a sedan's."""
+
 _CROWDED: Final = 14.0
 """Radius around the middle of the first picture in which enough vehicles are looked for [m]."""
 
@@ -230,7 +233,8 @@ def _dress(
     """Make some in view look alike but for what the phrase tells, and all others differ."""
     colours = [_COLOURS[k] for k in rng.permutation(len(_COLOURS)).tolist()]
     bodies = [word for word in BodyWord if _models_called(word)]
-    own = bodies[int(rng.integers(len(bodies)))]
+    among = _TOLD_FROM_ABOVE if kind is PhraseKind.BODY else bodies
+    own = among[int(rng.integers(len(among)))]
     rest = [word for word in bodies if word not in CAN_BE_CALLED[own]]
     models = dict(zip(view.actor.tolist(), view.model.tolist(), strict=True))
     if kind is PhraseKind.BODY and not _is_car(models[alike[0]]):
