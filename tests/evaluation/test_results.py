@@ -192,7 +192,7 @@ def test_the_leaderboard_ranks_and_tells_how_to_repeat(folder, tmp_path):
     page = tmp_path / "index.html"
     leaderboard.run(folder, page)
     texts = Texts(page.read_text()).found
-    assert texts.index("follow") < texts.index("hover")
+    assert texts.index("hover") < texts.index("Oracles") < texts.index("follow")
     assert "eyas evaluate --policy follow --episodes 2" in texts
     body = texts[len(texts) - texts[::-1].index("Eyas leaderboard") :]
     assert next(filter(None, body)).startswith("Results repeat to the bit")

@@ -12,8 +12,8 @@ from eyas.evaluation.plan import EvaluationPlan
 from eyas.modes.evaluate import run
 from eyas.modes.leaderboard import page
 from eyas.modes.leaderboard.card import read_card
-from eyas.modes.leaderboard.entry import entries_in
 from eyas.modes.leaderboard.mark import KEY_VARIABLE
+from eyas.modes.leaderboard.submission import submissions_in
 from eyas.modes.leaderboard.verify import Verdict, verify
 
 
@@ -119,6 +119,9 @@ def test_an_edited_figure_is_caught_and_named(board):
 def test_results_under_another_name_are_caught(board):
     """Flights of the oracle, said to be those of a policy that hovers."""
     edit_plan(board / "follow", policy="hover")
+    hover = json.loads((board / "hover" / "run.json").read_text())
+    said = json.loads((board / "follow" / "run.json").read_text()) | {"entry": hover["entry"]}
+    (board / "follow" / "run.json").write_text(json.dumps(said))
     assert "flown again" in only(board / "follow").line
 
 
@@ -231,16 +234,34 @@ def test_a_network_is_found_in_the_folder_and_must_be_the_same(board, tmp_path):
     assert "the policy's file is another" in only(entry).why
 
 
+def edit_class(folder, entry_class):
+    said = json.loads((folder / "run.json").read_text())
+    said["entry"]["entry_class"] = entry_class
+    (folder / "run.json").write_text(json.dumps(said))
+
+
 def test_oracles_are_not_ranked_with_the_others(board):
-    path = board / "follow" / "result.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"class": "privileged"}))
     text = shown(board)
     assert text.index("<td>hover</td>") < text.index("<h3>Oracles</h3>") < text.index(">follow<")
-    path.write_text(json.dumps(json.loads(path.read_text()) | {"class": "pixels"}))
+    edit_class(board / "follow", "pixels")
     text = shown(board)
     assert "Oracles" not in text
     assert text.index("<td>follow</td>") < text.index("<td>hover</td>")
     assert "<td>pixels</td>" in text
+
+
+def test_an_oracle_that_passes_for_one_that_sees_is_caught(board):
+    edit_class(board / "follow", "pixels")
+    found = only(board / "follow")
+    assert found.verdict is Verdict.DIFFERENT
+    assert found.why == "its entry_class is told as pixels, but is privileged"
+
+
+def test_what_tells_no_class_is_left_out(board, caplog):
+    said = json.loads((board / "follow" / "run.json").read_text()) | {"entry": None}
+    (board / "follow" / "run.json").write_text(json.dumps(said))
+    assert "follow" not in shown(board)
+    assert "does not tell what the policy sees" in caplog.text
 
 
 def edit_build(folder, room):
@@ -308,7 +329,7 @@ def test_a_card_that_is_none_leaves_its_entry_out_with_a_word(board, caplog, car
     with pytest.raises(EyasError, match=r".") as caught:
         read_card(board / "hover")
     assert said in str(caught.value)
-    assert [entry.folder.name for entry in entries_in(board)] == ["follow"]
+    assert [each.folder.name for each in submissions_in(board)] == ["follow"]
     assert said in caplog.text
     assert "hover" not in shown(board)
 
@@ -316,12 +337,10 @@ def test_a_card_that_is_none_leaves_its_entry_out_with_a_word(board, caplog, car
 def test_what_a_card_says_is_text(board):
     evil = "</td><script>alert(1)</script>"
     write_card(board, dict.fromkeys(("name", "trained_on", "license", "remarks"), evil))
-    said = json.loads((board / "hover" / "result.json").read_text()) | {"class": evil}
-    (board / "hover" / "result.json").write_text(json.dumps(said))
     (board / "hover" / "timing.json").write_text(json.dumps({"machine": evil}))
     text = shown(board)
     assert "<script" not in text
-    assert text.count("&lt;script&gt;") == 6
+    assert text.count("&lt;script&gt;") == 5
 
 
 def test_a_damaged_entry_does_not_take_the_page_with_it(board, caplog):

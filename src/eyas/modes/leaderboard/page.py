@@ -7,9 +7,10 @@ from pathlib import Path
 
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
+from eyas.evaluation.entry import EntryClass
 from eyas.evaluation.result import UNITS, cell
 from eyas.evaluation.rows import TableRow, rows_of
-from eyas.modes.leaderboard.entry import PRIVILEGED, Entry, entries_in
+from eyas.modes.leaderboard.submission import Submission, submissions_in
 
 __all__ = ["run"]
 
@@ -52,9 +53,9 @@ def run(folder: Path, out: Path) -> str:
         DataFileError: There is no finished evaluation.
         OutputError: The page cannot be written.
     """
-    tables: dict[tuple[str, ...], list[Entry]] = {}
+    tables: dict[tuple[str, ...], list[Submission]] = {}
     count = 0
-    for entry in entries_in(folder):
+    for entry in submissions_in(folder):
         stamp = entry.stamp
         names = ",".join(sorted(record.name for record in entry.records))
         key = (stamp.plan.protocol, stamp.protocol, stamp.program, names)
@@ -67,7 +68,7 @@ def run(folder: Path, out: Path) -> str:
     return f"{out}: {count} evaluations of {len(tables)} sets of episodes"
 
 
-def _section(entries: Sequence[Entry]) -> str:
+def _section(entries: Sequence[Submission]) -> str:
     """Return the tables of evaluations with the same episodes: policies, and below them oracles."""
     first = entries[0]
     stamp, plan = first.stamp, first.stamp.plan
@@ -80,21 +81,25 @@ def _section(entries: Sequence[Entry]) -> str:
         f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, program "
         f"<code>{stamp.program}</code></p>\n"
     )
-    oracles = [entry for entry in entries if entry.kind == PRIVILEGED]
-    tables = _table([entry for entry in entries if entry.kind != PRIVILEGED])
+    oracles = [entry for entry in entries if _is_oracle(entry)]
+    tables = _table([entry for entry in entries if not _is_oracle(entry)])
     if oracles:
         tables += f"\n<h3>Oracles</h3>\n<p>{ORACLES}</p>\n{_table(oracles)}"
     return head + tables
 
 
-def _table(entries: Sequence[Entry]) -> str:
+def _is_oracle(entry: Submission) -> bool:
+    return entry.entry.entry_class is EntryClass.PRIVILEGED
+
+
+def _table(entries: Sequence[Submission]) -> str:
     """Return a table, the best first."""
     if not entries:
         return ""
     rules = entries[0].stamp.plan.rules
     rows = [(entry, rows_of(entry.records, rules)[0]) for entry in entries]
 
-    def order(pair: tuple[Entry, TableRow]) -> tuple[float, str]:
+    def order(pair: tuple[Submission, TableRow]) -> tuple[float, str]:
         known = pair[1].figures.get(rules.rank)
         return -known.mean if known else math.inf, pair[0].stamp.plan.policy
 
@@ -109,10 +114,10 @@ def _table(entries: Sequence[Entry]) -> str:
     )
 
 
-def _line(entry: Entry, row: TableRow, columns: Sequence[str]) -> str:
+def _line(entry: Submission, row: TableRow, columns: Sequence[str]) -> str:
     plan = entry.stamp.plan
     failed = sum(record.error is not None for record in entry.records)
-    cells = [_policy(entry), html.escape(entry.kind), html.escape(plan.latency)]
+    cells = [_policy(entry), entry.entry.entry_class.value, html.escape(plan.latency)]
     for name in columns:
         mean, _, interval = cell(row.figures.get(name)).partition(" ")
         cells.append(f'{mean}<br><span class="interval">{interval}</span>')
@@ -123,7 +128,7 @@ def _line(entry: Entry, row: TableRow, columns: Sequence[str]) -> str:
     return "".join(f"<td>{text}</td>" for text in cells)
 
 
-def _policy(entry: Entry) -> str:
+def _policy(entry: Submission) -> str:
     """Return what an entry says of itself."""
     plan, card = entry.stamp.plan, entry.card
     lines = [html.escape(plan.policy) + (" (drawn)" if plan.sampled else "")]

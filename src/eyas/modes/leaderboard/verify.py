@@ -17,15 +17,16 @@ from eyas.core.errors import ConfigError, EyasError
 from eyas.core.files import read_limited, write_atomic
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import PROFILES
+from eyas.evaluation.entry import Entry
 from eyas.evaluation.episode import EpisodeSpec, Place
-from eyas.evaluation.plan import EvaluationPlan, Stamp, batches, fly_batch, stamp
+from eyas.evaluation.plan import EvaluationPlan, Stamp, batches, fly_batch, opened, stamp
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.shipped import shipped_names
-from eyas.evaluation.policies.table import BUILT_IN, FILES, open_policy
+from eyas.evaluation.policies.table import BUILT_IN, FILES
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import EPISODES
-from eyas.modes.leaderboard.entry import complete_run, folders_in
 from eyas.modes.leaderboard.mark import MARK, Mark, content_hash, signed
+from eyas.modes.leaderboard.submission import complete_run, folders_in
 from eyas.settings.trust import code_of
 
 __all__ = ["Finding", "Verdict", "verify"]
@@ -111,8 +112,8 @@ def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
         EyasError: They cannot be flown.
     """
     content = content_hash(folder)  # before anything is read of it
-    made, records = complete_run(folder)
-    plan = _flyable(folder, made, trust=trust)
+    made, entry, records = complete_run(folder)
+    plan = _flyable(folder, made, entry, trust=trust)
     parts = batches(plan)
     _refuse_others(parts, records)
     chosen = random.Random(seed).sample(range(len(parts)), math.ceil(share * len(parts)))
@@ -129,10 +130,11 @@ def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
     )
 
 
-def _flyable(folder: Path, made: Stamp, *, trust: bool) -> EvaluationPlan:
+def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> EvaluationPlan:
     """Return the plan of an entry, with its policy where this machine has it.
 
     Raises:
+        _DifferenceError: The policy sees or does something else than is told.
         EyasError: It cannot be flown here, or it would run code.
     """
     plan = made.plan
@@ -149,8 +151,12 @@ def _flyable(folder: Path, made: Stamp, *, trust: bool) -> EvaluationPlan:
         raise _UnverifiableError(
             f"flown by build {made.build.id} of Eyas, which differs from this one in {differs}"
         )
-    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    policy, true = opened(plan)
     _refuse_code(plan, policy.env, trust=trust)
+    for name in Entry.model_fields:
+        old, new = getattr(entry, name), getattr(true, name)
+        if old != new:
+            raise _DifferenceError(f"its {name} is told as {old!s:.200}, but is {new!s:.200}")
     return plan
 
 

@@ -1,4 +1,4 @@
-"""An entry of a leaderboard: a folder of records, whoever has made it."""
+"""What is sent in to a leaderboard: a folder of records, whoever has made it."""
 
 import json
 import logging
@@ -8,34 +8,32 @@ from typing import NamedTuple
 
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited
+from eyas.evaluation.entry import Entry
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import EpisodeRecord
-from eyas.evaluation.result import RESULT, STAMP, load_run
+from eyas.evaluation.result import STAMP, load_run
 from eyas.modes.evaluate import TIMING
 from eyas.modes.leaderboard.card import ModelCard, read_card
 from eyas.modes.leaderboard.mark import Mark, fitting_mark
 
-__all__ = ["PRIVILEGED", "Entry", "complete_run", "entries_in", "folders_in"]
+__all__ = ["Submission", "complete_run", "folders_in", "submissions_in"]
 
 _LOG = logging.getLogger("eyas")
 
-PRIVILEGED = "privileged"
-"""The class of entries that know more than a drone can see."""
-
-_LARGEST = 1 << 26
-"""Largest size of a result or of its timing [bytes]."""
+_LARGEST = 1 << 20
+"""Largest size of the file with the timing [bytes]."""
 
 
-class Entry(NamedTuple):
+class Submission(NamedTuple):
     """One evaluation."""
 
     folder: Path
     stamp: Stamp
     records: list[EpisodeRecord]
     card: ModelCard | None
-    kind: str
-    """Its class: what the policy sees and may do; `-` where the result does not tell."""
+    entry: Entry
+    """What the policy sees and may do."""
     hardware: str
     """The machine whose answers were timed; `-` where no file tells."""
     mark: Mark | None
@@ -53,21 +51,21 @@ def folders_in(folder: Path) -> list[Path]:
     return sorted(path.parent for path in folder.rglob(STAMP))
 
 
-def entries_in(folder: Path) -> Iterator[Entry]:
+def submissions_in(folder: Path) -> Iterator[Submission]:
     """Yield the finished evaluations below a folder; of the others, a warning says why not."""
     for path in folders_in(folder):
         try:
-            stamp, records = complete_run(path)
+            stamp, entry, records = complete_run(path)
             card = read_card(path)
         except EyasError as error:
             _LOG.warning("%s: left out: %s", path, error)
             continue
-        kind, hardware = _text_in(path / RESULT, "class"), _text_in(path / TIMING, "machine")
-        yield Entry(path, stamp, records, card, kind, hardware, fitting_mark(path))
+        hardware = _text_in(path / TIMING, "machine")
+        yield Submission(path, stamp, records, card, entry, hardware, fitting_mark(path))
 
 
-def complete_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
-    """Return stamp and records of an evaluation that has all its episodes, each once.
+def complete_run(folder: Path) -> tuple[Stamp, Entry, list[EpisodeRecord]]:
+    """Return stamp, entry and records of an evaluation that has all its episodes, each once.
 
     Nothing that the plan names is loaded.
 
@@ -77,6 +75,8 @@ def complete_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
     stamp, records = load_run(folder)
     if stamp.plan.protocol not in PROTOCOLS or stamp.protocol != stamp.plan.rules.hash:
         raise DataFileError("flown in a protocol of another version")
+    if stamp.entry is None:
+        raise DataFileError(f"its {STAMP} does not tell what the policy sees and may do")
     missing = stamp.plan.count - len(records)
     if missing:
         raise DataFileError(
@@ -84,7 +84,7 @@ def complete_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
         )
     if len({record.name for record in records}) < len(records):
         raise DataFileError("an episode is there twice")
-    return stamp, records
+    return stamp, stamp.entry, records
 
 
 def _text_in(path: Path, name: str) -> str:
