@@ -97,7 +97,7 @@ def _section(entries: Sequence[_Entry]) -> str:
     places = f"{', '.join(plan.maps)}, {', '.join(plan.weathers)}"
     return (
         f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
-        f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.targets))}; "
+        f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.followed))}; "
         f"{len(records)} episodes; protocol "
         f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, build "
         f"<code>{stamp.build.id}</code></p>\n"

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.crowd import CROWD
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
@@ -12,7 +13,7 @@ from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
-_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, REFERRING, PAIR, TEAM)
+_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, REFERRING, CROWD, PAIR, TEAM)
 
 PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}
 
