@@ -42,7 +42,8 @@ _Weathers = Annotated[
     list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
 ]
 _Targets = Annotated[
-    list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+    list[str] | None,
+    typer.Option("--target", help=f"By default the protocol's, mostly SUMO_VEHICLE; {SEVERAL}."),
 ]
 _Episodes = Annotated[
     int | None,
@@ -145,7 +146,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         "protocol": protocol,
         **({"maps": maps} if maps else {}),
         "weathers": weathers or ["day"],
-        "targets": targets or ["SUMO_VEHICLE"],
+        "targets": targets,
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
         "in_process": in_process,
     }

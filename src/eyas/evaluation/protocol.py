@@ -92,6 +92,8 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
+    targets: tuple[str, ...] = ("SUMO_VEHICLE",)
+    """What is followed, unless a user names others."""
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
     maps: tuple[str, ...] = ("citystreet",)

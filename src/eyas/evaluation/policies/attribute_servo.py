@@ -92,6 +92,7 @@ class AttributeServo:
     sampled = False
 
     def __init__(self, changes: Mapping[str, Any], *, listens: bool) -> None:
+        self.told = frozenset({"attributes"} if listens else ())
         image = {"height": _SIZE[0], "width": _SIZE[1], "colours": "rgb", "layout": "hwc"}
         own = {"observation": image, "actions": "discrete", "action_repeat": 8}
         self.env = env_config(own, {**changes, "observation": image, "actions": "discrete"})
