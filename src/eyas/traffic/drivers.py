@@ -186,7 +186,7 @@ class Driver:
             elif large is not None:
                 yield from self._shelter(large)
             else:
-                others = (self._brake, self._dash, self._weave, turn_back)
+                others = (self._brake, self._dash, self._weave, turn_back, turn_back)
                 yield from others[int(self._rng.integers(len(others)))]()
             # Looks out for something to hide behind before the next of the others.
             until = self._world.time + self._between(6.0, 16.0)
@@ -274,16 +274,24 @@ class Driver:
             yield from self.waiting(self._between(1.5, 2.5))
 
     def _turn_back(self, links: RoadLinks, edges: Route) -> Running:
-        """Turn round at the next junction, and take another way from there."""
-        road, time = self._vehicle.getRoadID(self._name), self._world.time
-        # Only from the lane it is on: who must change lanes for it may stand in the way for ever.
-        back = _turns(self._sumo, self._vehicle.getLaneID(self._name)) & set(edges)
-        if back and road in links.length and self._before_junction():
+        """Turn round at the next junction where it can be done, and take another way from there."""
+        until = self._world.time + 20.0
+        while not (back := self._ways_back() & set(edges)) and self._world.time < until:
+            yield
+        road = self._vehicle.getRoadID(self._name)
+        if back:
             walk = onward_walk(self._vehicle, self._name, min(back), links, edges, self._rng)
             self._asked(self._vehicle.setRoute, (road, *walk))
-        while self._vehicle.getRoadID(self._name) == road and self._world.time < time + 20.0:
+        while self._vehicle.getRoadID(self._name) == road and self._world.time < until:
             yield
-        yield
+
+    def _ways_back(self) -> set[str]:
+        """Return the roads on which the vehicle is after turning round at the next junction.
+
+        Only from the lane it is on: who must change lanes for it may stand in the way for ever.
+        """
+        lane = self._vehicle.getLaneID(self._name)
+        return _turns(self._sumo, lane) if self._before_junction() else set()
 
     def _stretch(self) -> Stretch | None:
         lane = self._vehicle.getLaneID(self._name)

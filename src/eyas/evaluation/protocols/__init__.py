@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.evade import EVADE
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
@@ -11,7 +12,7 @@ from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
-_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, PAIR, TEAM)
+_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, EVADE, PAIR, TEAM)
 
 PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}
 
