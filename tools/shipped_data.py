@@ -24,7 +24,7 @@ from eyas.traffic.network import build_network
 from eyas.traffic.record import record
 from eyas.traffic.recording_file import RecordingFile
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import NETWORK_FILE, MapRecipe
+from eyas.world.maps.recipe import TEST_TOWNS, MapRecipe, network_file
 from eyas.world.roads.network_file import load_network
 
 NOTES = Path(__file__).with_suffix(".json")
@@ -58,31 +58,32 @@ def files() -> Iterator[tuple[MapRecipe, Path]]:
     seen = set()
     for name in MAPS.built_in:
         recipe = MAPS.get(name)
-        network = recipe.shipped(NETWORK_FILE)
-        for file in (*((network,) if network else ()), *recipe.shipped_traffic()):
-            if str(file) not in seen:
+        networks = (recipe.shipped(network_file(seed)) for seed in (0, *TEST_TOWNS))
+        for file in (*networks, *recipe.shipped_traffic()):
+            if file is not None and str(file) not in seen:
                 seen.add(str(file))
                 yield recipe, Path(str(file))
 
 
 def noted(recipe: MapRecipe, path: Path) -> list[str]:
     """Return what identifies the code that makes a file, and its content."""
-    maker = build_network if path.name == NETWORK_FILE else _recorded
+    maker = build_network if path.name.startswith("network") else _recorded
     return [code_of(maker), code_of(recipe.roads), sha256(path.read_bytes()).hexdigest()[:32]]
 
 
 def is_the_same(recipe: MapRecipe, path: Path) -> bool:
     """Make a file again and compare what is in it."""
-    graph = recipe.roads(0)
-    if path.name == NETWORK_FILE:
-        old, new = load_network(path), build_network(graph)
+    if path.name.startswith("network"):
+        town = int(path.stem.partition("-")[2] or 0)
+        old, new = load_network(path), build_network(recipe.roads(town))
         names = (name for name in old.__slots__ if name != "builder")
         return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in names)
     old = RecordingFile.read(path).load()
     origin = old.provenance  # which tells SUMO's version, too
-    cover = cover_of(origin.map_name, 0) if origin.cover else ()
-    config, span = origin.config, origin.duration
-    new = record(origin.map_name, 0, graph, config, span, config.seed or 0, cover=cover)
+    town, config = origin.map_seed, origin.config
+    cover = cover_of(origin.map_name, town) if origin.cover else ()
+    roads, span = recipe.roads(town), origin.duration
+    new = record(origin.map_name, town, roads, config, span, config.seed or 0, cover=cover)
     return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in MOVES)
 
 

@@ -1,4 +1,5 @@
-"""Write the parts of the documents that are made from the code: of labels, and of plans of maps.
+"""Write the parts of the documents that are made from the code: of labels, of plans of maps, model
+cards, and tables of figures.
 
 python tools/write_docs.py           # writes them
 python tools/write_docs.py --check   # ends with 1 if they are not up to date
@@ -11,7 +12,11 @@ from pathlib import Path
 
 from plan_page import page_of_records, schema_text
 
+from eyas.evaluation.policies.model_card import model_card
+from eyas.evaluation.policies.shipped import shipped_names
 from eyas.exports.label import FIELDS, LabelField, label_schema
+from eyas.modes.reproduce.run import markdown
+from eyas.modes.reproduce.tables import TABLES, expected
 
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- made by tools/write_docs.py -->", "<!-- end -->"
@@ -49,7 +54,36 @@ def documents() -> dict[Path, str]:
         DOCS / "labels.schema.json": schema,
         plan: made(plan.read_text(), page_of_records()),
         DOCS / "maps" / "plan.schema.json": schema_text(),
+        **{DOCS / "policies" / f"{name}.md": model_card(name) + "\n" for name in shipped_names()},
+        **tables(),
     }
+
+
+def tables() -> dict[Path, str]:
+    """Return the texts of the pages that have tables of `eyas reproduce`."""
+    pages: dict[Path, str] = {}
+    for table in TABLES.values():
+        path, said = DOCS / table.page, expected(table.name)
+        page = pages.get(path) or path.read_text()
+        begin, end = f"<!-- table {table.name} -->", "<!-- end of table -->"
+        if begin not in page:
+            raise SystemExit(f"{path}: has no place for the table: {begin} ... {end}")
+        head, rest = page.split(begin)
+        text = "(not made yet)" if said is None else markdown(table, said)
+        command = f"`eyas reproduce {table.name}`"
+        pages[path] = f"{head}{begin}\n\n{text}\n\n{command}\n{end}{rest.split(end, 1)[1]}"
+    path = DOCS / "reproduce.md"
+    begin, end = "<!-- tables of eyas reproduce -->", "<!-- end of tables -->"
+    head, rest = (pages.get(path) or path.read_text()).split(begin)
+    rows = ["| table | episodes | where | command |", "|---|---|---|---|"]
+    rows += [
+        f"| {table.title} | {sum(row.plan.count for row in table.rows):,} | "
+        f"[{table.page}]({table.page}) | `eyas reproduce {table.name}` |"
+        for table in TABLES.values()
+    ]
+    listed = "\n".join(rows)
+    pages[path] = f"{head}{begin}\n\n{listed}\n\n{end}{rest.split(end, 1)[1]}"
+    return pages
 
 
 def main() -> int:

@@ -1,5 +1,7 @@
 """What an agent sees: size, channels, order of the axes, several pictures, other parts."""
 
+import copy
+
 import gymnasium
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from eyas.core.errors import EyasError
 from eyas.envs.config import ObservationPart
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.envs.vector_env import EyasVectorEnv
+from eyas.targets.grammar.attributes import ATTRIBUTES, claim_of
 
 SIZE = {"width": 24, "height": 20}
 
@@ -91,3 +94,58 @@ def test_a_part_that_does_not_exist_is_one_clear_line():
     with pytest.raises(EyasError, match=r"^env\.observation\.parts") as caught:
         TrackingEnv(observation={"parts": ["imgae"]})
     assert "\n" not in str(caught.value)
+
+
+SAID = {**SIZE, "parts": ["image", "words", "attributes"]}
+
+
+def test_words_are_told_at_the_reset_and_stay():
+    env = TrackingEnv(observation=SAID)
+    check_env(env, skip_render_check=True)
+    said = set()
+    for seed in range(6):
+        first, _ = env.reset(seed=seed)
+        again, *_ = env.step(3)
+        said.add(first["words"])
+        assert first["words"] == again["words"] != ""
+        assert env.observation_space.contains(again)
+        assert np.array_equal(first["attributes"], again["attributes"])
+        assert claim_of(first["attributes"]) is not None
+    assert len(said) > 3
+
+
+def test_a_vector_environment_has_the_words_of_each_alone():
+    settings = {"done": {"total_steps": 12, "grace_steps": 0, "no_reward_steps": 500}}
+    env = EyasVectorEnv(3, settings, observation=SAID, autoreset_mode="SameStep")
+    first, _ = env.reset(seed=4)
+    assert env.observation_space.contains(first)
+    for index, words in enumerate(first["words"]):
+        alone, _ = TrackingEnv(settings, observation=SAID).reset(seed=4 + index)
+        assert alone["words"] == words
+        assert np.array_equal(alone["attributes"], first["attributes"][index])
+    for _ in range(3):
+        later, *_, info = env.step([6, 6, 6])
+    assert later["words"] != first["words"]
+    assert info["final_obs"][0]["words"] == first["words"][0]
+
+
+def test_a_copy_of_an_environment_keeps_its_words():
+    env = TrackingEnv(observation=SAID)
+    first, _ = env.reset(seed=7)
+    got, *_ = copy.deepcopy(env).step(6)
+    assert got["words"] == first["words"]
+
+
+def test_words_alone_are_refused():
+    with pytest.raises(EyasError, match=r"env\.observation\.parts: 'words' alone is not allowed"):
+        TrackingEnv(observation={"parts": ["words"]})
+
+
+def test_stable_baselines3_gets_attributes_but_no_text():
+    pytest.importorskip("stable_baselines3")
+    from eyas.envs.sb3 import EyasVecEnv
+
+    env = EyasVecEnv(2, observation={**SIZE, "parts": ["image", "attributes"]})
+    assert env.reset()["attributes"].shape == (2, len(ATTRIBUTES))
+    with pytest.raises(EyasError, match="'words' is not allowed here"):
+        EyasVecEnv(2, observation=SAID)

@@ -87,3 +87,14 @@ def hovering_module(torch):
     Hovering.__qualname__ = "Hovering"
     globals()["Hovering"] = Hovering
     return Hovering()
+
+
+class TimesOfLooks:
+    """Hovers, and counts how often it is asked."""
+
+    count = {}
+    env_settings = {"observation": {"width": 16, "height": 12}}
+
+    def act(self, picture):
+        self.count[id(self)] = self.count.get(id(self), 0) + 1
+        return 6

@@ -15,7 +15,9 @@ import pytest
 
 from eyas.cli.evaluate import _changes
 from eyas.core.errors import ConfigError, EyasError, OutputError
-from eyas.evaluation.plan import EvaluationPlan
+from eyas.evaluation.episode import seed_sets
+from eyas.evaluation.plan import EvaluationPlan, check
+from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import RecordFile, read_records
 from eyas.modes.evaluate import run
 
@@ -36,7 +38,7 @@ def test_the_result_tells_all_that_repeats_it(whole):
     assert result["seeds"] == list(range(1_000_000, 1_000_008))
     first = result["rows"][0]
     assert (first["group"], first["n"]) == ("all", 8)
-    low, high = first["figures"]["cr"]["mean_interval"]
+    low, high = first["figures"]["cr"]["interval"]
     assert low < first["figures"]["cr"]["mean"] < high
     assert {row["group"] for row in result["rows"]} == {"all", "visibility"}
     lines = (whole / "result.csv").read_text().splitlines()
@@ -50,6 +52,43 @@ def test_the_command_that_repeats_it_survives_a_shell():
     assert words[:4] == ["eyas", "evaluate", "--policy", plan.policy]
     said = [text for option, text in pairwise(words) if option == "--set"]
     assert _changes(said) == {"env": plan.env, **plan.settings}
+
+
+def test_several_sets_of_seeds_are_flown_as_if_each_were_alone(tmp_path):
+    sets = EvaluationPlan(policy="random", episodes=1, seeds=seed_sets("2"), batch=3)
+    assert shlex.split(sets.command)[4:6] == ["--seeds", "1000000,11000000"]
+    assert sets.count == 8
+    flown = run(sets, tmp_path / "both", quiet=True)
+    alone = [
+        record
+        for number, seed in enumerate(sets.seeds)
+        for record in run(
+            sets.model_copy(update={"seeds": (seed,)}), tmp_path / str(number), quiet=True
+        )
+    ]
+    assert flown == alone
+    result = json.loads((tmp_path / "both" / "result.json").read_text())
+    assert [row["name"] for row in result["rows"]][:3] == ["all", "from 1000000", "from 11000000"]
+    assert EvaluationPlan(policy="random", seeds=(77,)).command.endswith("--seed 77")
+
+
+def test_sets_of_seeds_are_a_number_or_a_list_that_does_not_overlap():
+    assert seed_sets("3") == (1_000_000, 11_000_000, 21_000_000)
+    assert seed_sets("5000000,77000000") == (5_000_000, 77_000_000)
+    for text in ("0", "-1", "a", "1,", "1000000,-2"):
+        with pytest.raises(ConfigError, match=r"--seeds: .* is not allowed: the first seeds"):
+            seed_sets(text)
+    with pytest.raises(ConfigError, match="sets could share episodes"):
+        check(EvaluationPlan(policy="hover", seeds=(1_000_000, 1_000_100)))
+
+
+def test_each_place_has_a_hundred_episodes():
+    for protocol in PROTOCOLS.values():
+        told = protocol.name == "referring" or protocol.team  # of which each is one observation
+        versions = 1 if told else max(len(protocol.variants), 1)
+        episodes = protocol.episodes * len(protocol.directions) * versions
+        least = 48 if protocol.name == "recover-camera" else 96  # with two losses each
+        assert least <= episodes <= 108, protocol.name
 
 
 def test_what_the_protocol_fixes_is_refused():

@@ -14,7 +14,7 @@ from eyas.evaluation.comparison import differences, text_of
 from eyas.evaluation.plan import EvaluationPlan, batches
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import read_records
-from eyas.evaluation.result import NO_INTERVALS, load_run, table
+from eyas.evaluation.result import FEW_SEEDS, NO_INTERVALS, load_run, table
 from eyas.evaluation.rows import rows_of, thirds
 from eyas.modes import evaluation_films, leaderboard
 from eyas.modes.evaluate import run
@@ -28,6 +28,9 @@ def folder(tmp_path_factory):
     for name in ("hover", "follow"):
         run(EvaluationPlan(policy=name, episodes=2), folder / name, quiet=True)
     return folder
+
+
+PAPER = PROTOCOLS["paper"]
 
 
 def records(folder, name):
@@ -60,7 +63,7 @@ def test_the_third_is_the_episodes_and_not_the_policys(folder):
 
 def test_a_row_holds_the_mean_of_its_records(folder):
     flown = records(folder, "hover")
-    rows = rows_of(flown, 3.0)
+    rows = rows_of(flown, PAPER)
     assert rows[0].figures["cr"].mean == pytest.approx(np.mean([each.cr for each in flown]))
     assert sum(len(row.records) for row in rows if row.group == "visibility") == len(flown)
 
@@ -69,26 +72,27 @@ def test_as_published_drops_episodes_without_reward(folder):
     flown = records(folder, "hover")
     nothing = flown[0].published.model_copy(update={"cr": 0.0})
     dropped = [flown[0].model_copy(update={"published": nothing}), *flown[1:]]
-    assert rows_of(dropped, 3.0, as_published=True)[0].figures["cr"].n == len(flown) - 1
-    assert rows_of(dropped, 3.0)[0].figures["cr"].n == len(flown)
+    assert rows_of(dropped, PAPER, as_published=True)[0].figures["cr"].n == len(flown) - 1
+    assert rows_of(dropped, PAPER)[0].figures["cr"].n == len(flown)
 
 
 def test_differences_are_paired(folder):
     hover, follow = records(folder, "hover"), records(folder, "follow")
-    first = differences(hover, follow[::-1][:5])[0]
+    first = differences(hover, follow[::-1][:5], PAPER)[0]
     assert (first.group, first.figure, first.n) == ("all", "cr", 5)
     names = {record.name for record in follow[::-1][:5]}
     chosen = [record.cr for record in hover if record.name in names]
     assert first.first == pytest.approx(np.mean(chosen))
     assert first.improved == 1.0
     assert first.interval.low <= first.mean <= first.interval.high
-    same = differences(hover, hover)[0]
-    assert (same.mean, same.interval, same.improved) == (0.0, (0.0, 0.0), 0.5)
+    same = differences(hover, hover, PAPER)[0]
+    assert (same.mean, same.improved, same.needed) == (0.0, 0.5, None)
+    assert same.interval == pytest.approx((-375 * 3 / 8, 375 * 3 / 8))
 
 
 def test_what_has_nothing_in_common_is_not_compared(folder, tmp_path):
     with pytest.raises(EyasError, match="no episode in common"):
-        differences(records(folder, "hover")[:2], records(folder, "hover")[2:])
+        differences(records(folder, "hover")[:2], records(folder, "hover")[2:], PAPER)
     other = json.loads((folder / "hover" / "run.json").read_text())
     (tmp_path / "run.json").write_text(json.dumps({**other, "protocol": "0123456789ab"}))
     answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(tmp_path)])
@@ -253,21 +257,92 @@ def test_a_latency_curve_has_a_point_and_a_folder_for_each_latency(tmp_path):
         raise CliRunner().invoke(app, ["evaluate", *arguments, "--latency", "5"]).exception
 
 
-def test_the_same_seeds_in_several_weathers_have_no_interval(folder):
-    """They are not independent: such intervals would be far too narrow."""
+def test_the_same_seeds_in_several_weathers_are_one_observation_each(folder):
     day = records(folder, "hover")
     night = [each.model_copy(update={"weather": "night"}) for each in day]
-    rows = {row.name: row for row in rows_of([*day, *night], 3.0)}
+    rows = {row.name: row for row in rows_of([*day, *night], PAPER)}
     for name, figure in rows["all"].figures.items():
-        assert (figure.mean_interval, figure.iqm_interval) == (None, None), name
-        assert rows["night"].figures[name].mean_interval is not None
-    text = table(list(rows.values()), "paper")
-    assert "[" not in text.splitlines()[1]
-    assert text.splitlines()[-1] == NO_INTERVALS
-    assert NO_INTERVALS not in table([rows["night"]], "paper")
+        alone = rows["night"].figures[name]
+        assert (figure.seeds, figure.interval) == (8, alone.interval), name
+        assert figure.mean == pytest.approx(alone.mean)
+    assert " 16 (8 seeds) " in table(list(rows.values()), "paper")
     others = [each.model_copy(update={"name": f"{each.name}+"}) for each in night]
-    found = differences([*day, *others], [*day, *others])
-    intervals = {each.name: each.interval for each in found}
-    assert intervals["all"] is None
-    assert intervals["night"] is not None
-    assert text_of(found).splitlines()[-1] == NO_INTERVALS
+    follow = {each.seed: each for each in records(folder, "follow")}
+    second = [follow[each.seed].model_copy(update={"name": each.name}) for each in [*day, *others]]
+    found = differences([*day, *others], second, PAPER)
+    intervals = {each.name: each.interval for each in found if each.figure == "cr"}
+    assert intervals["all"] == pytest.approx(intervals["night"])
+
+
+def test_too_few_seeds_have_no_interval_and_one_line_says_so(folder):
+    rows = rows_of(records(folder, "hover")[:4], PAPER)
+    text = table(rows, "paper").splitlines()
+    assert all(figure.interval is None for figure in rows[0].figures.values())
+    assert "[-]" in text[1]
+    assert text.count(NO_INTERVALS) == 1
+    assert FEW_SEEDS not in text
+    assert FEW_SEEDS in table(rows_of(records(folder, "hover"), PAPER), "paper")
+    found = differences(records(folder, "hover")[:4], records(folder, "follow")[:4], PAPER)
+    assert found[0].interval is None
+    assert "too few independent seeds" in text_of(found)
+
+
+def test_sets_of_seeds_are_pooled_and_each_has_a_row(folder):
+    first = records(folder, "hover")
+    second = [each.model_copy(update={"seed": each.seed + 10_000_000}) for each in first]
+    rows = rows_of([*first, *second], PAPER)
+    sets = [row for row in rows if row.group == "seeds"]
+    assert [row.name for row in sets] == ["from 1000000", "from 11000000"]
+    assert [len(row.records) for row in sets] == [8, 8]
+    assert rows[0].figures["cr"].seeds == 16
+    assert not [row for row in rows_of(first, PAPER) if row.group == "seeds"]
+
+
+def test_what_can_be_solved_has_a_row_of_its_own(folder):
+    flown = records(folder, "hover")
+    told = [each.model_copy(update={"solvable": place > 1}) for place, each in enumerate(flown)]
+    row = next(row for row in rows_of(told, PAPER) if row.group == "solvable")
+    assert row.records == told[2:]
+    assert row.label == "solvable"
+    assert not [row for row in rows_of(flown, PAPER) if row.group == "solvable"]
+
+
+def test_a_protocols_own_figures_are_in_the_rows_and_those_not_known_are_left_out(folder):
+    flown = records(folder, "hover")
+    own = [{"share": 1.0, "gap": -0.5 + place, "wait": None} for place in range(8)]
+    own[0] |= {"share": None, "wait": 7.0}
+    told = [
+        each.model_copy(update={"figures": values}) for each, values in zip(flown, own, strict=True)
+    ]
+    figures = rows_of(told, PAPER)[0].figures
+    assert (figures["share"].n, figures["share"].mean) == (7, 1.0)
+    assert figures["share"].interval.high == 1.0
+    assert np.mean(figures["gap"].interval) == pytest.approx(figures["gap"].mean)
+    assert (figures["wait"].n, figures["wait"].mean, figures["wait"].interval) == (1, 7.0, None)
+
+
+def test_a_flight_without_a_loss_has_found_its_target(folder):
+    flown = records(folder, "follow")
+    assert rows_of(flown, PAPER)[0].figures["flawless"].mean == 1.0
+    never = {"found_after": None, "losses": 0}
+    changes = ({"losses": 1}, never, {}, {}, {}, {}, {}, {})
+    told = [each.model_copy(update=one) for each, one in zip(flown, changes, strict=True)]
+    assert rows_of(told, PAPER)[0].figures["flawless"].mean == 0.75
+
+
+def test_the_comparison_says_how_many_episodes_would_tell(folder):
+    hover, follow = records(folder, "hover"), records(folder, "follow")
+    said = text_of(differences(hover, follow, PAPER))
+    assert "cr: the two differ; about 10 paired episodes would tell" in said
+    assert "you have 8" in said
+    changed = [
+        each.model_copy(update={"tsr": each.tsr + (0.1, -0.09)[place % 2]})
+        for place, each in enumerate(hover)
+    ]
+    line = next(
+        line
+        for line in text_of(differences(hover, changed, PAPER)).splitlines()
+        if line.startswith("tsr: ")
+    )
+    assert line.startswith("tsr: the two are not told apart; about 3,200 paired")
+    assert "cr: no difference in 8" in text_of(differences(hover, changed, PAPER))

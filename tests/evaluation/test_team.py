@@ -7,14 +7,18 @@ import pytest
 
 from eyas.core.errors import ConfigError
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import Place
 from eyas.evaluation.episode_batch import EpisodeBatch
+from eyas.evaluation.flight import BatchFlight
+from eyas.evaluation.messages import MESSAGE, Radio
 from eyas.evaluation.meter import LOOK
 from eyas.evaluation.plan import EvaluationPlan, batches, check, fly_batch
 from eyas.evaluation.policies.policy import Decision
 from eyas.evaluation.policies.simple import Hover
+from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.protocols import PROTOCOLS
-from eyas.evaluation.team import MESSAGE, SEARCH_LIMIT, Radio, TeamScenario
+from eyas.evaluation.team import SEARCH_LIMIT, TeamScenario
 
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")
 
@@ -100,9 +104,6 @@ class Talker(Hover):
 
 
 def test_a_message_is_heard_at_the_next_look():
-    from eyas.evaluation.delay import delay_from
-    from eyas.evaluation.flight import BatchFlight
-
     protocol, episodes = chosen()
     short = replace(protocol.changed({"done": {"total_steps": 100}}), scenario=None)
     talker = Talker()
@@ -110,6 +111,34 @@ def test_a_message_is_heard_at_the_next_look():
         pass
     assert np.isnan(talker.heard[0]).all()
     assert talker.heard[1][:, 0, 0].tolist() == [1, 0, 3, 2, 5, 4, 7, 6]
+
+
+def test_ones_own_class_hears_and_says(monkeypatch):
+    import own_policies
+
+    class Echo:
+        env_settings = {"action_repeat": 4}  # noqa: RUF012
+        heard = []  # noqa: RUF012
+
+        def hear(self, messages):
+            Echo.heard.append(messages)
+
+        def act(self, picture):
+            return 6
+
+        def say(self):
+            return 6 * [float(len(Echo.heard))]
+
+    monkeypatch.setattr(own_policies, "Echo", Echo, raising=False)
+    protocol, episodes = chosen()
+    short = replace(protocol.changed({"done": {"total_steps": 100}}), scenario=None)
+    for _ in BatchFlight(
+        episodes[:2], short, open_policy("own_policies:Echo", {}), delay_from("0")
+    ).fly():
+        pass
+    assert Echo.heard[0].shape == (1, 6)
+    assert np.isnan(Echo.heard[0]).all()
+    assert Echo.heard[2][0].tolist() == 6 * [2.0]  # what its mate said at the look before
 
 
 def test_figures_of_a_team_are_those_of_a_recount():

@@ -160,7 +160,7 @@ def test_marks_are_those_of_eyas_evaluate(tmp_path):
     """The network in its ONNX file gets the same records from `eyas evaluate`."""
     policy = train(SMALL, tmp_path / "run", say=quiet)
     row = (tmp_path / "run" / "curve.csv").read_text().splitlines()[-1].split(",")
-    plan = EvaluationPlan(policy=str(policy), episodes=1, seed=2_000_000)
+    plan = EvaluationPlan(policy=str(policy), episodes=1, seeds=(2_000_000,))
     records = [
         each for batch in batches(plan) for ended in fly_batch(plan, batch) for each in ended
     ]

@@ -13,13 +13,20 @@ from eyas.core.errors import MissingExtraError
 from eyas.state.motion import ActorState
 from eyas.traffic import library
 from eyas.traffic.config import Demand, Mix, TrafficConfig, VehicleType
-from eyas.traffic.library import STANDARD_DURATION, find_recording
+from eyas.traffic.library import (
+    STANDARD_DURATION,
+    TEST_DURATION,
+    TEST_TRAFFIC,
+    find_recording,
+)
+from eyas.traffic.network import graph_hash
 from eyas.traffic.recording_file import load
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.downtown import DOWNTOWN
+from eyas.world.maps.recipe import TEST_TOWNS
 from eyas.world.roads.areas import road_area
 
 WITHOUT_SUMO = """
@@ -140,6 +147,35 @@ def test_of_forty_cars_that_come_and_go_three_quarters_stay_for_an_episode(name)
     stays = np.array([present[k : k + 32].all(axis=0).sum() for k in range(len(present) - 32)])
     assert stays.min() >= 31
     assert present.sum(axis=1).mean() > 39.8
+
+
+@pytest.mark.parametrize(
+    "name", ["citystreet", "downtown", "lake", "village", "desert", "farmland"]
+)
+def test_traffic_for_tests_is_shipped_and_each_is_another(name):
+    recipe = MAPS.get(name)
+    roads, shipped = recipe.roads(0), recipe.shipped_traffic()
+    found = [
+        find_recording(roads, TrafficConfig(seed=seed), shipped=shipped) for seed in TEST_TRAFFIC
+    ]
+    assert [each.duration for each in found] == [2.0 * TEST_DURATION] * 3
+    assert all(each.present.all() for each in found)
+    starts = {each.position[0].tobytes() for each in found}
+    assert len(starts) == 3
+    # No jam: every car gets on, all the time.
+    assert all((smooth(each).travelled[-1] > 7.0 * each.duration).all() for each in found)
+
+
+@pytest.mark.parametrize("name", ["citystreet", "downtown", "village"])
+def test_towns_for_tests_are_shipped_with_their_traffic(name):
+    recipe = MAPS.get(name)
+    for town in TEST_TOWNS:
+        roads, shipped = recipe.roads(town), recipe.shipped_traffic()
+        assert recipe.shipped_network(town).graph_hash == graph_hash(roads)
+        config = TrafficConfig(seed=TEST_TRAFFIC[0])
+        found = find_recording(roads, config, shipped=shipped)
+        assert (found.duration, found.actors) == (TEST_DURATION, 40)
+        assert found.provenance.map_seed == town
 
 
 def test_larger_groups_are_told_and_those_asked_for_are_not_replaced(

@@ -7,10 +7,18 @@ from dataclasses import replace
 import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.traffic.library import RESPAWN_GROUPS
+from eyas.traffic.library import RESPAWN_GROUPS, TEST_TRAFFIC
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.maps.recipe import MIXED_FILE, TRAFFIC_FILE, respawn_file
+from eyas.world.maps.recipe import (
+    DENSE_FILE,
+    MIXED_FILE,
+    TEST_TOWNS,
+    TRAFFIC_FILE,
+    drivers_file,
+    respawn_file,
+    town_traffic_file,
+)
 from eyas.world.weather import DAY, SNOW, WEATHERS, Season
 
 
@@ -27,8 +35,25 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     assert recipe.shipped(TRAFFIC_FILE) is not None
     files = [file.name for file in recipe.shipped_traffic()]
     assert files[0] == TRAFFIC_FILE
-    mixed = {MIXED_FILE} if name in ("citystreet", "downtown") else set()
-    assert {respawn_file(size) for size in RESPAWN_GROUPS} | mixed == set(files[1:])
+    mixed = {DENSE_FILE, MIXED_FILE} if name in ("citystreet", "downtown") else set()
+    tests = {
+        town_traffic_file(0, seed) for seed in TEST_TRAFFIC if not name.startswith("simpleway")
+    }
+    towns = {
+        town_traffic_file(town, TEST_TRAFFIC[0])
+        for town in TEST_TOWNS
+        if name.removesuffix("-bare") in ("citystreet", "downtown", "village")
+    }
+    canonical = {respawn_file(size) for size in RESPAWN_GROUPS}
+    lost = {
+        drivers_file(drivers)
+        for drivers, maps in {
+            "hiding": ("citystreet", "downtown", "village"),
+            "evading": ("citystreet", "downtown"),
+        }.items()
+        if name.removesuffix("-bare") in maps
+    }
+    assert set(files[1:]) == canonical | mixed | tests | towns | lost
     assert recipe.shipped("no such file") is None
 
 

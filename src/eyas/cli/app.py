@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import data, evaluate, maps, runs, targets, tools, traffic
+from eyas.cli import data, evaluate, maps, reproduce, runs, targets, tools, traffic
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
@@ -56,6 +56,7 @@ app.command("verify")(tools.verify)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)
 app.command("leaderboard")(evaluate.leaderboard)
+app.command("reproduce")(reproduce.reproduce)
 app.add_typer(tools.cache_app, name="cache")
 app.add_typer(tools.config_app, name="config")
 app.add_typer(data.dataset_app, name="dataset")

@@ -20,8 +20,9 @@ _Policy = Annotated[
     str,
     typer.Option(
         "--policy",
-        help="random, hover, follow, servo, a box tracker (csrt, kcf, mosse, medianflow, "
-        "nano, stay), a shipped network, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
+        help="random, hover, follow, sighted, constant-velocity, road-graph, servo, a box tracker "
+        "(csrt, kcf, mosse, medianflow, nano, stay), a shipped network, a file (.onnx, .zip, "
+        ".pt, .pt2), or package.module:name.",
     ),
 ]
 _Protocol = Annotated[str, typer.Option("--protocol", help="paper, long, search or distractor.")]
@@ -41,6 +42,13 @@ _Episodes = Annotated[
 _Seed = Annotated[
     int | None, typer.Option("--seed", help="The one seed of the run: that of its first episode.")
 ]
+_Seeds = Annotated[
+    str | None,
+    typer.Option(
+        "--seeds",
+        help="Several sets of episodes: the first seed of each, with commas, or their number.",
+    ),
+]
 _Latency = Annotated[
     str, typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured.")
 ]
@@ -49,6 +57,13 @@ _LatencyCurve = Annotated[
 ]
 _Sample = Annotated[
     bool, typer.Option("--sample", help="Sample a network's actions instead of taking the best.")
+]
+_InProcess = Annotated[
+    bool,
+    typer.Option(
+        "--in-process",
+        help="Fly your own code in this process, for a debugger: the class is then privileged.",
+    ),
 ]
 _Batch = Annotated[int, typer.Option("--batch", help="Episodes flown together.")]
 _Changes = Annotated[
@@ -88,9 +103,11 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     targets: _Targets = None,
     episodes: _Episodes = None,
     seed: _Seed = None,
+    seeds: _Seeds = None,
     latency: _Latency = "0",
     latency_curve: _LatencyCurve = False,
     sample: _Sample = False,
+    in_process: _InProcess = False,
     batch: _Batch = 64,
     set_: _Changes = None,
     out: _Out = None,
@@ -107,6 +124,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     The exit code is 1 if the policy has failed in all episodes.
     """
     from eyas.core.config import validated
+    from eyas.evaluation.episode import seed_sets
     from eyas.evaluation.plan import EvaluationPlan, folder_name
 
     values: dict[str, Any] = {
@@ -116,10 +134,14 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         "weathers": weathers or ["day"],
         "targets": targets or ["SUMO_VEHICLE"],
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
+        "in_process": in_process,
     }
     changes = _changes(set_ or [])
     values |= {"env": changes.pop("env", {}), "settings": changes}
-    values |= {} if seed is None else {"seed": seed}
+    if seed is not None and seeds is not None:
+        raise ConfigError("--seed and --seeds cannot be used together")
+    if seed is not None or seeds is not None:
+        values["seeds"] = seed_sets(seeds) if seeds is not None else (seed,)
     plan = validated(EvaluationPlan, values)
     folder = out or Path("runs/evaluation") / folder_name(plan)
     if latency_curve and (as_published or videos):
@@ -194,7 +216,7 @@ def compare(
 
     (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
     refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
-    found = differences(records_a, records_b)
+    found = differences(records_a, records_b, stamp_a.plan.rules)
     if json_:
         typer.echo(json.dumps([each._asdict() for each in found], indent=1))
         return

@@ -154,7 +154,9 @@ def warm_cache(
     run_warm(map_name or (), weather or ())
 
 
-policies_app = typer.Typer(help="List the policies that Eyas brings along.", no_args_is_help=True)
+policies_app = typer.Typer(
+    help="Tell of the policies that Eyas brings along.", no_args_is_help=True
+)
 
 
 @policies_app.callback()
@@ -177,6 +179,20 @@ def list_policies() -> None:
                 f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
                 f"CR {score.cr:.1f}  n {score.n}"
             )
+
+
+@policies_app.command("card")
+def policy_card(
+    name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],
+) -> None:
+    """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
+    from eyas.core.errors import UnknownNameError
+    from eyas.evaluation.policies.model_card import model_card
+    from eyas.evaluation.policies.shipped import shipped_names
+
+    if name not in shipped_names():
+        raise UnknownNameError("NAME", name, shipped_names())
+    typer.echo(model_card(name))
 
 
 def webots_shim(

@@ -8,9 +8,9 @@ from eyas.datasets.layout import Plan
 from eyas.datasets.recipe import LICENCES
 from eyas.datasets.statistics import COLUMNS
 
-__all__ = ["croissant"]
+__all__ = ["CONFORMS_TO", "CONTEXT", "croissant"]
 
-_CONTEXT: dict[str, Any] = {
+CONTEXT: dict[str, Any] = {
     "@language": "en",
     "@vocab": "https://schema.org/",
     "citeAs": "cr:citeAs",
@@ -50,6 +50,8 @@ _CONTEXT: dict[str, Any] = {
 }
 """The context of version 1.0, as its specification has it."""
 
+CONFORMS_TO = ["http://mlcommons.org/croissant/1.0", "http://mlcommons.org/croissant/RAI/1.0"]
+
 _KINDS = {
     "sc:Integer": ("frame", "left", "top", "right", "bottom", "objects"),
     "sc:Float": ("time", "visible_fraction"),
@@ -86,12 +88,9 @@ def croissant(plan: Plan, frames_sha256: str, notices: Mapping[str, str]) -> dic
     recipe = plan.recipe
     named = recipe.about or recipe.title
     described = {
-        "@context": _CONTEXT,
+        "@context": CONTEXT,
         "@type": "sc:Dataset",
-        "conformsTo": [
-            "http://mlcommons.org/croissant/1.0",
-            "http://mlcommons.org/croissant/RAI/1.0",
-        ],
+        "conformsTo": CONFORMS_TO,
         "name": recipe.name,
         "description": named,
         "license": LICENCES[recipe.licence],
@@ -103,7 +102,12 @@ def croissant(plan: Plan, frames_sha256: str, notices: Mapping[str, str]) -> dic
         "rai:dataCollectionType": ["Software Collection"],
         "rai:dataAnnotationProtocol": "Labels are computed from the state of the simulation.",
         "rai:dataLimitations": [limits()],
+        "rai:dataBiases": ["Places, cars and people are a simulator's, of a few made-up kinds."],
         "rai:dataUseCases": ["Training and evaluation of detectors and trackers."],
+        "rai:dataSocialImpact": (
+            "Tracking of vehicles and people can serve rescue, film and traffic research, and also "
+            "surveillance."
+        ),
         "rai:personalSensitiveInformation": ["None: no real person is shown."],
         "distribution": _distribution(plan, frames_sha256),
         "recordSet": [_frames()],

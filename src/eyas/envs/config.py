@@ -71,6 +71,11 @@ class ObservationPart(StrEnum):
     """GPS, accelerometer, gyroscope and IMU: 19 numbers of the basic packet, float32."""
     LIDAR = "lidar"
     """Distance of each point of the lidar [m], its longest range where nothing is, float32."""
+    WORDS = "words"
+    """A sentence that tells the target from all else in the first picture, text; only beside other
+    parts."""
+    ATTRIBUTES = "attributes"
+    """What it says as numbers, `eyas.targets.grammar.attributes.ATTRIBUTES`, float32."""
     PRIVILEGED = "privileged"
     """What no sensor tells: the true motion of the target, 16 numbers, float32."""
 

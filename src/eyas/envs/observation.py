@@ -1,6 +1,6 @@
 """Observations of N agents: their spaces, and the arrays that hold the latest of each."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium
@@ -15,12 +15,16 @@ from eyas.sensors.stack import FrameStack
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
+from eyas.targets.grammar.attributes import ATTRIBUTES
+from eyas.targets.grammar.naming import Phrase, phrase_about
+from eyas.targets.grammar.wording import CHARACTERS, LONGEST
 from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Observation", "Observer", "observation_space"]
 
 Array = NDArray[Any]
-Observation = Array | dict[str, Array]
+Observation = Array | dict[str, Any]
+"""An array; of several parts a dictionary of arrays, with a text, or a tuple of texts, as words."""
 
 _SENSORS = SENSOR_COLUMNS.stop - SENSOR_COLUMNS.start
 _PRIVILEGED = 16
@@ -31,12 +35,14 @@ def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasiu
     """Return the space of one agent's observations.
 
     Raises:
-        ConfigError: The agent is to observe a lidar that it does not have.
+        ConfigError: The agent is to observe a lidar that it does not have, or words alone.
     """
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
         )
+    if set(config.parts) == {_Parts.WORDS}:
+        raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
     spaces: dict[str, gymnasium.Space[Any]] = {
         part.value: _space(part, config, lidar) for part in dict.fromkeys(config.parts)
     }
@@ -45,7 +51,7 @@ def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasiu
 
 def _space(
     part: ObservationPart, config: ObservationConfig, lidar: LidarConfig
-) -> gymnasium.spaces.Box:
+) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
     size = config.height, config.width
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
@@ -60,8 +66,21 @@ def _space(
             return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
+        case _Parts.WORDS:
+            return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
+        case _Parts.ATTRIBUTES:
+            return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
         case _Parts.PRIVILEGED:
             return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
+
+
+def phrase_of_target(simulation: Simulation, tracker: int) -> Phrase:
+    """Return a phrase about a tracker's target that fits nothing else in its view, in a wording for
+    training: what is said depends on the episode only.
+    """
+    view = simulation.view.in_view(tracker)
+    row = view.row_of(int(simulation.snapshot.targets.actor[tracker]))
+    return phrase_about(view, row, simulation.episode_key(tracker).stream("words"))
 
 
 class Observer:
@@ -94,9 +113,14 @@ class Observer:
         self._draws = bool(wanted & {_Parts.IMAGE, _Parts.DEPTH, _Parts.CLASSES})
         self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
         self._latest: dict[ObservationPart, Array] = {}
+        self._words: list[str] | None = None
         for part in config.parts:
             space = _space(part, config, lidar)
-            self._latest[part] = np.zeros((count, *space.shape), space.dtype)
+            if isinstance(space, gymnasium.spaces.Text):
+                self._words = [""] * count
+            else:
+                self._latest[part] = np.zeros((count, *space.shape), space.dtype)
+        self._names_targets = bool(wanted & {_Parts.WORDS, _Parts.ATTRIBUTES})
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
 
@@ -114,17 +138,12 @@ class Observer:
             covered: Whose cameras show nothing: black, infinitely far, sky, shape (V,); None:
                 nobody's.
         """
+        if self._names_targets:
+            for tracker in chosen[begun].tolist():
+                phrase = phrase_of_target(self._simulation, tracker)
+                self._say(tracker, phrase.words, phrase.attributes)
         if self._draws:
-            picture = self._picture.first(len(chosen))
-            self._simulation.view.draw(chosen, picture)
-            if covered is not None and covered.any():
-                _cover(picture, covered)
-            if picture.rgb is not None:
-                self._stack.add(picture.rgb, chosen, begun)
-            for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
-                if plane is not None:
-                    latest = self._latest[part]
-                    latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
+            self._draw(chosen, begun, covered)
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
@@ -134,6 +153,24 @@ class Observer:
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 
+    def _draw(
+        self,
+        chosen: NDArray[np.int32],
+        begun: NDArray[np.bool_],
+        covered: NDArray[np.bool_] | None,
+    ) -> None:
+        """Draw what the cameras of some trackers see, see `look`."""
+        picture = self._picture.first(len(chosen))
+        self._simulation.view.draw(chosen, picture)
+        if covered is not None and covered.any():
+            _cover(picture, covered)
+        if picture.rgb is not None:
+            self._stack.add(picture.rgb, chosen, begun)
+        for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
+            if plane is not None:
+                latest = self._latest[part]
+                latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
+
     def copy_to(self, out: Observation, rows: NDArray[np.integer] | slice) -> None:
         """Copy the latest observation of each tracker.
 
@@ -141,15 +178,41 @@ class Observer:
             out: Observations, each array with a leading axis.
             rows: Place of each tracker on that axis, shape (N,).
         """
-        if isinstance(out, Mapping):
-            for part, array in self._latest.items():
-                out[part][rows] = array
-        else:
+        if not isinstance(out, Mapping):
             out[rows] = next(iter(self._latest.values()))
+            return
+        for part, array in self._latest.items():
+            out[part][rows] = array
+        if self._words is not None:
+            # Gymnasium has the texts of several environments as a tuple.
+            words = np.array(out[_Parts.WORDS], object)
+            words[rows] = self._words
+            out[_Parts.WORDS] = tuple(words.tolist())
+
+    def tell(self, words: Sequence[str], attributes: NDArray[np.float32]) -> None:
+        """Tell all trackers something else than the truth from now on, also in later episodes.
+
+        Args:
+            words: A phrase for each.
+            attributes: What these say, shape (N, A).
+        """
+        self._names_targets = False
+        for tracker, own in enumerate(words):
+            self._say(tracker, own, attributes[tracker])
+
+    def _say(self, tracker: int, words: str, attributes: NDArray[np.float32]) -> None:
+        if self._words is not None:
+            self._words[tracker] = words
+        if (latest := self._latest.get(_Parts.ATTRIBUTES)) is not None:
+            latest[tracker] = attributes
 
     def one(self, tracker: int) -> Observation:
         """Return a copy of the latest observation of a tracker."""
-        copies = {part.value: array[tracker].copy() for part, array in self._latest.items()}
+        copies: dict[str, Any] = {
+            part.value: array[tracker].copy() for part, array in self._latest.items()
+        }
+        if self._words is not None:
+            copies[_Parts.WORDS.value] = self._words[tracker]
         return copies if len(copies) > 1 else next(iter(copies.values()))
 
 

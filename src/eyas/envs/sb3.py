@@ -4,12 +4,14 @@ import time
 from collections.abc import Iterable, Sequence
 from typing import Any, Unpack
 
+import gymnasium
 import numpy as np
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
-from eyas.core.errors import MissingExtraError
+from eyas.core.errors import ConfigError, MissingExtraError
 from eyas.envs.choice import EnvChoices, Source
+from eyas.envs.config import ObservationPart
 from eyas.envs.information import Info
 from eyas.envs.observation import Observation
 from eyas.envs.vector_env import EyasVectorEnv
@@ -64,6 +66,12 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
             overlay=overlay,
             **choices,
         )
+        space = self._env.single_observation_space
+        if isinstance(space, gymnasium.spaces.Dict) and ObservationPart.WORDS in space.spaces:
+            raise ConfigError(
+                "env.observation.parts: 'words' is not allowed here: stable-baselines3 takes no "
+                "text; use 'attributes'"
+            )
         self._actions: NDArray[Any] = np.zeros(0)
         self._return, self._length = np.zeros(num_envs), np.zeros(num_envs, np.int64)
         self._start = time.monotonic()

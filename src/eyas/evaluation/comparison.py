@@ -7,20 +7,21 @@ import numpy as np
 
 from eyas.core.errors import DataFileError
 from eyas.evaluation.plan import Stamp
+from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import NO_INTERVALS
-from eyas.evaluation.rows import FIGURES, groups_of, strata_of
+from eyas.evaluation.rows import clusters_in, figures_of, groups_of
 from eyas.evaluation.statistics import (
+    POWER,
     Interval,
+    difference_interval,
+    episodes_to_tell,
     improvement,
-    interval_of,
-    mean,
-    stratified_resamples,
 )
 
-__all__ = ["COMPARED", "Difference", "differences", "refuse_incomparable", "text_of"]
+__all__ = ["COMPARED", "Difference", "differences", "refuse_incomparable", "text_of", "told_apart"]
 
-COMPARED = ("cr", "tsr", "seen", "watched", "losses", "centre_error")
+COMPARED = ("cr", "tsr", "flawless", "seen", "watched", "losses", "centre_error")
 """The figures that every episode has."""
 
 
@@ -38,10 +39,12 @@ class Difference(NamedTuple):
     mean: float
     """Mean difference."""
     interval: Interval | None
-    """95 %, paired and stratified bootstrap of the mean difference; None if the same seeds are
-    flown in several places, since these episodes are not independent."""
+    """95 %, of the mean difference; None if there are too few independent seeds."""
     improved: float
     """Share of episodes in which the second has the larger figure; equal ones count half."""
+    needed: int | None
+    """Number of paired episodes that would tell a difference of this size from none in 80 % of
+    cases; None if there is none, or no interval."""
 
 
 def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> None:
@@ -70,9 +73,14 @@ def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> 
 
 
 def differences(
-    first: Sequence[EpisodeRecord], second: Sequence[EpisodeRecord]
+    first: Sequence[EpisodeRecord], second: Sequence[EpisodeRecord], protocol: Protocol
 ) -> list[Difference]:
     """Return the differences in the episodes that both have, for each row of a table.
+
+    Args:
+        first: Records of the first policy.
+        second: Records of the second one.
+        protocol: The protocol of both.
 
     Raises:
         DataFileError: They have no episode in common.
@@ -81,12 +89,11 @@ def differences(
     common = [record for record in first if record.name in others]
     if not common:
         raise DataFileError("not comparable: the two have no episode in common")
-    found = []
-    for group, name, records in groups_of(common):
-        strata = strata_of(records)
-        resamples = None if strata is None else stratified_resamples(strata)
+    figures, found = figures_of(protocol), []
+    for group, name, records in groups_of(common, protocol.groups):
+        clusters = clusters_in(records)
         for figure in COMPARED:
-            read = FIGURES[figure]
+            read, high = figures[figure]
             old = np.array([read(record) for record in records], np.float64)
             new = np.array([read(others[record.name]) for record in records], np.float64)
             found.append(
@@ -95,11 +102,27 @@ def differences(
                     first=float(old.mean()),
                     second=float(new.mean()),
                     mean=float((new - old).mean()),
-                    interval=None if resamples is None else interval_of(new - old, mean, resamples),
+                    interval=difference_interval(new - old, clusters, high),
                     improved=improvement(old.tolist(), new.tolist()),
+                    needed=episodes_to_tell(new - old, clusters),
                 )
             )
     return found
+
+
+def told_apart(found: Sequence[Difference], figure: str) -> str:
+    """Return in words whether the two differ in a figure, and how many episodes would tell."""
+    whole = next(each for each in found if (each.group, each.figure) == ("all", figure))
+    if whole.interval is None:
+        return f"{figure}: too few independent seeds to tell the two apart"
+    if whole.mean == 0.0:
+        return f"{figure}: no difference in {whole.n} paired episodes"
+    apart = not whole.interval.low <= 0.0 <= whole.interval.high
+    verdict = "differ" if apart else "are not told apart"
+    return (
+        f"{figure}: the two {verdict}; about {whole.needed:,} paired episodes would tell a "
+        f"difference of this size in {POWER:.0%} of cases; you have {whole.n:,}"
+    )
 
 
 def text_of(found: Sequence[Difference]) -> str:
@@ -107,7 +130,7 @@ def text_of(found: Sequence[Difference]) -> str:
     lines = [("", "n", "figure", "A", "B", "B - A", "95 %", "B larger")]
     lines += [
         (
-            "all" if each.group == "all" else f"{each.group} {each.name}",
+            each.name if each.group == each.name else f"{each.group} {each.name}",
             str(each.n),
             each.figure,
             f"{each.first:.3f}",
@@ -123,8 +146,9 @@ def text_of(found: Sequence[Difference]) -> str:
     text = ["  ".join(row).rstrip() for row in rows]
     if any(each.interval is None for each in found):
         text.append(NO_INTERVALS)
+    text += [told_apart(found, figure) for figure in ("cr", "tsr")]
     return "\n".join(text)
 
 
 def _interval(interval: Interval | None) -> str:
-    return "-" if interval is None else f"[{interval.low:+.3f}, {interval.high:+.3f}]"
+    return "[-]" if interval is None else f"[{interval.low:+.3f}, {interval.high:+.3f}]"

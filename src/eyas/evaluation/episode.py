@@ -3,10 +3,20 @@
 import math
 from typing import NamedTuple
 
-__all__ = ["FIRST_SEED", "EpisodeSpec", "Place", "episodes_of"]
+from eyas.core.errors import ConfigError
+
+__all__ = ["FIRST_SEED", "SETS_APART", "EpisodeSpec", "Place", "episodes_of", "seed_sets"]
 
 FIRST_SEED = 1_000_000
 """Seed of the first episode: far from the seeds that training begins with, 0, 1, ..."""
+
+SETS_APART = 1_000_000
+"""Least distance of the first seeds of two sets of episodes: no set is as long."""
+
+_NEXT_SET = 10_000_000
+"""From the first seed of a set to that of the next, where the user does not tell."""
+
+_MOST_SETS = 100
 
 
 class Place(NamedTuple):
@@ -60,3 +70,26 @@ def episodes_of(
         for number in range(count)
         for turn, direction in enumerate(directions)
     ]
+
+
+def seed_sets(text: str) -> tuple[int, ...]:
+    """Return the first seed of each set of episodes that a user asks for.
+
+    Args:
+        text: The seeds with commas between them, or a number of sets, up to 100.
+
+    Raises:
+        ConfigError: It is something else.
+    """
+    try:
+        seeds = tuple(int(part) for part in text.split(","))
+    except ValueError:
+        seeds = ()
+    if len(seeds) == 1 and seeds[0] <= _MOST_SETS:
+        seeds = tuple(FIRST_SEED + number * _NEXT_SET for number in range(seeds[0]))
+    if not seeds or min(seeds) < 0 or len(seeds) > _MOST_SETS:
+        raise ConfigError(
+            f"--seeds: {text!r} is not allowed: the first seeds of up to {_MOST_SETS} sets, such "
+            f"as {FIRST_SEED},{FIRST_SEED + _NEXT_SET}, or a number of sets, such as 3"
+        )
+    return seeds

@@ -13,12 +13,16 @@ from eyas.envs.config import EnvConfig
 from eyas.envs.observation import Observation, Observer
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.scenario import Told
 from eyas.evaluation.sight import SIZE, subjects, visible_shares
 from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import reliefs
+from eyas.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["EpisodeBatch", "EpisodeGroup", "episode_groups"]
 
@@ -33,6 +37,8 @@ class EpisodeGroup(NamedTuple):
     simulation: Simulation
     rows: NDArray[np.int64]
     """Their places in the batch, shape (K,)."""
+    staged: Sequence[Any] = ()
+    """What the protocol's `stage` has returned for each; empty: there is none."""
 
     def subjects(self, size: tuple[int, int] = SIZE) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the pixels of each target, visible and all, shape (K, 2), and its box (K, 4).
@@ -69,7 +75,8 @@ def episode_groups(
         simulation.reset()
         if protocol.alike:
             simulation.make_alike()
-        groups.append(EpisodeGroup(config, simulation, rows))
+        staged = () if protocol.stage is None else protocol.stage(simulation, chosen)
+        groups.append(EpisodeGroup(config, simulation, rows, staged))
     return groups
 
 
@@ -105,6 +112,16 @@ class EpisodeBatch:
                 observer.look(mine, begun[rows], self.covered[rows])
                 observer.copy_to(self.observations, group.rows)
 
+    def tell(self, told: Told | None) -> None:
+        """Tell policies their targets in words; None: nothing, as in protocols without words."""
+        for group, observer in zip(self.groups, self._observers, strict=True):
+            count = len(group.rows)
+            words, attributes = [""] * count, np.zeros((count, len(ATTRIBUTES)), np.float32)
+            if told is not None:
+                words = [told.words[row] for row in group.rows.tolist()]
+                attributes = told.attributes[group.rows]
+            observer.tell(words, attributes)
+
     def advance(self, commands: NDArray[np.float64], active: Mask) -> None:
         """Hold commands for a control step, shape (N, 4); time stands still for the inactive."""
         self._pixels = None
@@ -126,6 +143,24 @@ class EpisodeBatch:
         is covered.
         """
         return np.where(self.covered, 0.0, visible_shares(self.pixels()))
+
+    def roads(self) -> list[RoadNetwork]:
+        """Return the roads around each drone, N; those on the same map share one object."""
+        found: dict[int, RoadNetwork] = {}
+        for group in self.groups:
+            found |= dict.fromkeys(group.rows.tolist(), group.simulation.scene.network)
+        return [found[row] for row in range(self.count)]
+
+    def heights(self) -> NDArray[np.float64]:
+        """Return how high each drone is above the ground below it [m], shape (N,)."""
+
+        def above(group: EpisodeGroup) -> NDArray[np.float64]:
+            terrain = group.simulation.scene.terrain
+            place = group.simulation.snapshot.trackers.position
+            heights: NDArray[np.float64] = place[:, 2] - reliefs(terrain, place[:, :2])
+            return heights - terrain.floor
+
+        return self.gathered(above)
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:
         """Return what a function reads of each group, in the order of the episodes, (N, ...).

@@ -13,12 +13,12 @@ from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch
 from eyas.evaluation.from_above import seen_from_above
+from eyas.evaluation.messages import Radio
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.scenario import Scenario
-from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -82,7 +82,9 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes, self._scenario.told())
+        words = self._scenario.told()
+        self._batch.tell(words)
+        start = Start(seeds, self._boxes, words, self._batch.roads)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
@@ -90,7 +92,7 @@ class BatchFlight:
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
-            self._batch.advance(self._commands, self._active)
+            self._batch.advance(self._held(), self._active)
             self._meter.measure(self._active)
             self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
@@ -112,6 +114,12 @@ class BatchFlight:
                 return
         raise AssertionError("the number of steps ends each episode")
 
+    def _held(self) -> NDArray[np.float64]:
+        """Return the commands, those that climb inside the protocol's heights."""
+        if not self._commands[:, 2].any():
+            return self._commands
+        return self._protocol.envelope.held(self._commands, self._batch.heights())
+
     def _answer(self, step: int) -> None:
         """Let those actions hold whose latency is over."""
         effective = self._effective <= step
@@ -125,7 +133,10 @@ class BatchFlight:
         self._batch.look(deciding, np.full(len(deciding), step == 0))
         batch = self._batch
         heard = None if self._radio is None else self._radio.heard()
-        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
+        sight = PolicyInput(
+            *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
+            heard=heard,
+        )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -138,12 +149,15 @@ class BatchFlight:
         if self._radio is not None and decision.messages is not None:
             self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        period, repeat = self._protocol.period, self._policy.env.action_repeat
+        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
         for row in np.flatnonzero(deciding & self._active).tolist():
-            # Rounded up to control steps; rounding errors of the quotient are not.
-            late = int(np.ceil(self._delay.next(row, taken) / period - 1e-9))
+            late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late
             self._ready[row] = step + max(late, repeat)
+
+    def _control_steps(self, seconds: float) -> int:
+        """Return a time, rounded up to control steps; rounding errors of the quotient are not."""
+        return int(np.ceil(seconds / self._protocol.period - 1e-9))
 
     def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's
         """Set the next commands; those whose action is not allowed fail."""

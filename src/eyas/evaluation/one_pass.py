@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from eyas.datasets.recording import RecordedEpisode
 from eyas.evaluation.box_trackers import Box, BoxTracker
-from eyas.evaluation.statistics import LEVEL, Interval, stratified_resamples
+from eyas.evaluation.statistics import Interval, clusters_of, interval_of
 
 __all__ = [
     "PRECISION_PIXELS",
@@ -147,7 +147,7 @@ class Figures(NamedTuple):
     ao: float
     """Average overlap."""
     ao_interval: Interval | None
-    """95 %, episodes resampled; None: fewer than two episodes."""
+    """95 %, of independent episodes; None: too few of them."""
     sr50: float
     """Share of frames with an overlap above 0.5."""
     sr75: float
@@ -184,15 +184,15 @@ def figures_of(samples: Sequence[tuple[Floats, Floats]]) -> Figures | None:
 
 
 def _interval(sums: Floats) -> Interval | None:
-    """Return the interval of a mean over all frames: frames of one episode are not independent, so
-    that episodes are resampled.
+    """Return the interval of a mean over all frames: those of one episode are one observation.
 
     Args:
         sums: Sum and number of each episode's values, shape (E, 2).
     """
-    if len(sums) < 2:
-        return None
-    sampled = sums[stratified_resamples([0] * len(sums))].sum(axis=1)
-    tail = 0.5 * (1.0 - LEVEL)
-    low, high = np.quantile(sampled[:, 0] / sampled[:, 1], (tail, 1.0 - tail)).tolist()
-    return Interval(low, high)
+    mean = float(sums[:, 0].sum() / sums[:, 1].sum())
+    clusters = clusters_of(range(len(sums)), [0] * len(sums))
+    variance = 0.0
+    if clusters.degrees > 0:
+        influence = (sums[:, 0] - mean * sums[:, 1]) / sums[:, 1].mean()
+        variance = clusters.variance(influence)
+    return interval_of(mean, variance, clusters.count, clusters.degrees, 1.0)

@@ -4,6 +4,7 @@ import json
 import re
 import shlex
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,17 +15,21 @@ from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
-from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place
+from eyas.evaluation.entry import Entry, entry_of
+from eyas.evaluation.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
-from eyas.evaluation.policies.table import fingerprint, open_policy
+from eyas.evaluation.policies.apart import open_apart, runs_code
+from eyas.evaluation.policies.policy import Policy
+from eyas.evaluation.policies.table import BUILT_IN, fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord
 from eyas.world.maps import MAPS
 
-__all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
+__all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "opened", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
+Seed = Annotated[int, Field(ge=0, lt=2**62)]
 
 
 class EvaluationPlan(Config):
@@ -38,12 +43,14 @@ class EvaluationPlan(Config):
     targets: Names = ("SUMO_VEHICLE",)
     episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
     """For each place and start direction; None: the protocol's number."""
-    seed: Annotated[int, Field(ge=0, lt=2**62)] = FIRST_SEED
-    """Seed of the first episode."""
+    seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (FIRST_SEED,)
+    """Seed of the first episode of each set of episodes."""
     latency: str = "0"
-    """Milliseconds, the path of a file with one latency in each line, or `measured`."""
+    """Milliseconds, a profile, the path of a file with one latency in each line, or `measured`."""
     sampled: bool = False
     """Whether a network's actions are sampled instead of the best ones."""
+    in_process: bool = False
+    """Whether code of a user's flies in the process of the simulator, which it could read."""
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same
@@ -63,15 +70,21 @@ class EvaluationPlan(Config):
         places = len(self.maps) * len(self.weathers) * len(self.targets)
         each = self.episodes or self.rules.episodes
         versions = max(len(self.rules.variants), 1)
-        return places * len(self.rules.directions) * each * versions
+        return places * len(self.rules.directions) * each * versions * len(self.seeds)
 
     @property
     def command(self) -> str:
         """The command that repeats it."""
         told = self.model_dump(
-            exclude_defaults=True, exclude={"env", "settings", "sampled", "policy"}
+            exclude_defaults=True,
+            exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"},
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
+        if self.seeds != (FIRST_SEED,):
+            words += [
+                "--seeds" if len(self.seeds) > 1 else "--seed",
+                ",".join(map(str, self.seeds)),
+            ]
         for name, value in told.items():
             if isinstance(value, tuple):
                 option = f"--{name.removesuffix('s')}"
@@ -80,6 +93,8 @@ class EvaluationPlan(Config):
                 words += [f"--{name}", str(value)]
         if self.sampled:
             words.append("--sample")
+        if self.in_process:
+            words.append("--in-process")
         for key, value in _flat("", {"env": self.env, **self.settings}):
             text = value if isinstance(value, str) else json.dumps(value)
             words += ["--set", f"{key}={text}"]
@@ -102,6 +117,8 @@ class Stamp(Config):
     policy: str | None
     """Hash of the policy's file; None if it has none."""
     plan: EvaluationPlan
+    entry: Entry | None = None
+    """What the policy sees and may do; None where nobody has opened it yet."""
 
     def other_build(self, other: "Stamp") -> str:
         """Return in words what differs in the programs that fly; nothing if nothing does."""
@@ -126,7 +143,10 @@ def folder_name(plan: EvaluationPlan) -> str:
 
 
 def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
-    """Return the episodes that are flown together; an interrupted batch is flown again whole."""
+    """Return the episodes that are flown together; an interrupted batch is flown again whole.
+
+    Those of one set are the same as if it were flown alone.
+    """
     protocol = plan.rules
     places = [
         Place(name, weather, target)
@@ -135,11 +155,31 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         for target in plan.targets
     ]
     count = plan.episodes or protocol.episodes
-    episodes = protocol.choose(places, protocol, count, plan.seed)
     size = 1 if plan.latency == "measured" else plan.batch
     if protocol.team:
         size = max(size // len(protocol.variants), 1) * len(protocol.variants)
-    return [episodes[at : at + size] for at in range(0, len(episodes), size)]
+    found = []
+    for seed in plan.seeds:
+        episodes = protocol.choose(places, protocol, count, seed)
+        found += [episodes[at : at + size] for at in range(0, len(episodes), size)]
+    return found
+
+
+def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
+    """Return the policy of a plan, and what a result says of it.
+
+    Code of a user's, and files that may hold some, fly in a process of their own.
+
+    Raises:
+        EyasError: It cannot be loaded, or may not act as it wants in this protocol.
+    """
+    foreign = plan.policy not in BUILT_IN and runs_code(plan.policy)
+    apart = foreign and not plan.in_process
+    make = open_apart if apart else open_policy
+    policy = make(plan.policy, plan.env, sampled=plan.sampled)
+    plan.rules.envelope.refuse(policy.env, plan.protocol)
+    beside = foreign and plan.in_process
+    return policy, entry_of(policy, plan.latency, apart=apart, beside=beside)
 
 
 def fly_batch(
@@ -161,15 +201,15 @@ def fly_batch(
     """
     delay = delay_from(plan.latency)
     assert len(episodes) == 1 or not isinstance(delay, Measured)
-    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    policy, _ = opened(plan)
     flight = BatchFlight(episodes, plan.rules, policy, delay)
     yield from flight.fly(watcher)
     if answers is not None:
         answers += flight.answers
 
 
-def check(plan: EvaluationPlan) -> None:
-    """Refuse a plan that cannot be flown, before anything is written.
+def check(plan: EvaluationPlan) -> Entry:
+    """Refuse a plan that cannot be flown, before anything is written; else return its entry.
 
     Raises:
         EyasError: A name or a setting is wrong.
@@ -182,13 +222,20 @@ def check(plan: EvaluationPlan) -> None:
         )
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
         raise ConfigError("--map, --weather: a name is there twice")
-    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    first = sorted(plan.seeds)
+    if any(later - seed < SETS_APART for seed, later in pairwise(first)):
+        raise ConfigError(
+            f"--seeds: {', '.join(map(str, plan.seeds))}: sets could share episodes; allowed: "
+            f"first seeds that differ by {SETS_APART} or more"
+        )
+    policy, entry = opened(plan)
     for name in plan.maps:
         for weather in plan.weathers:
             for target in plan.targets:
                 episode = EpisodeSpec(Place(name, weather, target), 0.0, 0)
                 MAPS.get(name).light(weather)  # refuses unknown names
                 plan.rules.settings_of(episode, policy.env)  # refuses wrong ones
+    return entry
 
 
 def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -4,13 +4,14 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.config import updated
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.envelope import ENVELOPE, Envelope
 from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
@@ -20,9 +21,11 @@ from eyas.traffic.config import Demand
 
 if TYPE_CHECKING:
     from eyas.evaluation.episode_batch import EpisodeBatch
+    from eyas.evaluation.record import EpisodeRecord
     from eyas.evaluation.scenario import Scenario
+    from eyas.sim.simulation import Simulation
 
-__all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "in_order"]
+__all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "Stage", "in_order"]
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
@@ -32,6 +35,9 @@ NEVER = 2**31 - 1
 Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]
 """Chooses the episodes of places: so many for each place and direction, from a first seed on. More
 episodes include the fewer ones, and the seeds do not depend on the places."""
+
+Stage = Callable[["Simulation", Sequence[EpisodeSpec]], Sequence[Any]]
+"""Changes how the episodes of a simulation begin; returns what a scenario must know of each."""
 
 MakeScenario = Callable[["EpisodeBatch", "Protocol", Sequence[EpisodeSpec]], "Scenario"]
 """Makes what happens in a batch of flights beside the flights."""
@@ -86,9 +92,9 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
-    episodes: int = 10
-    """Default number of episodes for each place and direction."""
-    columns: tuple[str, ...] = ("cr", "tsr", "seen", "visible")
+    episodes: int = 25
+    """Default number of episodes for each place and direction: a hundred for each place."""
+    columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
@@ -96,14 +102,20 @@ class Protocol:
     """Whether all others of the target's kind look like it."""
     choose: Chooser = in_order
     """Which its episodes are."""
+    stage: Stage | None = None
+    """Changes how its episodes begin; None: they begin as sampled."""
     scenario: MakeScenario | None = None
     """What happens in its flights beside the flights."""
+    groups: Mapping[str, Callable[["EpisodeRecord"], str]] = field(default_factory=dict)
+    """Groups of rows in its tables, beside those of all protocols: what each record belongs to."""
     variants: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Versions of each episode, with changes of the settings; none: there is one."""
     team: bool = False
     """Whether the variants are drones that follow one target together."""
     first_box: bool = True
     """Whether policies are told the target's true box in the first picture."""
+    envelope: Envelope = ENVELOPE
+    """What drones may do."""
 
     @cached_property
     def settings(self) -> EyasConfig:
@@ -141,7 +153,8 @@ class Protocol:
         meaning = {name: value for name, value in settings.items() if value != {}}
         content = [meaning, self.directions, self.alike, self.first_box]
         content += [self.variants, self.team] if self.variants else []
-        content += [_name_of(self.choose), _name_of(self.scenario)]
+        content += [astuple(self.envelope), _name_of(self.choose), _name_of(self.scenario)]
+        content += [] if self.stage is None else [_name_of(self.stage)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
     def settings_of(self, episode: EpisodeSpec, env: EnvConfig) -> EyasConfig:

@@ -49,6 +49,8 @@ class EpisodeRecord(Config):
     """Seed of the recorded traffic; None: the one of the protocol."""
     variant: str = ""
     """See `eyas.evaluation.episode.EpisodeSpec`."""
+    solvable: bool | None = None
+    """Whether the built-in policy `sighted` keeps the target in the picture; None: not known."""
     error: str | None = None
     """What the policy failed with; its figures count what it had reached until then."""
     traceback: str | None = None

@@ -14,11 +14,12 @@ from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord, read_records
 from eyas.evaluation.rows import TableRow, rows_of
-from eyas.evaluation.statistics import Estimate
+from eyas.evaluation.statistics import ENOUGH, FEWEST, Estimate
 from eyas.settings.file import read_settings
 
 __all__ = [
     "EPISODES",
+    "FEW_SEEDS",
     "NO_INTERVALS",
     "RESULT",
     "ROWS",
@@ -34,8 +35,12 @@ STAMP, EPISODES, RESULT, ROWS = "run.json", "episodes.jsonl", "result.json", "re
 """Files of an evaluation's folder."""
 
 NO_INTERVALS = (
-    "Rows with the same seeds in several places have no intervals: these episodes are not "
-    "independent."
+    f"[-]: fewer than {FEWEST} independent seeds ({FEWEST * 5} for worst_fifth), or a figure "
+    "without a limit that is always 0: no interval can be had."
+)
+FEW_SEEDS = (
+    f"Fewer than {ENOUGH} independent seeds: intervals hold less often than they say, see the "
+    "documentation of eyas evaluate."
 )
 """What is said below a table."""
 
@@ -45,6 +50,7 @@ UNITS = {
     "to_find": "s",
     "centre_error": "m",
     "path": "m",
+    "height": "m",
     "watched": "s",
     "jerk": "m/s^3",
 }
@@ -65,18 +71,17 @@ def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
 
 
 def table(rows: Sequence[TableRow], protocol: str) -> str:
-    """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures.
+    """Return a table as text: means and 95 % intervals.
 
-    Rows in which seeds repeat have no intervals, see `eyas.evaluation.rows.strata_of`.
+    Where seeds repeat, the first column tells how many there are, too.
     """
     columns = protocol_named(protocol).columns
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     lines = [["", "n", *heads]]
     for row in rows:
-        figures = row.figures
-        cells = [cell(figures.get(name), iqm=name in ("cr", "tsr")) for name in columns]
-        label = "all" if row.group == "all" else f"{row.group} {row.name}"
-        lines.append([label, str(len(row.records)), *cells])
+        n, seeds = len(row.records), row.figures["tsr"].seeds
+        count = str(n) if n == seeds else f"{n} ({seeds} seeds)"
+        lines.append([row.label, count, *(cell(row.figures.get(name)) for name in columns)])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     text = [
         "  ".join(
@@ -85,8 +90,10 @@ def table(rows: Sequence[TableRow], protocol: str) -> str:
         ).rstrip()
         for line in lines
     ]
-    if any(row.figures["tsr"].mean_interval is None for row in rows):
+    if any("[-]" in line for line in text):
         text.append(NO_INTERVALS)
+    if FEWEST <= rows[0].figures["tsr"].seeds < ENOUGH:
+        text.append(FEW_SEEDS)
     return "\n".join(text)
 
 
@@ -98,12 +105,12 @@ def write_result(
     Raises:
         OutputError: They cannot be written.
     """
-    horizon = made.plan.rules.steps * made.plan.rules.period
-    rows = rows_of(records, horizon, as_published=as_published)
+    rows = rows_of(records, made.plan.rules, as_published=as_published)
     content: dict[str, Any] = {
         **made.model_dump(mode="json", exclude={"plan"}),
         "build_id": made.build.id,
         "protocol_name": made.plan.protocol,
+        "class": None if made.entry is None else made.entry.entry_class,
         "as_published": as_published,
         "plan": made.plan.model_dump(mode="json"),
         "command": made.plan.command + (" --as-published" if as_published else ""),
@@ -124,28 +131,27 @@ def write_result(
     return rows
 
 
-def cell(figure: Estimate | None, *, iqm: bool = False) -> str:
-    """Return a figure as text: mean, interval and, if wanted, interquartile mean."""
+def cell(figure: Estimate | None) -> str:
+    """Return a figure as text: mean and interval."""
     if figure is None:
         return "-"
     digits = 1 if abs(figure.mean) >= 20.0 else 3
     text = f"{figure.mean:.{digits}f}"
-    if figure.mean_interval is not None:
-        low, high = figure.mean_interval
-        text += f" [{low:.{digits}f}, {high:.{digits}f}]"
-    return f"{text} iqm {figure.iqm:.{digits}f}" if iqm else text
+    if figure.interval is None:
+        return f"{text} [-]"
+    low, high = figure.interval
+    return f"{text} [{low:.{digits}f}, {high:.{digits}f}]"
 
 
 def _csv(made: Stamp, rows: Sequence[TableRow]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    heads = "version protocol protocol_hash policy latency group name figure n mean iqm".split()
-    writer.writerow([*heads, "mean_low", "mean_high", "iqm_low", "iqm_high"])
+    heads = "version protocol protocol_hash policy latency group name figure n seeds mean low high"
+    writer.writerow(heads.split())
     plan = made.plan
     start = [made.version, plan.protocol, made.protocol, plan.policy, plan.latency]
     for row in rows:
-        for name, figure in row.figures.items():
-            n, mean, iqm, *intervals = figure
-            limits = [limit for interval in intervals for limit in interval or ("", "")]
-            writer.writerow([*start, row.group, row.name, name, n, mean, iqm, *limits])
+        for name, (n, seeds, mean, interval) in row.figures.items():
+            limits = interval or ("", "")
+            writer.writerow([*start, row.group, row.name, name, n, seeds, mean, *limits])
     return text.getvalue()

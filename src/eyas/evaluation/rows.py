@@ -1,65 +1,89 @@
 """The rows of a table: all episodes, and those of each map, condition, target and visibility."""
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from eyas.evaluation.episode import SETS_APART
+from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.statistics import (
+    Clusters,
     Estimate,
-    Interval,
-    estimate,
-    restricted_mean,
-    stratified_resamples,
+    clusters_of,
+    difference_interval,
+    mean_of,
+    restricted_mean_of,
+    worst_fifth_of,
 )
 
-__all__ = ["FIGURES", "TableRow", "groups_of", "rows_of", "strata_of", "thirds"]
-
-Figure = Callable[[EpisodeRecord], float | None]
-
-FIGURES: dict[str, Figure] = {
-    "cr": lambda record: record.cr,
-    "tsr": lambda record: record.tsr,
-    "seen": lambda record: record.seen,
-    "visible": lambda record: record.visible,
-    "watched": lambda record: record.watched,
-    "losses": lambda record: float(record.losses),
-    "found_again": lambda record: float(record.found_again),
-    "search_time": lambda record: record.search_time,
-    "crashed": lambda record: float(record.crashed),
-    "failed": lambda record: float(record.error is not None),
-    "centre_error": lambda record: record.centre_error,
-    "path": lambda record: record.path,
-    "jerk": lambda record: record.jerk,
-}
-"""The figures of an episode; those that are None are left out of a row's mean."""
+__all__ = ["Figure", "TableRow", "clusters_in", "figures_of", "groups_of", "rows_of", "thirds"]
 
 
-_RESAMPLES = 500
-"""Bootstrap samples of a censored time, each of which takes a curve of its own."""
+class Figure(NamedTuple):
+    """A figure of an episode, 0 or more."""
+
+    read: Callable[[EpisodeRecord], float | None]
+    """Reads it from the record; records for which it is None are left out of a row's mean."""
+    high: float | None = None
+    """The largest value that is possible, if there is one."""
+
+
+def figures_of(protocol: Protocol, *, as_published: bool = False) -> dict[str, Figure]:
+    """Return the figures that the episodes of each protocol have.
+
+    Args:
+        protocol: The protocol.
+        as_published: Whether CR and TSR are those that the original's code would have printed.
+    """
+    horizon, steps = protocol.steps * protocol.period, float(protocol.steps)
+    found = {
+        "cr": Figure(lambda record: record.cr, steps),
+        "tsr": Figure(lambda record: record.tsr, 1.0),
+        "flawless": Figure(lambda record: float(_is_flawless(record)), 1.0),
+        "seen": Figure(lambda record: record.seen, 1.0),
+        "visible": Figure(lambda record: record.visible, 1.0),
+        "watched": Figure(lambda record: record.watched, horizon),
+        "losses": Figure(lambda record: float(record.losses)),
+        "found_again": Figure(lambda record: float(record.found_again)),
+        "search_time": Figure(lambda record: record.search_time, horizon),
+        "crashed": Figure(lambda record: float(record.crashed), 1.0),
+        "failed": Figure(lambda record: float(record.error is not None), 1.0),
+        "centre_error": Figure(lambda record: record.centre_error),
+        "path": Figure(lambda record: record.path),
+        "height": Figure(lambda record: record.height),
+        "jerk": Figure(lambda record: record.jerk),
+    }
+    if as_published:
+        found["cr"] = Figure(lambda record: record.published.cr, steps)
+        found["tsr"] = Figure(lambda record: record.published.tsr, 1.0)
+    return found
 
 
 class TableRow(NamedTuple):
     """A row of a table."""
 
     group: str
-    """`all`, `map`, `weather`, `target` or `visibility`."""
+    """`all`, `solvable`, `seeds`, `map`, `weather`, `target` or `visibility`."""
     name: str
     records: list[EpisodeRecord]
     figures: dict[str, Estimate]
 
+    @property
+    def label(self) -> str:
+        """What stands at the beginning of the printed row."""
+        return self.name if self.group == self.name else f"{self.group} {self.name}"
 
-def strata_of(records: Sequence[EpisodeRecord]) -> list[tuple[str, str, str, float]] | None:
-    """Return the stratum of each record; None if the records are not independent.
 
-    Those of one seed have the same traffic and start in every weather, so that a lucky seed raises
-    all of them.
+def clusters_in(records: Sequence[EpisodeRecord]) -> Clusters:
+    """Return which records are one observation: those of one seed.
+
+    They have the same traffic and start in every weather and with every version, so that a lucky
+    seed raises all of them.
     """
-    if len({each.seed for each in records}) < len(records):
-        return None
-    return [(each.map, each.weather, each.target, each.direction) for each in records]
+    return clusters_of([each.seed for each in records], [each.direction for each in records])
 
 
 def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
@@ -78,43 +102,52 @@ def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
     return [names[number] for number in third.tolist()]
 
 
+Groups = Mapping[str, Callable[[EpisodeRecord], str]]
+"""What each record belongs to, by the name of the group of rows."""
+
+
 def rows_of(
-    records: Sequence[EpisodeRecord], horizon: float, *, as_published: bool = False
+    records: Sequence[EpisodeRecord], protocol: Protocol, *, as_published: bool = False
 ) -> list[TableRow]:
     """Return the rows of a table.
 
     Args:
         records: Episode records, at least one.
-        horizon: Length of a full episode [s].
+        protocol: Their protocol.
         as_published: Whether CR and TSR are those that the original's code would have printed, of
             the episodes that it would not have dropped.
     """
-    figures = dict(FIGURES)
-    own = dict.fromkeys(name for record in records for name in record.figures)
-    figures |= {name: partial(_own_figure, name) for name in own}
+    figures = figures_of(protocol, as_published=as_published)
     if as_published:
         records = [record for record in records if record.published.cr > 0.0]
-        figures["cr"] = lambda record: record.published.cr
-        figures["tsr"] = lambda record: record.published.tsr
-    return [
-        TableRow(group, name, chosen, _figures(chosen, figures) | _times(chosen, horizon))
-        for group, name, chosen in groups_of(records)
-        if chosen
-    ]
+    shares = _shares_among(records)
+    horizon = protocol.steps * protocol.period
+    rows = []
+    for group, name, chosen in groups_of(records, protocol.groups):
+        if chosen:
+            found = _means(chosen, figures)
+            tsr = [figures["tsr"].read(record) for record in chosen]
+            found["worst_fifth"] = worst_fifth_of(np.array(tsr, np.float64), clusters_in(chosen))
+            found |= _times(chosen, horizon) | _own(chosen, shares)
+            rows.append(TableRow(group, name, chosen, found))
+    return rows
 
 
-def _own_figure(name: str, record: EpisodeRecord) -> float | None:
-    return record.figures.get(name)
-
-
-def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
+def groups_of(
+    records: Sequence[EpisodeRecord], groups: Groups
+) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
     """Yield group, name and records of each row; a group of one row is left out."""
     yield "all", "all", list(records)
+    solvable = [record for record in records if record.solvable]
+    if 0 < len(solvable) < len(records):
+        yield "solvable", "solvable", solvable
+    yield from _sets(records)
     labels_of = {
         "map": [record.map for record in records],
         "weather": [record.weather for record in records],
         "target": [record.target for record in records],
         "visibility": thirds(records),
+        **{name: [belongs(record) for record in records] for name, belongs in groups.items()},
     }
     for group, labels in labels_of.items():
         for label in sorted(set(labels)) if len(set(labels)) > 1 else ():
@@ -122,43 +155,78 @@ def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list
             yield group, label, [record for record, own in pairs if own == label]
 
 
-def _figures(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str, Estimate]:
+def _sets(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
+    """Yield group, name and records of each set of seeds, if there are several."""
+    ordered = sorted(records, key=lambda record: record.seed)
+    starts = [
+        number
+        for number, (one, next_) in enumerate(pairwise(ordered), 1)
+        if next_.seed - one.seed >= SETS_APART // 2
+    ]
+    for begin, end in pairwise((0, *starts, len(ordered))) if starts else ():
+        yield "seeds", f"from {ordered[begin].seed}", ordered[begin:end]
+
+
+def _is_flawless(record: EpisodeRecord) -> bool:
+    return record.found_after is not None and record.losses == 0
+
+
+def _means(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str, Estimate]:
     found = {}
     for name, figure in figures.items():
-        known = [(record, value) for record in records if (value := figure(record)) is not None]
+        known = [
+            (record, value) for record in records if (value := figure.read(record)) is not None
+        ]
         if known:
-            own = [record for record, _ in known]
-            found[name] = estimate([value for _, value in known], strata_of(own))
+            own, values = zip(*known, strict=True)
+            found[name] = mean_of(values, clusters_in(own), figure.high)
+    return found
+
+
+def _shares_among(records: Sequence[EpisodeRecord]) -> dict[str, bool]:
+    """Return the names of the protocol's own figures, and whether all values are from 0 to 1."""
+    values: dict[str, list[float]] = {}
+    for record in records:
+        for name, value in record.figures.items():
+            values.setdefault(name, []).extend(() if value is None else (value,))
+    return {name: all(0.0 <= each <= 1.0 for each in own) for name, own in values.items()}
+
+
+def _own(records: list[EpisodeRecord], shares: dict[str, bool]) -> dict[str, Estimate]:
+    """Return the figures that only this protocol has; they may be less than 0."""
+    found = {}
+    for name, is_share in shares.items():
+        known = [
+            (record, value) for record in records if (value := record.figures.get(name)) is not None
+        ]
+        if not known:
+            continue
+        own, values = zip(*known, strict=True)
+        clusters = clusters_in(own)
+        if is_share:
+            found[name] = mean_of(values, clusters, 1.0)
+        elif min(values) >= 0.0:
+            found[name] = mean_of(values, clusters)
+        else:
+            array = np.array(values)
+            spread = difference_interval(array, clusters, None)
+            found[name] = Estimate(len(array), clusters.count, float(array.mean()), spread)
     return found
 
 
 def _times(records: list[EpisodeRecord], horizon: float) -> dict[str, Estimate]:
     """Return times of which some are censored: until the target is lost (`kept`), and found.
 
-    Both are restricted means of Kaplan-Meier curves; `iqm` is the same number.
+    Both are restricted means of Kaplan-Meier curves.
     """
     seen = [record for record in records if record.found_after is not None]
     finds = [record.found_after is not None for record in records]
     waits = [
         record.duration if record.found_after is None else record.found_after for record in records
     ]
-    times = {"to_find": _censored(records, waits, finds, horizon)}
+    times = {"to_find": restricted_mean_of(waits, finds, horizon, clusters_in(records))}
     if seen:
         lost = [record.lost_after is not None for record in seen]
-        times["kept"] = _censored(seen, [record.watched for record in seen], lost, horizon)
+        watched = [record.watched for record in seen]
+        times["kept"] = restricted_mean_of(watched, lost, horizon, clusters_in(seen))
     return times
-
-
-def _censored(
-    records: list[EpisodeRecord], times: list[float], ended: list[bool], horizon: float
-) -> Estimate:
-    whole = restricted_mean(times, ended, horizon)
-    if (strata := strata_of(records)) is None:
-        return Estimate(len(records), whole, whole, None, None)
-    at, happened = np.array(times), np.array(ended)
-    means = [
-        restricted_mean(at[row], happened[row], horizon)
-        for row in stratified_resamples(strata, _RESAMPLES)
-    ]
-    spread = Interval(*np.quantile(means, (0.025, 0.975)).tolist())
-    return Estimate(len(records), whole, whole, spread, spread)

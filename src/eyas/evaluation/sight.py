@@ -5,10 +5,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+from eyas.core.clock import PHYSICS_STEP
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import DrawStage, Picture
+from eyas.state.motion import ActorState
 
-__all__ = ["SIZE", "subjects", "visible_shares"]
+__all__ = ["SIZE", "away_from_middle", "subjects", "visible_shares"]
 
 SIZE = 63, 84
 """Height and width of the pictures in which pixels are counted."""
@@ -35,3 +38,23 @@ def visible_shares(pixels: NDArray[Any]) -> NDArray[np.float64]:
     """Return the share of each target that is visible, shape (K,); see `subjects`."""
     shares: NDArray[np.float64] = pixels[:, 0] / np.maximum(pixels[:, 1], 1)
     return shares
+
+
+def away_from_middle(simulation: Simulation) -> NDArray[np.float64]:
+    """Return how far every actor is from the middle of each picture [half the picture's width],
+    shape (K, A); infinity if its middle is not in the picture, hidden or not.
+
+    Args:
+        simulation: K trackers, each with a world of its own.
+    """
+    cameras, camera = simulation.snapshot.cameras, simulation.config.camera
+    actors = ActorState.create(simulation.count, simulation.actors)
+    time = simulation.snapshot.episodes.tick.astype(np.float64) * PHYSICS_STEP
+    simulation.traffic.at(time, actors)
+    away = actors.position - cameras.position[:, None]
+    forward, left, up = np.moveaxis(np.einsum("kad,kdc->kac", away, cameras.rotation), -1, 0)
+    reach = np.maximum(forward, 1e-6) * exact.tan(0.5 * cameras.field_of_view)[:, None]
+    across, down = left / reach, up / reach
+    inside = (forward > 0.0) & (np.abs(across) < 1.0) & actors.present
+    inside &= np.abs(down) < camera.height / camera.width
+    return np.where(inside, np.hypot(across, down), np.inf)

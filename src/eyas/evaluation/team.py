@@ -12,15 +12,13 @@ from numpy.typing import NDArray
 from eyas.core.rng import stream
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch
+from eyas.evaluation.messages import mates
 from eyas.evaluation.meter import LOOK
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.scenario import Scenario
 from eyas.evaluation.sight import visible_shares
 
-__all__ = ["MESSAGE", "SEARCH_LIMIT", "Radio", "TeamScenario"]
-
-MESSAGE = 6
-"""Numbers of a message, whose meaning is the policy's own."""
+__all__ = ["SEARCH_LIMIT", "TeamScenario"]
 
 SEARCH_LIMIT = 15.0
 """Longest time that is waited for a drone to see the target again [s]."""
@@ -33,39 +31,6 @@ _STEADY = 0.5
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-
-def _mates(episodes: Sequence[EpisodeSpec], size: int) -> NDArray[np.int64]:
-    """Return the rows of each drone's mates, shape (N, size - 1)."""
-    count = len(episodes)
-    assert count % size == 0, "a team is in one batch"
-    first = np.arange(count) // size * size
-    others = (np.arange(count)[:, None] + np.arange(1, size)) % size
-    return np.sort(first[:, None] + others, axis=1)
-
-
-class Radio:
-    """Carries the messages of N drones: what one says at a look, its mates hear at their next look.
-
-    Args:
-        episodes: N episodes, the drones of a team one after the other.
-        protocol: Their protocol.
-    """
-
-    def __init__(self, episodes: Sequence[EpisodeSpec], protocol: Protocol) -> None:
-        self._mates = _mates(episodes, len(protocol.variants))
-        self._said = np.full((len(episodes), MESSAGE), np.nan)
-
-    def heard(self) -> Floats:
-        """Return the latest messages of the mates of each, NaN before their first, shape
-        (N, T - 1, `MESSAGE`).
-        """
-        heard: Floats = self._said[self._mates]
-        return heard
-
-    def say(self, speaking: Mask, messages: Floats) -> None:
-        """Let drones speak; `speaking` tells who does, shape (N,), messages are (N, `MESSAGE`)."""
-        self._said[speaking] = messages[speaking]
 
 
 class TeamScenario(Scenario):
@@ -83,7 +48,7 @@ class TeamScenario(Scenario):
         super().__init__(batch.count)
         self._batch, self._size, self._period = batch, len(protocol.variants), protocol.period
         self._rows = np.concatenate(
-            [_mates(episodes, self._size), np.arange(batch.count)[:, None]], axis=1
+            [mates(episodes, self._size), np.arange(batch.count)[:, None]], axis=1
         )
         self._looks = protocol.steps // LOOK
         self._sees = np.zeros((batch.count, self._looks), np.bool_)

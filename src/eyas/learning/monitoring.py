@@ -37,6 +37,7 @@ class _NetworkPolicy:
     """The network as a policy."""
 
     sampled = False
+    told: frozenset[str] = frozenset()
 
     def __init__(self, network: TrackingNetwork, env: EnvConfig) -> None:
         self.env = env

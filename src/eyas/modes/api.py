@@ -183,10 +183,10 @@ class EvaluationChoices(TypedDict, total=False):
     """A target, or several; by default SUMO_VEHICLE."""
     episodes: int
     """For each place and start direction; by default the protocol's number."""
-    seed: int
-    """Seed of the first episode."""
+    seeds: int | Sequence[int]
+    """Seed of the first episode of each set of episodes: one, or several."""
     latency: str
-    """Milliseconds, the path of a file with one in each line, or `measured`."""
+    """Milliseconds, a profile such as `openfly`, a file with one in each line, or `measured`."""
     sampled: bool
     """Whether a network's actions are sampled, not the best ones."""
     env: Mapping[str, Any]
@@ -231,7 +231,7 @@ def evaluate(
         resume: Whether an evaluation in the folder is continued.
         overwrite: Whether one in the folder is deleted first.
         quiet: Whether nothing is printed but failures of the policy.
-        choices: `map`, `weather`, `target`: a name or several; `episodes`, `seed`, `latency`,
+        choices: `map`, `weather`, `target`: a name or several; `episodes`, `seeds`, `latency`,
             `sampled`, `env`, `settings`, `batch`: see `EvaluationChoices` in this module.
 
     Raises:
@@ -250,6 +250,8 @@ def evaluate(
         if name in said:
             names = said.pop(name)
             said[f"{name}s"] = [names] if isinstance(names, str) else list(names)
+    if isinstance(said.get("seeds"), int):
+        said["seeds"] = [said["seeds"]]
     plan = validated(EvaluationPlan, said)
     folder = Path(out) if out is not None else Path("runs/evaluation") / folder_name(plan)
     return run(plan, folder, resume=resume, overwrite=overwrite, quiet=quiet)

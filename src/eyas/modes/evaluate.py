@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from eyas.core.files import refusals, write_atomic
 from eyas.core.folder_lock import folder_lock
 from eyas.core.machine import describe_machine
 from eyas.core.pyav import pyav
+from eyas.evaluation.croissant import croissant
 from eyas.evaluation.fliers import Flier, fly_here
 from eyas.evaluation.plan import EvaluationPlan, Stamp, batches, check, stamp
 from eyas.evaluation.record import EpisodeRecord, RecordFile, order_records, read_records
@@ -34,6 +36,9 @@ from eyas.modes.evaluation_plots import draw_plots, require_matplotlib
 __all__ = ["run"]
 
 _LOG = logging.getLogger("eyas")
+
+CROISSANT = "croissant.json"
+"""What the episodes are, for machines."""
 
 TIMING = "timing.json"
 """How long the policy takes; apart from the result, which repeats."""
@@ -67,17 +72,18 @@ def run(  # noqa: PLR0913  # choices of the user's
     Raises:
         EyasError: A setting is wrong, or the folder is taken.
     """
-    check(plan)
+    entry = check(plan)
     if plots:
         require_matplotlib()
     if videos:
         pyav("--videos")
-    made = stamp(plan)
+    made = stamp(plan).model_copy(update={"entry": entry})
     with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
         _fly(plan, out, records, flier, quiet=quiet)
         flown = _in_order(plan, out)
         rows = write_result(out, made, flown, as_published=as_published)
+        _write_croissant(out, made)
         if plots:
             draw_plots(out, plan.rules, f"{plan.policy}, protocol {plan.protocol}", flown)
         if videos:
@@ -85,7 +91,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     if not quiet:
         print(
             f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}, "
-            f"build {made.build.id}"
+            f"build {made.build.id}, class {entry.entry_class}"
         )
         print(table(rows, plan.protocol))
     _tell_failures(flown)
@@ -119,6 +125,11 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
         old, new = getattr(found, name), getattr(made, name)
         if old != new:
             raise OutputError(f"{out}: cannot be continued: its {name} was {old}, now it is {new}")
+    if found.entry != made.entry:
+        raise OutputError(
+            f"{out}: cannot be continued: what its policy sees or does has changed; replace it "
+            "with --overwrite"
+        )
     old_plan, new_plan = found.plan.model_dump(), made.plan.model_dump()
     for name in old_plan:
         if old_plan[name] != new_plan[name]:
@@ -132,7 +143,7 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
 def _delete(out: Path) -> None:
     """Delete what an evaluation has written into its folder, and nothing else."""
     plots, videos = out / evaluation_plots.FOLDER, out / evaluation_films.FOLDER
-    names = (STAMP, EPISODES, RESULT, ROWS, TIMING)
+    names = (STAMP, EPISODES, RESULT, ROWS, TIMING, CROISSANT)
     with refusals(out):
         for path in (*(out / name for name in names), *plots.glob("*.png"), *videos.glob("*.mp4")):
             path.unlink(missing_ok=True)
@@ -190,6 +201,11 @@ def _write_timing(plan: EvaluationPlan, out: Path, answers: list[float], wall: f
         "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
     }
     write_atomic(out / TIMING, (json.dumps(content, indent=1) + "\n").encode())
+
+
+def _write_croissant(out: Path, made: Stamp) -> None:
+    digest = sha256((out / EPISODES).read_bytes()).hexdigest()
+    write_atomic(out / CROISSANT, (json.dumps(croissant(made, digest), indent=1) + "\n").encode())
 
 
 def _tell_failures(records: list[EpisodeRecord]) -> None:

@@ -68,9 +68,9 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
         own, folder = plan.model_copy(update={"latency": latency}), out / f"latency-{latency}"
         records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True, flier=flier)
         every += records
-        figures = rows_of(records, plan.rules.steps * plan.rules.period)[0].figures
+        figures = rows_of(records, plan.rules)[0].figures
         found = {
-            name: (figures[name].mean, *(figures[name].mean_interval or (None, None)))
+            name: (figures[name].mean, *(figures[name].interval or (None, None)))
             for name in _FIGURES
         }
         points.append(_Point(latency_ms=float(latency), figures=found))

@@ -82,8 +82,7 @@ def _entries(folder: Path) -> Iterator[_Entry]:
         if missing > 0:
             _LOG.warning("%s: left out: %d episodes are missing", path.parent, missing)
             continue
-        rules = stamp.plan.rules
-        yield _Entry(stamp, records, rows_of(records, rules.steps * rules.period)[0])
+        yield _Entry(stamp, records, rows_of(records, stamp.plan.rules)[0])
 
 
 def _section(entries: Sequence[_Entry]) -> str:

@@ -42,14 +42,13 @@ _LOG = logging.getLogger("eyas")
 
 
 def load_network(map_name: str, seed: int) -> RoadNetwork:
-    """Return a map's roads: shipped for seed 0, built by netconvert for other seeds.
+    """Return a map's roads: shipped for seed 0 and few others, else built by netconvert.
 
     Raises:
         MissingExtraError: netconvert is needed but not installed.
     """
     recipe = MAPS.get(map_name)
-    shipped = recipe.shipped_network() if seed == 0 else None
-    return shipped or build_network(recipe.roads(seed))
+    return recipe.shipped_network(seed) or build_network(recipe.roads(seed))
 
 
 def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> Scene:

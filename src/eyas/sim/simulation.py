@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact as elementary
-from eyas.core.clock import physics_steps
+from eyas.core.clock import PHYSICS_STEP, physics_steps
+from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
@@ -18,8 +19,9 @@ from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
+from eyas.state.scene import Scene
 from eyas.state.snapshot import CameraState, Snapshot
-from eyas.targets.kind import Looks
+from eyas.targets.kind import Colour, Looks
 from eyas.task.clearance import Clearance
 from eyas.task.quantities import Setting
 from eyas.task.rules import Rules, exact, lenient, make_rules
@@ -121,6 +123,15 @@ class Simulation:
         """
         self._episodes.continue_from(other._episodes)
 
+    def episode_key(self, tracker: int) -> EpisodeKey:
+        """Return what the random values of a tracker's episode depend on."""
+        return self._episodes.key(tracker)
+
+    @property
+    def scene(self) -> Scene:
+        """All that stands still around the trackers."""
+        return self._assets.scene
+
     @property
     def steps_left(self) -> int:
         """Physics steps until the recorded traffic ends; afterwards all vehicles stand still.
@@ -192,6 +203,14 @@ class Simulation:
         self.snapshot.episodes.start_offset[chosen] = offset
         self._stepper.begin(chosen, pitch, self._episodes.key)
 
+    def sample_time(self, tracker: int, rng: np.random.Generator) -> None:
+        """Sample the time at which the episode of a tracker with a world of its own begins, such
+        that the traffic lasts as long as a whole episode; `start_at` comes next.
+        """
+        first = self.config.start.warm_up_steps
+        last = round(self.traffic.duration / PHYSICS_STEP) - self.config.done.total_steps
+        self.snapshot.episodes.tick[tracker] = rng.integers(first, last + 1)
+
     def set_fields_of_view(self, fields: Floats) -> None:
         """Zoom the cameras, until the next reset: horizontal fields of view [rad], shape (N,)."""
         self.snapshot.cameras.field_of_view[:] = fields
@@ -225,6 +244,21 @@ class Simulation:
         """
         for tracker, actor in enumerate(self.snapshot.targets.actor.tolist()):
             self._worlds.make_alike(tracker, actor)
+
+    def dress(self, tracker: int, actor: int, model: int, colour: Colour) -> None:
+        """Give an actor around a tracker a model of its kind and a colour, until the next reset.
+
+        What is known of a target is not changed: `follow` it again.
+        """
+        self._worlds.dress(tracker, actor, model, colour)
+
+    def copy_world(self, tracker: int, source: int) -> None:
+        """Give a tracker with a world of its own the time and the looks of another one's, and the
+        actor that the other one follows as its target; `start_at` comes next.
+        """
+        self._worlds.copy_looks(tracker, source)
+        self.snapshot.episodes.tick[tracker] = self.snapshot.episodes.tick[source]
+        self.follow(tracker, int(self.snapshot.targets.actor[source]))
 
     @property
     def actors(self) -> int:

@@ -118,6 +118,11 @@ class Worlds:
         world = self.of[tracker]
         self.looks.model[world, actor], self.looks.colour[world, actor] = model, colour
 
+    def copy_looks(self, tracker: int, source: int) -> None:
+        """Give the actors around a tracker the looks of those around another one."""
+        for looks in self.looks:
+            looks[self.of[tracker]] = looks[self.of[source]]
+
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
         return int(self.looks.model[self.of[tracker], actor])

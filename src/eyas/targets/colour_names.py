@@ -3,7 +3,10 @@
 from collections.abc import Sequence
 from functools import lru_cache
 
-__all__ = ["COLOUR_NAMES", "colour_name", "with_article"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["COLOUR_NAMES", "colour_distances", "colour_name", "with_article"]
 
 COLOUR_NAMES: dict[str, tuple[float, float, float]] = {
     "black": (0.10, 0.12, 0.14),
@@ -49,6 +52,25 @@ def _nearest(colour: tuple[float, ...]) -> str:
         return (2.0 + mean) * red * red + 4.0 * green * green + (3.0 - mean) * blue * blue
 
     return min(COLOUR_NAMES, key=away)
+
+
+def colour_distances(colours: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Return the squared distances of colours from those with names, as `colour_name` measures.
+
+    Args:
+        colours: sRGB 0 to 1, shape (A, 3).
+
+    Returns:
+        In the order of `COLOUR_NAMES`, shape (A, names).
+    """
+    own = np.asarray(colours, np.float64)[:, None]
+    named = np.array(list(COLOUR_NAMES.values()))
+    mean = (own[..., 0] + named[:, 0]) / 2
+    squares = np.square(own - named)
+    distances: NDArray[np.float64] = (
+        (2.0 + mean) * squares[..., 0] + 4.0 * squares[..., 1] + (3.0 - mean) * squares[..., 2]
+    )
+    return distances
 
 
 def with_article(noun: str) -> str:

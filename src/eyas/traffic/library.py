@@ -14,6 +14,7 @@ from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.core.program import code_of
+from eyas.core.rng import TEST_SEEDS
 from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
@@ -28,9 +29,13 @@ from eyas.traffic.sumo_install import sumo_version
 __all__ = [
     "CANONICAL_MIX",
     "CANONICAL_SEED",
+    "DENSE_DURATION",
+    "DENSE_VEHICLES",
     "EVADING_MIX",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
+    "TEST_DURATION",
+    "TEST_TRAFFIC",
     "find_file",
     "find_recording",
     "record_canonical",
@@ -53,6 +58,12 @@ that stays for an episode of 3 s (of 40, at least 31 did at any time on each of 
 CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)
 """Classes of vehicles in the shipped recordings of a mixed fleet, which the two cities have."""
 
+DENSE_VEHICLES = 320
+"""Vehicles in the shipped recordings of dense traffic: downtown then has eight in a view of 38 x 28
+m now and then (with 160, never), and citystreet, which has room for 399, still flows."""
+
+DENSE_DURATION = 300.0
+"""Length of these: as many vehicle hours as in the others [s]."""
 EVADING_MIX = Mix(passenger=0.75, bus=0.15, truck=0.1)
 """Classes of vehicles in the shipped recordings of drivers who evade: no trailers, whose tails
 swing into cars that turn round beside them."""
@@ -60,13 +71,19 @@ swing into cars that turn round beside them."""
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
 
+TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
+"""Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""
+
+TEST_DURATION = 300.0
+"""Least length of a recording with such a seed: their episodes are short, but many [s]."""
+
 
 def find_file(
     graph: RoadGraph,
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
     cover: Callable[[], Cover] = tuple,
 ) -> RecordingFile:
@@ -78,7 +95,7 @@ def find_file(
         graph: Roads to drive on.
         config: Settings of the traffic.
         trackers: Number of trackers in a world, which determines the least size of a group.
-        duration: Smallest duration of the recording [s].
+        duration: Smallest duration of the recording [s]; None: that of its seed.
         shipped: Files of the recordings that come with the map.
         cover: Returns the stretches of lanes in which drivers hide; called where they do and no
             recording is shipped.
@@ -95,12 +112,14 @@ def find_file(
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(_lasting(config, trackers), seed, trackers)
+    if duration is None:
+        duration = TEST_DURATION if seed >= TEST_SEEDS else STANDARD_DURATION
     _tell_raised(config, wanted, trackers)
     others: dict[RecordingFile, Provenance] = {}
     for file in shipped:
         found = RecordingFile.read(file)
         origin = found.outline().provenance
-        if _fits(origin, graph, wanted) and origin.duration >= duration:
+        if _fits(origin, graph, wanted):  # as long as whoever made the map wants it
             return found
         others[found] = origin
     if _may_be_larger(config, trackers):
@@ -127,7 +146,7 @@ def find_recording(
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
 ) -> Recording:
     """Return the recording of `find_file`."""
@@ -139,9 +158,11 @@ def record_canonical(
     path: Path,
     config: TrafficConfig | None = None,
     progress: Callable[[float], None] | None = None,
+    *,
     cover: Cover = (),
+    duration: float = STANDARD_DURATION,
 ) -> None:
-    """Record canonical traffic of a map (its seed 0), to be shipped with it.
+    """Record traffic of a map, to be shipped with it.
 
     For developers of a map, after a change in its roads.
 
@@ -150,6 +171,7 @@ def record_canonical(
         path: The file.
         config: Settings of the traffic; None: the default.
         progress: Called with the completed share, 0 to 1.
+        duration: Its length [s].
         cover: The stretches of lanes in which drivers hide.
 
     Raises:
@@ -157,8 +179,8 @@ def record_canonical(
         OutputError: The file cannot be written.
     """
     name, seed, chosen = graph.map_name, graph.seed, config or TrafficConfig()
-    span = STANDARD_DURATION
-    made = record(name, seed, graph, chosen, span, CANONICAL_SEED, progress, cover=cover)
+    sampled = CANONICAL_SEED if chosen.seed is None else chosen.seed
+    made = record(name, seed, graph, chosen, duration, sampled, progress, cover=cover)
     save(made, path)
 
 

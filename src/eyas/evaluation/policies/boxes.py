@@ -63,7 +63,7 @@ def pilot(said: str, changes: Mapping[str, Any]) -> Each:
     image = {"width": _SIZE[1], "height": _SIZE[0], "layout": "hwc", "colours": "rgb", "frames": 1}
     fixed = {"observation": image, "actions": "discrete"}
     env = env_config({**fixed, "action_repeat": 4}, {**changes, **fixed})
-    return Each(lambda: BoxPilot(make, env), env, said)
+    return Each(lambda: BoxPilot(make, env), env, said, frozenset({"box"}))
 
 
 csrt, kcf, mosse = (partial(pilot, name) for name in ("csrt", "kcf", "mosse"))

@@ -10,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.own_code import imported, running, takes
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.observation import Observation
+from eyas.evaluation.messages import MESSAGE
 from eyas.evaluation.policies.policy import (
     Decision,
     Failure,
@@ -22,6 +23,8 @@ from eyas.evaluation.policies.simple import HOVER
 
 __all__ = ["Each", "Whole", "load_callable"]
 
+_IN_WORDS = frozenset({"words", "attributes"})
+
 SETTINGS = "env_settings"
 """Attribute of a user's policy: changes of the defaults of `env`."""
 
@@ -31,28 +34,37 @@ class Each:
 
     Args:
         make: Returns the policy of an episode: a function of its observation, or an object with
-            `act(observation)` and, if it wants the target's first box, `reset(box)`.
+            `act(observation)` and, if it wants the target's first box, `reset(box)`; in a team, it
+            may `hear(messages)` before and `say()` after it acts.
         env: What it sees, and what its actions mean.
         path: Where its code is, for messages.
+        told: What its `reset` asks for.
     """
 
     sampled = False
 
-    def __init__(self, make: Callable[[], Any], env: EnvConfig, path: str) -> None:
-        self.env, self._make, self._path = env, make, path
+    def __init__(
+        self,
+        make: Callable[[], Any],
+        env: EnvConfig,
+        path: str,
+        told: frozenset[str] = frozenset(),
+    ) -> None:
+        self.env, self._make, self._path, self.told = env, make, path, told
 
     def begin(self, start: Start) -> None:
         """Make the policy of each episode; a box tracker gets the box in its first picture."""
         with running("--policy", self._path):
             self._own = [self._make() for _ in start.seeds]
-            if hasattr(self._own[0], "reset"):
+            self._said = np.full((len(self._own), MESSAGE), np.nan)
+            if self.told:
                 self._tell(start)
 
     def _tell(self, start: Start) -> None:
         """Give each policy what the parameters of its `reset` ask for."""
-        names = set(inspect.signature(self._own[0].reset).parameters)
-        words = names & {"words", "attributes"}
-        boxes = None if words and "box" not in names else start.boxes().tolist()
+        names = self.told
+        words = names & _IN_WORDS
+        boxes = start.boxes().tolist() if "box" in names else None
         for row, own in enumerate(self._own):
             if not words:
                 assert boxes is not None
@@ -71,21 +83,27 @@ class Each:
         """Ask the policies of those who decide."""
         actions: list[Any] = [no_action(self.env)] * len(self._own)
         failed = {}
+        messages = None if sight.heard is None else self._said
         for row in np.flatnonzero(sight.deciding).tolist():
             own = self._own[row]
             try:
+                if sight.heard is not None and hasattr(own, "hear"):
+                    own.hear(sight.heard[row].copy())
                 actions[row] = getattr(own, "act", own)(one_of(sight.observation, row))
+                if messages is not None and hasattr(own, "say"):
+                    messages[row] = own.say()
             except KeyboardInterrupt:
                 raise
             except BaseException as error:  # whatever a user's code raises ends only its episode
                 failed[row] = Failure.of(error)
-        return Decision(actions, failed)
+        return Decision(actions, failed, messages)
 
 
 class Whole:
     """Calls one function with the observations of all episodes; it cannot tell them apart."""
 
     sampled = False
+    told: frozenset[str] = frozenset()
 
     def __init__(self, function: Callable[[Any], Any], env: EnvConfig, path: str) -> None:
         self.env, self._function, self._path = env, function, path
@@ -97,6 +115,16 @@ class Whole:
         """Call the function."""
         with running("--policy", self._path):
             return Decision(self._function(sight.observation))
+
+
+def _asked_for(found: type) -> frozenset[str]:
+    """Return what the `reset` of a class wants to be told: the first box, unless it names words."""
+    reset = getattr(found, "reset", None)
+    if reset is None:
+        return frozenset()
+    names = frozenset(inspect.signature(reset).parameters)
+    wanted = names & (_IN_WORDS | {"box"})
+    return wanted if wanted & _IN_WORDS else frozenset({"box"})
 
 
 def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or four
@@ -141,7 +169,7 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
         )
     env = env_config(getattr(found, SETTINGS, {}), changes)
     if made:
-        return Each(found, env, path)
+        return Each(found, env, path, _asked_for(found))
     if getattr(found, "batched", False):
         return Whole(found, env, path)
     return Each(lambda: found, env, path)

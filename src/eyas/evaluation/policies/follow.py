@@ -16,6 +16,7 @@ class Follow:
     """Brings the middle of the picture over the target, whose true position it knows."""
 
     sampled = False
+    told = frozenset({"truth"})
 
     def __init__(self, changes: Mapping[str, Any]) -> None:
         self.env = env_config(BLIND, {**changes, "actions": "discrete"})

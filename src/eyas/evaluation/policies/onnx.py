@@ -5,6 +5,8 @@ Inputs and outputs, by name, all with a leading axis of N episodes:
 - `image`, uint8, (N, C, H, W) with the layout `chw`: the observation;
 - `last_action`, float32, optional: (N, 7) with a 1 at the last action (hover at the start), or the
   last four numbers;
+- `attributes`, float32, (N, A), optional: what the target is told to be, see docs/words.md; 0 where
+  nothing is told;
 - any number of memories `x`, float32, (N, ...), with an output `next_x` each; 0 at the start;
 - the first output: `logits`, float, (N, 7), or `action`, float, (N, 4).
 
@@ -25,13 +27,14 @@ from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 from eyas.evaluation.policies.simple import ACTIONS, HOVER
+from eyas.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
 
 METADATA = "eyas"
 """Key of the metadata."""
 
-_IMAGE, _LAST, _NEXT = "image", "last_action", "next_"
+_IMAGE, _LAST, _TOLD, _NEXT = "image", "last_action", "attributes", "next_"
 
 
 class OnnxPolicy:
@@ -61,13 +64,14 @@ class OnnxPolicy:
         self._discrete = self.env.actions is ActionKind.DISCRETE
         inputs = {each.name: each.shape for each in self._session.get_inputs()}
         outputs = [each.name for each in self._session.get_outputs()]
-        memories = [name for name in inputs if name not in (_IMAGE, _LAST)]
+        memories = [name for name in inputs if name not in (_IMAGE, _LAST, _TOLD)]
         if _IMAGE not in inputs or any(_NEXT + name not in outputs for name in memories):
             raise DataFileError(
                 f"{path}: not a policy: it needs the input 'image', and for each memory 'x' the "
                 f"output 'next_x'; it has {', '.join(inputs)} and {', '.join(outputs)}"
             )
-        self._remembers_action = _LAST in inputs
+        self._remembers_action, self._is_told = _LAST in inputs, _TOLD in inputs
+        self.told = frozenset({_TOLD}) if self._is_told else frozenset()
         self._shapes = {name: inputs[name][1:] for name in memories}
         self._outputs = [outputs[0], *(_NEXT + name for name in memories)]
 
@@ -78,6 +82,8 @@ class OnnxPolicy:
         self._memory: dict[str, NDArray[np.float32]] = {
             name: np.zeros((count, *shape), np.float32) for name, shape in self._shapes.items()
         }
+        nothing = np.zeros((count, len(ATTRIBUTES)), np.float32)
+        self._told = nothing if start.told is None else start.told.attributes
         width = ACTIONS if self._discrete else 4
         self._last = np.zeros((count, width), np.float32)
         if self._discrete:
@@ -85,7 +91,11 @@ class OnnxPolicy:
 
     def act(self, sight: PolicyInput) -> Decision:
         """Run the network for all; those who do not decide remember nothing new."""
-        feed: dict[str, Any] = {_IMAGE: sight.observation, **self._memory}
+        seen: Any = sight.observation
+        image = seen[_IMAGE] if isinstance(seen, dict) else seen
+        feed: dict[str, Any] = {_IMAGE: image, **self._memory}
+        if self._is_told:
+            feed[_TOLD] = self._told
         if self._remembers_action:
             feed[_LAST] = self._last
         answer, *memories = self._session.run(self._outputs, feed)

@@ -13,6 +13,7 @@ from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
 from eyas.evaluation.scenario import Told
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "Decision",
     "Failure",
     "Policy",
+    "PolicyFailedError",
     "PolicyInput",
     "Start",
     "env_config",
@@ -41,6 +43,8 @@ class Start(NamedTuple):
     not tell it, shape (N, 4)."""
     told: Told | None = None
     """What is told in words; None where the protocol has no words."""
+    roads: Callable[[], list[RoadNetwork]] = list
+    """Returns the roads around each drone, N, one object for those on the same map: for oracles."""
 
 
 class PolicyInput(NamedTuple):
@@ -56,6 +60,8 @@ class PolicyInput(NamedTuple):
     visible: Callable[[], NDArray[np.float64]]
     """Returns the share of each target that its camera sees now, 0 while the camera is covered,
     shape (N,): for oracles."""
+    covered: NDArray[np.bool_]
+    """Whose camera shows nothing now, so that the picture is black, shape (N,)."""
     heard: NDArray[np.float64] | None = None
     """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
     None where drones fly alone."""
@@ -72,8 +78,22 @@ class Failure(NamedTuple):
     @classmethod
     def of(cls, error: BaseException, *, traced: bool = True) -> "Failure":
         """Return an error that was raised; `traced`: by the policy's own code."""
+        if isinstance(error, PolicyFailedError):
+            return error.failure
         line = " ".join(f"{type(error).__name__}: {error}".split())[:500]
         return cls(line, "".join(format_exception(error)) if traced else None)
+
+
+class PolicyFailedError(Exception):
+    """A policy has failed elsewhere, in its own process.
+
+    Args:
+        failure: What with.
+    """
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(failure.line)
+        self.failure = failure
 
 
 class Decision(NamedTuple):
@@ -94,6 +114,9 @@ class Policy(Protocol):
     """What it sees, and what its actions mean."""
     sampled: bool
     """Whether its actions are sampled at random, from the seeds of the episodes."""
+    told: frozenset[str]
+    """What it is told beside its observations: `box`, the target's first box; `words` and
+    `attributes`; `truth`, the true state."""
 
     def begin(self, start: Start) -> None:
         """Forget everything: N episodes begin."""

@@ -37,6 +37,8 @@ class Sb3Policy:
         MissingExtraError: stable-baselines3 is not installed.
     """
 
+    told: frozenset[str] = frozenset()
+
     def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
         self._model = _loaded(path)
         shape = self._model.observation_space.shape

@@ -32,6 +32,7 @@ class Servo:
     """
 
     sampled = False
+    told: frozenset[str] = frozenset()
 
     def __init__(self, changes: Mapping[str, Any]) -> None:
         image = {"width": _SIZE, "height": _SIZE, "colours": "rgb", "layout": "chw", "frames": 1}

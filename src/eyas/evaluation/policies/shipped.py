@@ -39,6 +39,10 @@ class Card(Config):
     """Of all environments, in training."""
     version: str
     """Of Eyas, when it was trained."""
+    trained_on: str
+    """Places, conditions, targets and episodes of its training, in a few sentences."""
+    limits: tuple[str, ...]
+    """What it cannot do, as far as is known."""
     scores: tuple[Score, ...]
 
 

@@ -6,9 +6,13 @@ from typing import Any
 import numpy as np
 
 from eyas.core.rng import stream
-from eyas.evaluation.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
+from eyas.envs.config import ObservationPart
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 
 __all__ = ["Hover", "Random", "hover", "random"]
+
+_NO_PICTURE = {"observation": {"parts": [ObservationPart.SENSORS]}}
+"""Changes of `EnvConfig`: neither looks, so that no picture is drawn."""
 
 HOVER = 6
 ACTIONS = 7
@@ -18,9 +22,10 @@ class Hover:
     """Does nothing."""
 
     sampled = False
+    told: frozenset[str] = frozenset()
 
     def __init__(self, changes: Mapping[str, Any]) -> None:
-        self.env = env_config(BLIND, {**changes, "actions": "discrete"})
+        self.env = env_config(_NO_PICTURE, {**changes, "actions": "discrete"})
 
     def begin(self, start: Start) -> None:
         """Remember the number of drones."""
@@ -35,9 +40,12 @@ class Random:
     """Draws one of the seven actions every 32 ms."""
 
     sampled = True
+    told: frozenset[str] = frozenset()
 
     def __init__(self, changes: Mapping[str, Any]) -> None:
-        self.env = env_config({**BLIND, "action_repeat": 4}, {**changes, "actions": "discrete"})
+        self.env = env_config(
+            {**_NO_PICTURE, "action_repeat": 4}, {**changes, "actions": "discrete"}
+        )
 
     def begin(self, start: Start) -> None:
         """Begin the random numbers of each episode."""

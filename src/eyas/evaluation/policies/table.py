@@ -18,6 +18,10 @@ BUILT_IN = {
     "random": f"{_ROOM}.simple:random",
     "hover": f"{_ROOM}.simple:hover",
     "follow": f"{_ROOM}.follow:follow",
+    "sighted": f"{_ROOM}.road_search:sighted",
+    "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
+    "road-graph": f"{_ROOM}.predictors:road_graph",
+    "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:servo",
     **{
         name: f"{_ROOM}.boxes:{name}"

@@ -34,6 +34,8 @@ class TorchPolicy:
         MissingExtraError: torch is not installed.
     """
 
+    told: frozenset[str] = frozenset()
+
     def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
         self._torch = _torch()
         self._module, said = self._loaded(path)

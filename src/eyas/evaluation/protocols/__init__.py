@@ -8,11 +8,13 @@ from eyas.evaluation.protocols.evade import EVADE
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
+from eyas.evaluation.protocols.referring import REFERRING
 from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
-_ALL = (PAPER, LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, EVADE, PAIR, TEAM)
+_LASTING = (LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, EVADE)
+_ALL = (PAPER, *_LASTING, REFERRING, PAIR, TEAM)
 
 PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}
 

@@ -12,7 +12,7 @@ LONG = Protocol(
         "traffic": {"demand": "keep_alive"},
         "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
     },
-    columns=("kept", "tsr", "losses", "search_time", "crashed", "centre_error"),
+    columns=("kept", "tsr", "flawless", "worst_fifth", "losses", "search_time", "crashed"),
 )
 
 SEARCH = Protocol(
@@ -23,7 +23,7 @@ SEARCH = Protocol(
         "start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}},
         "done": {"total_steps": 10_000, "no_reward_steps": NEVER},
     },
-    columns=("to_find", "tsr", "kept", "losses", "search_time", "crashed"),
+    columns=("to_find", "tsr", "worst_fifth", "kept", "losses", "search_time", "crashed"),
 )
 
 DISTRACTOR = Protocol(
@@ -33,7 +33,7 @@ DISTRACTOR = Protocol(
         "traffic": {"demand": "keep_alive"},
         "done": {"total_steps": 10_000, "no_reward_steps": NEVER},
     },
-    columns=("kept", "tsr", "seen", "losses", "crashed", "centre_error"),
+    columns=("kept", "tsr", "flawless", "worst_fifth", "seen", "losses", "crashed"),
     alike=True,
     choose=with_neighbours,
 )

@@ -102,7 +102,9 @@ class PolicyController:
         self._steps = physics_steps(flight.config.control.frequency) * env.action_repeat
         self._size = env.observation.height, env.observation.width
         self._begun = np.ones(1, np.bool_)
-        self._policy.begin(Start(np.array([flight.config.seed]), self._boxes))
+        seeds = np.array([flight.config.seed])
+        roads = self._simulation.scene.network
+        self._policy.begin(Start(seeds, self._boxes, roads=lambda: [roads]))
 
     def decide(self) -> tuple[Commands, int]:
         """Ask the policy.
@@ -119,7 +121,10 @@ class PolicyController:
             else observation[None]
         )
         sim = self._simulation
-        sight = PolicyInput(batch, np.ones(1, np.bool_), lambda: sim.snapshot, self._visible)
+        sight = PolicyInput(
+            *(batch, np.ones(1, np.bool_), lambda: sim.snapshot, self._visible),
+            covered=np.zeros(1, np.bool_),
+        )
         try:
             decision = self._policy.act(sight)
         except Exception as error:  # whatever a user's code raises; the demo goes on

@@ -1,6 +1,7 @@
 """Figures of a map: extent, streets, buildings, trees, whose data it is; also with another seed."""
 
 from dataclasses import dataclass
+from importlib.resources.abc import Traversable
 
 import numpy as np
 import shapely
@@ -12,6 +13,7 @@ from eyas.sim.scenes import load_scene
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.traffic.config import TrafficConfig
+from eyas.traffic.recording_file import RecordingFile
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import Original
@@ -146,12 +148,21 @@ def describe(name: str, seed: int) -> list[str]:
     )
     if recipe.original is not None:
         lines.append(_of_the_original(recipe.original))
-    shipped = seed == 0 or recipe.home is not None  # an imported map has its streets at any seed
-    recorded = [file.name for file in recipe.shipped_traffic()] if shipped else []
+    recorded = [
+        file.name
+        for file in recipe.shipped_traffic()
+        # An imported map has its streets at any seed.
+        if recipe.home is not None or _town_of(file) == seed
+    ]
     lines.append(f"recorded traffic: {', '.join(recorded) or 'none; recorded on first use'}")
     if recipe.home is not None:
         lines.append(f"folder: {recipe.home}")
     return lines + recipe.attribution().splitlines()
+
+
+def _town_of(file: Traversable) -> int:
+    """Return the seed of the map that a recording was made on."""
+    return RecordingFile.read(file).outline().provenance.map_seed
 
 
 def _of_the_original(figures: Original) -> str:

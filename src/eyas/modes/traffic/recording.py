@@ -16,8 +16,13 @@ from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
+    DENSE_DURATION,
+    DENSE_VEHICLES,
     EVADING_MIX,
     RESPAWN_GROUPS,
+    STANDARD_DURATION,
+    TEST_DURATION,
+    TEST_TRAFFIC,
     record_canonical,
 )
 from eyas.traffic.network import build_network
@@ -27,11 +32,15 @@ from eyas.traffic.smoothing import Tracks, runs, smooth
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import (
+    DENSE_FILE,
     MIXED_FILE,
-    NETWORK_FILE,
+    TEST_TOWNS,
     TRAFFIC_FILE,
+    MapRecipe,
     drivers_file,
+    network_file,
     respawn_file,
+    town_traffic_file,
 )
 from eyas.world.roads.network_file import save_network
 
@@ -40,6 +49,11 @@ __all__ = ["describe", "run", "run_canonical"]
 _CITIES = ("citystreet", "downtown")
 """Maps that ship a recording of a mixed fleet."""
 
+_TESTED = ("citystreet", "desert", "downtown", "farmland", "lake", "village")
+"""Maps that ship traffic for the protocol `standard`."""
+
+_WITH_TOWNS = ("citystreet", "downtown", "village")
+"""Maps of which other towns ship, for the protocol `unseen`."""
 _LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
     "village": {Drivers.HIDING: TrafficConfig()},
     "citystreet": {
@@ -128,20 +142,42 @@ def run_canonical(world: WorldConfig) -> None:
         raise ConfigError(
             f"world.map: {world.map!r} is not part of a package, so nothing can be shipped with it"
         )
-    folder, graph = Path(str(recipe.folder)), recipe.roads(0)
-    save_network(folder / NETWORK_FILE, build_network(graph))
-    shipped = {TRAFFIC_FILE: TrafficConfig()}
-    for size in RESPAWN_GROUPS:
-        shipped[respawn_file(size)] = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
-    if recipe.name in _CITIES:
-        shipped[MIXED_FILE] = TrafficConfig(vehicle_type=CANONICAL_MIX)
-    for drivers, config in _LOST_DRIVERS.get(recipe.name, {}).items():
-        shipped[drivers_file(drivers)] = config.model_copy(update={"drivers": drivers})
-    for name, config in shipped.items():
-        cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, 0)
+    folder = Path(str(recipe.folder))
+    for seed in (0, *(TEST_TOWNS if recipe.name in _WITH_TOWNS else ())):
+        save_network(folder / network_file(seed), build_network(recipe.roads(seed)))
+    for name, town, config, duration in _shipped_recordings(recipe):
+        cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, town)
         with sumo_progress() as progress:
-            record_canonical(graph, folder / name, config, progress, cover)
+            record_canonical(
+                recipe.roads(town),
+                folder / name,
+                config,
+                progress,
+                cover=cover,
+                duration=duration,
+            )
         _report(folder / name, "a shipped recording")
+
+
+def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficConfig, float]]:
+    """Yield the recordings that ship with a map: file, seed of the map, settings, length [s]."""
+    yield TRAFFIC_FILE, 0, TrafficConfig(), STANDARD_DURATION
+    for size in RESPAWN_GROUPS:
+        groups = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
+        yield respawn_file(size), 0, groups, STANDARD_DURATION
+    if recipe.name in _CITIES:
+        mixed = TrafficConfig(vehicle_type=CANONICAL_MIX)
+        yield MIXED_FILE, 0, mixed, STANDARD_DURATION
+        dense = mixed.model_copy(update={"max_vehicles": DENSE_VEHICLES})
+        yield DENSE_FILE, 0, dense, DENSE_DURATION
+    for drivers, config in _LOST_DRIVERS.get(recipe.name, {}).items():
+        own = config.model_copy(update={"drivers": drivers})
+        yield drivers_file(drivers), 0, own, STANDARD_DURATION
+    for seed in TEST_TRAFFIC if recipe.name in _TESTED else ():
+        yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), 2.0 * TEST_DURATION
+    for town in TEST_TOWNS if recipe.name in _WITH_TOWNS else ():
+        seed = TEST_TRAFFIC[0]
+        yield town_traffic_file(town, seed), town, TrafficConfig(seed=seed), TEST_DURATION
 
 
 def _report(path: Path, what: str) -> None:

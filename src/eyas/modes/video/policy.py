@@ -18,6 +18,7 @@ from eyas.evaluation.sight import subjects, visible_shares
 from eyas.exports.frame import RecordedAction
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
 
 __all__ = ["PolicyPilot"]
@@ -60,7 +61,7 @@ class PolicyPilot:
             seeds = np.array([rng.integers(_SEEDS)])
             boxes = partial(self._first_box, tracker)
             try:
-                self._policies[tracker].begin(Start(seeds, boxes))
+                self._policies[tracker].begin(Start(seeds, boxes, roads=self._roads))
             except Exception as error:  # whatever a user's code raises
                 raise self._failed(tracker, Failure.of(error)) from error
 
@@ -83,6 +84,7 @@ class PolicyPilot:
             *(self._observed(tracker), np.ones(1, np.bool_)),
             snapshot=lambda: self._of(tracker),
             visible=lambda: self._visible(tracker),
+            covered=np.zeros(1, np.bool_),
         )
         try:
             decision = self._policies[tracker].act(sight)
@@ -118,6 +120,9 @@ class PolicyPilot:
         image = self._env.observation
         size = image.height, image.width
         return subjects(self._sim, np.array([tracker], np.int32), size)[1]
+
+    def _roads(self) -> list[RoadNetwork]:
+        return [self._sim.scene.network]
 
     def _visible(self, tracker: int) -> NDArray[np.float64]:
         return visible_shares(subjects(self._sim, np.array([tracker], np.int32))[0])

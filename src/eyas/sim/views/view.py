@@ -13,10 +13,11 @@ from eyas.sim.views.delay import SeenState
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
-from eyas.sim.views.words import target_in_words
+from eyas.sim.views.words import in_view, target_in_words
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, MovingParts, Picture
 from eyas.state.motion import ActorView
+from eyas.targets.grammar.in_view import InView
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
 
@@ -87,9 +88,14 @@ class View:
             basic[:, SENSOR_COLUMNS] = self.state.told
         return basic, reward
 
-    def actors(self, tracker: int) -> ActorView:
-        """Return the actors around a tracker at the instant that its pictures show."""
-        tick = int(self.state.shown.episodes.tick[tracker])
+    def actors(self, tracker: int, later: int = 0) -> ActorView:
+        """Return the actors around a tracker at the instant that its pictures show.
+
+        Args:
+            tracker: The tracker.
+            later: Physics steps after that.
+        """
+        tick = int(self.state.shown.episodes.tick[tracker]) + later
         state, model = self._worlds.actors_around(tracker, tick)
         before, _ = self._worlds.actors_around(tracker, tick - 1)
         return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
@@ -120,6 +126,17 @@ class View:
     def words(self, tracker: int, aspect: float) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
         return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect)
+
+    def in_view(self, tracker: int, later: int = 0) -> InView:
+        """Return the moving objects in a tracker's view, for phrases about them.
+
+        Args:
+            tracker: The tracker.
+            later: Physics steps after the instant that its pictures show; the camera stays.
+        """
+        aspect = self._camera.height / self._camera.width
+        actors = self.actors(tracker, later)
+        return in_view(self.state.shown, actors, tracker, aspect)
 
     @property
     def lidar(self) -> Lidar | None:

@@ -1,4 +1,4 @@
-"""The target in words that tell it from what else is in view."""
+"""What a camera has in view, and the target in words that tell it from that."""
 
 import math
 from functools import cache
@@ -10,9 +10,10 @@ from eyas.core import exact
 from eyas.state.motion import ActorState, ActorView
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.catalogue import MODELS, extent_of, kind_of
+from eyas.targets.grammar.in_view import InView
 from eyas.targets.words import Seen, told_apart
 
-__all__ = ["target_in_words"]
+__all__ = ["in_view", "target_in_words"]
 
 Floats = NDArray[np.float64]
 
@@ -28,16 +29,9 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
     """
-    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect)
+    target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
     actors, _, model, colour = around
-    wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
-    middles = _in_camera(actors.position[0], cameras, tracker)
-    near = _may_be_in_view(middles, _reach(len(MODELS))[model], wide, wide * aspect)
-    near &= actors.present[0]
-    near[target] = True
-    chosen = np.flatnonzero(near)
-    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
-    inside = _in_view(corners, wide, wide * aspect) & (chosen != target)
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
     forward, left, _ = corners.mean(axis=1).T
     column = 0.5 - 0.5 * left / (np.maximum(forward, 1e-3) * wide)
@@ -54,7 +48,62 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
         )
 
     (own,) = np.flatnonzero(chosen == target).tolist()
-    return told_apart(seen(own), [seen(row) for row in np.flatnonzero(inside).tolist()])
+    others = np.flatnonzero(inside & (chosen != target)).tolist()
+    return told_apart(seen(own), [seen(row) for row in others])
+
+
+def in_view(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> InView:
+    """Return the moving objects of which a part is in a tracker's view, and its target in any case.
+
+    Args:
+        shown: The state that the picture shows.
+        around: The actors around the tracker at that time.
+        tracker: The tracker.
+        aspect: Height of the camera's picture over its width.
+    """
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect)
+    inside |= chosen == shown.targets.actor[tracker]
+    actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
+    actors, _, model, colour = around
+    forward, left, up = corners[inside].mean(axis=1).T
+    reach = np.maximum(forward, 1e-3) * wide
+    place = np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=1)
+    heading, ahead = actors.yaw[0, actor], np.array([kind_of(m).ahead for m in model[actor]])
+    along = np.stack([exact.cos(heading), exact.sin(heading)], axis=1)
+    return InView(
+        actor=actor.astype(np.int64),
+        model=model[actor].astype(np.int64),
+        colour=colour[actor].astype(np.float64),
+        speed=actors.speed[0, actor],
+        yaw_rate=actors.yaw_rate[0, actor],
+        heading=heading,
+        middle=actors.position[0, actor, :2] + ahead[:, None] * along,
+        size=np.array([MODELS[m].size[:2] for m in model[actor]]).reshape(-1, 2),
+        place=place,
+    )
+
+
+def _surely_near(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float
+) -> tuple[NDArray[np.int64], NDArray[np.bool_], Floats]:
+    """Return actors that are near a tracker's view or its target, shape (K,), of which a part is
+    inside, (K,), and the corners of their boxes forward, left and up of the camera [m], (K, 8, 3).
+    """
+    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+    actors, _, model, _ = around
+    wide = _half_width(cameras, tracker)
+    middles = _in_camera(actors.position[0], cameras, tracker)
+    near = _may_be_in_view(middles, _reach(len(MODELS))[model], wide, wide * aspect)
+    near &= actors.present[0]
+    near[target] = True
+    chosen = np.flatnonzero(near)
+    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
+    return chosen, _in_view(corners, wide, wide * aspect), corners
+
+
+def _half_width(cameras: CameraState, tracker: int) -> float:
+    """Return the tangent of half the horizontal field of view of a tracker's camera."""
+    return float(exact.tan(0.5 * float(cameras.field_of_view[tracker])))
 
 
 _LIMBS = 2.0

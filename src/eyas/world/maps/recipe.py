@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.program import definitions_in
 from eyas.core.registry import OWN
+from eyas.core.rng import TEST_SEEDS
 from eyas.state.lighting import Lighting
 from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
@@ -20,15 +21,19 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
 
 __all__ = [
     "ATTRIBUTION_FILE",
+    "DENSE_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
     "PLAN_FILE",
     "PLAN_SUFFIXES",
+    "TEST_TOWNS",
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
     "drivers_file",
+    "network_file",
     "respawn_file",
+    "town_traffic_file",
 ]
 
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
@@ -49,6 +54,24 @@ TRAFFIC_FILE = "traffic.npz"
 
 MIXED_FILE = "traffic-mixed.npz"
 """File in a city's package with the canonical recording of all classes of vehicles."""
+
+
+DENSE_FILE = "traffic-dense.npz"
+"""File in a city's package with the same classes in dense traffic, eight times as many."""
+
+TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
+"""Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
+
+
+def network_file(map_seed: int) -> str:
+    """Return the file in a map's package with the processed roads of a seed."""
+    return f"network-{map_seed}.npz" if map_seed else NETWORK_FILE
+
+
+def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
+    """Return the file in a map's package with traffic for tests."""
+    town = f"-{map_seed}" if map_seed else ""
+    return f"traffic{town}-seed-{traffic_seed}.npz"
 
 
 def drivers_file(drivers: str) -> str:
@@ -186,8 +209,8 @@ class MapRecipe:
 
         return completed(self.plan(network, seed), network)
 
-    def shipped_network(self) -> "RoadNetwork | None":
-        """Return the processed roads of seed 0 that come with the package, if there are any.
+    def shipped_network(self, seed: int = 0) -> "RoadNetwork | None":
+        """Return the processed roads of a seed that come with the package, if there are any.
 
         Raises:
             DataFileError: The installation is damaged.
@@ -196,7 +219,7 @@ class MapRecipe:
 
         from eyas.world.roads.network_file import load_network
 
-        found = self.shipped(NETWORK_FILE)
+        found = self.shipped(network_file(seed))
         if found is None:
             return None
         with as_file(found) as path:

@@ -1,0 +1,54 @@
+"""The model card of a shipped policy as text, after Mitchell et al., "Model cards for model
+reporting" (FAccT 2019).
+"""
+
+from hashlib import sha256
+
+from eyas.evaluation.policies.shipped import Card, Score, card_of, file_of
+
+__all__ = ["model_card"]
+
+_USE = (
+    "As a baseline to compare trackers with, as a start for further training, and to show what "
+    "Eyas teaches. It has seen drawn pictures only: whether it follows a real car has not been "
+    "tried, and it must not steer a real drone."
+)
+
+_HARM = (
+    "Following vehicles and people can serve rescue, film and traffic research, and also "
+    "surveillance. The policy follows what is in the middle of its first picture; it knows no "
+    "person, no number plate and no real place."
+)
+
+
+def model_card(name: str) -> str:
+    """Return the card of a shipped policy as Markdown."""
+    card = card_of(name)
+    digest = sha256(file_of(name).read_bytes()).hexdigest()
+    return "\n\n".join(
+        (
+            f"# Model card: `{name}`",
+            f"A network that follows a target with a drone. It has learned {card.title}.",
+            f"| | |\n|---|---|\n| class of entry | `pixels` |\n| trained by | `{card.command}` |\n"
+            f"| decisions in training | {card.decisions:,} |\n| Eyas | {card.version} |\n"
+            f"| file | `{file_of(name).name}`, SHA-256 `{digest}` |\n| licence | MIT, as Eyas |",
+            f"## Intended use\n\n{_USE}",
+            f"## Trained on\n\n{card.trained_on}",
+            f"## What it reaches\n\n{_scores(card)}",
+            "## Limits\n\n" + "\n".join(f"- {limit}" for limit in card.limits),
+            f"## What it could be used for besides\n\n{_HARM}",
+        )
+    )
+
+
+def _scores(card: Card) -> str:
+    rows = "\n".join(map(_row, card.scores))
+    return (
+        "Means over the episodes of protocols (`docs/evaluation.md`), which training has not had.\n"
+        f"\n| protocol | map | weather | n | CR | TSR |\n|---|---|---|---|---|---|\n{rows}"
+    )
+
+
+def _row(score: Score) -> str:
+    cells = (score.protocol, score.map, score.weather, str(score.n))
+    return f"| {' | '.join(cells)} | {score.cr:.1f} | {score.tsr:.3f} |"

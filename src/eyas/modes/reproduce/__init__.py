@@ -1,0 +1,1 @@
+"""`eyas reproduce`: flies the tables of the documents again, and tells whether they are equal."""

@@ -1,0 +1,121 @@
+"""The tables of figures that the documents print, each as the evaluations that make it."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.resources import files
+from typing import NamedTuple
+
+from eyas.core.config import Config, validated
+from eyas.core.errors import UnknownNameError
+from eyas.evaluation.plan import EvaluationPlan
+
+__all__ = ["TABLES", "Expected", "ExpectedRow", "Row", "Table", "expected", "table_named"]
+
+THREE_SETS = (1_000_000, 11_000_000, 21_000_000)
+"""First seeds of three sets of episodes: one lucky set is then seen as one."""
+
+
+class Row(NamedTuple):
+    """A row of a table: one evaluation."""
+
+    label: str
+    plan: EvaluationPlan
+
+
+class Table(NamedTuple):
+    """A table of a document."""
+
+    name: str
+    page: str
+    """The document, in `docs`."""
+    title: str
+    columns: tuple[str, ...]
+    """Figures, as in `result.json`."""
+    rows: tuple[Row, ...]
+
+
+class ExpectedRow(Config):
+    """What a row of a table has to be."""
+
+    label: str
+    n: int
+    """Number of episodes."""
+    cells: dict[str, str]
+    """The figures by name, as printed."""
+
+
+class Expected(Config):
+    """What a table has to be."""
+
+    build_id: str
+    """The build of Eyas that has made it."""
+    world: str
+    """The digest of its world, see `eyas.core.build.Build.world`."""
+    rows: tuple[ExpectedRow, ...]
+
+
+def expected(name: str) -> Expected | None:
+    """Return what a table has to be; None: nobody has made it yet."""
+    path = files("eyas.modes.reproduce") / "expected" / f"{name}.json"
+    if not path.is_file():
+        return None
+    return validated(Expected, json.loads(path.read_text()), str(path))
+
+
+def table_named(name: str) -> Table:
+    """Return a table.
+
+    Raises:
+        UnknownNameError: There is no such table.
+    """
+    if name not in TABLES:
+        raise UnknownNameError("TABLE", name, TABLES)
+    return TABLES[name]
+
+
+def _rows(
+    policies: Sequence[str],
+    places: Sequence[tuple[str, str]] = (("citystreet", "day"),),
+    **common: object,
+) -> Iterator[Row]:
+    for map_name, weather in places:
+        for policy in policies:
+            place = "" if len(places) == 1 else f", {map_name} by {weather}"
+            yield Row(
+                f"`{policy}`{place}",
+                EvaluationPlan(policy=policy, maps=(map_name,), weathers=(weather,), **common),
+            )
+
+
+_BY_DAY = tuple((name, "day") for name in ("citystreet", "downtown", "village"))
+_WEATHERS = tuple(("citystreet", name) for name in ("day", "night", "foggy", "snow"))
+_ORACLES = ("follow", "sighted", "road-graph", "constant-velocity")
+_PAPER = ("cr", "tsr", "flawless", "worst_fifth")
+
+
+def _tables() -> Iterator[Table]:
+    yield Table(
+        "baselines",
+        "evaluation.md",
+        "Built-in policies in `paper`, citystreet by day",
+        _PAPER,
+        tuple(_rows(("hover", "random", "servo", *_ORACLES), seeds=THREE_SETS)),
+    )
+    yield Table(
+        "paper",
+        "protocols/paper.md",
+        "Shipped policies in `paper`",
+        _PAPER,
+        tuple(_rows(("sighted", "fast", "robust", "anywhere"), _BY_DAY, seeds=THREE_SETS)),
+    )
+    yield Table(
+        "weathers",
+        "training.md",
+        "`robust` in the four weathers of citystreet, `paper`",
+        _PAPER,
+        tuple(_rows(("robust",), _WEATHERS, seeds=THREE_SETS)),
+    )
+
+
+TABLES: Mapping[str, Table] = {table.name: table for table in _tables()}
+"""All tables by name."""

@@ -1,0 +1,103 @@
+"""Policies that try to look good without seeing: each must fail, or be told for what it is."""
+
+# ruff: noqa: RUF012  # as users write them
+import gc
+import os
+import sys
+
+import numpy as np
+
+
+class Climber:
+    """Sees nothing, climbs as fast as it may, and hovers, since from above more is in view."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}, "actions": "velocity"}
+
+    def act(self, readings):
+        return np.array([0.0, 0.0, 40.0, 0.0], np.float32)
+
+
+class Spinner:
+    """Sees nothing, and turns."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}}
+
+    def act(self, readings):
+        return 4
+
+
+class TrueState:
+    """Reads the target's true place from its observation."""
+
+    env_settings = {"observation": {"parts": ["privileged"]}, "actions": "velocity"}
+
+    def act(self, state):
+        pitch, height = state[15], -state[2]
+        ahead = state[0] - height * np.tan(0.5 * np.pi - pitch)
+        return np.array([ahead / 0.016, state[1] / 0.016, 0.0, 0.0], np.float32)
+
+
+class Fast(TrueState):
+    """Also asks for 400 m/s."""
+
+    env_settings = {**TrueState.env_settings, "speeds": {"forward_speed": 400.0}}
+
+
+class Peeper:
+    """Sees nothing, but looks for the simulator in the memory of its process."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}, "actions": "velocity"}
+
+    def act(self, readings):
+        for found in gc.get_objects():
+            if type(found).__name__ == "BatchFlight":
+                snapshot = found._batch.snapshot()
+                (row,) = range(1)
+                error = (snapshot.targets.centre - snapshot.episodes.view_centre)[row]
+                yaw = snapshot.trackers.euler[row, 2]
+                ahead = np.cos(yaw) * error[0] + np.sin(yaw) * error[1]
+                left = np.cos(yaw) * error[1] - np.sin(yaw) * error[0]
+                return np.array([ahead / 0.016, left / 0.016, 0.0, 0.0], np.float32)
+        return np.zeros(4, np.float32)
+
+
+class Seeds:
+    """Says what it finds of the seeds of its episodes: an action that is not allowed."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}}
+
+    def act(self, readings):
+        frame, seeds = sys._getframe(), set()
+        while frame is not None:
+            for value in frame.f_locals.values():
+                if isinstance(value, np.ndarray) and value.dtype == np.int64:
+                    seeds |= set(value.ravel().tolist())
+            frame = frame.f_back
+        assert not seeds & set(range(1_000_000, 1_000_100)), "knows a seed"
+        return 6
+
+
+class Dies:
+    """Ends its process."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}}
+
+    def act(self, readings):
+        os._exit(7)
+
+
+class Talks(Spinner):
+    """Prints, which must not disturb the messages."""
+
+    def act(self, readings):
+        print("turning", flush=True)
+        return 4
+
+
+class Counts:
+    """Remembers its process."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}, "action_repeat": 25}
+
+    def act(self, readings):
+        raise RuntimeError(f"process {os.getpid()}")
