@@ -236,7 +236,7 @@ def compare(
         return
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
         typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
-    typer.echo(text_of(found))
+    typer.echo(text_of(found, stamp_a.plan.rules.rank))
 
 
 leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")

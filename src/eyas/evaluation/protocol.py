@@ -105,6 +105,8 @@ class Protocol:
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
+    gaps: tuple[str, ...] = ()
+    """Those of its own figures that are differences of two shares, from -1 to 1."""
     alike: bool = False
     """Whether all others of the target's kind look like it."""
     choose: Chooser = in_order
