@@ -20,7 +20,7 @@ __all__ = ["RoadSearch", "sighted"]
 
 Floats = NDArray[np.float64]
 
-_GUESSES = 160
+_GUESSES = 96
 
 _ALONG = 3.0
 """Time for which the target is taken to drive on along its lane; then the search begins [s]. With
@@ -33,7 +33,7 @@ _PATIENCE = 0.7
 """Time after which a guess that is looked at in vain counts a third [s]: it may be hidden there."""
 
 _NEARBY = 5.0
-"""Width of the kernel that joins guesses to a place worth looking at [m]."""
+"""Distance within which guesses count together as a place worth looking at [m]."""
 
 _RANGE = 60.0
 """Way to fly after which a place is half as attractive [m]."""
@@ -41,7 +41,7 @@ _RANGE = 60.0
 _CHANGE = 0.25
 """How often the speed of a guess changes [1/s]."""
 
-_PERIOD = 0.032
+_PERIOD = 0.064
 """Time between two moves of the guesses [s]."""
 
 
@@ -126,8 +126,8 @@ class RoadSearch:
             inside = (np.abs(ahead) < _VIEW[0]) & (np.abs(left) < _VIEW[1])
             weight[inside] *= 1.0 - _PERIOD / _PATIENCE
             weight[:] = np.maximum(weight / weight.max(), 1e-4)
-        squares = np.square(place[:, None] - place).sum(axis=2)
-        dense = (weight * exact.exp(-0.5 / _NEARBY**2 * squares)).sum(axis=1)
+        east, north = (np.square(side[:, None] - side) for side in place.T)
+        dense = (weight / np.square(1.0 + (east + north) / _NEARBY**2)).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
 
