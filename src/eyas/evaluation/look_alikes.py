@@ -27,7 +27,16 @@ from eyas.targets.grammar.naming import (
 )
 from eyas.targets.grammar.wording import Wording, in_words
 
-__all__ = ["CASES", "HEIGHT", "PITCH", "StagedStart", "case_of", "repeat_start", "staged_start"]
+__all__ = [
+    "CASES",
+    "COLOURS",
+    "HEIGHT",
+    "PITCH",
+    "StagedStart",
+    "case_of",
+    "repeat_start",
+    "staged_start",
+]
 
 HEIGHT: Final = 45.0
 """Of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other protocols it
@@ -54,7 +63,7 @@ CASES: Final = (
 """By what targets are told apart, and from how many look-alikes; the cases of seeds in a row. Of
 eight alike, hardly ever one alone does something, or is beside something."""
 
-_COLOURS: Final = (
+COLOURS: Final = (
     "red",
     "green",
     "orange",
@@ -231,7 +240,7 @@ def _dress(
     rng: np.random.Generator,
 ) -> None:
     """Make some in view look alike but for what the phrase tells, and all others differ."""
-    colours = [_COLOURS[k] for k in rng.permutation(len(_COLOURS)).tolist()]
+    colours = [COLOURS[k] for k in rng.permutation(len(COLOURS)).tolist()]
     bodies = [word for word in BodyWord if _models_called(word)]
     among = _TOLD_FROM_ABOVE if kind is PhraseKind.BODY else bodies
     own = among[int(rng.integers(len(among)))]
