@@ -179,7 +179,8 @@ class EpisodeBatch:
         roof = terrain.floor + reliefs(terrain, places) + _ROOF
         points = np.concatenate([places, roof[:, None]], axis=1)
         at = int(np.flatnonzero(group.rows == row)[0])
-        return simulation.clearance.in_sight(eye[at : at + 1], points[None])[0]
+        seen: Mask = simulation.clearance.in_sight(eye[at : at + 1], points[None])[0]
+        return seen
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:
         """Return what a function reads of each group, in the order of the episodes, (N, ...).
