@@ -107,7 +107,7 @@ def _turns(step: Floats, speed: Floats, period: float) -> Iterator[Evasion]:
             yield Evasion("turn", (drives[first] + 1) * period, (drives[last] + 2) * period)
 
 
-def _all_of(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Evasion]]:
+def evasions_in(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Evasion]]:
     """Return what the target of each episode does, early enough to be judged.
 
     None of those where it does too little; buses and trucks, who only stop, are among them.
@@ -131,7 +131,7 @@ def evading(
         SpawnError: There are too few.
     """
     wanted = "a target that evades"
-    return first_fitting(places, protocol, count, first_seed, fits=_all_of, wanted=wanted)
+    return first_fitting(places, protocol, count, first_seed, fits=evasions_in, wanted=wanted)
 
 
 class EvasionScenario(Scenario):
@@ -148,7 +148,7 @@ class EvasionScenario(Scenario):
     ) -> None:
         super().__init__(batch.count)
         self._batch, self._period = batch, protocol.period
-        self._evasions = _all_of(episodes, protocol)
+        self._evasions = evasions_in(episodes, protocol)
         self._sees = np.zeros((batch.count, protocol.steps // LOOK), np.bool_)
 
     def measure(self, step: int, active: Mask) -> None:

@@ -45,15 +45,15 @@ _LENGTH = (4.0, 12.0)
 _MOST = 3
 """Largest number of losses by things in an episode."""
 
-_PERIOD = 0.25
-"""Time between two looks [s]."""
+_PERIOD = 0.256
+"""Time between two looks: a whole number of control steps, so that covers begin with one [s]."""
 
 _FAR = 12.0
 """Least distance between where a target vanishes and where it comes out [m]. Nearer, a drone that
 waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
 
-_STEADY = 0.5
-"""Shorter glimpses than this do not end a loss [s]."""
+_STEADY = 0.77
+"""Shorter glimpses than this do not end a loss [s]: no more than two looks."""
 
 _BEGUN = 3.0
 """Earliest time of a loss: before, a policy must get hold of its target [s]."""
@@ -85,7 +85,7 @@ def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:
     spans: list[Loss] = []
     for first, last in edges.reshape(-1, 2).tolist():
         loss = Loss((first + 1) * period, (last + 1) * period)
-        if spans and loss.start - spans[-1].end < _STEADY:
+        if spans and loss.start - spans[-1].end <= _STEADY:
             loss = Loss(spans.pop().start, loss.end)
         spans.append(loss)
     return spans

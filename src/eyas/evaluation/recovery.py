@@ -19,7 +19,7 @@ from eyas.evaluation.meter import LOOK
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.scenario import Scenario
 
-__all__ = ["RecoveryScenario", "recovery_figures", "time_to_see"]
+__all__ = ["RecoveryScenario", "followed", "recovery_figures", "time_to_see"]
 
 _STEADY = 0.5
 """How long the target must be seen without a gap to count as seen again [s]."""
@@ -103,7 +103,7 @@ class RecoveryScenario(Scenario):
         period = LOOK * self._period
         figures = recovery_figures(self._losses[row], self._sees[row], period)
         other = np.where(self._middle[row] == self._actor[row], -1, self._middle[row])
-        wrong = [_follows(other, loss, _LOOKS * period) for loss in self._losses[row]]
+        wrong = [followed(other, loss, _LOOKS * period) for loss in self._losses[row]]
         figures["followed_wrong"] = float(np.mean(wrong)) if wrong else None
         for name in COVERED:
             own = figures["recovered"] if name == self._variants[row] else None
@@ -154,7 +154,7 @@ def time_to_see(sees: Mask, end: float, period: float, limit: float = SEARCH_LIM
     return None
 
 
-def _follows(others: NDArray[np.int64], loss: Loss, period: float) -> bool:
+def followed(others: NDArray[np.int64], loss: Loss, period: float) -> bool:
     """Return whether one other vehicle stays in the middle of the picture after a loss."""
     span = others[round(loss.start / period) : round((loss.end + SEARCH_LIMIT) / period)]
     least, same = round(_WRONG / period), 0
