@@ -25,15 +25,25 @@ _Policy = Annotated[
         ".pt, .pt2), or package.module:name.",
     ),
 ]
-_Protocol = Annotated[str, typer.Option("--protocol", help="paper, long, search or distractor.")]
+_Protocol = Annotated[
+    str,
+    typer.Option(
+        "--protocol", help="paper, standard, unseen, long, search, ...: see docs/evaluation.md."
+    ),
+]
 _Maps = Annotated[
-    list[str] | None, typer.Option("--map", help=f"By default citystreet; {SEVERAL}.")
+    list[str] | None,
+    typer.Option(
+        "--map",
+        help=f"By default citystreet; {SEVERAL}. A town of another seed: citystreet:900000001.",
+    ),
 ]
 _Weathers = Annotated[
     list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
 ]
 _Targets = Annotated[
-    list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+    list[str] | None,
+    typer.Option("--target", help=f"By default the protocol's, mostly SUMO_VEHICLE; {SEVERAL}."),
 ]
 _Episodes = Annotated[
     int | None,
@@ -134,9 +144,9 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     values: dict[str, Any] = {
         "policy": policy,
         "protocol": protocol,
-        "maps": maps or ["citystreet"],
+        **({"maps": maps} if maps else {}),
         "weathers": weathers or ["day"],
-        "targets": targets or ["SUMO_VEHICLE"],
+        "targets": targets,
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
         "in_process": in_process,
     }

@@ -76,7 +76,7 @@ def _section(entries: Sequence[Submission]) -> str:
     starts = ", ".join(map(str, plan.seeds))
     head = (
         f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
-        f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.targets))}; "
+        f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.followed))}; "
         f"{len(first.records)} episodes, seeds from {starts}; protocol "
         f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, program "
         f"<code>{stamp.program}</code></p>\n"

@@ -186,7 +186,7 @@ def _refuse_code(plan: EvaluationPlan, env: EnvConfig, *, trust: bool) -> None:
 def _places(plan: EvaluationPlan) -> Iterator[Place]:
     for name in plan.maps:
         for weather in plan.weathers:
-            for target in plan.targets:
+            for target in plan.followed:
                 yield Place(name, weather, target)
 
 
