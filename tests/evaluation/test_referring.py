@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.envs.config import EnvConfig
+from eyas.evaluation import from_above
 from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import EpisodeSpec, Place
 from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
@@ -16,6 +17,7 @@ from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.protocols.crowd import switches
 from eyas.evaluation.protocols.referring import ReferringScenario
 from eyas.evaluation.scenario import Told
+from eyas.evaluation.sight import subjects
 from eyas.targets.colour_names import COLOUR_NAMES, colour_distances
 from eyas.targets.grammar.attributes import ATTRIBUTES, attributes_of
 from eyas.targets.grammar.claims import Claim, fits
@@ -122,6 +124,22 @@ def test_variants_of_an_episode_begin_alike_and_starts_repeat():
         looks = group.simulation.looks_around(row)
         assert np.array_equal(looks.colour, group.simulation.looks_around(first).colour)
         assert again.staged[later].phrases == group.staged[row].phrases
+
+
+def test_what_can_be_seen_is_measured_above_the_target(monkeypatch):
+    specs, _ = group_of([FIRST, FIRST + 1])
+    protocol = PROTOCOL.changed({"done": {"total_steps": 640}})
+    middles = []
+
+    def looked(simulation, *others):
+        away = simulation.snapshot.targets.centre - simulation.snapshot.episodes.view_centre
+        middles.append(np.hypot(*away[:, :2].T))
+        return subjects(simulation, *others)
+
+    monkeypatch.setattr("eyas.evaluation.episode_batch.subjects", looked)
+    from_above._seen(specs, protocol, 0.128)
+    assert len(middles) == 10
+    assert np.max(middles) < 2.0
 
 
 def test_no_parked_car_has_a_colour_of_look_alikes():
