@@ -20,7 +20,7 @@ __all__ = ["RoadSearch", "sighted"]
 
 Floats = NDArray[np.float64]
 
-_GUESSES = 160
+_GUESSES = 96
 
 _ALONG = 3.0
 """Time for which the target is taken to drive on along its lane; then the search begins [s]. With
@@ -32,8 +32,11 @@ _VIEW = 5.5, 7.5
 _PATIENCE = 0.7
 """Time after which a guess that is looked at in vain counts a third [s]: it may be hidden there."""
 
+_FEWEST = 20.0
+"""Sum of the weights below which the guesses are taken again from those that are likely."""
+
 _NEARBY = 5.0
-"""Width of the kernel that joins guesses to a place worth looking at [m]."""
+"""Distance within which guesses count together as a place worth looking at [m]."""
 
 _RANGE = 60.0
 """Way to fly after which a place is half as attractive [m]."""
@@ -41,7 +44,7 @@ _RANGE = 60.0
 _CHANGE = 0.25
 """How often the speed of a guess changes [1/s]."""
 
-_PERIOD = 0.032
+_PERIOD = 0.064
 """Time between two moves of the guesses [s]."""
 
 
@@ -53,7 +56,7 @@ class RoadSearch:
         count = len(start.seeds)
         self._ahead = AlongLanes()
         self._ahead.begin(start)
-        self._lanes = Lanes(start.roads())
+        self._lanes, self._in_sight = Lanes(start.roads()), start.in_sight
         self._random = [stream(seed, "search") for seed in start.seeds.tolist()]
         shape = count, _GUESSES
         self._point, self._past = np.full(shape, -1), np.zeros(shape)
@@ -124,12 +127,25 @@ class RoadSearch:
             ahead = cosine * offset[:, 0] + sine * offset[:, 1]
             left = cosine * offset[:, 1] - sine * offset[:, 0]
             inside = (np.abs(ahead) < _VIEW[0]) & (np.abs(left) < _VIEW[1])
+            inside[inside] = self._in_sight(row, place[inside])
             weight[inside] *= 1.0 - _PERIOD / _PATIENCE
             weight[:] = np.maximum(weight / weight.max(), 1e-4)
-        squares = np.square(place[:, None] - place).sum(axis=2)
-        dense = (weight * exact.exp(-0.5 / _NEARBY**2 * squares)).sum(axis=1)
+            if weight.sum() < _FEWEST:
+                self._resample(row)
+                return
+        east, north = (np.square(side[:, None] - side) for side in place.T)
+        dense = (weight / np.square(1.0 + (east + north) / _NEARBY**2)).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
+
+    def _resample(self, row: int) -> None:
+        """Take guesses again in proportion to their weights: few are left that are likely."""
+        cumulated = np.cumsum(self._weight[row])
+        at = (np.arange(_GUESSES) + self._random[row].random()) / _GUESSES
+        chosen = np.searchsorted(cumulated / cumulated[-1], at, side="right")
+        for own in (self._point, self._past, self._speed):
+            own[row] = own[row, np.minimum(chosen, _GUESSES - 1)]
+        self._weight[row] = 1.0
 
 
 def sighted(changes: Mapping[str, Any]) -> SightOracle:

@@ -197,6 +197,7 @@ REFERRING = Protocol(
     episodes=100,
     columns=("language_gap", *(f"success_{own}" for own in _VARIANTS[:2]), "chosen", "obeyed"),
     rank="language_gap",
+    gaps=("language_gap",),
     choose=among_look_alikes,
     stage=stage,
     scenario=ReferringScenario,
