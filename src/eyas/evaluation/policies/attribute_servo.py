@@ -1,5 +1,6 @@
 """A servo that knows what it is told: it looks for the colour, the size, the place, the motion or
-the neighbour that the attributes name, and flies to it. Its twin looks for what is most colourful.
+the neighbour that the attributes name, and flies to it. Its twin takes the colourful thing of a
+car's shape that is nearest to the middle.
 """
 
 import math
@@ -37,6 +38,9 @@ _SHAPES: Final = {
     BodyWord.MOTORCYCLE: (1.6, 0.6),
 }
 """Length and width of what is painted, as blobs are measured [m]: of a truck, the cab."""
+
+_CAR_LIKE: Final = 0.9
+"""Largest difference of a blob's shape from a car's, as of `_unlike`: a van is one, a roof not."""
 
 _WATCHED: Final = 1.0
 """How long it watches what moves, if the words are about that [s]."""
@@ -85,8 +89,7 @@ class AttributeServo:
 
     Args:
         changes: Changes of `env`.
-        listens: Whether it uses attributes; False: it takes what is most colourful, and is the
-            same with any words.
+        listens: Whether it uses attributes; False: it does the same with any words.
     """
 
     sampled = False
@@ -135,12 +138,15 @@ class AttributeServo:
         if drone.track is not None:
             _follow(drone, self._blobs(drone, picture), period)
         elif not self._listens:
-            blobs = blobs_in(salient(picture), self._scale)
-            if len(blobs.length):
-                column, row = blobs.place[0].astype(int)
-                near = picture[max(row - 2, 0) : row + 3, max(column - 2, 0) : column + 3]
-                drone.colour = near.reshape(-1, 3).mean(axis=0)
-                drone.track = _Track(self._places(blobs)[0], np.zeros(2), 0.0)
+            blobs = self._painted(None, picture)
+            cars = np.flatnonzero(_unlike(blobs, BodyWord.CAR) < _CAR_LIKE)
+            if len(cars):
+                places = self._places(blobs)
+                best = cars[np.hypot(*places[cars].T).argmin()]
+                column, row = blobs.place[best].astype(int)
+                near = picture[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7]
+                drone.colour = near[salient(near)].mean(axis=0)
+                drone.track = _Track(places[best], np.zeros(2), 0.0)
         elif drone.claim is not None:
             blobs = self._blobs(drone, picture)
             if len(blobs.length):
@@ -278,5 +284,5 @@ def attribute_servo(changes: Mapping[str, Any]) -> AttributeServo:
 
 
 def salient_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that takes what is most colourful."""
+    """Return the servo that takes a colourful car near the middle."""
     return AttributeServo(changes, listens=False)
