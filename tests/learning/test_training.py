@@ -281,10 +281,28 @@ def test_an_evaluation_that_cannot_be_flown_is_refused_at_once(evaluation, messa
 
 
 @pytest.mark.parametrize(
+    ("settings", "place"),
+    [
+        ({"world": {"seed": 900_000_001}}, r"world\.seed"),
+        ({"traffic": {"seed": 900_000_001}}, r"traffic\.seed"),
+        (
+            {"env": {"mixture": [{"settings": {"world": {"seed": 2**31 - 1}}}]}},
+            r"env\.mixture\.0\.settings\.world\.seed",
+        ),
+    ],
+)
+def test_what_is_kept_for_tests_is_not_trained_with(settings, place, tmp_path):
+    with pytest.raises(EyasError, match=rf"^{place}: \d+ is not allowed: .*kept for tests"):
+        train(updated(SMALL, settings), tmp_path / "run", say=quiet)
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
     ("settings", "message"),
     [
         ({"train": {"shards": 2}}, r"^train\.stages\.1\.settings\.train: not allowed"),
         ({"start": {"hight": 3}}, r"hight.*height"),
+        ({"world": {"seed": 900_000_001}}, r"^train\.stages\.1\.settings\.world\.seed: 9.*tests"),
     ],
 )
 def test_a_wrong_later_stage_is_refused_at_once(settings, message, tmp_path):

@@ -23,8 +23,15 @@ class Place(NamedTuple):
     """Where episodes are, and what is followed."""
 
     map: str
+    """Its name or path; a town of another seed than 0 is written `citystreet:900000001`."""
     weather: str
     target: str
+
+    @property
+    def town(self) -> tuple[str, int]:
+        """Name or path of the map, and its seed."""
+        name, _, seed = self.map.rpartition(":")
+        return (name, int(seed)) if name and seed.isdecimal() else (self.map, 0)
 
 
 class EpisodeSpec(NamedTuple):

@@ -8,12 +8,13 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from eyas import __version__
 from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
+from eyas.core.rng import TEST_SEEDS
 from eyas.evaluation.delay import Measured, delay_from
 from eyas.evaluation.entry import Entry, entry_of
 from eyas.evaluation.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
@@ -22,8 +23,9 @@ from eyas.evaluation.policies.apart import open_apart, runs_code
 from eyas.evaluation.policies.policy import Policy
 from eyas.evaluation.policies.table import BUILT_IN, fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.protocols import protocol_named
+from eyas.evaluation.protocols import PROTOCOLS, protocol_named
 from eyas.evaluation.record import EpisodeRecord
+from eyas.evaluation.solvable import solvable
 from eyas.world.maps import MAPS
 
 __all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "opened", "stamp"]
@@ -40,7 +42,8 @@ class EvaluationPlan(Config):
     protocol: str = "paper"
     maps: Names = ("citystreet",)
     weathers: Names = ("day",)
-    targets: Names = ("SUMO_VEHICLE",)
+    targets: Names | None = None
+    """None: the protocol's."""
     episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
     """For each place and start direction; None: the protocol's number."""
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (FIRST_SEED,)
@@ -58,6 +61,15 @@ class EvaluationPlan(Config):
     batch: Annotated[int, Field(ge=1, le=4096)] = 64
     """Episodes that are flown together. A network's last bits may depend on it."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _at_home(cls, values: Any) -> Any:  # noqa: ANN401  # whatever a caller gives
+        """Take the protocol's maps if none are named."""
+        if not isinstance(values, dict) or "maps" in values:
+            return values
+        protocol = PROTOCOLS.get(str(values.get("protocol")))
+        return values if protocol is None else {**values, "maps": protocol.maps}
+
     @property
     def rules(self) -> Protocol:
         """The protocol, with the changes."""
@@ -65,9 +77,14 @@ class EvaluationPlan(Config):
         return protocol.changed(self.settings) if self.settings else protocol
 
     @property
+    def followed(self) -> tuple[str, ...]:
+        """The targets."""
+        return self.targets or self.rules.targets
+
+    @property
     def count(self) -> int:
         """Number of all episodes; nothing that the plan names is loaded to know it."""
-        places = len(self.maps) * len(self.weathers) * len(self.targets)
+        places = len(self.maps) * len(self.weathers) * len(self.followed)
         each = self.episodes or self.rules.episodes
         versions = max(len(self.rules.variants), 1)
         return places * len(self.rules.directions) * each * versions * len(self.seeds)
@@ -120,6 +137,11 @@ class Stamp(Config):
     entry: Entry | None = None
     """What the policy sees and may do; None where nobody has opened it yet."""
 
+    @property
+    def program(self) -> str:
+        """Twelve hexadecimal digits that differ between programs that fly and measure."""
+        return self.build.id_without(_NOT_FLOWN)
+
     def other_build(self, other: "Stamp") -> str:
         """Return in words what differs in the programs that fly; nothing if nothing does."""
         networks = self.policy is not None or other.policy is not None
@@ -152,7 +174,7 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         Place(name, weather, target)
         for name in plan.maps
         for weather in plan.weathers
-        for target in plan.targets
+        for target in plan.followed
     ]
     count = plan.episodes or protocol.episodes
     size = 1 if plan.latency == "measured" else plan.batch
@@ -203,7 +225,10 @@ def fly_batch(
     assert len(episodes) == 1 or not isinstance(delay, Measured)
     policy, _ = opened(plan)
     flight = BatchFlight(episodes, plan.rules, policy, delay)
-    yield from flight.fly(watcher)
+    solved = solvable(episodes, plan.rules)
+    told = {episode.name: can for episode, can in zip(episodes, solved, strict=True)}
+    for ended in flight.fly(watcher):
+        yield [each.model_copy(update={"solvable": told[each.name]}) for each in ended]
     if answers is not None:
         answers += flight.answers
 
@@ -229,13 +254,31 @@ def check(plan: EvaluationPlan) -> Entry:
             f"first seeds that differ by {SETS_APART} or more"
         )
     policy, entry = opened(plan)
+    if plan.rules.elsewhere:
+        _refuse_taught(plan)
     for name in plan.maps:
         for weather in plan.weathers:
-            for target in plan.targets:
+            for target in plan.followed:
                 episode = EpisodeSpec(Place(name, weather, target), 0.0, 0)
-                MAPS.get(name).light(weather)  # refuses unknown names
+                MAPS.get(episode.place.town[0]).light(weather)  # refuses unknown names
                 plan.rules.settings_of(episode, policy.env)  # refuses wrong ones
     return entry
+
+
+def _refuse_taught(plan: EvaluationPlan) -> None:
+    """Refuse maps on which policies are taught.
+
+    Raises:
+        ConfigError: One is there.
+    """
+    for name in plan.maps:
+        town, seed = Place(name, "", "").town
+        if town in MAPS.built_in and seed < TEST_SEEDS:
+            raise ConfigError(
+                f"--map: '{name}' is not allowed in protocol '{plan.protocol}', as policies are "
+                f"taught there; allowed: {', '.join(plan.rules.maps)}, any other "
+                f"NAME:SEED from seed {TEST_SEEDS} on (extra sumo), and maps of your own"
+            )
 
 
 def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -46,7 +46,7 @@ _FIXED = set(SimConfig.model_fields) - {"seed", "same_target"}
 """Settings that are part of a protocol: all of the simulation, none of its uses. Each drone has a
 world of its own, so that none shares its target."""
 
-_PLACED = ("world.map", "world.weather", "target", "start.direction")
+_PLACED = ("world.map", "world.seed", "world.weather", "target", "start.direction")
 """Settings that the episodes decide, see `Protocol.settings_of`."""
 
 _IDLE: Mapping[str, Callable[[SimConfig], bool]] = {
@@ -92,12 +92,21 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
+    targets: tuple[str, ...] = ("SUMO_VEHICLE",)
+    """What is followed, unless a user names others."""
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
+    maps: tuple[str, ...] = ("citystreet",)
+    """Where it is flown unless a user names other maps."""
+    elsewhere: bool = False
+    """Whether it is not flown on maps on which policies are taught: on those of Eyas only with
+    seeds from `eyas.core.rng.TEST_SEEDS` on."""
     columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
+    gaps: tuple[str, ...] = ()
+    """Those of its own figures that are differences of two shares, from -1 to 1."""
     alike: bool = False
     """Whether all others of the target's kind look like it."""
     choose: Chooser = in_order
@@ -114,6 +123,8 @@ class Protocol:
     """Whether the variants are drones that follow one target together."""
     first_box: bool = True
     """Whether policies are told the target's true box in the first picture."""
+    tells_solvable: bool = False
+    """Whether records say if the policy `sighted` solves the episode, where a TSR can say so."""
     envelope: Envelope = ENVELOPE
     """What drones may do."""
 
@@ -165,8 +176,9 @@ class Protocol:
             env: What the policy sees and how it acts.
         """
         place = episode.place
+        map_name, map_seed = place.town
         changes: dict[str, Any] = {
-            "world": {"map": place.map, "weather": place.weather},
+            "world": {"map": map_name, "seed": map_seed, "weather": place.weather},
             "target": place.target,
             "start": {"direction": episode.direction},
         }

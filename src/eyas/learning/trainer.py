@@ -10,7 +10,7 @@ import torch
 
 from eyas.core.config import updated
 from eyas.core.errors import ConfigError
-from eyas.core.rng import stream
+from eyas.core.rng import TEST_SEEDS, stream
 from eyas.envs.choice import steps_per_action
 from eyas.envs.config import ActionKind, ObservationPart
 from eyas.envs.observation import observation_space
@@ -207,10 +207,30 @@ def _refuse_later_errors(config: EyasConfig) -> None:
         EyasError: The evaluation or a stage cannot be run.
     """
     evaluation_episodes(config)
+    _refuse_test_seeds(config, "")
     for number, stage in enumerate(config.train.stages):
-        if updated(config, stage.settings).train != config.train:
+        changed = updated(config, stage.settings)
+        if changed.train != config.train:
             raise ConfigError(
                 f"train.stages.{number}.settings.train: not allowed: all stages learn alike"
+            )
+        _refuse_test_seeds(changed, f"train.stages.{number}.settings.")
+    for number, part in enumerate(config.env.mixture):
+        _refuse_test_seeds(updated(config, part.settings), f"env.mixture.{number}.settings.")
+
+
+def _refuse_test_seeds(config: EyasConfig, path: str) -> None:
+    """Refuse maps and traffic that are kept for tests.
+
+    Raises:
+        ConfigError: One is there.
+    """
+    for group in ("world", "traffic"):
+        seed = getattr(config, group).seed
+        if seed is not None and seed >= TEST_SEEDS:
+            raise ConfigError(
+                f"{path}{group}.seed: {seed} is not allowed: seeds from {TEST_SEEDS} on are kept "
+                "for tests (eyas evaluate --protocol unseen)"
             )
 
 

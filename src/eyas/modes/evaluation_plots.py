@@ -8,6 +8,7 @@ import numpy as np
 
 from eyas.core.errors import MissingExtraError
 from eyas.core.files import atomic_path, refusals
+from eyas.evaluation.episode import Place
 from eyas.evaluation.losses import COVERED
 from eyas.evaluation.meter import TRACE_PERIOD
 from eyas.evaluation.protocol import Protocol
@@ -65,7 +66,11 @@ def draw_plots(
         save_plot(plots / "recovered.png", title, lambda axes: _recovered(axes, covered))
     for name in sorted({record.map for record in records}):
         own = [record for record in records if record.map == name][:_FLIGHTS]
-        save_plot(plots / f"flights-{name}.png", title, lambda axes, own=own: _flights(axes, own))
+        save_plot(
+            plots / f"flights-{name.replace(':', '-')}.png",
+            title,
+            lambda axes, own=own: _flights(axes, own),
+        )
 
 
 def save_plot(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a function of axes
@@ -135,7 +140,7 @@ def _of(variant: str, records: Sequence[EpisodeRecord]) -> list[float]:
 
 def _flights(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401
     """Draw the paths of drones and targets over the roads of their map."""
-    network = load_network(records[0].map, 0)
+    network = load_network(*Place(records[0].map, "", "").town)
     for lane in np.split(network.lane_points, network.lane_first[1:-1]):
         axes.plot(*lane.T, color=_ROAD, lw=2, zorder=0)
     for number, record in enumerate(records):

@@ -20,7 +20,7 @@ __all__ = ["RoadSearch", "sighted"]
 
 Floats = NDArray[np.float64]
 
-_GUESSES = 160
+_GUESSES = 96
 
 _ALONG = 3.0
 """Time for which the target is taken to drive on along its lane; then the search begins [s]. With
@@ -36,7 +36,7 @@ _FEWEST = 20.0
 """Sum of the weights below which the guesses are taken again from those that are likely."""
 
 _NEARBY = 5.0
-"""Width of the kernel that joins guesses to a place worth looking at [m]."""
+"""Distance within which guesses count together as a place worth looking at [m]."""
 
 _RANGE = 60.0
 """Way to fly after which a place is half as attractive [m]."""
@@ -44,7 +44,7 @@ _RANGE = 60.0
 _CHANGE = 0.25
 """How often the speed of a guess changes [1/s]."""
 
-_PERIOD = 0.032
+_PERIOD = 0.064
 """Time between two moves of the guesses [s]."""
 
 
@@ -133,8 +133,8 @@ class RoadSearch:
             if weight.sum() < _FEWEST:
                 self._resample(row)
                 return
-        squares = np.square(place[:, None] - place).sum(axis=2)
-        dense = (weight * exact.exp(-0.5 / _NEARBY**2 * squares)).sum(axis=1)
+        east, north = (np.square(side[:, None] - side) for side in place.T)
+        dense = (weight / np.square(1.0 + (east + north) / _NEARBY**2)).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
 

@@ -4,17 +4,20 @@ from collections.abc import Mapping
 
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.crowd import CROWD
 from eyas.evaluation.protocols.evade import EVADE
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
-from eyas.evaluation.protocols.published import PAPER
+from eyas.evaluation.protocols.published import PAPER, STANDARD, UNSEEN
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
 from eyas.evaluation.protocols.referring import REFERRING
 from eyas.evaluation.protocols.team import PAIR, TEAM
 
 __all__ = ["PROTOCOLS", "protocol_named"]
 
-_LASTING = (LONG, SEARCH, DISTRACTOR, RECOVER, RECOVER_CAMERA, EVADE)
-_ALL = (PAPER, *_LASTING, REFERRING, PAIR, TEAM)
+_ALL = (
+    *(PAPER, STANDARD, UNSEEN, LONG, SEARCH, DISTRACTOR),
+    *(RECOVER, RECOVER_CAMERA, EVADE, REFERRING, CROWD, PAIR, TEAM),
+)
 
 PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}
 

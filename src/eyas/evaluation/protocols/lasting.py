@@ -13,6 +13,7 @@ LONG = Protocol(
         "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
     },
     columns=("kept", "tsr", "flawless", "worst_fifth", "losses", "search_time", "crashed"),
+    tells_solvable=True,
 )
 
 SEARCH = Protocol(
@@ -35,5 +36,6 @@ DISTRACTOR = Protocol(
     },
     columns=("kept", "tsr", "flawless", "worst_fifth", "seen", "losses", "crashed"),
     alike=True,
+    tells_solvable=True,
     choose=with_neighbours,
 )
