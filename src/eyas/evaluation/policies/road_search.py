@@ -36,7 +36,7 @@ _FEWEST = 20.0
 """Sum of the weights below which the guesses are taken again from those that are likely."""
 
 _NEARBY = 5.0
-"""Distance within which guesses count together as a place worth looking at [m]."""
+"""Spread of the guesses that count together as a place worth looking at [m]."""
 
 _RANGE = 60.0
 """Way to fly after which a place is half as attractive [m]."""
@@ -134,7 +134,8 @@ class RoadSearch:
                 self._resample(row)
                 return
         east, north = (np.square(side[:, None] - side) for side in place.T)
-        dense = (weight / np.square(1.0 + (east + north) / _NEARBY**2)).sum(axis=1)
+        close = np.maximum(1.0 - (east + north) / (6.0 * _NEARBY**2), 0.0)  # cubed: nearly a bell
+        dense = (weight * close * close * close).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
 
