@@ -94,6 +94,7 @@ _LASTING = ("hover", *_ORACLES, "robust", "long")
 _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
 _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
+_CROWD = ("kept", "kept_share", "identity_switches", "tsr")
 _TEAM = ("team_seen", "alone_seen", "handed_over", "handover_time")
 
 
@@ -156,18 +157,41 @@ def _long_flights() -> Iterator[Table]:
         ("recover", _LASTING, _RECOVERED, "recover"),
         ("recover-camera", _LASTING, _BY_LENGTH, "recover"),
         ("evade", _LASTING, ("kept", "held", "losses", "tsr"), "evade"),
-        ("pair", ("hover", "follow", "relay", "sighted", "robust"), _TEAM, "pair"),
+        ("crowd", ("hover", "servo", "sighted", "robust"), _CROWD, "crowd"),
     ):
-        yield Table(
-            name,
-            f"protocols/{page}.md",
-            f"`{name}`",
-            columns,
-            tuple(
-                Row(f"`{policy}`", EvaluationPlan(policy=policy, protocol=name))
-                for policy in policies
-            ),
-        )
+        yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
+    yield Table(
+        "recover-city",
+        "protocols/recover.md",
+        "`recover` in citystreet",
+        _RECOVERED,
+        _flown("recover", ("sighted", "constant-velocity", "robust"), maps=("citystreet",)),
+    )
+    yield Table(
+        "referring",
+        "protocols/referring.md",
+        "`referring`, seeds that no baseline was tuned on",
+        ("language_gap", "success_right", "success_other", "chosen"),
+        _flown(
+            "referring",
+            ("hover", "follow", "attribute-servo", "salient-servo"),
+            seeds=THREE_SETS[1:2],
+        ),
+    )
+    yield Table(
+        "pair",
+        "protocols/pair.md",
+        "`pair`",
+        _TEAM,
+        _flown("pair", ("hover", "follow", "relay", "sighted", "robust"), episodes=13),
+    )
+
+
+def _flown(protocol: str, policies: Sequence[str], **common: object) -> tuple[Row, ...]:
+    return tuple(
+        Row(f"`{policy}`", EvaluationPlan(policy=policy, protocol=protocol, **common))
+        for policy in policies
+    )
 
 
 TABLES: Mapping[str, Table] = {table.name: table for table in (*_short_flights(), *_long_flights())}
