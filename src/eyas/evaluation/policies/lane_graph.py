@@ -145,5 +145,5 @@ def _next_lanes(network: RoadNetwork, lane: int) -> list[int]:
 def _turn(one: Floats, other: Floats) -> float:
     """Return the angle between the end of a line and the begin of another [rad]."""
     out, back = one[-1] - one[-2], other[1] - other[0]
-    cross, dot = out[0] * back[1] - out[1] * back[0], out @ back
-    return abs(float(exact.atan2(cross, dot)))
+    cross = out[0] * back[1] - out[1] * back[0]
+    return abs(float(exact.atan2(cross, exact.dot(out, back))))

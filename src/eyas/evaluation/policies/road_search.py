@@ -134,7 +134,9 @@ class RoadSearch:
                 self._resample(row)
                 return
         east, north = (np.square(side[:, None] - side) for side in place.T)
-        close = np.maximum(1.0 - (east + north) / (6.0 * _NEARBY**2), 0.0)  # cubed: nearly a bell
+        close = np.maximum(
+            1.0 - (east + north) / (6.0 * _NEARBY * _NEARBY), 0.0
+        )  # cubed: nearly a bell
         dense = (weight * close * close * close).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
