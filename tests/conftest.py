@@ -6,6 +6,7 @@ import runpy
 import signal
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import settings
@@ -67,6 +68,12 @@ def pytest_runtest_makereport(item, call):
 def around():
     """Build trackers among a few solids, see `solid_worlds.build`."""
     return runpy.run_path(str(Path(__file__).parent / "solid_worlds.py"))["build"]
+
+
+@pytest.fixture(scope="session")
+def plain_words():
+    """A reader of phrases, see `plain_words`."""
+    return SimpleNamespace(**runpy.run_path(str(Path(__file__).parent / "plain_words.py")))
 
 
 @pytest.fixture(scope="session")

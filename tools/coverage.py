@@ -164,7 +164,7 @@ def differences(first: Path, second: Path) -> tuple[dict[float, list], list[Ques
     named = {record.name: record for record in others}
     known, questions = figures_of(stamp.plan.rules), []
     for name in COMPARED:
-        read, high = known[name]
+        read, high, _ = known[name]
         values = np.array([read(named[record.name]) - read(record) for record in records])
         interval = partial(difference_interval, high=high)
         questions.append(Question(name, float(values.mean()), values, interval))

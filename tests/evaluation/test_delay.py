@@ -36,11 +36,11 @@ def test_a_flight_with_a_profile_repeats_and_is_late(fly):
 def test_a_system_decides_no_faster_than_its_rate(fly):
     """6.2 Hz: a look at most every 162 ms, which are 21 control steps of 8 ms."""
     TimesOfLooks.count.clear()
-    fly("own_policies:TimesOfLooks", latency="aerialvla")
+    fly("own_policies:TimesOfLooks", latency="aerialvla", in_process=True)
     looks = max(TimesOfLooks.count.values())
     assert 10 <= looks <= 18  # 375 / 21 = 17.9
     TimesOfLooks.count.clear()
-    fly("own_policies:TimesOfLooks", latency="0")
+    fly("own_policies:TimesOfLooks", latency="0", in_process=True)
     assert max(TimesOfLooks.count.values()) == 375
 
 

@@ -12,7 +12,9 @@ from contextlib import contextmanager
 from itertools import pairwise
 
 import pytest
+from typer.testing import CliRunner
 
+from eyas.cli.app import app
 from eyas.cli.evaluate import _changes
 from eyas.core.errors import ConfigError, EyasError, OutputError
 from eyas.evaluation.episode import seed_sets
@@ -80,6 +82,12 @@ def test_sets_of_seeds_are_a_number_or_a_list_that_does_not_overlap():
             seed_sets(text)
     with pytest.raises(ConfigError, match="sets could share episodes"):
         check(EvaluationPlan(policy="hover", seeds=(1_000_000, 1_000_100)))
+
+
+def test_one_seed_and_several_are_not_said_together():
+    words = ["evaluate", "--policy", "hover", "--seed", "5", "--seeds", "3"]
+    with pytest.raises(ConfigError, match="--seed and --seeds cannot be used together"):
+        raise CliRunner().invoke(app, words).exception
 
 
 def test_each_place_has_a_hundred_episodes():

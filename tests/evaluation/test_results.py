@@ -16,9 +16,10 @@ from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import read_records
 from eyas.evaluation.result import FEW_SEEDS, NO_INTERVALS, load_run, table
 from eyas.evaluation.rows import rows_of, thirds
-from eyas.modes import evaluation_films, leaderboard
+from eyas.modes import evaluation_films
 from eyas.modes.evaluate import run
 from eyas.modes.evaluation_films import chosen_flights
+from eyas.modes.leaderboard import page as leaderboard
 
 
 @pytest.fixture(scope="module")
@@ -191,7 +192,7 @@ def test_the_leaderboard_ranks_and_tells_how_to_repeat(folder, tmp_path):
     page = tmp_path / "index.html"
     leaderboard.run(folder, page)
     texts = Texts(page.read_text()).found
-    assert texts.index("follow") < texts.index("hover")
+    assert texts.index("hover") < texts.index("Oracles") < texts.index("follow")
     assert "eyas evaluate --policy follow --episodes 2" in texts
     body = texts[len(texts) - texts[::-1].index("Eyas leaderboard") :]
     assert next(filter(None, body)).startswith("Results repeat to the bit")
@@ -284,7 +285,7 @@ def test_too_few_seeds_have_no_interval_and_one_line_says_so(folder):
     assert FEW_SEEDS in table(rows_of(records(folder, "hover"), PAPER), "paper")
     found = differences(records(folder, "hover")[:4], records(folder, "follow")[:4], PAPER)
     assert found[0].interval is None
-    assert "too few independent seeds" in text_of(found)
+    assert "too few independent seeds" in text_of(found, PAPER.rank)
 
 
 def test_sets_of_seeds_are_pooled_and_each_has_a_row(folder):
@@ -321,6 +322,28 @@ def test_a_protocols_own_figures_are_in_the_rows_and_those_not_known_are_left_ou
     assert (figures["wait"].n, figures["wait"].mean, figures["wait"].interval) == (1, 7.0, None)
 
 
+def test_a_gap_is_a_difference_even_where_it_never_falls_below_0(folder):
+    flown = records(folder, "hover")
+    told = [each.model_copy(update={"figures": {"language_gap": 0.0}}) for each in flown]
+    assert rows_of(told, PAPER)[0].figures["language_gap"].interval.low == 0.0
+    gap = rows_of(told, PROTOCOLS["referring"])[0].figures["language_gap"]
+    assert gap.interval == pytest.approx((-3 / 8, 3 / 8))
+
+
+def test_a_protocols_own_figures_are_compared_where_both_have_them(folder):
+    flown = records(folder, "hover")
+    values = (None, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+    first = [
+        each.model_copy(update={"figures": {"recovered": value}})
+        for each, value in zip(flown, values, strict=True)
+    ]
+    second = [each.model_copy(update={"figures": {"recovered": 1.0}}) for each in flown]
+    found = differences(first, second, PROTOCOLS["recover"])
+    whole = next(each for each in found if (each.group, each.figure) == ("all", "recovered"))
+    assert (whole.n, whole.first, whole.second) == (7, pytest.approx(1 / 7), 1.0)
+    assert "recovered: the two differ" in text_of(found, PROTOCOLS["recover"].rank)
+
+
 def test_a_flight_without_a_loss_has_found_its_target(folder):
     flown = records(folder, "follow")
     assert rows_of(flown, PAPER)[0].figures["flawless"].mean == 1.0
@@ -332,7 +355,7 @@ def test_a_flight_without_a_loss_has_found_its_target(folder):
 
 def test_the_comparison_says_how_many_episodes_would_tell(folder):
     hover, follow = records(folder, "hover"), records(folder, "follow")
-    said = text_of(differences(hover, follow, PAPER))
+    said = text_of(differences(hover, follow, PAPER), PAPER.rank)
     assert "cr: the two differ; about 10 paired episodes would tell" in said
     assert "you have 8" in said
     changed = [
@@ -341,8 +364,8 @@ def test_the_comparison_says_how_many_episodes_would_tell(folder):
     ]
     line = next(
         line
-        for line in text_of(differences(hover, changed, PAPER)).splitlines()
+        for line in text_of(differences(hover, changed, PAPER), PAPER.rank).splitlines()
         if line.startswith("tsr: ")
     )
     assert line.startswith("tsr: the two are not told apart; about 3,200 paired")
-    assert "cr: no difference in 8" in text_of(differences(hover, changed, PAPER))
+    assert "cr: no difference in 8" in text_of(differences(hover, changed, PAPER), PAPER.rank)

@@ -13,7 +13,7 @@ from eyas.settings.preset import PRESETS
 def test_a_policy_reproduces_the_first_row_of_its_card(name, fly):
     """Other processors may choose another action where two are as good to the last bit."""
     row = card_of(name).scores[0]
-    records = fly(name, episodes=None, protocol=row.protocol, weathers=(row.weather,))
+    records = fly(name, episodes=row.n // 4, protocol=row.protocol, weathers=(row.weather,))
     assert len(records) == row.n
     assert np.mean([record.tsr for record in records]) == pytest.approx(row.tsr, abs=0.03)
     assert np.mean([record.cr for record in records]) == pytest.approx(row.cr, rel=0.03)

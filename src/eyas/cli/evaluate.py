@@ -42,7 +42,8 @@ _Weathers = Annotated[
     list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
 ]
 _Targets = Annotated[
-    list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+    list[str] | None,
+    typer.Option("--target", help=f"By default the protocol's, mostly SUMO_VEHICLE; {SEVERAL}."),
 ]
 _Episodes = Annotated[
     int | None,
@@ -59,7 +60,11 @@ _Seeds = Annotated[
     ),
 ]
 _Latency = Annotated[
-    str, typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured.")
+    str,
+    typer.Option(
+        "--latency",
+        help="Milliseconds, a published system's (openfly, spf, ...), a file of them, or measured.",
+    ),
 ]
 _LatencyCurve = Annotated[
     bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
@@ -141,7 +146,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         "protocol": protocol,
         **({"maps": maps} if maps else {}),
         "weathers": weathers or ["day"],
-        "targets": targets or ["SUMO_VEHICLE"],
+        "targets": targets,
         **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
         "in_process": in_process,
     }
@@ -231,18 +236,50 @@ def compare(
         return
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
         typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
-    typer.echo(text_of(found))
+    typer.echo(text_of(found, stamp_a.plan.rules.rank))
 
 
-def leaderboard(
-    folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
-    ],
+leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")
+_Entries = Annotated[
+    Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
+]
+
+
+@leaderboard.command()
+def page(
+    folder: _Entries,
     out: Annotated[
         Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
     ] = None,
 ) -> None:
     """Write a page that ranks all evaluations in a folder."""
-    from eyas.modes.leaderboard import run
+    from eyas.modes.leaderboard.page import run
 
     typer.echo(run(folder, out or folder / "index.html"))
+
+
+@leaderboard.command()
+def verify(
+    folder: _Entries,
+    share: Annotated[
+        float, typer.Option("--share", help="Part of the episodes; at least one batch.")
+    ] = 0.1,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Which episodes; by default drawn afresh.")
+    ] = None,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Run the code that entries name or bring.")
+    ] = False,
+) -> None:
+    """Fly some episodes of each evaluation again, and mark those whose records are equal.
+
+    The exit code is 1 if the records of one are not those of its flights.
+    """
+    from eyas.modes.leaderboard.verify import Verdict, verify
+
+    found = []
+    for finding in verify(folder, share=share, seed=seed, trust=trust):
+        typer.echo(finding.line)
+        found.append(finding.verdict)
+    if Verdict.DIFFERENT in found:
+        raise typer.Exit(1)

@@ -53,6 +53,10 @@ class Build(Config):
         """Twelve hexadecimal digits that differ where episodes may differ, see `WORLD`."""
         return self._id_of(WORLD)
 
+    def id_without(self, rooms: Collection[str]) -> str:
+        """Return twelve hexadecimal digits that differ where other rooms than these do."""
+        return self._id_of(self.rooms.keys() - set(rooms))
+
     def _id_of(self, rooms: Collection[str]) -> str:
         said = [f"{room} {digest}" for room, digest in sorted(self.rooms.items()) if room in rooms]
         return sha256("\n".join(said).encode()).hexdigest()[:12]

@@ -10,7 +10,7 @@ from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import NO_INTERVALS
-from eyas.evaluation.rows import clusters_in, figures_of, groups_of
+from eyas.evaluation.rows import Figure, clusters_in, figures_of, groups_of
 from eyas.evaluation.statistics import (
     POWER,
     Interval,
@@ -22,7 +22,7 @@ from eyas.evaluation.statistics import (
 __all__ = ["COMPARED", "Difference", "differences", "refuse_incomparable", "text_of", "told_apart"]
 
 COMPARED = ("cr", "tsr", "flawless", "seen", "watched", "losses", "centre_error")
-"""The figures that every episode has."""
+"""The figures that every episode has; those of the protocol are compared, too."""
 
 
 class Difference(NamedTuple):
@@ -89,25 +89,42 @@ def differences(
     common = [record for record in first if record.name in others]
     if not common:
         raise DataFileError("not comparable: the two have no episode in common")
-    figures, found = figures_of(protocol), []
+    figures = figures_of(protocol, [*common, *second])
+    compared = (*COMPARED, *dict.fromkeys(name for record in common for name in record.figures))
+    found = []
     for group, name, records in groups_of(common, protocol.groups):
-        clusters = clusters_in(records)
-        for figure in COMPARED:
-            read, high = figures[figure]
-            old = np.array([read(record) for record in records], np.float64)
-            new = np.array([read(others[record.name]) for record in records], np.float64)
-            found.append(
-                Difference(
-                    *(group, name, figure, len(records)),
-                    first=float(old.mean()),
-                    second=float(new.mean()),
-                    mean=float((new - old).mean()),
-                    interval=difference_interval(new - old, clusters, high),
-                    improved=improvement(old.tolist(), new.tolist()),
-                    needed=episodes_to_tell(new - old, clusters),
-                )
-            )
+        for figure in compared:
+            pairs = [(each, others[each.name]) for each in records]
+            if row := _difference(figures[figure], pairs):
+                found.append(row._replace(group=group, name=name, figure=figure))
     return found
+
+
+def _difference(
+    figure: Figure, pairs: Sequence[tuple[EpisodeRecord, EpisodeRecord]]
+) -> Difference | None:
+    """Return the difference in those pairs that both have the figure, without its names; None if
+    there are none.
+    """
+    records, first, second = [], [], []
+    for one, other in pairs:
+        old, new = figure.read(one), figure.read(other)
+        if old is not None and new is not None:
+            records.append(one)
+            first.append(old)
+            second.append(new)
+    if not records:
+        return None
+    change, clusters = np.array(second) - np.array(first), clusters_in(records)
+    return Difference(
+        *("", "", "", len(records)),
+        first=float(np.mean(first)),
+        second=float(np.mean(second)),
+        mean=float(change.mean()),
+        interval=difference_interval(change, clusters, figure.high),
+        improved=improvement(first, second),
+        needed=episodes_to_tell(change, clusters),
+    )
 
 
 def told_apart(found: Sequence[Difference], figure: str) -> str:
@@ -125,8 +142,13 @@ def told_apart(found: Sequence[Difference], figure: str) -> str:
     )
 
 
-def text_of(found: Sequence[Difference]) -> str:
-    """Return a table as text."""
+def text_of(found: Sequence[Difference], rank: str) -> str:
+    """Return a table as text, and below it whether the two are told apart.
+
+    Args:
+        found: The differences.
+        rank: The protocol's first figure; the other is TSR.
+    """
     lines = [("", "n", "figure", "A", "B", "B - A", "95 %", "B larger")]
     lines += [
         (
@@ -146,7 +168,8 @@ def text_of(found: Sequence[Difference]) -> str:
     text = ["  ".join(row).rstrip() for row in rows]
     if any(each.interval is None for each in found):
         text.append(NO_INTERVALS)
-    text += [told_apart(found, figure) for figure in ("cr", "tsr")]
+    known = {each.figure for each in found if each.group == "all"}
+    text += [told_apart(found, name) for name in dict.fromkeys((rank, "tsr")) if name in known]
     return "\n".join(text)
 
 

@@ -30,6 +30,10 @@ Mask = NDArray[np.bool_]
 Gathered = TypeVar("Gathered")
 
 
+_ROOF = 1.3
+"""Height of a car's roof, which is seen longest [m]."""
+
+
 class EpisodeGroup(NamedTuple):
     """The episodes with the same settings but for their start directions."""
 
@@ -161,6 +165,22 @@ class EpisodeBatch:
             return heights - terrain.floor
 
         return self.gathered(above)
+
+    def in_sight(self, row: int, places: NDArray[np.float64]) -> Mask:
+        """Return whether nothing that stands hides cars at places from a drone now, shape (P,).
+
+        Args:
+            row: Number of the drone.
+            places: East and north [m], shape (P, 2).
+        """
+        group = next(group for group in self.groups if row in group.rows)
+        simulation = group.simulation
+        terrain, eye = simulation.scene.terrain, simulation.snapshot.trackers.position
+        roof = terrain.floor + reliefs(terrain, places) + _ROOF
+        points = np.concatenate([places, roof[:, None]], axis=1)
+        at = int(np.flatnonzero(group.rows == row)[0])
+        seen: Mask = simulation.clearance.in_sight(eye[at : at + 1], points[None])[0]
+        return seen
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:
         """Return what a function reads of each group, in the order of the episodes, (N, ...).

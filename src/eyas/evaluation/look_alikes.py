@@ -27,7 +27,16 @@ from eyas.targets.grammar.naming import (
 )
 from eyas.targets.grammar.wording import Wording, in_words
 
-__all__ = ["CASES", "HEIGHT", "PITCH", "StagedStart", "case_of", "repeat_start", "staged_start"]
+__all__ = [
+    "CASES",
+    "COLOURS",
+    "HEIGHT",
+    "PITCH",
+    "StagedStart",
+    "case_of",
+    "repeat_start",
+    "staged_start",
+]
 
 HEIGHT: Final = 45.0
 """Of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other protocols it
@@ -54,7 +63,7 @@ CASES: Final = (
 """By what targets are told apart, and from how many look-alikes; the cases of seeds in a row. Of
 eight alike, hardly ever one alone does something, or is beside something."""
 
-_COLOURS: Final = (
+COLOURS: Final = (
     "red",
     "green",
     "orange",
@@ -70,6 +79,9 @@ know it, but a reader sees it. From above all differ from roads, and from dark g
 
 _BYSTANDERS: Final = ("yellow", "blue", "white", "grey")
 """Further colours of all others."""
+
+_TOLD_FROM_ABOVE: Final = (BodyWord.SMALL_CAR, BodyWord.VAN)
+"""Bodies of cars that their lengths tell from others; that of an SUV is a sedan's."""
 
 _CROWDED: Final = 14.0
 """Radius around the middle of the first picture in which enough vehicles are looked for [m]."""
@@ -228,9 +240,10 @@ def _dress(
     rng: np.random.Generator,
 ) -> None:
     """Make some in view look alike but for what the phrase tells, and all others differ."""
-    colours = [_COLOURS[k] for k in rng.permutation(len(_COLOURS)).tolist()]
+    colours = [COLOURS[k] for k in rng.permutation(len(COLOURS)).tolist()]
     bodies = [word for word in BodyWord if _models_called(word)]
-    own = bodies[int(rng.integers(len(bodies)))]
+    among = _TOLD_FROM_ABOVE if kind is PhraseKind.BODY else bodies
+    own = among[int(rng.integers(len(among)))]
     rest = [word for word in bodies if word not in CAN_BE_CALLED[own]]
     models = dict(zip(view.actor.tolist(), view.model.tolist(), strict=True))
     if kind is PhraseKind.BODY and not _is_car(models[alike[0]]):

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.core.rng import stream
-from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
+from eyas.evaluation.episode import EpisodeSpec, Place
+from eyas.evaluation.fitting import first_fitting
 from eyas.evaluation.from_above import seen_from_above
 from eyas.evaluation.protocol import Protocol
+from eyas.sim.cover import cover_of
 
 __all__ = [
     "COVERED",
@@ -43,24 +45,21 @@ _LENGTH = (4.0, 12.0)
 _MOST = 3
 """Largest number of losses by things in an episode."""
 
-_PERIOD = 0.25
-"""Time between two looks [s]."""
+_PERIOD = 0.256
+"""Time between two looks: a whole number of control steps, so that covers begin with one [s]."""
 
 _FAR = 12.0
 """Least distance between where a target vanishes and where it comes out [m]. Nearer, a drone that
 waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
 
-_STEADY = 0.5
-"""Shorter glimpses than this do not end a loss [s]."""
+_STEADY = 0.77
+"""Shorter glimpses than this do not end a loss [s]: no more than two looks."""
 
 _BEGUN = 3.0
 """Earliest time of a loss: before, a policy must get hold of its target [s]."""
 
 _ONSETS = (5.0, 20.0), (42.0, 58.0)
 """Between which times a camera is covered, twice in an episode [s]."""
-
-_TRIED = 50
-"""Number of seeds that are tried for each episode."""
 
 Floats = NDArray[np.float64]
 
@@ -86,7 +85,7 @@ def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:
     spans: list[Loss] = []
     for first, last in edges.reshape(-1, 2).tolist():
         loss = Loss((first + 1) * period, (last + 1) * period)
-        if spans and loss.start - spans[-1].end < _STEADY:
+        if spans and loss.start - spans[-1].end <= _STEADY:
             loss = Loss(spans.pop().start, loss.end)
         spans.append(loss)
     return spans
@@ -167,28 +166,14 @@ def with_losses(
     Raises:
         SpawnError: There are too few.
     """
-    losses = covered_losses if protocol.variants else losses_by_things
-    turns, chosen = len(protocol.directions), []
-    for place in places:
-        tried = episodes_of([place], protocol.directions, count * _TRIED, first_seed)
-        found: dict[float, list[EpisodeSpec]] = {turn: [] for turn in protocol.directions}
-        for begin in range(0, len(tried), 2 * count * turns):
-            part = tried[begin : begin + 2 * count * turns]
-            for episode, own in zip(part, losses(part, protocol), strict=True):
-                if own and len(found[episode.direction]) < count:
-                    found[episode.direction].append(episode)
-            if all(len(own) == count for own in found.values()):
-                break
-        else:
-            raise SpawnError(
-                f"protocol '{protocol.name}': of {len(tried)} starts in '{place.map}' too few "
-                f"have losses that fit; {count} are needed for each direction"
-            )
-        chosen += [
-            episode._replace(variant=variant)
-            for number in range(count)
-            for turn in protocol.directions
-            for episode in (found[turn][number],)
-            for variant in protocol.variants or ("",)
-        ]
-    return chosen
+    fits, wanted = losses_by_things, "losses by what stands there ('recover-camera' is for any map)"
+    if protocol.variants:
+        fits, wanted = covered_losses, "a target that is visible before and after covers"
+    else:
+        for place in places:
+            if not cover_of(place.map, 0):
+                raise SpawnError(
+                    f"protocol '{protocol.name}': nothing in '{place.map}' hides a car from above; "
+                    "use 'recover-camera'"
+                )
+    return first_fitting(places, protocol, count, first_seed, fits=fits, wanted=wanted)

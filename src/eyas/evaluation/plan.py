@@ -42,7 +42,8 @@ class EvaluationPlan(Config):
     protocol: str = "paper"
     maps: Names = ("citystreet",)
     weathers: Names = ("day",)
-    targets: Names = ("SUMO_VEHICLE",)
+    targets: Names | None = None
+    """None: the protocol's."""
     episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
     """For each place and start direction; None: the protocol's number."""
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (FIRST_SEED,)
@@ -76,9 +77,14 @@ class EvaluationPlan(Config):
         return protocol.changed(self.settings) if self.settings else protocol
 
     @property
+    def followed(self) -> tuple[str, ...]:
+        """The targets."""
+        return self.targets or self.rules.targets
+
+    @property
     def count(self) -> int:
         """Number of all episodes; nothing that the plan names is loaded to know it."""
-        places = len(self.maps) * len(self.weathers) * len(self.targets)
+        places = len(self.maps) * len(self.weathers) * len(self.followed)
         each = self.episodes or self.rules.episodes
         versions = max(len(self.rules.variants), 1)
         return places * len(self.rules.directions) * each * versions * len(self.seeds)
@@ -131,6 +137,11 @@ class Stamp(Config):
     entry: Entry | None = None
     """What the policy sees and may do; None where nobody has opened it yet."""
 
+    @property
+    def program(self) -> str:
+        """Twelve hexadecimal digits that differ between programs that fly and measure."""
+        return self.build.id_without(_NOT_FLOWN)
+
     def other_build(self, other: "Stamp") -> str:
         """Return in words what differs in the programs that fly; nothing if nothing does."""
         networks = self.policy is not None or other.policy is not None
@@ -163,7 +174,7 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         Place(name, weather, target)
         for name in plan.maps
         for weather in plan.weathers
-        for target in plan.targets
+        for target in plan.followed
     ]
     count = plan.episodes or protocol.episodes
     size = 1 if plan.latency == "measured" else plan.batch
@@ -247,7 +258,7 @@ def check(plan: EvaluationPlan) -> Entry:
         _refuse_taught(plan)
     for name in plan.maps:
         for weather in plan.weathers:
-            for target in plan.targets:
+            for target in plan.followed:
                 episode = EpisodeSpec(Place(name, weather, target), 0.0, 0)
                 MAPS.get(episode.place.town[0]).light(weather)  # refuses unknown names
                 plan.rules.settings_of(episode, policy.env)  # refuses wrong ones

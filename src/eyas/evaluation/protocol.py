@@ -92,6 +92,8 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
+    targets: tuple[str, ...] = ("SUMO_VEHICLE",)
+    """What is followed, unless a user names others."""
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
     maps: tuple[str, ...] = ("citystreet",)
@@ -103,6 +105,8 @@ class Protocol:
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
+    gaps: tuple[str, ...] = ()
+    """Those of its own figures that are differences of two shares, from -1 to 1."""
     alike: bool = False
     """Whether all others of the target's kind look like it."""
     choose: Chooser = in_order

@@ -9,9 +9,13 @@ from typing import Self
 
 from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import refusals, write_atomic
+from eyas.core.files import read_limited, refusals, write_atomic
 
 __all__ = ["EpisodeRecord", "Published", "RecordFile", "Trace", "order_records", "read_records"]
+
+
+_LARGEST = 1 << 31
+"""Largest size of a file of records [bytes]: half a million episodes of 90 s."""
 
 
 class Published(Config):
@@ -144,12 +148,9 @@ def read_records(path: Path) -> list[EpisodeRecord]:
     Raises:
         DataFileError: The file cannot be read, or a line is not a record.
     """
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
+    if not path.exists():
         return []
-    except OSError as error:
-        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    content = read_limited(path, _LARGEST)
     records = []
     for number, line in enumerate(content.split(b"\n")[:-1], 1):
         try:

@@ -19,7 +19,7 @@ from eyas.evaluation.meter import LOOK
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.scenario import Scenario
 
-__all__ = ["RecoveryScenario", "recovery_figures"]
+__all__ = ["RecoveryScenario", "followed", "recovery_figures", "time_to_see"]
 
 _STEADY = 0.5
 """How long the target must be seen without a gap to count as seen again [s]."""
@@ -103,7 +103,7 @@ class RecoveryScenario(Scenario):
         period = LOOK * self._period
         figures = recovery_figures(self._losses[row], self._sees[row], period)
         other = np.where(self._middle[row] == self._actor[row], -1, self._middle[row])
-        wrong = [_follows(other, loss, _LOOKS * period) for loss in self._losses[row]]
+        wrong = [followed(other, loss, _LOOKS * period) for loss in self._losses[row]]
         figures["followed_wrong"] = float(np.mean(wrong)) if wrong else None
         for name in COVERED:
             own = figures["recovered"] if name == self._variants[row] else None
@@ -124,7 +124,7 @@ def recovery_figures(losses: Sequence[Loss], sees: Mask, period: float) -> dict[
     """
     if not losses:
         return dict.fromkeys(("recovered", "recovered_of_onset", "recovery_time", "nt2f"))
-    times = [_time_to(sees, loss.end, period) for loss in losses]
+    times = [time_to_see(sees, loss.end, period) for loss in losses]
     failed = [loss.start for loss, time in zip(losses, times, strict=True) if time is None]
     soon = [
         time is not None and loss.end + time <= loss.start + SEARCH_LIMIT
@@ -138,16 +138,23 @@ def recovery_figures(losses: Sequence[Loss], sees: Mask, period: float) -> dict[
     }
 
 
-def _time_to(sees: Mask, end: float, period: float) -> float | None:
-    """Return the time from the end of a loss until the target is seen steadily; None: too late."""
+def time_to_see(sees: Mask, end: float, period: float, limit: float = SEARCH_LIMIT) -> float | None:
+    """Return the time from an instant until a target is seen steadily [s]; None: it takes longer.
+
+    Args:
+        sees: Whether it is seen at each look, shape (K,).
+        end: The instant [s].
+        period: Time between two looks [s].
+        limit: Longest time [s].
+    """
     first, steady = round(end / period), round(_STEADY / period)
-    for start in range(first, min(first + round(SEARCH_LIMIT / period), len(sees) - steady) + 1):
+    for start in range(first, min(first + round(limit / period), len(sees) - steady) + 1):
         if sees[start : start + steady].all():
             return (start - first) * period
     return None
 
 
-def _follows(others: NDArray[np.int64], loss: Loss, period: float) -> bool:
+def followed(others: NDArray[np.int64], loss: Loss, period: float) -> bool:
     """Return whether one other vehicle stays in the middle of the picture after a loss."""
     span = others[round(loss.start / period) : round((loss.end + SEARCH_LIMIT) / period)]
     least, same = round(_WRONG / period), 0

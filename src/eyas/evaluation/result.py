@@ -38,10 +38,7 @@ NO_INTERVALS = (
     f"[-]: fewer than {FEWEST} independent seeds ({FEWEST * 5} for worst_fifth), or a figure "
     "without a limit that is always 0: no interval can be had."
 )
-FEW_SEEDS = (
-    f"Fewer than {ENOUGH} independent seeds: intervals hold less often than they say, see the "
-    "documentation of eyas evaluate."
-)
+FEW_SEEDS = f"Fewer than {ENOUGH} independent seeds: intervals are rough, see docs/evaluation.md."
 """What is said below a table."""
 
 UNITS = {

@@ -1,6 +1,7 @@
 """The rows of a table: all episodes, and those of each map, condition, target and visibility."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -23,19 +24,25 @@ __all__ = ["Figure", "TableRow", "clusters_in", "figures_of", "groups_of", "rows
 
 
 class Figure(NamedTuple):
-    """A figure of an episode, 0 or more."""
+    """A figure of an episode."""
 
     read: Callable[[EpisodeRecord], float | None]
     """Reads it from the record; records for which it is None are left out of a row's mean."""
     high: float | None = None
     """The largest value that is possible, if there is one."""
+    signed: bool = False
+    """Whether it may be less than 0; all others are not."""
 
 
-def figures_of(protocol: Protocol, *, as_published: bool = False) -> dict[str, Figure]:
-    """Return the figures that the episodes of each protocol have.
+def figures_of(
+    protocol: Protocol, records: Sequence[EpisodeRecord] = (), *, as_published: bool = False
+) -> dict[str, Figure]:
+    """Return the figures that episodes have.
 
     Args:
         protocol: The protocol.
+        records: Records with the figures that only this protocol has. Of these, one whose values
+            are all from 0 to 1 is a share.
         as_published: Whether CR and TSR are those that the original's code would have printed.
     """
     horizon, steps = protocol.steps * protocol.period, float(protocol.steps)
@@ -59,7 +66,20 @@ def figures_of(protocol: Protocol, *, as_published: bool = False) -> dict[str, F
     if as_published:
         found["cr"] = Figure(lambda record: record.published.cr, steps)
         found["tsr"] = Figure(lambda record: record.published.tsr, 1.0)
+    for name in dict.fromkeys(name for record in records for name in record.figures):
+        read = partial(_own_figure, name)
+        known = [value for record in records if (value := read(record)) is not None]
+        if name in protocol.gaps:
+            found[name] = Figure(read, 1.0, signed=True)
+        elif all(0.0 <= value <= 1.0 for value in known):
+            found[name] = Figure(read, 1.0)
+        else:
+            found[name] = Figure(read, signed=True)
     return found
+
+
+def _own_figure(name: str, record: EpisodeRecord) -> float | None:
+    return record.figures.get(name)
 
 
 class TableRow(NamedTuple):
@@ -117,10 +137,9 @@ def rows_of(
         as_published: Whether CR and TSR are those that the original's code would have printed, of
             the episodes that it would not have dropped.
     """
-    figures = figures_of(protocol, as_published=as_published)
+    figures = figures_of(protocol, records, as_published=as_published)
     if as_published:
         records = [record for record in records if record.published.cr > 0.0]
-    shares = _shares_among(records)
     horizon = protocol.steps * protocol.period
     rows = []
     for group, name, chosen in groups_of(records, protocol.groups):
@@ -128,7 +147,7 @@ def rows_of(
             found = _means(chosen, figures)
             tsr = [figures["tsr"].read(record) for record in chosen]
             found["worst_fifth"] = worst_fifth_of(np.array(tsr, np.float64), clusters_in(chosen))
-            found |= _times(chosen, horizon) | _own(chosen, shares)
+            found |= _times(chosen, horizon)
             rows.append(TableRow(group, name, chosen, found))
     return rows
 
@@ -179,38 +198,13 @@ def _means(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str
         ]
         if known:
             own, values = zip(*known, strict=True)
-            found[name] = mean_of(values, clusters_in(own), figure.high)
-    return found
-
-
-def _shares_among(records: Sequence[EpisodeRecord]) -> dict[str, bool]:
-    """Return the names of the protocol's own figures, and whether all values are from 0 to 1."""
-    values: dict[str, list[float]] = {}
-    for record in records:
-        for name, value in record.figures.items():
-            values.setdefault(name, []).extend(() if value is None else (value,))
-    return {name: all(0.0 <= each <= 1.0 for each in own) for name, own in values.items()}
-
-
-def _own(records: list[EpisodeRecord], shares: dict[str, bool]) -> dict[str, Estimate]:
-    """Return the figures that only this protocol has; they may be less than 0."""
-    found = {}
-    for name, is_share in shares.items():
-        known = [
-            (record, value) for record in records if (value := record.figures.get(name)) is not None
-        ]
-        if not known:
-            continue
-        own, values = zip(*known, strict=True)
-        clusters = clusters_in(own)
-        if is_share:
-            found[name] = mean_of(values, clusters, 1.0)
-        elif min(values) >= 0.0:
-            found[name] = mean_of(values, clusters)
-        else:
-            array = np.array(values)
-            spread = difference_interval(array, clusters, None)
-            found[name] = Estimate(len(array), clusters.count, float(array.mean()), spread)
+            clusters = clusters_in(own)
+            if figure.signed:
+                spread = difference_interval(np.array(values), clusters, figure.high)
+                mean = float(np.mean(values))
+                found[name] = Estimate(len(values), clusters.count, mean, spread)
+            else:
+                found[name] = mean_of(values, clusters, figure.high)
     return found
 
 

@@ -11,7 +11,7 @@ from eyas.sim.simulation import Simulation
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 
-__all__ = ["SIZE", "away_from_middle", "subjects", "visible_shares"]
+__all__ = ["SIZE", "nearest_to_middle", "subjects", "visible_shares"]
 
 SIZE = 63, 84
 """Height and width of the pictures in which pixels are counted."""
@@ -40,9 +40,9 @@ def visible_shares(pixels: NDArray[Any]) -> NDArray[np.float64]:
     return shares
 
 
-def away_from_middle(simulation: Simulation) -> NDArray[np.float64]:
-    """Return how far every actor is from the middle of each picture [half the picture's width],
-    shape (K, A); infinity if its middle is not in the picture, hidden or not.
+def nearest_to_middle(simulation: Simulation) -> NDArray[np.int64]:
+    """Return which actor is nearest to the middle of each picture, hidden or not, shape (K,); -1 if
+    there is none in it.
 
     Args:
         simulation: K trackers, each with a world of its own.
@@ -57,4 +57,6 @@ def away_from_middle(simulation: Simulation) -> NDArray[np.float64]:
     across, down = left / reach, up / reach
     inside = (forward > 0.0) & (np.abs(across) < 1.0) & actors.present
     inside &= np.abs(down) < camera.height / camera.width
-    return np.where(inside, np.hypot(across, down), np.inf)
+    distance = np.where(inside, np.hypot(across, down), np.inf)
+    nearest: NDArray[np.int64] = np.where(inside.any(axis=1), distance.argmin(axis=1), -1)
+    return nearest

@@ -63,7 +63,7 @@ FEWEST = 5
 """Fewest clusters of which an interval is made, and of which a stratum is one of its own."""
 
 ENOUGH = 40
-"""From so many clusters on, intervals hold as often as they say (docs/evaluation.md)."""
+"""From so many clusters on, intervals hold about as often as they say (docs/evaluation.md)."""
 
 _UNSEEN = 3.0
 """Rule of three: what none of n clusters shows may still be this share, divided by n, of all."""

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.envs.config import EnvConfig
 
-__all__ = ["pixel_offset", "towards"]
+__all__ = ["ground_offset", "ground_width", "pixel_offset", "towards"]
 
 Floats = NDArray[np.float64]
 
@@ -58,3 +58,35 @@ def pixel_offset(column: Floats, row: Floats, size: tuple[int, int]) -> Floats:
     ahead = (1.0 - 2.0 * row / height) * _HALF_WIDTH * _ASPECT
     left = (1.0 - 2.0 * column / width) * _HALF_WIDTH
     return np.stack((ahead, left), axis=-1)
+
+
+def ground_offset(
+    column: Floats,
+    row: Floats,
+    size: tuple[int, int],
+    height: float = 45.0,
+    pitch: float = 1.37,
+) -> Floats:
+    """Return how far ahead and to the left of the picture's middle points are on level ground.
+
+    Args:
+        column: From the left edge [pixels], shape (N,).
+        row: From the upper edge [pixels], shape (N,).
+        size: Height and width of the picture [pixels].
+        height: Of the camera above the ground [m]; that of the protocol `referring`.
+        pitch: Of the camera, positive down [rad].
+
+    Returns:
+        [m], shape (N, 2).
+    """
+    wide = exact.tan(0.5 * _FIELD_OF_VIEW)
+    left = (1.0 - 2.0 * column / size[1]) * wide
+    up = (1.0 - 2.0 * row / size[0]) * wide * _ASPECT
+    cosine, sine = exact.cos(pitch), exact.sin(pitch)
+    reach = height / (sine - up * cosine)
+    return np.stack((reach * (cosine + up * sine) - height * cosine / sine, reach * left), axis=-1)
+
+
+def ground_width(height: float = 45.0, pitch: float = 1.37) -> float:
+    """Return the width of the ground in the middle row of a picture [m]; see `ground_offset`."""
+    return 2.0 * height / exact.sin(pitch) * exact.tan(0.5 * _FIELD_OF_VIEW)

@@ -33,7 +33,7 @@ from eyas.modes import evaluation_films, evaluation_plots
 from eyas.modes.evaluation_films import film
 from eyas.modes.evaluation_plots import draw_plots, require_matplotlib
 
-__all__ = ["run"]
+__all__ = ["TIMING", "run"]
 
 _LOG = logging.getLogger("eyas")
 

@@ -40,6 +40,10 @@ _CRUISE = 12.0
 _NEAR = 25.0
 """How far away a larger vehicle may be whose far side a driver takes [m]."""
 
+_BESIDE = 12.0
+"""Least distance along the road to those on the lane that a driver changes to [m]. SUMO itself
+lets cars that creep or stand there touch."""
+
 _LARGE = {VehicleType.BUS, VehicleType.TRUCK, VehicleType.TRAILER}
 
 _DASH = 1.45
@@ -182,7 +186,7 @@ class Driver:
             elif large is not None:
                 yield from self._shelter(large)
             else:
-                others = (self._brake, self._dash, self._weave, turn_back)
+                others = (self._brake, self._dash, self._weave, turn_back, turn_back)
                 yield from others[int(self._rng.integers(len(others)))]()
             # Looks out for something to hide behind before the next of the others.
             until = self._world.time + self._between(6.0, 16.0)
@@ -221,7 +225,7 @@ class Driver:
         lanes = self._sumo.edge.getLaneNumber(edge)
         if lanes > 1 and self._rng.random() < 0.6:
             other = int(lane) + 1 if int(lane) + 1 < lanes else int(lane) - 1
-            self._asked(self._vehicle.changeLane, other, 2.0)
+            self._change_to(other, 2.0)
         until = self._world.time + lost + 2.0
         while self._world.time < until and self._place(stretch) < stretch.end:
             yield
@@ -238,7 +242,7 @@ class Driver:
         far = max(beside, key=lambda other: abs(other - self._vehicle.getLaneIndex(self._name)))
         until = self._world.time + self._between(5.0, 9.0)
         if self._before_junction():
-            self._asked(self._vehicle.changeLane, far, until - self._world.time)
+            self._change_to(far, until - self._world.time)
         while self._world.time < until and self._before_junction():
             gap = _ahead_by(self._vehicle, self._name, large)
             self._vehicle.setSpeed(self._name, max(self._vehicle.getSpeed(large) + 0.4 * gap, 0.0))
@@ -246,7 +250,9 @@ class Driver:
         self._vehicle.setSpeed(self._name, -1.0)
 
     def _brake(self) -> Running:
-        """Stand for a moment, wherever it is."""
+        """Stand for a moment on the open road; on a junction others would touch it."""
+        while not self._before_junction():
+            yield
         self._vehicle.setSpeed(self._name, 0.0)
         yield from self.waiting(self._between(2.0, 5.0))
         self._vehicle.setSpeed(self._name, -1.0)
@@ -264,20 +270,28 @@ class Driver:
             road, lane = self._vehicle.getRoadID(self._name), self._vehicle.getLaneIndex(self._name)
             if self._before_junction() and self._sumo.edge.getLaneNumber(road) > 1:
                 other = lane - 1 if lane > 0 else lane + 1
-                self._asked(self._vehicle.changeLane, other, 1.5)
+                self._change_to(other, 1.5)
             yield from self.waiting(self._between(1.5, 2.5))
 
     def _turn_back(self, links: RoadLinks, edges: Route) -> Running:
-        """Turn round at the next junction, and take another way from there."""
-        road, time = self._vehicle.getRoadID(self._name), self._world.time
-        # Only from the lane it is on: who must change lanes for it may stand in the way for ever.
-        back = _turns(self._sumo, self._vehicle.getLaneID(self._name)) & set(edges)
-        if back and road in links.length and self._before_junction():
+        """Turn round at the next junction where it can be done, and take another way from there."""
+        until = self._world.time + 20.0
+        while not (back := self._ways_back() & set(edges)) and self._world.time < until:
+            yield
+        road = self._vehicle.getRoadID(self._name)
+        if back:
             walk = onward_walk(self._vehicle, self._name, min(back), links, edges, self._rng)
             self._asked(self._vehicle.setRoute, (road, *walk))
-        while self._vehicle.getRoadID(self._name) == road and self._world.time < time + 20.0:
+        while self._vehicle.getRoadID(self._name) == road and self._world.time < until:
             yield
-        yield
+
+    def _ways_back(self) -> set[str]:
+        """Return the roads on which the vehicle is after turning round at the next junction.
+
+        Only from the lane it is on: who must change lanes for it may stand in the way for ever.
+        """
+        lane = self._vehicle.getLaneID(self._name)
+        return _turns(self._sumo, lane) if self._before_junction() else set()
 
     def _stretch(self) -> Stretch | None:
         lane = self._vehicle.getLaneID(self._name)
@@ -295,6 +309,14 @@ class Driver:
         if self._vehicle.getRoadID(self._name) != stretch.lane.rpartition("_")[0]:
             return float("inf")
         return float(self._vehicle.getLanePosition(self._name))
+
+    def _change_to(self, index: int, time: float) -> None:
+        """Change to another lane of the road for a time [s], if nobody is beside the vehicle."""
+        lane, here = self._vehicle.getLaneID(self._name), self._vehicle.getLanePosition(self._name)
+        other = f"{lane.rpartition('_')[0]}_{index}"
+        beside = self._sumo.lane.getLastStepVehicleIDs(other)
+        if all(abs(self._vehicle.getLanePosition(each) - here) > _BESIDE for each in beside):
+            self._asked(self._vehicle.changeLane, index, time)
 
     def _asked(self, command: object, *arguments: object) -> bool:
         """Ask SUMO for something; return whether it can be done."""

@@ -32,6 +32,9 @@ _VIEW = 5.5, 7.5
 _PATIENCE = 0.7
 """Time after which a guess that is looked at in vain counts a third [s]: it may be hidden there."""
 
+_FEWEST = 20.0
+"""Sum of the weights below which the guesses are taken again from those that are likely."""
+
 _NEARBY = 5.0
 """Spread of the guesses that count together as a place worth looking at [m]."""
 
@@ -53,7 +56,7 @@ class RoadSearch:
         count = len(start.seeds)
         self._ahead = AlongLanes()
         self._ahead.begin(start)
-        self._lanes = Lanes(start.roads())
+        self._lanes, self._in_sight = Lanes(start.roads()), start.in_sight
         self._random = [stream(seed, "search") for seed in start.seeds.tolist()]
         shape = count, _GUESSES
         self._point, self._past = np.full(shape, -1), np.zeros(shape)
@@ -124,13 +127,26 @@ class RoadSearch:
             ahead = cosine * offset[:, 0] + sine * offset[:, 1]
             left = cosine * offset[:, 1] - sine * offset[:, 0]
             inside = (np.abs(ahead) < _VIEW[0]) & (np.abs(left) < _VIEW[1])
+            inside[inside] = self._in_sight(row, place[inside])
             weight[inside] *= 1.0 - _PERIOD / _PATIENCE
             weight[:] = np.maximum(weight / weight.max(), 1e-4)
+            if weight.sum() < _FEWEST:
+                self._resample(row)
+                return
         east, north = (np.square(side[:, None] - side) for side in place.T)
         close = np.maximum(1.0 - (east + north) / (6.0 * _NEARBY**2), 0.0)  # cubed: nearly a bell
         dense = (weight * close * close * close).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
+
+    def _resample(self, row: int) -> None:
+        """Take guesses again in proportion to their weights: few are left that are likely."""
+        cumulated = np.cumsum(self._weight[row])
+        at = (np.arange(_GUESSES) + self._random[row].random()) / _GUESSES
+        chosen = np.searchsorted(cumulated / cumulated[-1], at, side="right")
+        for own in (self._point, self._past, self._speed):
+            own[row] = own[row, np.minimum(chosen, _GUESSES - 1)]
+        self._weight[row] = 1.0
 
 
 def sighted(changes: Mapping[str, Any]) -> SightOracle:

@@ -23,6 +23,8 @@ BUILT_IN = {
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:servo",
+    "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
+    "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
         name: f"{_ROOM}.boxes:{name}"
         for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.crowd import CROWD
+from eyas.evaluation.protocols.evade import EVADE
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER, STANDARD, UNSEEN
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
@@ -14,7 +16,7 @@ __all__ = ["PROTOCOLS", "protocol_named"]
 
 _ALL = (
     *(PAPER, STANDARD, UNSEEN, LONG, SEARCH, DISTRACTOR),
-    *(RECOVER, RECOVER_CAMERA, REFERRING, PAIR, TEAM),
+    *(RECOVER, RECOVER_CAMERA, EVADE, REFERRING, CROWD, PAIR, TEAM),
 )
 
 PROTOCOLS: Mapping[str, Protocol] = {protocol.name: protocol for protocol in _ALL}

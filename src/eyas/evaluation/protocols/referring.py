@@ -12,8 +12,9 @@ from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.errors import SpawnError
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.envelope import Envelope
 from eyas.evaluation.episode import EpisodeSpec, Place
-from eyas.evaluation.episode_batch import EpisodeBatch, EpisodeGroup, episode_groups
+from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
 from eyas.evaluation.look_alikes import (
     HEIGHT,
     PITCH,
@@ -25,7 +26,7 @@ from eyas.evaluation.look_alikes import (
 from eyas.evaluation.meter import LOOK
 from eyas.evaluation.protocol import NEVER, Protocol
 from eyas.evaluation.scenario import Scenario, Told
-from eyas.evaluation.sight import away_from_middle, visible_shares
+from eyas.evaluation.sight import nearest_to_middle, visible_shares
 from eyas.sim.simulation import Simulation
 from eyas.targets.grammar.naming import Phrase
 from eyas.traffic.library import CANONICAL_MIX, DENSE_VEHICLES
@@ -142,14 +143,15 @@ class ReferringScenario(Scenario):
     def measure(self, step: int, active: NDArray[np.bool_]) -> None:
         """Find out whom the active flights follow, at every look."""
         if (step + 1) % LOOK == 0:
-            nearest = self._batch.gathered(_nearest)
+            nearest = self._batch.gathered(lambda group: nearest_to_middle(group.simulation))
             self._nearest[active, step // LOOK] = nearest[active]
 
     def figures(self, row: int) -> dict[str, float | None]:
         """Return success and choice, by variant.
 
-        The gap of an episode's two variants is the difference of their successes; half of it is
-        each one's share, so that the mean over all of both is the mean difference.
+        `language_gap` is twice the success with the right words, and minus twice that with
+        another's: its mean over both variants is the difference of their means, and its interval,
+        of whole seeds, that of the difference.
         """
         start, variant = self._starts[row], self._variant[row]
         success = self._follows(row, start.actor, self._nearest.shape[1] * self._look, _END)
@@ -178,12 +180,6 @@ class ReferringScenario(Scenario):
         return float((looks == actor).mean() >= 0.5)
 
 
-def _nearest(group: EpisodeGroup) -> NDArray[np.int64]:
-    away = away_from_middle(group.simulation)
-    nearest: NDArray[np.int64] = np.where(np.isinf(away.min(axis=1)), -1, away.argmin(axis=1))
-    return nearest
-
-
 REFERRING = Protocol(
     "referring",
     "20 s: the target is named in words among 1, 3 or 7 look-alikes; no box",
@@ -201,11 +197,13 @@ REFERRING = Protocol(
     episodes=100,
     columns=("language_gap", *(f"success_{own}" for own in _VARIANTS[:2]), "chosen", "obeyed"),
     rank="language_gap",
+    gaps=("language_gap",),
     choose=among_look_alikes,
     stage=stage,
     scenario=ReferringScenario,
     variants={variant: {} for variant in _VARIANTS},
     first_box=False,
+    envelope=Envelope(highest=HEIGHT + 3.0),
     groups={
         "phrase": lambda record: case_of(record.seed)[0].value,
         "look-alikes": lambda record: str(case_of(record.seed)[1]),

@@ -1,11 +1,13 @@
 """Flies the tables of the documents again."""
 
 import json
+import re
 from pathlib import Path
 
 from eyas.core.build import this_build
 from eyas.core.files import write_atomic
-from eyas.evaluation.result import UNITS, cell
+from eyas.evaluation.record import EpisodeRecord
+from eyas.evaluation.result import RESULT, UNITS, cell, load_run
 from eyas.evaluation.rows import rows_of
 from eyas.modes.evaluate import run as evaluate
 from eyas.modes.reproduce.tables import (
@@ -58,20 +60,33 @@ def _reproduced(table: Table, out: Path, *, quiet: bool) -> bool:
     return not differences
 
 
-def made(table: Table, out: Path, *, quiet: bool = False) -> Expected:
-    """Return what a table is when it is flown here."""
+def made(table: Table, out: Path, *, quiet: bool = False, keep: bool = False) -> Expected:
+    """Return what a table is when it is flown here.
+
+    Args:
+        table: The table.
+        out: Folder for its evaluations.
+        quiet: Whether it is not told what is flown.
+        keep: Whether what another build has flown into the folder stays, for developers who know
+            that the figures did.
+    """
     build = this_build()
-    rows = tuple(
-        _flown(row, table, out / f"{number:02d}", quiet=quiet)
-        for number, row in enumerate(table.rows, 1)
-    )
-    return Expected(build_id=build.id, world=build.world, rows=rows)
+    rows = []
+    for row in table.rows:
+        folder = out / re.sub(r"\W+", "-", row.label).strip("-")
+        if not (keep and _is_flown(folder, row)):
+            if not quiet:
+                print(f"{table.name}: {row.plan.command}", flush=True)
+            evaluate(row.plan, folder, resume=True, quiet=True)
+        rows.append(_row(row, table, load_run(folder)[1]))
+    return Expected(build_id=build.id, world=build.world, rows=tuple(rows))
 
 
-def _flown(row: Row, table: Table, out: Path, quiet: bool) -> ExpectedRow:
-    if not quiet:
-        print(f"{table.name}: {row.plan.command}", flush=True)
-    records = evaluate(row.plan, out, resume=True, quiet=True)
+def _is_flown(folder: Path, row: Row) -> bool:
+    return (folder / RESULT).is_file() and load_run(folder)[0].plan == row.plan
+
+
+def _row(row: Row, table: Table, records: list[EpisodeRecord]) -> ExpectedRow:
     figures = rows_of(records, row.plan.rules)[0].figures
     return ExpectedRow(
         label=row.label,

@@ -1,0 +1,1 @@
+"""Evaluations of many in one page, and those of others flown again."""
