@@ -94,7 +94,8 @@ _LASTING = ("hover", *_ORACLES, "robust", "long")
 _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
 _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
-_CROWD = ("kept", "kept_share", "identity_switches", "tsr")
+_KEEPERS = ("hover", "sighted", "robust", "long")
+_SEERS = ("hover", "sighted", "constant-velocity", "robust")
 _TEAM = ("team_seen", "alone_seen", "handed_over", "handover_time")
 
 
@@ -147,25 +148,26 @@ def _short_flights() -> Iterator[Table]:
 
 def _long_flights() -> Iterator[Table]:
     for name, policies, columns, page in (
-        ("long", _LASTING, ("kept", "tsr", "flawless", "losses"), "lasting"),
-        (
-            "distractor",
-            ("hover", "sighted", "robust", "long"),
-            ("kept", "tsr", "losses"),
-            "lasting",
-        ),
+        ("long", _KEEPERS, ("kept", "tsr", "flawless", "losses"), "lasting"),
+        ("distractor", _KEEPERS, ("kept", "tsr", "losses"), "lasting"),
         ("recover", _LASTING, _RECOVERED, "recover"),
-        ("recover-camera", _LASTING, _BY_LENGTH, "recover"),
-        ("evade", _LASTING, ("kept", "held", "losses", "tsr"), "evade"),
-        ("crowd", ("hover", "servo", "sighted", "robust"), _CROWD, "crowd"),
+        ("recover-camera", _SEERS, _BY_LENGTH, "recover"),
+        ("evade", _SEERS, ("kept", "held", "losses", "tsr"), "evade"),
     ):
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
+    yield Table(
+        "crowd",
+        "protocols/crowd.md",
+        "`crowd`",
+        ("kept", "kept_share", "identity_switches", "tsr"),
+        _flown("crowd", ("hover", "servo", "sighted", "robust"), episodes=10),
+    )
     yield Table(
         "recover-city",
         "protocols/recover.md",
         "`recover` in citystreet",
         _RECOVERED,
-        _flown("recover", ("sighted", "constant-velocity", "robust"), maps=("citystreet",)),
+        _flown("recover", _SEERS, maps=("citystreet",), episodes=12),
     )
     yield Table(
         "referring",
@@ -174,7 +176,7 @@ def _long_flights() -> Iterator[Table]:
         ("language_gap", "success_right", "success_other", "chosen"),
         _flown(
             "referring",
-            ("hover", "follow", "attribute-servo", "salient-servo"),
+            ("hover", "follow", "attribute-servo"),
             seeds=THREE_SETS[1:2],
         ),
     )
@@ -183,7 +185,7 @@ def _long_flights() -> Iterator[Table]:
         "protocols/pair.md",
         "`pair`",
         _TEAM,
-        _flown("pair", ("hover", "follow", "relay", "sighted", "robust"), episodes=13),
+        _flown("pair", ("hover", "follow", "relay", "sighted", "robust"), episodes=10),
     )
 
 
