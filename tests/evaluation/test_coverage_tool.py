@@ -9,7 +9,7 @@ import pytest
 from eyas.evaluation.plan import EvaluationPlan
 from eyas.modes.evaluate import run
 
-TOOL = Path(__file__).parents[2] / "tools" / "coverage.py"
+TOOL = Path(__file__).parents[2] / "tools" / "interval_coverage.py"
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +22,7 @@ def flown(tmp_path_factory):
 
 
 def table(monkeypatch, capsys, *words):
-    monkeypatch.setattr(sys, "argv", ["coverage.py", "--samples", "20", *words])
+    monkeypatch.setattr(sys, "argv", ["interval_coverage.py", "--samples", "20", *words])
     runpy.run_path(str(TOOL), run_name="__main__")
     rows = [line.split("|")[1:-1] for line in capsys.readouterr().out.splitlines()]
     return {(row[0].strip(), row[1].strip()): [cell.strip() for cell in row[2:]] for row in rows}
