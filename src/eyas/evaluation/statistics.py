@@ -3,8 +3,8 @@
 Episodes of one seed have the same traffic and start, so that they are one observation: a cluster.
 Variances are those of a stratified sample of clusters, of a figure's influence values: by how much
 each episode moves the figure. Which interval is made of them was chosen by simulation on real
-records (`tools/interval_coverage.py`): the percentile bootstrap held the truth in 89 % of samples of 40
-instead of 95 %, and lay above it four times as often as below; bias-corrected and accelerated
+records (`tools/interval_coverage.py`): the percentile bootstrap held the truth in 89 % of samples
+of 40 instead of 95 %, and lay above it four times as often as below; bias-corrected and accelerated
 bootstraps and those of Student's t did better, but not for a policy that fails one time in ten, as
 the failures that make the mean are missing in many samples, and so in all their resamples.
 
