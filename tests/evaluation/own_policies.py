@@ -3,6 +3,8 @@
 # ruff: noqa: RUF012  # as users write them
 import numpy as np
 
+from eyas.targets.grammar.attributes import ATTRIBUTES
+
 
 def forward(picture):
     assert picture.shape == (84, 84, 3)
@@ -98,3 +100,22 @@ class TimesOfLooks:
     def act(self, picture):
         self.count[id(self)] = self.count.get(id(self), 0) + 1
         return 6
+
+
+class WordsOnly:
+    """Flies 8 m to where the words say that the target is, without a look, and hovers there."""
+
+    env_settings = {"observation": {"parts": ["attributes"]}, "action_repeat": 25}
+    ways = {"left": 2, "right": 3, "top": 0, "bottom": 1}
+
+    def reset(self, attributes):
+        names = [f"place_{side}" for side in self.ways]
+        ends = [f"place_{side}most" for side in self.ways]
+        self.action = 6
+        for side, *places in zip(self.ways, names, ends, strict=True):
+            if any(attributes[ATTRIBUTES.index(place)] for place in places):
+                self.action = self.ways[side]
+
+    def act(self, attributes):
+        action, self.action = self.action, 6
+        return action

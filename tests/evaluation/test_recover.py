@@ -26,6 +26,7 @@ from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.recovery import RecoveryScenario, followed, recovery_figures
 from eyas.evaluation.sight import visible_shares
+from eyas.modes.evaluation_plots import draw_plots
 
 VILLAGE = Place("village", "day", "SUMO_VEHICLE")
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")
@@ -209,3 +210,12 @@ def test_more_episodes_include_the_fewer_ones(covers):
     more = protocol.choose([HOME], protocol, 2, SEED)
     assert more[: len(episodes)] == episodes
     assert len(more) == 2 * len(episodes) == len(set(more))
+
+
+def test_the_curve_over_the_time_covered_is_drawn(covers, tmp_path):
+    pytest.importorskip("matplotlib")
+    protocol, episodes = covers
+    protocol = protocol.changed({"done": {"total_steps": 500}})
+    records = fly(protocol, episodes[:4], open_policy("hover", {}))
+    draw_plots(tmp_path, protocol, "hover", records)
+    assert (tmp_path / "plots" / "recovered.png").read_bytes().startswith(b"\x89PNG")

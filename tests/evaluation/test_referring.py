@@ -4,17 +4,22 @@ import numpy as np
 import pytest
 
 from eyas.envs.config import EnvConfig
+from eyas.evaluation import from_above
 from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import EpisodeSpec, Place
 from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.look_alikes import CASES, COLOURS, case_of
 from eyas.evaluation.neighbours import CLOSE, COMPANY
+from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.protocols.crowd import switches
 from eyas.evaluation.protocols.referring import ReferringScenario
+from eyas.evaluation.scenario import Told
+from eyas.evaluation.sight import subjects
 from eyas.targets.colour_names import COLOUR_NAMES, colour_distances
+from eyas.targets.grammar.attributes import ATTRIBUTES, attributes_of
 from eyas.targets.grammar.claims import Claim, fits
 from eyas.targets.grammar.in_view import BodyWord
 from eyas.targets.grammar.naming import PhraseKind
@@ -121,6 +126,22 @@ def test_variants_of_an_episode_begin_alike_and_starts_repeat():
         assert again.staged[later].phrases == group.staged[row].phrases
 
 
+def test_what_can_be_seen_is_measured_above_the_target(monkeypatch):
+    specs, _ = group_of([FIRST, FIRST + 1])
+    protocol = PROTOCOL.changed({"done": {"total_steps": 640}})
+    middles = []
+
+    def looked(simulation, *others):
+        away = simulation.snapshot.targets.centre - simulation.snapshot.episodes.view_centre
+        middles.append(np.hypot(*away[:, :2].T))
+        return subjects(simulation, *others)
+
+    monkeypatch.setattr("eyas.evaluation.episode_batch.subjects", looked)
+    from_above._seen(specs, protocol, 0.128)
+    assert len(middles) == 10
+    assert np.max(middles) < 2.0
+
+
 def test_no_parked_car_has_a_colour_of_look_alikes():
     taxi = (0.93, 0.70, 0.08)
     distances = np.sqrt(colour_distances(np.array([*PARKED, taxi])))
@@ -173,6 +194,44 @@ def test_who_does_not_listen_has_no_language_gap():
         assert gap(figures) == 0.0
         for one, two in zip(figures["right"], figures["none"], strict=True):
             assert one["success_right"] == two["success_none"]
+
+
+def test_words_without_pictures_are_of_little_use():
+    figures = flown("own_policies:WordsOnly", range(FIRST, FIRST + 13), SHORT)
+    assert sum(one["success_right"] for one in figures["right"]) <= 6
+
+
+def test_a_network_may_have_the_attributes_as_an_input(tmp_path):
+    pytest.importorskip("onnxruntime")
+    onnx = pytest.importorskip("onnx")
+    helper, kind = onnx.helper, onnx.TensorProto
+    weights = np.zeros((len(ATTRIBUTES), 7), np.float32)
+    weights[ATTRIBUTES.index("colour_said"), 2] = 1.0  # flies to the left if a colour is said
+    biases = np.eye(7, dtype=np.float32)[6] * 0.5  # else hovers
+    graph = helper.make_graph(
+        [helper.make_node("Gemm", ["attributes", "weights", "biases"], ["logits"])],
+        "listener",
+        [
+            helper.make_tensor_value_info("image", kind.UINT8, ["n", 3, 12, 16]),
+            helper.make_tensor_value_info("attributes", kind.FLOAT, ["n", len(ATTRIBUTES)]),
+        ],
+        [helper.make_tensor_value_info("logits", kind.FLOAT, ["n", 7])],
+        [onnx.numpy_helper.from_array(each, name)
+         for each, name in ((weights, "weights"), (biases, "biases"))],
+    )  # fmt: skip
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8)
+    entry = model.metadata_props.add()
+    entry.key = "eyas"
+    entry.value = '{"observation": {"width": 16, "height": 12, "layout": "chw"}}'
+    onnx.save(model, tmp_path / "listener.onnx")
+    policy = open_policy(str(tmp_path / "listener.onnx"), {})
+    assert policy.told == {"attributes"}
+    claims = [None, Claim(BodyWord.CAR), Claim(BodyWord.CAR, "red")]
+    said = np.stack([attributes_of(claim) for claim in claims])
+    policy.begin(Start(np.arange(3), lambda: np.zeros((3, 4), np.int32), Told(("",) * 3, said)))
+    picture = np.zeros((3, 3, 12, 16), np.uint8)
+    sight = PolicyInput(picture, np.ones(3, np.bool_), None, None, None)
+    assert policy.act(sight).actions.tolist() == [6, 6, 2]
 
 
 @pytest.mark.slow

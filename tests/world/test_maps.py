@@ -48,7 +48,7 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     lost = {
         drivers_file(drivers)
         for drivers, maps in {
-            "hiding": ("citystreet", "downtown", "village"),
+            "hiding": ("citystreet", "village"),
             "evading": ("citystreet", "downtown"),
         }.items()
         if name.removesuffix("-bare") in maps

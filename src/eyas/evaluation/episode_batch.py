@@ -33,6 +33,9 @@ Gathered = TypeVar("Gathered")
 _ROOF = 1.3
 """Height of a car's roof, which is seen longest [m]."""
 
+_EYE = 22.0
+"""Height of the protocols' drones [m]."""
+
 
 class EpisodeGroup(NamedTuple):
     """The episodes with the same settings but for their start directions."""
@@ -166,20 +169,20 @@ class EpisodeBatch:
 
         return self.gathered(above)
 
-    def in_sight(self, row: int, places: NDArray[np.float64]) -> Mask:
-        """Return whether nothing that stands hides cars at places from a drone now, shape (P,).
+    def is_open(self, row: int, places: NDArray[np.float64]) -> Mask:
+        """Return whether nothing stands over cars at places around a drone, shape (P,).
 
         Args:
             row: Number of the drone.
             places: East and north [m], shape (P, 2).
         """
-        group = next(group for group in self.groups if row in group.rows)
-        simulation = group.simulation
-        terrain, eye = simulation.scene.terrain, simulation.snapshot.trackers.position
-        roof = terrain.floor + reliefs(terrain, places) + _ROOF
-        points = np.concatenate([places, roof[:, None]], axis=1)
-        at = int(np.flatnonzero(group.rows == row)[0])
-        seen: Mask = simulation.clearance.in_sight(eye[at : at + 1], points[None])[0]
+        simulation = next(group for group in self.groups if row in group.rows).simulation
+        terrain = simulation.scene.terrain
+        ground = terrain.floor + reliefs(terrain, places)
+        roofs, eyes = (
+            np.concatenate([places, (ground + height)[:, None]], axis=1) for height in (_ROOF, _EYE)
+        )
+        seen: Mask = simulation.clearance.in_sight(eyes, roofs[:, None])[:, 0]
         return seen
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:

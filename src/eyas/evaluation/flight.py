@@ -84,7 +84,7 @@ class BatchFlight:
         self._delay.begin(seeds.tolist())
         words = self._scenario.told()
         self._batch.tell(words)
-        start = Start(seeds, self._boxes, words, self._batch.roads, self._batch.in_sight)
+        start = Start(seeds, self._boxes, words, self._batch.roads, self._batch.is_open)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):

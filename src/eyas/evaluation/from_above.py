@@ -3,6 +3,7 @@
 Kept in the cache, since it depends on the episodes only.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.clock import PHYSICS_STEP
@@ -19,6 +21,7 @@ from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import episode_groups
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.sight import visible_shares
+from eyas.sim.simulation import Simulation
 
 __all__ = ["FromAbove", "seen_from_above"]
 
@@ -61,8 +64,20 @@ def _seen(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) ->
     shape = len(episodes), looks
     seen = FromAbove(np.zeros(shape), np.zeros((*shape, 2)))
     for group in episode_groups(episodes, protocol, EnvConfig()):
+        if protocol.stage is not None:
+            _look_at_targets(group.simulation)
         for look in range(looks):
             group.simulation.carry(ticks)
             seen.shares[group.rows, look] = visible_shares(group.subjects()[0])
             seen.places[group.rows, look] = group.simulation.snapshot.targets.centre[:, :2]
     return seen
+
+
+def _look_at_targets(simulation: Simulation) -> None:
+    """Let drones that are carried by their targets have them in the middle, where a protocol has
+    staged starts beside them.
+    """
+    pitch, offset = simulation.config.start.pitch, simulation.snapshot.episodes.start_offset
+    assert isinstance(pitch, float), "staged starts have one pitch"
+    back = exact.tan(abs(0.5 * math.pi - pitch)) * offset[:, 2]
+    offset[:, 0], offset[:, 1] = simulation.snapshot.targets.ahead - back, 0.0

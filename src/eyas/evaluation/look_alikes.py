@@ -190,14 +190,14 @@ def _crowded_pose(
     actors, _ = simulation.actors_around(tracker)
     here = np.flatnonzero(actors.present[0])
     place = actors.position[0, here, :2]
-    near = np.square(place[:, None] - place).sum(axis=2) < _CROWDED**2
+    near = np.square(place[:, None] - place).sum(axis=2) < _CROWDED * _CROWDED
     crowded = np.flatnonzero(near.sum(axis=1) >= count)
     if not len(crowded):
         return None
     middle = here[int(rng.choice(crowded))]
     shift = rng.uniform(-4.0, 4.0, 2)
     heading = float(actors.yaw[0, middle]) + 0.5 * math.pi * int(rng.integers(4))
-    back = HEIGHT * math.tan(0.5 * math.pi - PITCH)
+    back = HEIGHT * exact.tan(0.5 * math.pi - PITCH)
     east, north, up = actors.position[0, middle].tolist()
     (cosine,), (sine,) = (f(np.array([heading])) for f in (exact.cos, exact.sin))
     east, north = east + shift[0] - back * cosine, north + shift[1] - back * sine

@@ -52,11 +52,11 @@ def nearest_to_middle(simulation: Simulation) -> NDArray[np.int64]:
     time = simulation.snapshot.episodes.tick.astype(np.float64) * PHYSICS_STEP
     simulation.traffic.at(time, actors)
     away = actors.position - cameras.position[:, None]
-    forward, left, up = np.moveaxis(np.einsum("kad,kdc->kac", away, cameras.rotation), -1, 0)
+    forward, left, up = np.moveaxis(exact.product(away, cameras.rotation), -1, 0)
     reach = np.maximum(forward, 1e-6) * exact.tan(0.5 * cameras.field_of_view)[:, None]
     across, down = left / reach, up / reach
     inside = (forward > 0.0) & (np.abs(across) < 1.0) & actors.present
     inside &= np.abs(down) < camera.height / camera.width
-    distance = np.where(inside, np.hypot(across, down), np.inf)
+    distance = np.where(inside, exact.hypot(across, down), np.inf)
     nearest: NDArray[np.int64] = np.where(inside.any(axis=1), distance.argmin(axis=1), -1)
     return nearest

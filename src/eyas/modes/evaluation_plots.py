@@ -9,6 +9,7 @@ import numpy as np
 from eyas.core.errors import MissingExtraError
 from eyas.core.files import atomic_path, refusals
 from eyas.evaluation.episode import Place
+from eyas.evaluation.losses import COVERED
 from eyas.evaluation.meter import TRACE_PERIOD
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
@@ -41,7 +42,8 @@ def require_matplotlib() -> Any:  # noqa: ANN401  # a module
 def draw_plots(
     folder: Path, protocol: Protocol, title: str, records: Sequence[EpisodeRecord]
 ) -> None:
-    """Write `plots/reward.png`, `lost.png` and, for each map, `flights-<map>.png`.
+    """Write `plots/reward.png`, `lost.png`, for each map `flights-<map>.png`, and `recovered.png`
+    where cameras were covered.
 
     Args:
         folder: Folder of the evaluation.
@@ -59,6 +61,9 @@ def draw_plots(
     horizon = protocol.steps * protocol.period
     save_plot(plots / "reward.png", title, lambda axes: _reward(axes, records, horizon))
     save_plot(plots / "lost.png", title, lambda axes: _lost(axes, records, horizon))
+    covered = [record for record in records if record.variant in COVERED]
+    if covered:
+        save_plot(plots / "recovered.png", title, lambda axes: _recovered(axes, covered))
     for name in sorted({record.map for record in records}):
         own = [record for record in records if record.map == name][:_FLIGHTS]
         save_plot(
@@ -113,6 +118,24 @@ def _lost(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None: 
         axes.legend(frameon=False, loc="best")
     axes.set(xlabel="time since the target was found [s]", ylabel="share not lost yet")
     axes.set(xlim=(0, horizon), ylim=(-0.02, 1.02))
+
+
+def _recovered(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401
+    """Draw how often the target is recovered against the time for which it was lost."""
+    means = {
+        length: float(np.mean(own))
+        for name, length in COVERED.items()
+        if (own := _of(name, records))
+    }
+    axes.plot([*means], [*means.values()], "o-", color=_INK, lw=2, clip_on=False)
+    axes.set(xlabel="time covered [s]", ylabel="recovered within 15 s")
+    axes.set(xlim=(0, max(COVERED.values())), ylim=(-0.02, 1.02))
+
+
+def _of(variant: str, records: Sequence[EpisodeRecord]) -> list[float]:
+    """Return the share that is recovered in each episode of a variant."""
+    own = [record.figures["recovered"] for record in records if record.variant == variant]
+    return [share for share in own if share is not None]
 
 
 def _flights(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401

@@ -1,14 +1,15 @@
 """A servo that knows what it is told: it looks for the colour, the size, the place, the motion or
-the neighbour that the attributes name, and flies to it. Its twin looks for what is most colourful.
+the neighbour that the attributes name, and flies to it. Its twin takes the colourful thing of a
+car's shape that is nearest to the middle.
 """
 
-import math
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.evaluation.policies.blobs import Blobs, blobs_in, coloured, painted, salient
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.evaluation.steering import ground_offset, ground_width, towards
@@ -37,6 +38,9 @@ _SHAPES: Final = {
     BodyWord.MOTORCYCLE: (1.6, 0.6),
 }
 """Length and width of what is painted, as blobs are measured [m]: of a truck, the cab."""
+
+_CAR_LIKE: Final = 0.9
+"""Largest difference of a blob's shape from a car's, as of `_unlike`: a van is one, a roof not."""
 
 _WATCHED: Final = 1.0
 """How long it watches what moves, if the words are about that [s]."""
@@ -85,8 +89,7 @@ class AttributeServo:
 
     Args:
         changes: Changes of `env`.
-        listens: Whether it uses attributes; False: it takes what is most colourful, and is the
-            same with any words.
+        listens: Whether it uses attributes; False: it does the same with any words.
     """
 
     sampled = False
@@ -135,12 +138,15 @@ class AttributeServo:
         if drone.track is not None:
             _follow(drone, self._blobs(drone, picture), period)
         elif not self._listens:
-            blobs = blobs_in(salient(picture), self._scale)
-            if len(blobs.length):
-                column, row = blobs.place[0].astype(int)
-                near = picture[max(row - 2, 0) : row + 3, max(column - 2, 0) : column + 3]
-                drone.colour = near.reshape(-1, 3).mean(axis=0)
-                drone.track = _Track(self._places(blobs)[0], np.zeros(2), 0.0)
+            blobs = self._painted(None, picture)
+            cars = np.flatnonzero(_unlike(blobs, BodyWord.CAR) < _CAR_LIKE)
+            if len(cars):
+                places = self._places(blobs)
+                best = cars[int(_lengths(places[cars]).argmin())]
+                column, row = blobs.place[best].astype(int)
+                near = picture[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7]
+                drone.colour = near[salient(near)].mean(axis=0)
+                drone.track = _Track(places[best], np.zeros(2), 0.0)
         elif drone.claim is not None:
             blobs = self._blobs(drone, picture)
             if len(blobs.length):
@@ -197,22 +203,27 @@ class AttributeServo:
         ):
             away = places - middle
             line = np.array([-axis[1], -axis[0]])  # of columns and rows, ahead and left
-            along = np.abs(away @ line)
-            across = np.abs(away @ np.array([-line[1], line[0]]))
+            along = np.abs(away[:, 0] * line[0] + away[:, 1] * line[1])
+            across = np.abs(away[:, 1] * line[0] - away[:, 0] * line[1])
             gap = 0.5 * (length + blobs.length)
             if claim.bearing is Bearing.BESIDE:
                 off = np.maximum(along - 0.4 * gap, 0.0) + np.abs(across - 3.3)
             else:
                 off = np.maximum(along - gap - 8.0, 0.0) + np.maximum(gap - along, 0.0) + across
-            same = np.hypot(away[:, 0], away[:, 1]) < 1.0
+            same = _lengths(away) < 1.0
             best = np.minimum(best, np.where(same, np.inf, 0.4 * off + unlike))
         return np.where(np.isinf(best), 10.0, best)
+
+
+def _lengths(vectors: Floats) -> Floats:
+    lengths: Floats = exact.hypot(vectors[:, 0], vectors[:, 1])
+    return lengths
 
 
 def _unlike(blobs: Blobs, body: BodyWord) -> Floats:
     """Return how much the shapes of blobs differ from that of a body, shape (B,)."""
     length, width = _SHAPES.get(body, _SHAPES[BodyWord.CAR])
-    long, wide = np.abs(np.log(blobs.length / length)), np.abs(np.log(blobs.width / width))
+    long, wide = np.abs(exact.log(blobs.length / length)), np.abs(exact.log(blobs.width / width))
     unlike: Floats = long + 0.5 * wide
     return unlike
 
@@ -223,7 +234,7 @@ def _follow(drone: _Drone, blobs: Blobs, period: float) -> None:
     place, velocity, unseen = drone.track
     expected = place + period * velocity
     places = ground_offset(blobs.place[:, 0], blobs.place[:, 1], _SIZE) + drone.own
-    away = np.hypot(*(places - expected).T) if len(places) else np.full(1, np.inf)
+    away = _lengths(places - expected) if len(places) else np.full(1, np.inf)
     best = int(away.argmin())
     if away[best] > _GATE + _WIDER * unseen:
         drone.track = _Track(expected, velocity, unseen + period)
@@ -249,7 +260,7 @@ def _ways(watched: list[tuple[float, Floats]]) -> list[Floats]:
         for _, places in reversed(watched[:-1]):
             if not len(places):
                 continue
-            away = np.hypot(*(places - way[-1]).T)
+            away = _lengths(places - way[-1])
             way.append(places[int(away.argmin())] if away.min() < 2.5 else way[-1])
         way.reverse()
         ways.append(np.array([way[0], way[len(way) // 2], way[-1]]))
@@ -259,8 +270,8 @@ def _ways(watched: list[tuple[float, Floats]]) -> list[Floats]:
 def _misdoing(doing: Doing, way: Floats) -> float:
     """Return how badly a way of one second is what a claim says."""
     first, second = way[1] - way[0], way[2] - way[1]
-    speed = math.hypot(*(way[2] - way[0])) / _WATCHED
-    turn = math.atan2(first[0] * second[1] - first[1] * second[0], float(first @ second))
+    speed = exact.hypot(*(way[2] - way[0])) / _WATCHED
+    turn = exact.atan2(first[0] * second[1] - first[1] * second[0], exact.dot(first, second))
     stands, moves = speed < _SPEEDS[0], speed > _SPEEDS[1]
     wrong = {
         Doing.STANDING: not stands,
@@ -278,5 +289,5 @@ def attribute_servo(changes: Mapping[str, Any]) -> AttributeServo:
 
 
 def salient_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that takes what is most colourful."""
+    """Return the servo that takes a colourful car near the middle."""
     return AttributeServo(changes, listens=False)

@@ -6,6 +6,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import MissingExtraError
 from eyas.targets.colour_names import COLOUR_NAMES
 
@@ -111,7 +112,7 @@ def _from_names() -> Floats:
         paint = np.add(own, _VEIL)
         away = np.abs(seen / bright[..., None] - paint / paint.sum()).sum(axis=-1)
         light = bright / sum(own)
-        beyond = np.log(light / np.clip(light, *_LIGHT))
+        beyond = exact.log(light / np.clip(light, *_LIGHT))
         found.append(away + _DARKER * np.abs(beyond))
     return np.array(found)
 
@@ -163,7 +164,7 @@ def blobs_in(mask: Mask, scale: float, each: float | None = None, *, apart: bool
             if len(part) >= _LEAST:
                 middle, axis, long, short = _shape(part[:, :2], scale)
                 fits = _SIZES[0] <= long <= _SIZES[1] and short <= _WIDEST
-                if fits and part[:, 2].sum() * scale**2 >= _FILLED * long * short:
+                if fits and part[:, 2].sum() * scale * scale >= _FILLED * long * short:
                     found.append((len(part), *middle, long, short, *axis))
     found.sort(reverse=True)
     table = np.array(found, np.float64).reshape(-1, 7)
@@ -172,11 +173,17 @@ def blobs_in(mask: Mask, scale: float, each: float | None = None, *, apart: bool
 
 def _shape(points: Floats, scale: float) -> tuple[Floats, Floats, float, float]:
     """Return middle and long axis of a blob [pixels], and its length and width [m]."""
-    spread = np.cov(points.T) + np.eye(2) / 12.0
-    values, vectors = np.linalg.eigh(spread)
+    middle = points.mean(axis=0)
+    away = points - middle
+    across, down = (np.square(away).sum(axis=0) / (len(points) - 1) + 1.0 / 12.0).tolist()
+    both = float(away.prod(axis=1).sum()) / (len(points) - 1)
+    half = 0.5 * float(exact.hypot(across - down, 2.0 * both))
+    angle = 0.5 * float(exact.atan2(2.0 * both, across - down))
+    axis = np.array([exact.cos(angle), exact.sin(angle)])
     # A bar of length L has a variance of L^2 / 12.
+    values = np.array([0.5 * (across + down) - half, 0.5 * (across + down) + half])
     short, long = (np.sqrt(12.0 * np.maximum(values, 0.0)) * scale).tolist()
-    return points.mean(axis=0), vectors[:, 1], long, short
+    return middle, axis, long, short
 
 
 def _divided(points: Floats, scale: float, each: float | None) -> list[Floats]:
@@ -190,7 +197,7 @@ def _divided(points: Floats, scale: float, each: float | None) -> list[Floats]:
     count = round((long + _SPACING) / (each + _SPACING))
     if long < _QUEUE * each or count < 2:
         return [points]
-    along = (points[:, :2] - middle) @ axis
+    along = ((points[:, :2] - middle) * axis).sum(axis=1)
     limits = np.linspace(along.min(), along.max(), count + 1)[1:-1]
     part = np.searchsorted(limits, along)
     return [points[part == k] for k in range(count)]

@@ -1,6 +1,6 @@
 """The lanes of a map as points with successors, on which hidden vehicles are followed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +60,17 @@ class Lanes:
         )
         self.graph = LaneGraph(place, heading, speed, np.concatenate(after))
         self._spans = [spans[id(roads)] for roads in networks]
+
+    def told(self, tell: Callable[[int, Floats], NDArray[np.bool_]]) -> NDArray[np.bool_]:
+        """Return what is told of all points, shape (P,).
+
+        Args:
+            tell: Function of the number of a drone and of places around it, shape (M, 2).
+        """
+        answer = np.zeros(len(self.graph.place), np.bool_)
+        for span, row in {(one.start, one.stop): k for k, one in enumerate(self._spans)}.items():
+            answer[slice(*span)] = tell(row, self.graph.place[slice(*span)])
+        return answer
 
     def near(self, row: int, place: Floats, heading: float | None, reach: float = 8.0) -> Integers:
         """Return the points of lanes where a vehicle may be, the nearest first; maybe none.
@@ -145,5 +156,5 @@ def _next_lanes(network: RoadNetwork, lane: int) -> list[int]:
 def _turn(one: Floats, other: Floats) -> float:
     """Return the angle between the end of a line and the begin of another [rad]."""
     out, back = one[-1] - one[-2], other[1] - other[0]
-    cross, dot = out[0] * back[1] - out[1] * back[0], out @ back
-    return abs(float(exact.atan2(cross, dot)))
+    cross = out[0] * back[1] - out[1] * back[0]
+    return abs(float(exact.atan2(cross, exact.dot(out, back))))

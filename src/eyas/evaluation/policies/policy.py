@@ -32,7 +32,7 @@ BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
 """Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
 
 
-def _all_in_sight(row: int, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _all_open(row: int, places: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.ones(len(places), np.bool_)
 
 
@@ -49,9 +49,9 @@ class Start(NamedTuple):
     """What is told in words; None where the protocol has no words."""
     roads: Callable[[], list[RoadNetwork]] = list
     """Returns the roads around each drone, N, one object for those on the same map: for oracles."""
-    in_sight: Callable[[int, NDArray[np.float64]], NDArray[np.bool_]] = _all_in_sight
-    """Returns whether nothing that stands hides cars at places, east and north [m], shape (P, 2),
-    from a drone now, shape (P,): for oracles."""
+    is_open: Callable[[int, NDArray[np.float64]], NDArray[np.bool_]] = _all_open
+    """Returns whether nothing stands over places around a drone, shape (P,), which are east and
+    north [m], shape (P, 2): for oracles."""
 
 
 class PolicyInput(NamedTuple):

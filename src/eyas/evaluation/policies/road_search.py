@@ -44,6 +44,12 @@ _RANGE = 60.0
 _CHANGE = 0.25
 """How often the speed of a guess changes [1/s]."""
 
+_STANDING = 3
+"""One of so many guesses stands where the target vanished: it may have stopped out of sight."""
+
+_LONGEST = 40
+"""Most points of a lane that something hides: longer than any tunnel."""
+
 _PERIOD = 0.064
 """Time between two moves of the guesses [s]."""
 
@@ -56,7 +62,9 @@ class RoadSearch:
         count = len(start.seeds)
         self._ahead = AlongLanes()
         self._ahead.begin(start)
-        self._lanes, self._in_sight = Lanes(start.roads()), start.in_sight
+        self._lanes = Lanes(start.roads())
+        self._open = self._lanes.told(start.is_open)
+        self._exit = self._exits()
         self._random = [stream(seed, "search") for seed in start.seeds.tolist()]
         shape = count, _GUESSES
         self._point, self._past = np.full(shape, -1), np.zeros(shape)
@@ -99,6 +107,8 @@ class RoadSearch:
         spread = 1.0 + 0.2 * (random.random(_GUESSES) - 0.5)
         limit = lanes.graph.speed[self._point[row]]
         self._speed[row] = speed * spread if known else limit * random.random(_GUESSES)
+        if known:
+            self._speed[row, ::_STANDING] = 0.0
 
     def _move(self, row: int, time: float) -> None:
         """Let the guesses drive on; at junctions each takes one of the ways."""
@@ -118,7 +128,8 @@ class RoadSearch:
 
     def _look(self, row: int, clue: Clue) -> None:
         """Doubt the guesses that are in view, and choose where to look next."""
-        weight, place = self._weight[row], self._lanes.graph.place[self._point[row]]
+        places = self._lanes.graph.place
+        weight, place = self._weight[row], places[self._point[row]]
         if weight.max() <= 0.0:
             return
         offset = place - clue.middle[row]
@@ -127,17 +138,32 @@ class RoadSearch:
             ahead = cosine * offset[:, 0] + sine * offset[:, 1]
             left = cosine * offset[:, 1] - sine * offset[:, 0]
             inside = (np.abs(ahead) < _VIEW[0]) & (np.abs(left) < _VIEW[1])
-            inside[inside] = self._in_sight(row, place[inside])
+            inside &= self._open[self._point[row]]
             weight[inside] *= 1.0 - _PERIOD / _PATIENCE
             weight[:] = np.maximum(weight / weight.max(), 1e-4)
             if weight.sum() < _FEWEST:
                 self._resample(row)
                 return
+        # Who is hidden comes out where his lane does: there one has to wait.
+        place = places[self._exit[self._point[row]]]
+        offset = place - clue.middle[row]
         east, north = (np.square(side[:, None] - side) for side in place.T)
-        close = np.maximum(1.0 - (east + north) / (6.0 * _NEARBY**2), 0.0)  # cubed: nearly a bell
+        close = np.maximum(
+            1.0 - (east + north) / (6.0 * _NEARBY * _NEARBY), 0.0
+        )  # cubed: nearly a bell
         dense = (weight * close * close * close).sum(axis=1)
         worth = dense / (1.0 + exact.hypot(offset[:, 0], offset[:, 1]) / _RANGE)
         self._goal[row] = place[int(worth.argmax())]
+
+    def _exits(self) -> NDArray[np.int64]:
+        """Return where a target that is at each point is seen: there, or where its lane comes out
+        of what hides it, shape (P,).
+        """
+        onward = self._lanes.graph.after[:, 0]
+        out = np.arange(len(onward))
+        for _ in range(_LONGEST):
+            out = np.where(self._open[out], out, onward[out])
+        return out
 
     def _resample(self, row: int) -> None:
         """Take guesses again in proportion to their weights: few are left that are likely."""

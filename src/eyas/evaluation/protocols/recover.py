@@ -12,6 +12,7 @@ RECOVER = Protocol(
     "recover",
     "90 s: the target is hidden one to three times, for 4 to 12 s each, by what stands there",
     {"traffic": {"demand": "keep_alive", "drivers": "hiding"}, "done": _LENGTH},
+    maps=("village",),
     columns=("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr", "crashed"),
     rank="recovered",
     choose=with_losses,

@@ -20,7 +20,6 @@ from eyas.evaluation.delay import PROFILES
 from eyas.evaluation.entry import Entry
 from eyas.evaluation.episode import EpisodeSpec, Place
 from eyas.evaluation.plan import EvaluationPlan, Stamp, batches, fly_batch, opened, stamp
-from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.shipped import shipped_names
 from eyas.evaluation.policies.table import BUILT_IN, FILES
 from eyas.evaluation.record import EpisodeRecord
@@ -143,7 +142,6 @@ def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> Evaluat
     if not trust and not (plan.latency in PROFILES or _is_number(plan.latency)):
         raise _UnverifiableError(f"--latency {plan.latency!r} is a file: --trust reads it")
     plan = plan.model_copy(update={"policy": _policy_of(folder, plan.policy, trust=trust)})
-    _refuse_code(plan, env_config(plan.env), trust=trust)
     here = stamp(plan)
     if here.policy != made.policy:
         raise _UnverifiableError(f"the policy's file is another: {here.policy}, not {made.policy}")

@@ -130,5 +130,6 @@ def listing() -> str:
 def write_expected(name: str, found: Expected) -> None:
     """Make figures those of the documents, see `tools/write_tables.py`."""
     path = Path(__file__).parent / "expected" / f"{name}.json"
+    path.parent.mkdir(exist_ok=True)
     content = json.dumps(found.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
     write_atomic(path, content.encode())

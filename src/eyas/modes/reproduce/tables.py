@@ -90,10 +90,15 @@ def _rows(
 _BY_DAY = tuple((name, "day") for name in ("citystreet", "downtown", "village"))
 _WEATHERS = tuple(("citystreet", name) for name in ("day", "night", "foggy", "snow"))
 _ORACLES = ("follow", "sighted", "road-graph", "constant-velocity")
+_LASTING = ("hover", *_ORACLES, "robust", "long")
 _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
+_RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
+_BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
+_CROWD = ("kept", "kept_share", "identity_switches", "tsr")
+_TEAM = ("team_seen", "alone_seen", "handed_over", "handover_time")
 
 
-def _tables() -> Iterator[Table]:
+def _short_flights() -> Iterator[Table]:
     yield Table(
         "baselines",
         "evaluation.md",
@@ -115,7 +120,79 @@ def _tables() -> Iterator[Table]:
         _PAPER,
         tuple(_rows(("robust",), _WEATHERS, seeds=THREE_SETS)),
     )
+    yield Table(
+        "standard",
+        "protocols/standard.md",
+        "`standard`",
+        _PAPER[1:],
+        tuple(
+            _rows(
+                ("hover", "sighted", "constant-velocity", "fast", "robust", "anywhere"),
+                _BY_DAY,
+                protocol="standard",
+            )
+        ),
+    )
+    yield Table(
+        "unseen",
+        "protocols/unseen.md",
+        "`unseen`, six towns by day",
+        _PAPER[1:],
+        tuple(
+            Row(f"`{name}`", EvaluationPlan(policy=name, protocol="unseen"))
+            for name in ("hover", "sighted", "constant-velocity", "fast", "robust", "anywhere")
+        ),
+    )
 
 
-TABLES: Mapping[str, Table] = {table.name: table for table in _tables()}
+def _long_flights() -> Iterator[Table]:
+    for name, policies, columns, page in (
+        ("long", _LASTING, ("kept", "tsr", "flawless", "losses"), "lasting"),
+        (
+            "distractor",
+            ("hover", "sighted", "robust", "long"),
+            ("kept", "tsr", "losses"),
+            "lasting",
+        ),
+        ("recover", _LASTING, _RECOVERED, "recover"),
+        ("recover-camera", _LASTING, _BY_LENGTH, "recover"),
+        ("evade", _LASTING, ("kept", "held", "losses", "tsr"), "evade"),
+        ("crowd", ("hover", "servo", "sighted", "robust"), _CROWD, "crowd"),
+    ):
+        yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
+    yield Table(
+        "recover-city",
+        "protocols/recover.md",
+        "`recover` in citystreet",
+        _RECOVERED,
+        _flown("recover", ("sighted", "constant-velocity", "robust"), maps=("citystreet",)),
+    )
+    yield Table(
+        "referring",
+        "protocols/referring.md",
+        "`referring`, seeds that no baseline was tuned on",
+        ("language_gap", "success_right", "success_other", "chosen"),
+        _flown(
+            "referring",
+            ("hover", "follow", "attribute-servo", "salient-servo"),
+            seeds=THREE_SETS[1:2],
+        ),
+    )
+    yield Table(
+        "pair",
+        "protocols/pair.md",
+        "`pair`",
+        _TEAM,
+        _flown("pair", ("hover", "follow", "relay", "sighted", "robust"), episodes=13),
+    )
+
+
+def _flown(protocol: str, policies: Sequence[str], **common: object) -> tuple[Row, ...]:
+    return tuple(
+        Row(f"`{policy}`", EvaluationPlan(policy=policy, protocol=protocol, **common))
+        for policy in policies
+    )
+
+
+TABLES: Mapping[str, Table] = {table.name: table for table in (*_short_flights(), *_long_flights())}
 """All tables by name."""
