@@ -149,19 +149,11 @@ def _short_flights() -> Iterator[Table]:
 def _long_flights() -> Iterator[Table]:
     for name, policies, columns, page in (
         ("long", _KEEPERS, ("kept", "tsr", "flawless", "losses"), "lasting"),
-        ("distractor", _KEEPERS, ("kept", "tsr", "losses"), "lasting"),
         ("recover", _LASTING, _RECOVERED, "recover"),
         ("recover-camera", _SEERS, _BY_LENGTH, "recover"),
         ("evade", _SEERS, ("kept", "held", "losses", "tsr"), "evade"),
     ):
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
-    yield Table(
-        "crowd",
-        "protocols/crowd.md",
-        "`crowd`",
-        ("kept", "kept_share", "identity_switches", "tsr"),
-        _flown("crowd", ("hover", "servo", "sighted", "robust"), episodes=10),
-    )
     yield Table(
         "recover-city",
         "protocols/recover.md",
