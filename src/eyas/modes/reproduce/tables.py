@@ -94,9 +94,7 @@ _LASTING = ("hover", *_ORACLES, "robust", "long")
 _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
 _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
-_KEEPERS = ("hover", "sighted", "robust", "long")
 _SEERS = ("hover", "sighted", "constant-velocity", "robust")
-_TEAM = ("team_seen", "alone_seen", "handed_over", "handover_time")
 
 
 def _short_flights() -> Iterator[Table]:
@@ -148,19 +146,11 @@ def _short_flights() -> Iterator[Table]:
 
 def _long_flights() -> Iterator[Table]:
     for name, policies, columns, page in (
-        ("long", _KEEPERS, ("kept", "tsr", "flawless", "losses"), "lasting"),
         ("recover", _LASTING, _RECOVERED, "recover"),
         ("recover-camera", _SEERS, _BY_LENGTH, "recover"),
         ("evade", _SEERS, ("kept", "held", "losses", "tsr"), "evade"),
     ):
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
-    yield Table(
-        "recover-city",
-        "protocols/recover.md",
-        "`recover` in citystreet",
-        _RECOVERED,
-        _flown("recover", _SEERS, maps=("citystreet",), episodes=12),
-    )
     yield Table(
         "referring",
         "protocols/referring.md",
@@ -171,13 +161,6 @@ def _long_flights() -> Iterator[Table]:
             ("hover", "follow", "attribute-servo"),
             seeds=THREE_SETS[1:2],
         ),
-    )
-    yield Table(
-        "pair",
-        "protocols/pair.md",
-        "`pair`",
-        _TEAM,
-        _flown("pair", ("hover", "follow", "relay", "sighted", "robust"), episodes=10),
     )
 
 
