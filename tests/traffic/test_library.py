@@ -76,7 +76,7 @@ def copied(
     made = replace(wandering, provenance=origin)
     with monkeypatch.context() as elsewhere:
         elsewhere.setattr(library, "sumo_version", lambda _: "0.1.2")
-        elsewhere.setattr(library, "record", lambda *_: made)
+        elsewhere.setattr(library, "record", lambda *_, **__: made)
         find_recording(grid, CARS, duration=5.0)
     monkeypatch.setattr(library, "sumo_version", without_sumo)
     monkeypatch.setattr(library, "record", without_sumo)
@@ -114,7 +114,7 @@ def test_a_recording_is_used_where_the_cache_cannot_be_written(
 ):
     cache.parent.write_text("in the way")
     monkeypatch.setattr(library, "sumo_version", lambda _: "0.1.2")
-    monkeypatch.setattr(library, "record", lambda *_: wandering)
+    monkeypatch.setattr(library, "record", lambda *_, **__: wandering)
     assert to_bytes(find_recording(grid, CARS, duration=5.0)) == to_bytes(wandering)
     assert caplog.messages[-1].startswith("the recording is used but could not be cached: ")
 
