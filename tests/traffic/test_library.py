@@ -100,7 +100,7 @@ def test_a_recording_under_the_name_of_another_is_not_used(grid: RoadGraph, copi
     with pytest.raises(MissingExtraError):
         find_recording(grid, CARS.model_copy(update={"max_speed": 9.0}), duration=5.0)
     other = resolved(CARS.model_copy(update={"max_speed": 9.0}), CANONICAL_SEED)
-    copied.rename(library._cache_file(grid, other, 5.0))
+    copied.rename(library._cache_file(grid, other, 5.0, ()))
     with pytest.raises(MissingExtraError):
         find_recording(grid, CARS.model_copy(update={"max_speed": 9.0}), duration=5.0)
 
