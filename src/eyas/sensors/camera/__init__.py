@@ -1,4 +1,1 @@
-"""What a real camera does to the light that reaches it, from its lens to the link's far end.
-
-Each part has its settings beside its code, is off by default, and then does not exist.
-"""
+"""What a real camera makes of light: lens, shutter, imager, dirt, and the link of its pictures."""
