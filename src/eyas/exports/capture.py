@@ -47,6 +47,8 @@ class Moment(NamedTuple):
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
     parts: MovingParts | None = None
     """See `Frame.parts`; nothing changes it later."""
+    exposure: tuple[float, float] | None = None
+    """See `Frame.exposure`."""
 
 
 def moment_of(
@@ -72,7 +74,10 @@ def moment_of(
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
     told = seen.packets()[0][tracker, SENSOR_COLUMNS]
     moving = seen.parts(tracker, actors or seen.actors(tracker)) if parts else None
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told, moving)
+    exposed = seen.exposure
+    exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
+    now = simulation.snapshot.episodes
+    return Moment(shown, now, actors, whole_box, lidar, told, moving, exposure)
 
 
 def frame_of(
@@ -115,6 +120,7 @@ def frame_of(
         lidar=moment.lidar,
         sensors=moment.sensors,
         parts=moment.parts,
+        exposure=moment.exposure,
     )
 
 
