@@ -42,8 +42,8 @@ class DirtConfig(Config):
 class _Spots(NamedTuple):
     """What is on the lenses of N trackers. Places and radii are shares of the height and width."""
 
-    count: NDArray[np.int64]
-    """Shape (N,)."""
+    number: NDArray[np.int64]
+    """How many, shape (N,)."""
     row: NDArray[np.float64]
     """Shape (N, MOST), as all below."""
     column: NDArray[np.float64]
@@ -60,8 +60,8 @@ class _Spots(NamedTuple):
         rng: np.random.Generator,
     ) -> None:  # fmt: skip
         """Sample a pattern: places, radii and strengths."""
-        self.count[tracker] = round(sample(count, rng))
-        for k in range(int(self.count[tracker])):
+        self.number[tracker] = round(sample(count, rng))
+        for k in range(int(self.number[tracker])):
             self.row[tracker, k], self.column[tracker, k] = rng.random(2)
             self.radius[tracker, k] = sample(size, rng)
             self.strength[tracker, k] = sample(strength, rng)
@@ -103,7 +103,7 @@ class Dirt:
         """
         chosen = trackers.astype(np.int64)
         workers = min(thread_count(), len(chosen))
-        drops = bool(self._drops.count[chosen].any())
+        drops = bool(self._drops.number[chosen].any())
         before = np.empty((workers, *radiance.shape[1:]) if drops else (0, 0, 0, 0), np.float32)
         scatter = self._config.scatter
         _cover(workers, _Work(self._spots, self._drops, radiance, before, chosen, scatter))
@@ -128,16 +128,16 @@ def _cover(worker: int, workers: int, work: _Work) -> None:
     """Cover the pictures whose turn is this worker's."""
     for view in range(worker, len(work.trackers), workers):
         n, light = work.trackers[view], work.radiance[view]
-        if work.spots.count[n] > 0:
+        if work.spots.number[n] > 0:
             for channel in range(3):
                 veil = work.scatter * _mean_of(light[channel])
-                for k in range(work.spots.count[n]):
+                for k in range(work.spots.number[n]):
                     _dim(light[channel], work.spots, n, k, veil)
-        if work.drops.count[n] > 0:
+        if work.drops.number[n] > 0:
             for channel in range(3):
                 before = work.before[worker, channel]
                 _copy(light[channel], before)
-                for k in range(work.drops.count[n]):
+                for k in range(work.drops.number[n]):
                     _refract(light[channel], before, work.drops, n, k)
 
 
@@ -150,7 +150,7 @@ def _mean_of(plane: NDArray[np.float32]) -> float:
     mean = 0.0
     for k in range(WIDTH):
         mean += lane(total, k)
-    return mean / pixels
+    return float(mean / pixels)
 
 
 @kernel(inline=True)
@@ -214,11 +214,11 @@ def _blurred(plane: NDArray[np.float32], y: float, x: float, step: float) -> flo
             row = _reflected(i8(y + i * step), height)
             column = _reflected(i8(x + j * step), width)
             total += plane[row, column]
-    return total / 9.0
+    return float(total / 9.0)
 
 
 @kernel(inline=True)
 def _reflected(at: int, size: int) -> int:
-    """Return the pixel of an axis for any whole number, mirrored at both ends as often as needed."""
+    """Return the pixel of an axis for any whole number, mirrored at its ends."""
     at = abs(at) % (2 * size)
     return at if at < size else 2 * size - 1 - at
