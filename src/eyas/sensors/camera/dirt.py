@@ -34,8 +34,10 @@ class DirtConfig(Config):
     scatter: Annotated[float, Field(ge=0, le=1)] = 0.4
     """Share of what they take away that comes back as a veil of the whole picture's light."""
     drops: Count = 0
-    """Drops of water."""
-    drop_size: Size = Uniform(uniform=(0.03, 0.1))
+    """Drops of water in any weather."""
+    wet: Count = 8
+    """Drops that the heaviest rain or snow adds; lighter ones add as many fewer."""
+    drop_size: Size = Uniform(uniform=(0.04, 0.12))
     """Radius of each, as a share of the picture's height."""
 
 
@@ -56,11 +58,11 @@ class _Spots(NamedTuple):
         return cls(np.zeros(count, np.int64), *(np.zeros((count, MOST)) for _ in range(4)))
 
     def sample(
-        self, tracker: int, count: Variation, size: Variation, strength: Variation,
+        self, tracker: int, count: float, size: Variation, strength: Variation,
         rng: np.random.Generator,
     ) -> None:  # fmt: skip
         """Sample a pattern: places, radii and strengths."""
-        self.number[tracker] = round(sample(count, rng))
+        self.number[tracker] = round(count)
         for k in range(int(self.number[tracker])):
             self.row[tracker, k], self.column[tracker, k] = rng.random(2)
             self.radius[tracker, k] = sample(size, rng)
@@ -81,18 +83,23 @@ class Dirt:
 
     Args:
         config: The settings.
+        falling: Density of rain and snow, see `eyas.state.lighting.Lighting`.
         count: N.
     """
 
-    def __init__(self, config: DirtConfig, count: int) -> None:
-        self._config = config
+    def __init__(self, config: DirtConfig, falling: float, count: int) -> None:
+        self._config, self._falling = config, falling
         self._spots, self._drops = _Spots.create(count), _Spots.create(count)
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
         config = self._config
-        self._spots.sample(tracker, config.spots, config.spot_size, config.opacity, rng)
-        self._drops.sample(tracker, config.drops, config.drop_size, _SMALLER, rng)
+        spots, drops, wet = (
+            sample(count, rng) for count in (config.spots, config.drops, config.wet)
+        )
+        self._spots.sample(tracker, spots, config.spot_size, config.opacity, rng)
+        drops = min(drops + wet * self._falling, MOST)
+        self._drops.sample(tracker, drops, config.drop_size, _SMALLER, rng)
 
     def cover(self, radiance: NDArray[np.float32], trackers: NDArray[np.integer]) -> None:
         """Change the light of pictures in place.
@@ -200,7 +207,7 @@ def _refract(
             if away < 1.0:
                 seen = _blurred(before, y - smaller * down, x - smaller * across, smaller)
                 seen *= 1.0 - 0.6 * away * away
-                share = min(3.0 * (1.0 - away), 1.0)
+                share = 1.0 - away * away
                 plane[row, column] = f4(plane[row, column] * (1.0 - share) + share * seen)
 
 

@@ -46,6 +46,7 @@ MODELS: dict[ModelName, Values] = {
             "bits": 12,
         },
         "exposure": {"time": (1.0 / 8000.0, 1.0 / 60.0), "iso": (100.0, 3200.0)},
+        "dirt": {"spots": 0},
         "link": {"quality": 70},
     },
     "global-shutter": {
