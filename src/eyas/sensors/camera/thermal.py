@@ -4,6 +4,7 @@ Within that band and the temperatures of a street, radiance grows nearly linearl
 so pictures show temperatures: what is warm is white.
 """
 
+import math
 from typing import Annotated, NamedTuple, Self
 
 import numpy as np
@@ -252,7 +253,7 @@ def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, colu
     x = axes[0, 0] + left * axes[0, 1] + up * axes[0, 2]
     y = axes[1, 0] + left * axes[1, 1] + up * axes[1, 2]
     z = axes[2, 0] + left * axes[2, 1] + up * axes[2, 2]
-    stretch = (1.0 + left * left + up * up) ** 0.5
+    stretch = math.sqrt(1.0 + left * left + up * up)
     shown, away = frames.object_id[view, row, column], float(frames.depth[view, row, column])
     if shown < 0:
         clear = min(max(z / stretch / _SKY_AT_HORIZON, 0.0), 1.0)
