@@ -257,7 +257,7 @@ def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, colu
     shown, away = frames.object_id[view, row, column], float(frames.depth[view, row, column])
     if shown < 0:
         clear = min(max(z / stretch / _SKY_AT_HORIZON, 0.0), 1.0)
-        return scene.air + clear * (scene.sky - scene.air)
+        return float(scene.air + clear * (scene.sky - scene.air))
     right = frames.normal[view, row, column, 0] / 127.5 - 1.0
     down = frames.normal[view, row, column, 1] / 127.5 - 1.0
     ahead = frames.normal[view, row, column, 2] / 127.5 - 1.0
