@@ -64,7 +64,8 @@ class Stepper:
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
         mount = config.camera.mount
         self._mount = mount_of(mount or MountConfig())
-        self._kernels = step_of(tracker, CARRIED[mount is not None])
+        carried, velocities = CARRIED[mount is not None], config.camera.needs_velocities
+        self._kernels = step_of(tracker, carried, velocities=velocities)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible

@@ -1,0 +1,1 @@
+"""The camera as a device: shutter, shake, pixels that see changes."""
