@@ -60,7 +60,7 @@ class MountConfig(Config):
 
 
 class CameraConfig(Config):
-    """A pinhole camera without distortion."""
+    """A camera; by default a pinhole camera without distortion, noise or blur."""
 
     width: Annotated[int, Field(ge=8, le=8192)] = 320
     """[pixels]"""
@@ -84,6 +84,11 @@ class CameraConfig(Config):
     def needs_velocities(self) -> bool:
         """Whether the velocities of cameras must be known."""
         return self.shutter.blur or self.shutter.rolls or self.events.enabled
+
+    @property
+    def is_modelled(self) -> bool:
+        """Whether more of it is modelled than a pinhole."""
+        return False
 
 
 class LidarConfig(Config):

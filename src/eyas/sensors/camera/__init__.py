@@ -1,1 +1,1 @@
-"""The camera as a device: shutter, shake, pixels that see changes."""
+"""What a real camera makes of light: lens, shutter, imager, dirt, and the link of its pictures."""
