@@ -88,7 +88,7 @@ class CameraConfig(Config):
     @property
     def is_modelled(self) -> bool:
         """Whether more of it is modelled than a pinhole."""
-        return False
+        return self.shutter.blur
 
 
 class LidarConfig(Config):

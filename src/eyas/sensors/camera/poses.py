@@ -30,7 +30,7 @@ class Exposure(NamedTuple):
 class Moments(NamedTuple):
     """K moments of V cameras."""
 
-    view: NDArray[np.int64]
+    of: NDArray[np.int64]
     """Whose, shape (K,)."""
     later: Floats
     """Time after the instant of its picture [s], shape (K,)."""
@@ -79,9 +79,9 @@ def _pose(exposure: Exposure, v: int, later: float, place: Floats, axes: Floats)
 @compiled
 def poses_at(exposure: Exposure, moments: Moments) -> None:
     """Write the poses of cameras at moments of their exposures."""
-    for k in range(moments.view.shape[0]):
+    for k in range(moments.of.shape[0]):
         place, axes = moments.position[k], moments.rotation[k]
-        _pose(exposure, moments.view[k], moments.later[k], place, axes)
+        _pose(exposure, moments.of[k], moments.later[k], place, axes)
 
 
 class Seen(NamedTuple):
@@ -91,8 +91,9 @@ class Seen(NamedTuple):
     """Length of the time around the instant [s], shape (V,)."""
     floor: Floats
     """Height of the ground ahead [m], shape (V,)."""
-    width: Floats
-    """Width of the picture [pixels], and the height of what it shows over its width, shape (2,)."""
+    frame: Floats
+    """Width of the picture [pixels]; height over width of what it shows; its rows over those that
+    it had if its pixels were square; shape (3,)."""
     first: NDArray[np.int64]
     """Where the things of each view begin, shape (V,)."""
     end: NDArray[np.int64]
@@ -136,11 +137,11 @@ def _way(
             return 0.0
         right = -focal * (axes[0, 1] * a + axes[1, 1] * b + axes[2, 1] * c) / ahead
         down = -focal * (axes[0, 2] * a + axes[1, 2] * b + axes[2, 2] * c) / ahead
-        off = max(abs(right), abs(down) / seen.width[1])
+        off = max(abs(right), abs(down) / seen.frame[1])
         if k == INSTANTS // 2 and off > _MARGIN * half:
             return 0.0
         if k > 0:
-            way += math.sqrt((right - column) ** 2 + (down - row) ** 2)
+            way += math.sqrt((right - column) ** 2 + (seen.frame[2] * (down - row)) ** 2)
         column, row = right, down
     return way
 
@@ -151,7 +152,7 @@ def _way_of_ground(
 ) -> float:
     """Return the way of what a place of the picture shows of the plane of the ground."""
     place, axes = exposure.cameras.position[v], exposure.cameras.rotation[v]
-    left, up = -across * half / focal, -down * half * seen.width[1] / focal
+    left, up = -across * half / focal, -down * half * seen.frame[1] / focal
     x = axes[0, 0] + left * axes[0, 1] + up * axes[0, 2]
     y = axes[1, 0] + left * axes[1, 1] + up * axes[1, 2]
     z = axes[2, 0] + left * axes[2, 1] + up * axes[2, 2]
@@ -167,7 +168,7 @@ def motion_in_pixels(exposure: Exposure, seen: Seen) -> None:
     """Write how far what each camera sees moves through its picture within a time: the ground, at
     nine places of the picture, and things.
     """
-    half = 0.5 * seen.width[0]
+    half = 0.5 * seen.frame[0]
     for v in range(seen.motion.shape[0]):
         focal = half / tan(0.5 * exposure.cameras.field_of_view[v])
         for k in range(INSTANTS):
