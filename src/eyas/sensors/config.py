@@ -7,6 +7,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
+from eyas.sensors.camera.esim import EventsConfig
+from eyas.sensors.camera.shutter import ShutterConfig
+from eyas.sensors.camera.vibration import VibrationConfig
 
 __all__ = [
     "CameraConfig",
@@ -70,11 +73,22 @@ class CameraConfig(Config):
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
+    shutter: ShutterConfig = ShutterConfig()
+    """Motion blur and rolling shutter."""
+    vibration: VibrationConfig = VibrationConfig()
+    """What a gimbal leaves of the shaking of its body."""
+    events: EventsConfig = EventsConfig()
+    """A sensor of events with the same lens."""
+
+    @property
+    def needs_velocities(self) -> bool:
+        """Whether the velocities of cameras must be known."""
+        return self.shutter.blur or self.shutter.rolls or self.events.enabled
 
     @property
     def is_modelled(self) -> bool:
         """Whether more of it is modelled than a pinhole."""
-        return False
+        return self.shutter.blur
 
 
 class LidarConfig(Config):

@@ -11,20 +11,25 @@ from eyas.core.pinhole import field_along
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.shutter import Shutter
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.views.camera_model import CameraModel
+from eyas.sim.views.delay import SeenState
+from eyas.sim.views.exposures import Exposures, Moment
+from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.snapshot import CameraState, Snapshot
+from eyas.state.snapshot import CameraState
 from eyas.task.rules import Rules
 
 __all__ = ["PictureDrawer"]
 
 Chosen = NDArray[np.int32]
+Floats = NDArray[np.float64]
 
 
 class PictureDrawer:
@@ -35,8 +40,9 @@ class PictureDrawer:
         assets: Scene and renderer.
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
-        snapshot: State of the trackers.
+        state: State of the trackers.
         camera: What else is modelled of their cameras; None: nothing.
+        shutter: Their shutters; None: all rows see one instant.
         visible: Whether trackers see each other.
     """
 
@@ -46,11 +52,13 @@ class PictureDrawer:
         assets: Assets,
         worlds: Worlds,
         light: LightChanges,
-        snapshot: Snapshot,
+        state: SeenState,
         camera: CameraModel | None = None,
+        shutter: Shutter | None = None,
         *,
         visible: bool = True,
     ) -> None:
+        snapshot = state.shown
         self._worlds = worlds
         mates = [worlds.trackers_of(n) for n in range(len(worlds.of))]
         actors, part = worlds.actors, assets.body_part
@@ -63,6 +71,10 @@ class PictureDrawer:
         self._size = config.camera.height, config.camera.width
         self._aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
+        self._exposures: Exposures | None = None
+        if shutter is not None:
+            steady, vibration = state.steady, state.vibration
+            self._exposures = Exposures(shutter, steady, vibration, self._aspect, self)
 
     def draw(
         self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
@@ -80,20 +92,32 @@ class PictureDrawer:
             overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(chosen, cameras, self._aspect)
-        if self._bodies.any:
-            movers = self._bodies.added(chosen, views.world, movers, self._snapshot.trackers)
-            views.world = np.arange(len(chosen), dtype=np.int32)
-        fields = cameras.field_of_view.tolist()
-        views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
+        views, movers = self._own_views(chosen, cameras)
         deep = picture if overlaid is None else with_depth(picture)
-        draw = partial(self._renderer.draw, views, movers, samples=self._samples, until=until)
+        draw = partial(self.render, views, movers, until=until)
+        if self._exposures is not None:
+            draw = partial(self._exposures.draw, chosen, until)
         if self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
             draw(deep)
         else:
             self._camera.draw(draw, chosen, self._snapshot.episodes.step_count, deep)
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
+
+    def views_at(self, moment: Moment) -> tuple[Views, DrawList]:
+        """Return views of trackers' cameras at moments of their exposures, and the moving things as
+        these see them.
+        """
+        return self._own_views(moment.trackers, moment.cameras, moment.later)
+
+    def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
+        """Return the motion of the actors that trackers' cameras may show."""
+        ticks = self._snapshot.episodes.tick
+        return self._worlds.moving(trackers, ticks, cameras, self._aspect)
+
+    def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
+        """Draw views of trackers' cameras."""
+        self._renderer.draw(views, movers, picture, self._samples, until)
 
     def draw_from(
         self,
@@ -144,13 +168,32 @@ class PictureDrawer:
         row = np.maximum(picture.object_id[0] - ACTOR_OBJECT, -1)
         return MovingParts(row, picture.depth[0], posed.part[0].copy(), posed.pose[0].copy())
 
-    def _views(self, chosen: Chosen, cameras: CameraState, aspect: float) -> tuple[Views, DrawList]:
+    def _own_views(
+        self, chosen: Chosen, cameras: CameraState, later: Floats | None = None
+    ) -> tuple[Views, DrawList]:
+        """Return views of trackers' own cameras, in pictures of any shape, see `_views`."""
+        views, movers = self._views(chosen, cameras, self._aspect, later)
+        if self._bodies.any:
+            bodies = self._snapshot.trackers
+            movers = self._bodies.added(chosen, views.world, movers, bodies, later)
+            views.world = np.arange(len(chosen), dtype=np.int32)
+        fields = cameras.field_of_view.tolist()
+        views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
+        return views, movers
+
+    def _views(
+        self, chosen: Chosen, cameras: CameraState, aspect: float, later: Floats | None = None
+    ) -> tuple[Views, DrawList]:
         """Return views of the worlds of trackers: cameras, with square pixels, and movers.
 
-        `aspect` is the height of what the cameras show over its width.
+        `aspect` is the height of what the cameras show over its width; they are `later` than what
+        is seen [s].
         """
         ticks = self._snapshot.episodes.tick
-        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect)
+        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect, later)
+        instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
+        if instant is not None and later is not None:
+            instant += later
         views = Views(
             position=cameras.position,
             rotation=cameras.rotation,
@@ -158,6 +201,6 @@ class PictureDrawer:
             subject=self._worlds.object_ids(self._snapshot.targets.actor[chosen]),
             field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
-            instant=np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None,
+            instant=instant,
         )
         return views, movers

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.sensors.obstacles import Obstacles, obstacles_of
@@ -39,6 +40,7 @@ class SensorSuite:
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
         camera: None if the camera is a pinhole without errors.
+        shutter: None if all rows of a picture see one instant.
         follow: Whether `advance` must be called after each physics step.
 
     Args:
@@ -82,6 +84,7 @@ class SensorSuite:
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
+        self.shutter = Shutter.of(config.camera.shutter, len(active))
         self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
@@ -106,6 +109,7 @@ class SensorSuite:
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
+            "shutter": self.shutter,
             "camera": self.camera,
         }
         for name, sensor in sensors.items():

@@ -55,8 +55,10 @@ class View:
         visible: bool,
     ) -> None:
         self.state = state
-        shown, camera = state.shown, sensors.camera
-        self.pictures = PictureDrawer(config, assets, worlds, light, shown, camera, visible=visible)
+        modelled = sensors.camera, sensors.shutter
+        self.pictures = PictureDrawer(
+            config, assets, worlds, light, state, *modelled, visible=visible
+        )
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
