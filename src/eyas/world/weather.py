@@ -105,6 +105,8 @@ FOG = replace(
     fog_density=1.0 / 1000.0,
     foggy=True,
     clouds=1.0,
+    # 1e4 lux under the cloud, a tenth of the sun's.
+    luminance=8_000.0,
 )
 
 # The original's plain blue sky (0.60, 0.757, 0.945), paler towards the horizon, and the day's sun.
@@ -137,6 +139,8 @@ CLEAR_NIGHT = replace(
     fog_density=1.0 / 3000.0,
     clouds=0.15,
     luminosity=0.3,
+    # A lit street is then at about 1 cd/m^2, as EN 13201 asks of roads of class M3.
+    luminance=25.0,
     lamps=1.0,
     windows=0.3,
 )
@@ -235,6 +239,7 @@ def _at_hour(weather: Weather, hour: float) -> Lighting:
             *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
         )
     }
+    (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)
     # Sun and moon change places while neither throws a shadow, so that none jumps.
     if height > _MOONLIGHT:
         mixed["sun_direction"] = _lifted(direction, _LOW_SUN)
