@@ -1,5 +1,6 @@
 """Settings of the sensors."""
 
+import re
 from enum import StrEnum
 from typing import Annotated, Literal, Self
 
@@ -16,6 +17,7 @@ __all__ = [
     "CameraErrors",
     "ColourLayout",
     "Colours",
+    "FurtherCameraConfig",
     "LidarConfig",
     "MountConfig",
     "ReadingConfig",
@@ -89,6 +91,23 @@ class CameraConfig(Config):
     def is_modelled(self) -> bool:
         """Whether more of it is modelled than a pinhole."""
         return self.shutter.blur
+
+
+def _camera_name(name: str) -> str:
+    if not re.fullmatch(r"[a-z][a-z0-9_-]{0,31}", name):
+        raise ValueError("must be a small letter, then up to 31 small letters, digits, '-' and '_'")
+    return name
+
+
+class FurtherCameraConfig(CameraConfig):
+    """A camera that a tracker has beside its own, such as the other eye of a stereo pair:
+    `{"name": "right", "mount": {"y": -0.12}}`. Its `mount` says where it is on what carries it.
+    """
+
+    name: Annotated[str, AfterValidator(_camera_name)]
+    """By which it is known: lower-case letters, digits, hyphens and underscores."""
+    on: Literal["camera", "body"] = "camera"
+    """What carries it: the tracker's camera, with which it turns, or the tracker's body."""
 
 
 class LidarConfig(Config):

@@ -17,7 +17,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.views.camera_model import CameraModel
-from eyas.sim.views.delay import SeenState
+from eyas.sim.views.delay import ShownState
 from eyas.sim.views.exposures import Exposures, Moment
 from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
@@ -52,7 +52,7 @@ class PictureDrawer:
         assets: Assets,
         worlds: Worlds,
         light: LightChanges,
-        state: SeenState,
+        state: ShownState,
         camera: CameraModel | None = None,
         shutter: Shutter | None = None,
         *,

@@ -19,6 +19,7 @@ from eyas.sensors.readings import Readings, has_errors
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.views.camera_model import CameraModel
+from eyas.sim.views.further_camera import FurtherOptics
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import Crash
@@ -40,6 +41,7 @@ class SensorSuite:
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
         camera: None if the camera is a pinhole without errors.
+        further: The cameras that trackers have beside that one.
         shutter: None if all rows of a picture see one instant.
         follow: Whether `advance` must be called after each physics step.
 
@@ -86,6 +88,9 @@ class SensorSuite:
         self.grain = Grain.of(config.sensors.camera, len(active))
         self.shutter = Shutter.of(config.camera.shutter, len(active))
         self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
+        self.further = tuple(
+            FurtherOptics(camera, assets.lighting, len(active)) for camera in config.cameras
+        )
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
@@ -111,6 +116,7 @@ class SensorSuite:
             "grain": self.grain,
             "shutter": self.shutter,
             "camera": self.camera,
+            **{f"camera {further.config.name}": further for further in self.further},
         }
         for name, sensor in sensors.items():
             if sensor is not None:

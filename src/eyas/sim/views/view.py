@@ -10,6 +10,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.further_camera import FurtherCamera
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
@@ -32,6 +33,7 @@ class View:
     Attributes:
         state: The state that is seen, read at each call.
         pictures: Draws it.
+        further: The cameras that trackers have beside their own, by name.
 
     Args:
         config: The settings.
@@ -59,6 +61,12 @@ class View:
         self.pictures = PictureDrawer(
             config, assets, worlds, light, state, *modelled, visible=visible
         )
+        self.further = {
+            optics.config.name: FurtherCamera(
+                optics, config, assets, worlds, light, state, visible=visible
+            )
+            for optics in sensors.further
+        }
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
