@@ -44,7 +44,9 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
     """
     lidar, cameras = sim.lidar, len(sim.cameras)
     if _Parts.CAMERAS in config.parts and cameras == 0:
-        raise ConfigError("env.observation.parts: 'cameras' needs further cameras: cameras is empty")
+        raise ConfigError(
+            "env.observation.parts: 'cameras' needs further cameras: 'cameras' is empty"
+        )
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"

@@ -104,6 +104,11 @@ class PictureDrawer:
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
 
+    def draw_clean(self, chosen: Chosen, picture: Picture) -> None:
+        """Draw the pictures of trackers' cameras as if nothing but their lenses were modelled."""
+        cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
+        self.render(*self._own_views(chosen, cameras), picture, DrawStage.SHADING)
+
     def views_at(self, moment: Moment) -> tuple[Views, DrawList]:
         """Return views of trackers' cameras at moments of their exposures, and the moving things as
         these see them.

@@ -92,6 +92,16 @@ class View:
         if grain is not None and picture.rgb is not None:
             grain.add(picture.rgb, trackers, self.state.shown.episodes.step_count)
 
+    def clean(self, tracker: int, height: int, width: int) -> NDArray[np.uint8]:
+        """Return a tracker's picture as it would be without noise, blur, dirt and the like: the
+        same instant, pose and lens, shape (height, width, 3).
+        """
+        picture = Picture.create(1, height, width)
+        self.pictures.draw_clean(np.array([tracker], np.int32), picture)
+        assert picture.rgb is not None
+        clean: NDArray[np.uint8] = picture.rgb[0]
+        return clean
+
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
         basic, reward = self._packets.now()
