@@ -43,7 +43,7 @@ def test_a_stereo_pair_is_recorded_with_its_baseline(tmp_path):
     assert left.shape == other.shape
     assert not np.array_equal(left, other)
     assert np.abs(left.astype(int) - other).mean() < 20  # the same street
-    assert Image.open(episode / "cameras" / "01-000000.png").size == (40, 20)
+    assert np.asarray(Image.open(episode / "cameras" / "01-000000.png")).shape == (20, 40, 3)
 
 
 def test_clean_pictures_lie_beside_corrupted_ones(tmp_path):
