@@ -21,7 +21,7 @@ from eyas.sim.views.visible_actors import Moving
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 
-__all__ = ["Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
+__all__ = ["Chosen", "Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
@@ -41,6 +42,7 @@ class SensorSuite:
         grain: None if the camera has no noise.
         camera: None if the camera is a pinhole without errors.
         shutter: None if all rows of a picture see one instant.
+        events: None if there are no sensors of events.
         follow: Whether `advance` must be called after each physics step.
 
     Args:
@@ -85,6 +87,8 @@ class SensorSuite:
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
         self.shutter = Shutter.of(config.camera.shutter, len(active))
+        size = config.camera.height, config.camera.width
+        self.events = EventSensors.of(config.camera.events, size, len(active))
         self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
@@ -110,6 +114,7 @@ class SensorSuite:
             "readings": self.readings,
             "grain": self.grain,
             "shutter": self.shutter,
+            "events": self.events,
             "camera": self.camera,
         }
         for name, sensor in sensors.items():

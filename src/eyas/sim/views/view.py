@@ -5,11 +5,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.event_views import EventViews
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
@@ -59,6 +61,11 @@ class View:
         self.pictures = PictureDrawer(
             config, assets, worlds, light, state, *modelled, visible=visible
         )
+        self._events: EventViews | None = None
+        if sensors.events is not None:
+            events, seen, aspect = config.camera.events, sensors.events, self.pictures.aspect
+            shown = state.steady, state.vibration, aspect, self.pictures
+            self._events = EventViews(events, seen, *shown)
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
@@ -83,6 +90,15 @@ class View:
         grain = self._sensors.grain
         if grain is not None and picture.rgb is not None:
             grain.add(picture.rgb, trackers, self.state.shown.episodes.step_count)
+
+    def events(self, trackers: NDArray[np.int32]) -> EventSensors | None:
+        """Return the sensors of events; those of these trackers have told what has changed between
+        the last two instants at which this was called. None: there are none.
+        """
+        if self._events is None:
+            return None
+        self._events.look(trackers)
+        return self._events.sensors
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
