@@ -5,49 +5,37 @@ import math
 import numpy as np
 import pytest
 
-from eyas.sensors.camera.esim import (
-    EVENT,
-    EventPixels,
-    Interval,
-    fill_levels,
-    log_of_light,
-    most_events,
-    tell_events,
-)
+from eyas.sensors.camera.esim import EventPixels, EventSettings, Look, see_light
 
-NO_NOISE = Interval(0.0, 0.01, 16, 0.0, 0.0, 0.0, 7, 1)
+DARK = 1e-9
 
 
 class Sensor:
-    """One sensor of a row of pixels, which sees the light at instants."""
+    """One sensor of a row of pixels, which sees the logarithm of light at instants."""
 
-    def __init__(self, light, positive=0.2, negative=0.2, mismatch=0.0, **noise):
-        light = np.asarray(light, np.float32)
+    def __init__(self, light, **settings):
+        exact = EventSettings(0.2, 0.2, 0.0, 0.0, 0.0, 0.0, DARK, len(light))
+        self.settings = exact._replace(**settings)
         self.pixels = EventPixels.create(1, len(light))
-        self.noise, self.number, self.time = noise, 0, 0.0
-        fill_levels(self.pixels, 0, light, 3, np.array([positive, negative, mismatch]))
+        self.pixels.seed[:] = 3
+        self.see(light, 0.0)
 
     def see(self, light, length=0.01):
-        light = np.asarray(light, np.float32)
-        self.number += 1
-        interval = NO_NOISE._replace(
-            begin=self.time, end=self.time + length, width=len(light), number=self.number,
-            **self.noise,
-        )  # fmt: skip
-        self.time += length
-        out = np.zeros(most_events(self.pixels, 0, light), EVENT)
-        count = np.zeros(1, np.int64)
-        tell_events(self.pixels, 0, light, interval, out, count)
-        assert count[0] <= len(out)
-        return out[: count[0]]
+        radiance = np.tile(np.exp(np.asarray(light, np.float64)).astype(np.float32), (1, 3, 1))
+        end, time = np.ones(1, np.int64), self.pixels.time + length
+        look = Look(end - 1, end - 1, end, radiance, time, np.zeros((1, len(light)), np.float32))
+        self.pixels.count[:] = 0
+        see_light(1, self.pixels, self.settings, look)
+        assert look.next[0] == 1
+        return self.pixels.told[0, : self.pixels.count[0]].copy()
 
 
 def test_a_change_tells_an_event_for_each_threshold_at_the_times_of_the_crossings():
     sensor = Sensor([0.0, 0.0, 0.0, 0.0], positive=0.25, negative=0.2)
-    told = sensor.see([1.0, -1.01, 0.24, 0.0])
+    told = sensor.see([1.01, -1.01, 0.24, 0.0])
     np.testing.assert_array_equal(told["x"], [0] * 4 + [1] * 5)
     np.testing.assert_array_equal(told["p"], [1] * 4 + [0] * 5)
-    np.testing.assert_allclose(told["t"][:4], [2500, 5000, 7500, 10000], atol=1)
+    np.testing.assert_allclose(told["t"][:4], 0.25 * np.arange(1, 5) / 1.01 * 1e4, atol=1)
     np.testing.assert_allclose(told["t"][4:], 0.2 * np.arange(1, 6) / 1.01 * 1e4, atol=1)
 
 
@@ -88,9 +76,9 @@ def test_a_moving_edge_tells_as_many_events_as_theory_says():
 
 
 def test_a_pixel_is_blind_for_the_refractory_time():
-    sensor = Sensor([0.0], refractory=0.003)
-    times = sensor.see([1.0])["t"]  # crossings at 2, 4, 6, 8 and 10 ms
-    np.testing.assert_allclose(times, [2000, 6000, 10000], atol=1)
+    sensor = Sensor([0.0, 0.0], refractory=0.003)
+    times = sensor.see([1.01, 0.0])["t"]  # crossings at nearly 2, 4, 6, 8 and 10 ms
+    np.testing.assert_allclose(times, np.array([0.2, 0.6, 1.0]) / 1.01 * 1e4, atol=1)
 
 
 def test_thresholds_differ_between_pixels_as_they_are_asked_to():
@@ -117,9 +105,30 @@ def test_shot_noise_comes_more_often_in_the_dark(light, rate):
     assert len(np.unique(told["t"])) > 0.9 * len(told)
 
 
-def test_the_logarithm_is_that_of_the_luminance():
-    radiance = np.array([[0.5, 0.0], [0.25, 0.0], [1.0, 0.0]], np.float32)
-    out = np.zeros(2, np.float32)
-    log_of_light(radiance, 0.001, out)
+def test_the_light_is_the_luminance():
+    sensor = Sensor([0.0], negative=0.5)
+    look = Look(
+        *np.array([[0], [0], [1]]),
+        np.array([[[0.5], [0.25], [1.0]]], np.float32), np.ones(1), np.zeros((1, 1), np.float32),
+    )  # fmt: skip
+    see_light(1, sensor.pixels, sensor.settings, look)
     light = 0.2126 * 0.5 + 0.7152 * 0.25 + 0.0722
-    np.testing.assert_allclose(out, np.log([light + 0.001, 0.001]), rtol=1e-6)
+    np.testing.assert_allclose(sensor.pixels.last, np.log(light), rtol=1e-6)
+
+
+def test_what_there_is_no_room_for_is_not_seen():
+    sensor = Sensor([0.0])
+    pixels = sensor.pixels._replace(told=sensor.pixels.told[:, :2].copy())
+    bright = np.full((2, 3, 1), math.exp(0.31), np.float32) ** np.arange(1, 3)[:, None, None]
+    look = Look(
+        *np.array([[0], [0], [2]]),
+        bright.astype(np.float32), np.array([0.01, 0.02]), np.zeros((1, 1), np.float32),
+    )  # fmt: skip
+    see_light(1, pixels, sensor.settings, look)
+    assert (look.next[0], pixels.count[0]) == (1, 1)
+    roomy = pixels._replace(told=np.concatenate([pixels.told, pixels.told], axis=1))
+    see_light(1, roomy, sensor.settings, look)
+    assert (look.next[0], roomy.count[0]) == (2, 3)
+    whole = Sensor([0.0])
+    times = [*whole.see([0.31])["t"], *whole.see([0.62])["t"]]
+    np.testing.assert_array_equal(roomy.told[0, :3]["t"], times)

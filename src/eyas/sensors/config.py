@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
-from eyas.sensors.camera.esim import EventsConfig
+from eyas.sensors.camera.events import EventsConfig
 from eyas.sensors.camera.shutter import ShutterConfig
 from eyas.sensors.camera.vibration import VibrationConfig
 

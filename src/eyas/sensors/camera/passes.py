@@ -58,7 +58,8 @@ def pieces_of(
     view = np.repeat(np.arange(len(samples)), samples)
     passed = np.repeat(np.arange(len(view)), bands[view])
     of, number, part = view[passed], _numbered(bands[view]), bands[view[passed]]
-    rows = np.stack([number * height // part, (number + 1) * height // part], axis=1)
+    ends = np.stack([number, number + 1])
+    rows = ((2 * height * ends + part) // (2 * part)).T  # rounded, so that they lie evenly
     place = rows.sum(axis=1) / (2.0 * height) - 0.5
     instant = (_numbered(samples) + 0.5) / samples[view] - 0.5
     later = readout[of] * place + exposure[of] * instant[passed]

@@ -21,7 +21,7 @@ from eyas.sim.views.visible_actors import Moving
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 
-__all__ = ["Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
+__all__ = ["Chosen", "Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -136,9 +136,10 @@ class Exposures:
             middle = pieces_of(once, bands, open_for, readout, height)
             self._draw(chosen, exposure, middle, picture, until)
             return
-        if any(getattr(picture, one.name) is not None for one in fields(picture) if one.name != "radiance"):
+        others = replace(picture, radiance=None)
+        if any(getattr(others, one.name) is not None for one in fields(others)):
             middle = pieces_of(once, bands, open_for, readout, height)
-            self._draw(chosen, exposure, middle, replace(picture, radiance=None), until)
+            self._draw(chosen, exposure, middle, others, until)
         passes = pieces_of(samples, bands, open_for, readout, height)
         self._add(chosen, exposure, passes, picture.radiance, until)
 
@@ -157,7 +158,8 @@ class Exposures:
                 ways = ways_of(exposure, window[chosen], floor, frame, moving)
                 count = np.clip(np.ceil(np.minimum(ways, most)), 1, most).astype(np.int64)
             counts.append(count)
-        return counts[0], counts[1]
+        # Of an odd number of bands, the one in the middle sees the instant of the picture.
+        return counts[0], np.minimum(counts[1] | 1, height)
 
     def _draw(
         self,

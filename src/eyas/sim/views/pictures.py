@@ -35,6 +35,9 @@ Floats = NDArray[np.float64]
 class PictureDrawer:
     """Draws the worlds around N trackers.
 
+    Attributes:
+        aspect: Height of what their cameras show over its width.
+
     Args:
         config: The settings.
         assets: Scene and renderer.
@@ -69,12 +72,12 @@ class PictureDrawer:
         self._samples = config.camera.samples
         self._renderer = assets.renderer
         self._size = config.camera.height, config.camera.width
-        self._aspect = config.camera.height / config.camera.width
+        self.aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
         self._exposures: Exposures | None = None
         if shutter is not None:
             steady, vibration = state.steady, state.vibration
-            self._exposures = Exposures(shutter, steady, vibration, self._aspect, self)
+            self._exposures = Exposures(shutter, steady, vibration, self.aspect, self)
 
     def draw(
         self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
@@ -118,7 +121,7 @@ class PictureDrawer:
     def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
         """Return the motion of the actors that trackers' cameras may show."""
         ticks = self._snapshot.episodes.tick
-        return self._worlds.moving(trackers, ticks, cameras, self._aspect)
+        return self._worlds.moving(trackers, ticks, cameras, self.aspect)
 
     def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
         """Draw views of trackers' cameras."""
@@ -160,7 +163,7 @@ class PictureDrawer:
         """
         chosen = np.array([tracker], np.int32)
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, _ = self._views(chosen, cameras, self._aspect)
+        views, _ = self._views(chosen, cameras, self.aspect)
         views.world = np.zeros(1, np.int32)
         if self._bodies.any:
             posed = self._bodies.added(chosen, views.world, posed, self._snapshot.trackers)
@@ -177,13 +180,14 @@ class PictureDrawer:
         self, chosen: Chosen, cameras: CameraState, later: Floats | None = None
     ) -> tuple[Views, DrawList]:
         """Return views of trackers' own cameras, in pictures of any shape, see `_views`."""
-        views, movers = self._views(chosen, cameras, self._aspect, later)
+        views, movers = self._views(chosen, cameras, self.aspect, later)
         if self._bodies.any:
             bodies = self._snapshot.trackers
             movers = self._bodies.added(chosen, views.world, movers, bodies, later)
             views.world = np.arange(len(chosen), dtype=np.int32)
-        fields = cameras.field_of_view.tolist()
-        views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
+        fields, which = np.unique(cameras.field_of_view, return_inverse=True)
+        vertical = np.array([field_along(f, self.aspect) for f in fields.tolist()])
+        views.vertical_field_of_view = vertical[which]
         return views, movers
 
     def _views(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
@@ -43,6 +44,7 @@ class SensorSuite:
         camera: None if the camera is a pinhole without errors.
         further: The cameras that trackers have beside that one.
         shutter: None if all rows of a picture see one instant.
+        events: None if there are no sensors of events.
         follow: Whether `advance` must be called after each physics step.
 
     Args:
@@ -87,6 +89,8 @@ class SensorSuite:
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
         self.shutter = Shutter.of(config.camera.shutter, len(active))
+        size = config.camera.height, config.camera.width
+        self.events = EventSensors.of(config.camera.events, size, len(active))
         self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
         self.further = tuple(
             FurtherOptics(camera, assets.lighting, len(active)) for camera in config.cameras
@@ -115,6 +119,7 @@ class SensorSuite:
             "readings": self.readings,
             "grain": self.grain,
             "shutter": self.shutter,
+            "events": self.events,
             "camera": self.camera,
             **{f"camera {further.config.name}": further for further in self.further},
         }

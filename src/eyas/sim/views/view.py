@@ -5,11 +5,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.event_views import EventViews
 from eyas.sim.views.further_camera import FurtherCamera
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
@@ -67,6 +69,11 @@ class View:
             )
             for optics in sensors.further
         }
+        self._events: EventViews | None = None
+        if sensors.events is not None:
+            events, seen, aspect = config.camera.events, sensors.events, self.pictures.aspect
+            shown = state.steady, state.vibration, aspect, self.pictures
+            self._events = EventViews(events, seen, *shown)
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
@@ -101,6 +108,15 @@ class View:
         assert picture.rgb is not None
         clean: NDArray[np.uint8] = picture.rgb[0]
         return clean
+
+    def events(self, trackers: NDArray[np.int32]) -> EventSensors | None:
+        """Return the sensors of events; those of these trackers have told what has changed between
+        the last two instants at which this was called. None: there are none.
+        """
+        if self._events is None:
+            return None
+        self._events.look(trackers)
+        return self._events.sensors
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
