@@ -63,6 +63,8 @@ class Moment(NamedTuple):
     """See `Frame.clean`; nothing changes it later."""
     cameras: tuple[CameraPicture, ...] = ()
     """See `Frame.cameras`; nothing changes them later."""
+    exposure: tuple[float, float] | None = None
+    """See `Frame.exposure`."""
 
 
 def moment_of(
@@ -94,8 +96,11 @@ def moment_of(
     moving = seen.parts(tracker, actors or seen.actors(tracker)) if "parts" in wanted else None
     clean = seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None
     cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
+    exposed = seen.exposure
+    exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
     now = simulation.snapshot.episodes
-    return Moment(shown, now, actors, whole_box, lidar, told, moving, clean, cameras)
+    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure)
+    return Moment(shown, now, *known)
 
 
 def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
@@ -152,6 +157,7 @@ def frame_of(
         parts=moment.parts,
         clean=moment.clean,
         cameras=moment.cameras,
+        exposure=moment.exposure,
     )
 
 

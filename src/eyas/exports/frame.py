@@ -225,6 +225,8 @@ class Frame:
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
+    exposure: tuple[float, float] | None = None
+    """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
 
     @property
     def episode_time(self) -> float:

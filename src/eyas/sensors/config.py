@@ -1,14 +1,20 @@
 """Settings of the sensors."""
 
 import re
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
+from eyas.sensors.camera.dirt import DirtConfig
 from eyas.sensors.camera.events import EventsConfig
+from eyas.sensors.camera.exposure import ExposureConfig
+from eyas.sensors.camera.imager import ImagerConfig, Spectrum
+from eyas.sensors.camera.link import LinkConfig
+from eyas.sensors.camera.models import MODELS, ModelName, laid_under, without
 from eyas.sensors.camera.shutter import ShutterConfig
 from eyas.sensors.camera.vibration import VibrationConfig
 
@@ -75,6 +81,18 @@ class CameraConfig(Config):
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
+    model: ModelName | None = None
+    """A camera by its data sheets, whose values take the place of defaults below; None: none."""
+    spectrum: Spectrum = Spectrum.COLOUR
+    """What light its sensor tells apart; `grey` has a sensor, with or without `imager`."""
+    imager: ImagerConfig | None = None
+    """The sensor, which counts photons; None: pictures without noise, as bright as by day."""
+    exposure: ExposureConfig = ExposureConfig()
+    """How the sensor is exposed."""
+    dirt: DirtConfig | None = None
+    """What sticks to the glass in front; None: nothing."""
+    link: LinkConfig | None = None
+    """What carries its pictures; None: nothing is coded or lost."""
     shutter: ShutterConfig = ShutterConfig()
     """Motion blur and rolling shutter."""
     vibration: VibrationConfig = VibrationConfig()
@@ -88,9 +106,30 @@ class CameraConfig(Config):
         return self.shutter.blur or self.shutter.rolls or self.events.enabled
 
     @property
+    def sensor(self) -> ImagerConfig | None:
+        """The sensor, None if pictures are drawn without one."""
+        if self.imager is None and self.spectrum is not Spectrum.COLOUR:
+            return ImagerConfig()
+        return self.imager
+
+    @property
     def is_modelled(self) -> bool:
         """Whether more of it is modelled than a pinhole."""
-        return self.shutter.blur
+        parts = (self.sensor, self.dirt, self.link)
+        return self.shutter.blur or any(part is not None for part in parts)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_model(cls, values: Any) -> Any:  # noqa: ANN401  # whatever is given
+        model = values.get("model") if isinstance(values, Mapping) else None
+        under = MODELS.get(model) if isinstance(model, str) else None  # type: ignore[call-overload]
+        return values if under is None else laid_under(cls, under, values)
+
+    def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the values that stay; those of a model go with it."""
+        if self.model is None or changes.get("model", self.model) == self.model:
+            return super().kept(changes)
+        return without(self, MODELS[self.model])
 
 
 def _camera_name(name: str) -> str:

@@ -28,6 +28,11 @@ def fixed(time=0.001, iso=100.0):
     return ExposureConfig(time=(time, time), iso=(iso, iso))
 
 
+def automatic(**settings):
+    """Return an exposure that no limit holds back."""
+    return ExposureConfig(**{"time": (1e-6, 0.02), "iso": (1.0, 1e6)} | settings)
+
+
 def developed(radiance, exposure=None, luminance=SUN, spectrum=Spectrum.COLOUR, **imager):
     """Return pictures of some light by trackers of their own, and what made them."""
     count = len(radiance)
@@ -133,7 +138,7 @@ def test_white_stays_white_through_unequal_filters():
 def test_the_first_picture_of_an_episode_is_well_exposed(metering):
     light = np.random.default_rng(1).uniform(0.0, 0.6, (4, 3, 40, 44)).astype(np.float32)
     light *= np.array([1e-3, 0.1, 1.0, 3.0], np.float32)[:, None, None, None]
-    exposure = ExposureConfig(metering=metering, iso=(100.0, 1e6))
+    exposure = automatic(metering=metering)
     rgb, _ = developed(light, exposure, **SMOOTH)
     means = values_of(rgb).mean(axis=(1, 2, 3))
     np.testing.assert_allclose(means, 10 / 78, rtol=0.02 if metering is Metering.AVERAGE else 0.3)
@@ -144,14 +149,14 @@ def test_spot_and_centre_look_at_the_middle():
     light[..., 30:34, 30:34] = 1.0
     means = {}
     for metering in Metering:
-        rgb, _ = developed(light, ExposureConfig(metering=metering), **SMOOTH)
+        rgb, _ = developed(light, automatic(metering=metering), **SMOOTH)
         means[metering] = values_of(rgb).mean()
     assert means[Metering.SPOT] < 0.3 * means[Metering.CENTRE] < 0.3 * means[Metering.AVERAGE]
     assert means[Metering.AVERAGE] == pytest.approx(10 / 78, rel=0.02)
 
 
 def test_exposure_follows_a_change_of_light_with_its_speed():
-    exposure = ExposureConfig(speed=0.5, metering=Metering.AVERAGE, iso=(100.0, 1e5))
+    exposure = automatic(speed=0.5, metering=Metering.AVERAGE)
     _, made = developed(uniform(0.4), exposure, **SMOOTH)
     before = made.exposure.value[0]
     drawn(made, uniform(0.2), 250)  # half a second later the light is half of what it was
@@ -162,7 +167,7 @@ def test_exposure_follows_a_change_of_light_with_its_speed():
 
 
 def test_a_flood_of_light_blinds_for_a_moment():
-    exposure = ExposureConfig(speed=0.3, metering=Metering.AVERAGE)
+    exposure = automatic(speed=0.3, metering=Metering.AVERAGE)
     rgb, made = developed(uniform(0.002), exposure, **SMOOTH)
     assert 100 < rgb.mean() < 160
     shown = [drawn(made, uniform(0.5), step).mean() for step in range(50, 1500, 50)]
@@ -186,7 +191,7 @@ def test_time_comes_before_gain_and_both_end_at_their_limits():
 
 
 def test_compensation_and_automatic_white_balance():
-    exposure = ExposureConfig(compensation=1.0, metering=Metering.AVERAGE)
+    exposure = automatic(compensation=1.0, metering=Metering.AVERAGE)
     rgb, _ = developed(uniform(0.3), exposure, **SMOOTH)
     assert values_of(rgb).mean() == pytest.approx(20 / 78, rel=0.02)
     light = uniform(0.3)

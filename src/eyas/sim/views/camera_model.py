@@ -7,6 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.development import Development
+from eyas.sensors.camera.dirt import Dirt
+from eyas.sensors.camera.link import Link
 from eyas.sensors.camera.tone import ToneCurve
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import Picture
@@ -18,6 +21,9 @@ __all__ = ["CameraModel"]
 class CameraModel:
     """The cameras of N trackers where more is modelled of them than a pinhole.
 
+    Attributes:
+        development: Their sensors; None: they have none.
+
     Args:
         config: The settings.
         lighting: Light and air of the weather.
@@ -25,7 +31,19 @@ class CameraModel:
     """
 
     def __init__(self, config: CameraConfig, lighting: Lighting, count: int) -> None:
+        sensor = config.sensor
+        self._dirt: Dirt | None = None
+        self._link: Link | None = None
         self._curve = ToneCurve(lighting.exposure)
+        self.development: Development | None = None
+        if sensor is not None:
+            self.development = Development(
+                sensor, config.exposure, config.spectrum, lighting.luminance, count
+            )
+        if config.dirt is not None:
+            self._dirt = Dirt(config.dirt, count)
+        if config.link is not None:
+            self._link = Link(config.link, count)
 
     @classmethod
     def of(cls, config: CameraConfig, lighting: Lighting, count: int) -> "CameraModel | None":
@@ -34,6 +52,11 @@ class CameraModel:
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
+        # Each part has a stream of its own: one more changes nothing in the others.
+        parts = self.development, self._dirt, self._link
+        for part, own in zip(parts, rng.spawn(len(parts)), strict=True):
+            if part is not None:
+                part.begin(tracker, own)
 
     def draw(
         self,
@@ -51,6 +74,15 @@ class CameraModel:
             picture: V pictures, with colours.
         """
         assert picture.rgb is not None
+        if self.development is not None:
+            self.development.expose(trackers, step)
         light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
         draw(replace(picture, rgb=None, radiance=light))
-        self._curve.develop(light, picture.rgb)
+        if self._dirt is not None:
+            self._dirt.cover(light, trackers)
+        if self.development is None:
+            self._curve.develop(light, picture.rgb)
+        else:
+            self.development.develop(light, picture.rgb, trackers, step)
+        if self._link is not None:
+            self._link.carry(picture.rgb, trackers, step)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.sensors.camera.event_sensor import EventSensors
+from eyas.sensors.camera.exposure import ExposureState
 from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
@@ -174,6 +175,12 @@ class View:
         aspect = self._camera.height / self._camera.width
         actors = self.actors(tracker, later)
         return in_view(self.state.shown, actors, tracker, aspect)
+
+    @property
+    def exposure(self) -> ExposureState | None:
+        """Exposure times and speeds of the last pictures; None: cameras have no modelled sensor."""
+        camera = self._sensors.camera
+        return None if camera is None or camera.development is None else camera.development.exposure
 
     @property
     def lidar(self) -> Lidar | None:
