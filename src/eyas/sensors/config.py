@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
+from eyas.sensors.camera.lens import LensConfig
 
 __all__ = [
     "CameraConfig",
@@ -71,10 +72,13 @@ class CameraConfig(Config):
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
 
+    lens: LensConfig = LensConfig()
+    """How its lens bends, darkens and colours pictures."""
+
     @property
     def is_modelled(self) -> bool:
-        """Whether more of it is modelled than a pinhole."""
-        return False
+        """Whether more of it is modelled than a pinhole, bent by a lens or not."""
+        return self.lens.changes_light
 
 
 class LidarConfig(Config):

@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.glass import change_light
+from eyas.sensors.camera.lens import Lenses
 from eyas.sensors.camera.tone import ToneCurve
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import Picture
@@ -22,15 +24,21 @@ class CameraModel:
         config: The settings.
         lighting: Light and air of the weather.
         count: N.
+        lenses: Their lenses; None: they lose no light.
     """
 
-    def __init__(self, config: CameraConfig, lighting: Lighting, count: int) -> None:
+    def __init__(
+        self, config: CameraConfig, lighting: Lighting, count: int, lenses: Lenses | None = None
+    ) -> None:
         self._curve = ToneCurve(lighting.exposure)
+        self._lenses = lenses if lenses is not None and lenses.change_light else None
 
     @classmethod
-    def of(cls, config: CameraConfig, lighting: Lighting, count: int) -> "CameraModel | None":
+    def of(
+        cls, config: CameraConfig, lighting: Lighting, count: int, lenses: Lenses | None = None
+    ) -> "CameraModel | None":
         """Return the camera model of some settings; None: it is a pinhole camera without errors."""
-        return cls(config, lighting, count) if config.is_modelled else None
+        return cls(config, lighting, count, lenses) if config.is_modelled else None
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
@@ -53,4 +61,6 @@ class CameraModel:
         assert picture.rgb is not None
         light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
         draw(replace(picture, rgb=None, radiance=light))
+        if self._lenses is not None:
+            light = change_light(light, trackers, self._lenses)
         self._curve.develop(light, picture.rgb)

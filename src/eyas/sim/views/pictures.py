@@ -11,6 +11,7 @@ from eyas.core.pinhole import field_along
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.lens import Lenses
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
@@ -37,6 +38,7 @@ class PictureDrawer:
         light: The light around each tracker.
         snapshot: State of the trackers.
         camera: What else is modelled of their cameras; None: nothing.
+        lenses: Their lenses; None: they are pinholes.
         visible: Whether trackers see each other.
     """
 
@@ -48,6 +50,7 @@ class PictureDrawer:
         light: LightChanges,
         snapshot: Snapshot,
         camera: CameraModel | None = None,
+        lenses: Lenses | None = None,
         *,
         visible: bool = True,
     ) -> None:
@@ -56,7 +59,7 @@ class PictureDrawer:
         actors, part = worlds.actors, assets.body_part
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
-        self._snapshot, self._camera = snapshot, camera
+        self._snapshot, self._camera, self._lenses = snapshot, camera, lenses
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
@@ -69,7 +72,7 @@ class PictureDrawer:
     ) -> None:
         """Draw the pictures of trackers' cameras.
 
-        Cameras are pinholes with the aspect ratio of the configured picture. Pictures with another
+        Cameras have the aspect ratio of the configured picture. Pictures with another
         one show the same view distorted, like the original's observations: 320x240 resized to
         84x84.
 
@@ -80,7 +83,7 @@ class PictureDrawer:
             overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(chosen, cameras, self._aspect)
+        views, movers = self._views(chosen, cameras, self._aspect, self._lenses)
         if self._bodies.any:
             movers = self._bodies.added(chosen, views.world, movers, self._snapshot.trackers)
             views.world = np.arange(len(chosen), dtype=np.int32)
@@ -131,7 +134,7 @@ class PictureDrawer:
         """
         chosen = np.array([tracker], np.int32)
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, _ = self._views(chosen, cameras, self._aspect)
+        views, _ = self._views(chosen, cameras, self._aspect, self._lenses)
         views.world = np.zeros(1, np.int32)
         if self._bodies.any:
             posed = self._bodies.added(chosen, views.world, posed, self._snapshot.trackers)
@@ -144,13 +147,22 @@ class PictureDrawer:
         row = np.maximum(picture.object_id[0] - ACTOR_OBJECT, -1)
         return MovingParts(row, picture.depth[0], posed.part[0].copy(), posed.pose[0].copy())
 
-    def _views(self, chosen: Chosen, cameras: CameraState, aspect: float) -> tuple[Views, DrawList]:
+    def _views(
+        self, chosen: Chosen, cameras: CameraState, aspect: float, lenses: Lenses | None = None
+    ) -> tuple[Views, DrawList]:
         """Return views of the worlds of trackers: cameras, with square pixels, and movers.
 
-        `aspect` is the height of what the cameras show over its width.
+        Args:
+            chosen: The trackers, shape (V,).
+            cameras: V cameras.
+            aspect: Height of what they show over its width.
+            lenses: The lenses of all trackers, if the cameras are theirs.
         """
-        ticks = self._snapshot.episodes.tick
-        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect)
+        ticks, seeing = self._snapshot.episodes.tick, cameras
+        if lenses is not None:
+            field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
+            seeing = cameras._replace(field_of_view=field)
+        world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect)
         views = Views(
             position=cameras.position,
             rotation=cameras.rotation,
@@ -159,5 +171,6 @@ class PictureDrawer:
             field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
             instant=np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None,
+            lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers

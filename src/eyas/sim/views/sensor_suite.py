@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.sensors.camera.lens import Lenses
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.sensors.obstacles import Obstacles, obstacles_of
@@ -38,6 +39,7 @@ class SensorSuite:
         lidar: None if it is off.
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
+        lenses: None if the cameras are pinholes.
         camera: None if the camera is a pinhole without errors.
         follow: Whether `advance` must be called after each physics step.
 
@@ -82,7 +84,8 @@ class SensorSuite:
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
-        self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
+        self.lenses = Lenses.of(config.camera.lens, len(active))
+        self.camera = CameraModel.of(config.camera, assets.lighting, len(active), self.lenses)
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
@@ -106,6 +109,7 @@ class SensorSuite:
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
+            "lens": self.lenses if self.lenses is not None and self.lenses.vary else None,
             "camera": self.camera,
         }
         for name, sensor in sensors.items():

@@ -32,6 +32,7 @@ class View:
     Attributes:
         state: The state that is seen, read at each call.
         pictures: Draws it.
+        lenses: The lenses of the trackers' cameras; None: they are pinholes.
 
     Args:
         config: The settings.
@@ -56,7 +57,10 @@ class View:
     ) -> None:
         self.state = state
         shown, camera = state.shown, sensors.camera
-        self.pictures = PictureDrawer(config, assets, worlds, light, shown, camera, visible=visible)
+        self.lenses = lenses = sensors.lenses if sensors.lenses and sensors.lenses.bend else None
+        self.pictures = PictureDrawer(
+            config, assets, worlds, light, shown, camera, lenses, visible=visible
+        )
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
