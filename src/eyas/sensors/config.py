@@ -13,6 +13,7 @@ from eyas.sensors.camera.dirt import DirtConfig
 from eyas.sensors.camera.events import EventsConfig
 from eyas.sensors.camera.exposure import ExposureConfig
 from eyas.sensors.camera.imager import ImagerConfig, Spectrum
+from eyas.sensors.camera.lens import LensConfig
 from eyas.sensors.camera.link import LinkConfig
 from eyas.sensors.camera.models import MODELS, ModelName, laid_under, without
 from eyas.sensors.camera.shutter import ShutterConfig
@@ -93,6 +94,8 @@ class CameraConfig(Config):
     """What sticks to the glass in front; None: nothing."""
     link: LinkConfig | None = None
     """What carries its pictures; None: nothing is coded or lost."""
+    lens: LensConfig = LensConfig()
+    """How its lens bends, darkens and colours pictures."""
     shutter: ShutterConfig = ShutterConfig()
     """Motion blur and rolling shutter."""
     vibration: VibrationConfig = VibrationConfig()
@@ -114,9 +117,10 @@ class CameraConfig(Config):
 
     @property
     def is_modelled(self) -> bool:
-        """Whether more of it is modelled than a pinhole."""
+        """Whether more of it is modelled than a pinhole, bent by a lens or not."""
         parts = (self.sensor, self.dirt, self.link)
-        return self.shutter.blur or any(part is not None for part in parts)
+        blurred = self.shutter.blur or self.lens.changes_light
+        return blurred or any(part is not None for part in parts)
 
     @model_validator(mode="before")
     @classmethod

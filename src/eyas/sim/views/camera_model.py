@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.development import Development
 from eyas.sensors.camera.dirt import Dirt
+from eyas.sensors.camera.glass import change_light
+from eyas.sensors.camera.lens import Lenses
 from eyas.sensors.camera.link import Link
+from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.tone import ToneCurve
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import Picture
@@ -28,10 +31,22 @@ class CameraModel:
         config: The settings.
         lighting: Light and air of the weather.
         count: N.
+        lenses: Their lenses; None: they lose no light.
+        shutter: Their shutters, which stay open as long as the sensors are exposed; None: an
+            instant.
     """
 
-    def __init__(self, config: CameraConfig, lighting: Lighting, count: int) -> None:
+    def __init__(
+        self,
+        config: CameraConfig,
+        lighting: Lighting,
+        count: int,
+        lenses: Lenses | None = None,
+        shutter: Shutter | None = None,
+    ) -> None:
         sensor = config.sensor
+        self._lenses = lenses if lenses is not None and lenses.change_light else None
+        self._shutter = shutter if config.shutter.blur else None
         self._dirt: Dirt | None = None
         self._link: Link | None = None
         self._curve = ToneCurve(lighting.exposure)
@@ -46,9 +61,16 @@ class CameraModel:
             self._link = Link(config.link, count)
 
     @classmethod
-    def of(cls, config: CameraConfig, lighting: Lighting, count: int) -> "CameraModel | None":
-        """Return the camera model of some settings; None: it is a pinhole camera without errors."""
-        return cls(config, lighting, count) if config.is_modelled else None
+    def of(
+        cls,
+        config: CameraConfig,
+        lighting: Lighting,
+        count: int,
+        lenses: Lenses | None = None,
+        shutter: Shutter | None = None,
+    ) -> "CameraModel | None":
+        """Return the camera model of some settings; None: the renderer's pictures are shown."""
+        return cls(config, lighting, count, lenses, shutter) if config.is_modelled else None
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
@@ -76,8 +98,12 @@ class CameraModel:
         assert picture.rgb is not None
         if self.development is not None:
             self.development.expose(trackers, step)
+            if self._shutter is not None:
+                self._shutter.exposure[trackers] = self.development.exposure.time[trackers]
         light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
         draw(replace(picture, rgb=None, radiance=light))
+        if self._lenses is not None:
+            light = change_light(light, trackers, self._lenses)
         if self._dirt is not None:
             self._dirt.cover(light, trackers)
         if self.development is None:

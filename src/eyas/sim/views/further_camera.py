@@ -1,5 +1,6 @@
 """Cameras of trackers beside their own: the other eye of a stereo pair, one that looks aside."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,15 +10,14 @@ from eyas.core import exact
 from eyas.core.frames import rotate
 from eyas.core.variation import sample
 from eyas.lanes import interpreted
-from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.vibration import Vibration
 from eyas.sensors.config import FurtherCameraConfig, MountConfig
 from eyas.sensors.mount import mount_of
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
-from eyas.sim.views.camera_model import CameraModel
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.optics import Optics
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
@@ -32,13 +32,11 @@ Floats = NDArray[np.float64]
 _rotate = interpreted(rotate)  # of scalars, but arrays do as well
 
 
-class FurtherOptics:
-    """What differs between the further cameras of one name of N trackers.
+class FurtherOptics(Optics):
+    """What is modelled of the further cameras of one name of N trackers.
 
     Attributes:
         config: The settings.
-        model: What else is modelled of them; None: nothing.
-        shutter: Their shutters; None: all rows see one instant.
         field_of_view: Horizontal [rad], shape (N,).
 
     Args:
@@ -48,18 +46,15 @@ class FurtherOptics:
     """
 
     def __init__(self, config: FurtherCameraConfig, lighting: Lighting, count: int) -> None:
+        super().__init__(config, lighting, count)
         self.config = config
-        self.model = CameraModel.of(config, lighting, count)
-        self.shutter = Shutter.of(config.shutter, count)
         self.field_of_view = np.ones(count)
 
-    def begin(self, tracker: int, rng: np.random.Generator) -> None:
-        """Begin an episode."""
-        self.field_of_view[tracker] = sample(self.config.field_of_view, rng)
-        if self.model is not None:
-            self.model.begin(tracker, rng)
-        if self.shutter is not None:
-            self.shutter.begin(tracker, rng)
+    def begin(self, tracker: int, stream: Callable[[str], np.random.Generator]) -> None:
+        """Begin an episode, see `Optics`."""
+        field = stream(f"field of view of {self.config.name}")
+        self.field_of_view[tracker] = sample(self.config.field_of_view, field)
+        super().begin(tracker, lambda part: stream(f"{part} of {self.config.name}"))
 
 
 class _Shown(NamedTuple):
@@ -104,7 +99,7 @@ class FurtherCamera:
         shown = state.shown._replace(cameras=self.cameras)
         self._drawer = PictureDrawer(
             config.model_copy(update={"camera": own}), assets, worlds, light,
-            _Shown(shown, shown), optics.model, optics.shutter, visible=visible,
+            _Shown(shown, shown), optics, visible=visible,
         )  # fmt: skip
 
     def draw(self, trackers: Chosen, picture: Picture) -> None:

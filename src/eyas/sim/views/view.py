@@ -36,6 +36,7 @@ class View:
     Attributes:
         state: The state that is seen, read at each call.
         pictures: Draws it.
+        lenses: The lenses of the trackers' cameras; None: they bend nothing.
         further: The cameras that trackers have beside their own, by name.
 
     Args:
@@ -60,9 +61,9 @@ class View:
         visible: bool,
     ) -> None:
         self.state = state
-        modelled = sensors.camera, sensors.shutter
+        self.lenses = sensors.optics.bent
         self.pictures = PictureDrawer(
-            config, assets, worlds, light, state, *modelled, visible=visible
+            config, assets, worlds, light, state, sensors.optics, visible=visible
         )
         self.further = {
             optics.config.name: FurtherCamera(
@@ -179,7 +180,7 @@ class View:
     @property
     def exposure(self) -> ExposureState | None:
         """Exposure times and speeds of the last pictures; None: cameras have no modelled sensor."""
-        camera = self._sensors.camera
+        camera = self._sensors.optics.model
         return None if camera is None or camera.development is None else camera.development.exposure
 
     @property
