@@ -1,7 +1,11 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import (
+    Air,
     Band,
     Direction,
     Geometry,
@@ -14,6 +18,7 @@ from eyas.render.kernels.bundles import (
     View,
 )
 from eyas.render.kernels.light.casters import cast_light
+from eyas.render.kernels.light.sunlight import sunlit
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.flakes import let_flakes_fall
 from eyas.render.kernels.sky.radiance import draw_backdrop
@@ -26,7 +31,7 @@ from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import DrawStage
 from eyas.state.lighting import LightState
 
-__all__ = ["band_of", "draw_views", "view_light"]
+__all__ = ["band_of", "draw_views", "view_light", "with_veil"]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
@@ -66,7 +71,10 @@ def _draw_band(
     job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light, number))
+    here = view_light(light.weather, job.light, number)
+    if light.weather.air.glare > f4(0.0):
+        here = with_veil(light, here, job.eye[number])
+    lit = address_of(here)
     world = i8(job.world[number])
     band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
     count = draw_scene(band)
@@ -111,6 +119,22 @@ def band_of(
         scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
         scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
         scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illumination:
+    """Return light and air of a view with as much veil as sun reaches its lens."""
+    x, y, z = f4(eye[0]), f4(eye[1]), f4(eye[2])
+    air = lit.air
+    return Illumination(
+        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.fog,
+        lit.fog_density,
+        Air(
+            air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
+            air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
+            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.longest_shadow,
+        ),
     )  # fmt: skip
 
 
