@@ -6,7 +6,7 @@ from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.rays import ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
-from eyas.render.kernels.sky.radiance import sky_pixel
+from eyas.render.kernels.sky.radiance import sky_colour
 from eyas.render.kernels.surface.attributes import no_frame
 from eyas.render.kernels.surface.band import instance_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -29,7 +29,9 @@ def shade_pixel(band: Band, key: int, shade: int, row: int, column: int) -> int:
     geometry, light, lit, rays = band.geometry, band.light, band.lit, rays_of(band.camera)
     line, across = rays.top + f4(row) + f4(0.5), f4(column) + f4(0.5)
     if key == i8(0):
-        return sky_pixel(light, lit, rays, line, across)
+        colour = sky_colour(light, lit, rays, line, across)
+        red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+        return pack(red, green, blue)
     tag = tag_of(key)
     which, frame, first = drawn_of(tag), no_frame(), i4(0)
     if which >= 0:

@@ -58,7 +58,7 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(renderer_of, tmp_path
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(*(getattr(traffic, name) for name in Movers._fields))
-    task = new_task(Size(1, 24, 32, 1, int(DrawStage.SHADING), False, 1))
+    task = new_task(Size(1, 24, 32, 1, int(DrawStage.SHADING), False, False, 1))
     set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
     scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
     found = np.zeros((24, 32), np.uint32)

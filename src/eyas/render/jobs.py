@@ -34,6 +34,8 @@ class Size(NamedTuple):
     """See `Task`."""
     falls: bool
     """Whether snow falls."""
+    parts: bool
+    """Whether each view draws some rows only, which are then one band."""
     threads: int
     """Number of threads that share the work."""
 
@@ -41,8 +43,10 @@ class Size(NamedTuple):
 def new_task(size: Size) -> Task:
     """Return a task without its cameras, see `set_views`."""
     views = size.views
+    threads = 1 if size.parts else size.threads
     job = Job(
-        band=_bands(views, size.height, size.width, size.threads),
+        picture=np.arange(views, dtype=np.int32),
+        band=_bands(views, size.height, size.width, threads),
         begun=np.zeros(1, np.int64),
         eye=np.empty((views, 3)),
         axes=np.empty((views, 3, 3)),
@@ -66,6 +70,9 @@ def set_views(task: Task, views: Views, density: float, workers: int) -> None:
     """
     job = task.job
     job.begun[0] = workers
+    job.picture[:] = np.arange(len(job.picture)) if views.picture is None else views.picture
+    if views.rows is not None:
+        job.band[:, 1:] = views.rows
     job.eye[:] = views.position
     job.axes[:] = views.rotation.swapaxes(1, 2)
     job.world[:] = views.world

@@ -16,6 +16,7 @@ MEASURES = 10
 
 NO_OUTPUT = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),
+    radiance=np.empty((0, 0, 0, 0), np.float32),
     depth=np.empty((0, 0, 0), np.float32),
     object_id=np.empty((0, 0, 0), np.int32),
     class_id=np.empty((0, 0, 0), np.uint8),
@@ -36,6 +37,7 @@ def wanted_output(picture: Picture) -> Output:
     subject = any(array is not None for array in of_subject)
     return Output(
         rgb=NO_OUTPUT.rgb if picture.rgb is None else picture.rgb,
+        radiance=NO_OUTPUT.radiance if picture.radiance is None else picture.radiance,
         depth=NO_OUTPUT.depth if picture.depth is None else picture.depth,
         object_id=NO_OUTPUT.object_id if picture.object_id is None else picture.object_id,
         class_id=NO_OUTPUT.class_id if picture.class_id is None else picture.class_id,
@@ -67,24 +69,28 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     for plane in planes:
         if plane is not None:
             return plane.shape[1], plane.shape[2]
+    if picture.radiance is not None:
+        return picture.radiance.shape[2], picture.radiance.shape[3]
     raise ValueError(
-        "picture: rgb, depth, object_id, class_id or normal is needed; it gives the size"
+        "picture: rgb, radiance, depth, object_id, class_id or normal is needed; it gives the size"
     )
 
 
 def write_measured(job: Job, output: Output, picture: Picture) -> None:
-    """Write what the bands of each view measured into a picture, where it is wanted.
+    """Write what the bands of each picture measured into it, where it is wanted.
 
     Args:
         job: The cameras and bands.
         output: What they measured.
         picture: Its boxes and pixels of subjects and actors are written.
     """
-    views = len(job.eye)
+    # The jobs of a picture follow each other.
+    shown = job.picture[job.band[:, 0]]
+    first = np.flatnonzero(np.diff(shown, prepend=-1))
     if len(output.actor):
-        actors = _joined(output.actor.reshape(views, -1, *output.actor.shape[1:]))
+        actors = _joined(output.actor, first)
         _write(actors, picture.actor_box, picture.actor_pixels, picture.actor_visible_box)
-        actor = job.subject - ACTOR_OBJECT
+        actor = job.subject[job.band[first, 0]] - ACTOR_OBJECT
         known = (actor >= 0) & (actor < output.actor.shape[1])
         actor = np.where(known, actor, 0)[:, None, None]
         subject = _Measured(
@@ -92,36 +98,46 @@ def write_measured(job: Job, output: Output, picture: Picture) -> None:
         )
         _write(subject, picture.subject_box, picture.subject_pixels, picture.subject_visible_box)
     elif len(output.subject):
-        subject = _joined(output.subject.reshape(views, -1, MEASURES))
+        subject = _joined(output.subject, first)
         _write(subject, picture.subject_box, picture.subject_pixels, picture.subject_visible_box)
 
 
 class _Measured(NamedTuple):
-    """What is measured of things in whole views."""
+    """What is measured of things in whole pictures."""
 
     box: NDArray[np.int32]
-    """Shape (V, ..., 4)."""
+    """Shape (P, ..., 4)."""
     pixels: NDArray[np.int32]
-    """Shape (V, ..., 2)."""
+    """Shape (P, ..., 2)."""
     visible_box: NDArray[np.int32]
-    """Shape (V, ..., 4)."""
+    """Shape (P, ..., 4)."""
 
 
-def _joined(by_band: NDArray[np.int32]) -> _Measured:
-    """Return what was measured in the bands of views, shape (V, bands, ..., MEASURES)."""
+def _joined(by_band: NDArray[np.int32], first: NDArray[np.int64]) -> _Measured:
+    """Return what was measured in pictures.
+
+    Args:
+        by_band: What was measured in each of J bands, shape (J, ..., MEASURES).
+        first: The first band of each picture, shape (P,).
+    """
     box, pixels, visible = by_band[..., :4], by_band[..., 4:6], by_band[..., 6:]
     return _Measured(
-        _around(box, pixels[..., 1:]),
-        pixels.sum(axis=1, dtype=np.int32),
-        _around(visible, pixels[..., :1]),
+        _around(box, pixels[..., 1:], first),
+        np.add.reduceat(pixels, first, axis=0, dtype=np.int32),
+        _around(visible, pixels[..., :1], first),
     )
 
 
-def _around(box: NDArray[np.int32], pixels: NDArray[np.int32]) -> NDArray[np.int32]:
+def _around(
+    box: NDArray[np.int32], pixels: NDArray[np.int32], first: NDArray[np.int64]
+) -> NDArray[np.int32]:
     """Return the box around those of the bands that have pixels."""
-    low = np.where(pixels > 0, box[..., :2], np.iinfo(np.int32).max).min(axis=1)
-    joined = np.concatenate([low, box[..., 2:].max(axis=1)], axis=-1)
-    return np.where((pixels > 0).any(axis=1), joined, 0)
+    low = np.where(pixels > 0, box[..., :2], np.iinfo(np.int32).max)
+    joined = np.concatenate(
+        [np.minimum.reduceat(low, first, axis=0), np.maximum.reduceat(box[..., 2:], first, axis=0)],
+        axis=-1,
+    )
+    return np.where(np.maximum.reduceat(pixels, first, axis=0) > 0, joined, 0)
 
 
 def _write(measured: _Measured, *wanted: NDArray[np.int32] | None) -> None:

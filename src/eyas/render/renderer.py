@@ -88,9 +88,14 @@ class CpuRenderer:
             self._ready()
         movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
-        if samples == 4 and picture.rgb is not None:
+        side = 2 if samples == 4 else 1
+        if len(output.radiance) and (side == 2 or len(output.rgb)):
+            colours = NO_OUTPUT._replace(radiance=output.radiance)
+            self._draw(views, movers, colours, picture, side, until)
+            output = output._replace(radiance=NO_OUTPUT.radiance)
+        if len(output.rgb) and side == 2:
             colours = NO_OUTPUT._replace(rgb=output.rgb)
-            self._draw(views, movers, colours, picture, 2, until)
+            self._draw(views, movers, colours, picture, side, until)
             output = output._replace(rgb=NO_OUTPUT.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
@@ -107,7 +112,8 @@ class CpuRenderer:
         """Draw with `side` x `side` samples per pixel."""
         height, width = picture_size(picture)
         falls, threads = views.instant is not None, thread_count()
-        size = Size(len(views.position), height, width, side, int(until), falls, threads)
+        parts = views.rows is not None
+        size = Size(len(views.position), height, width, side, int(until), falls, parts, threads)
         # Taken away while it is in use, so that another thread that draws gets another one.
         task = self._tasks.pop(size, None) or Held(new_task(size))
         band = task.bundle.job.band

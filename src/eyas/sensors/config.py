@@ -57,7 +57,7 @@ class MountConfig(Config):
 
 
 class CameraConfig(Config):
-    """A pinhole camera without distortion."""
+    """A camera; by default a pinhole camera without distortion, noise or blur."""
 
     width: Annotated[int, Field(ge=8, le=8192)] = 320
     """[pixels]"""
@@ -70,6 +70,11 @@ class CameraConfig(Config):
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
+
+    @property
+    def is_modelled(self) -> bool:
+        """Whether more of it is modelled than a pinhole."""
+        return False
 
 
 class LidarConfig(Config):

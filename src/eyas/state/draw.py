@@ -105,6 +105,12 @@ class Views:
     """Changes of the light for each view; None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
     """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
+    picture: NDArray[np.int32] | None = None
+    """Which of the P pictures each view draws into, those of one picture next to each other,
+    shape (V,); None: each into its own."""
+    rows: NDArray[np.int32] | None = None
+    """First row of its picture that each view draws, and the row after the last, shape (V, 2);
+    None: all rows."""
 
     def fields_of(self, view: int) -> tuple[float, float | None]:
         """Return the horizontal and the vertical field of view of one view [rad]."""
@@ -162,6 +168,10 @@ class Picture:
     """Box like `subject_box` of the subject's visible pixels only, shape (V, 4)."""
     actor_visible_box: NDArray[np.int32] | None = None
     """The same of all actors, shape (V, A, 4)."""
+    radiance: NDArray[np.float32] | None = None
+    """Linear radiance of red, green and blue, air included, before any exposure, in units of
+    `eyas.state.lighting.Lighting`, shape (V, 3, H, W). Where `rgb` is wanted too, it is drawn
+    twice."""
     normal: NDArray[np.uint8] | None = None
     """Surface normal of each pixel in the camera's frame: right, down and ahead, each from -1 to 1
     as 0 to 255; all 0 for the sky, shape (V, H, W, 3)."""
@@ -179,6 +189,7 @@ class Picture:
         subject: bool = False,
         class_id: bool = False,
         normal: bool = False,
+        radiance: bool = False,
         actors: int = 0,
     ) -> "Picture":
         """Return buffers for the requested outputs; `actors` is the number of actors to measure."""
@@ -194,6 +205,7 @@ class Picture:
             actor_pixels=np.zeros((views, actors, 2), np.int32) if actors else None,
             subject_visible_box=np.zeros((views, 4), np.int32) if subject else None,
             actor_visible_box=np.zeros((views, actors, 4), np.int32) if actors else None,
+            radiance=np.zeros((views, 3, height, width), np.float32) if radiance else None,
             normal=np.zeros((*plane, 3), np.uint8) if normal else None,
         )
 

@@ -49,6 +49,9 @@ class Lighting:
     """Whether the visibility range may be set (`light.visibility`); in clear air it is fixed."""
     exposure: float = 1.0
     """Factor on all radiance before it is converted to a picture."""
+    luminance: float = 30_000.0
+    """Luminance of radiance 1 [cd/m^2]: that of white paper in the sun by a clear day. What a
+    camera model counts photons by; pictures without one do not depend on it."""
     snow: float = 0.0
     """Snow on surfaces that face up: 0 none, 1 fully covered."""
     luminosity: float = 1.0

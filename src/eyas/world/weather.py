@@ -115,6 +115,8 @@ FOG = replace(
     fog_density=1.0 / 1000.0,
     foggy=True,
     clouds=1.0,
+    # 1e4 lux under the cloud, a tenth of the sun's.
+    luminance=8_000.0,
 )
 
 # The original's plain blue sky (0.60, 0.757, 0.945), paler towards the horizon, and the day's sun.
@@ -147,6 +149,8 @@ CLEAR_NIGHT = replace(
     fog_density=1.0 / 3000.0,
     clouds=0.15,
     luminosity=0.3,
+    # A lit street is then at about 1 cd/m^2, as EN 13201 asks of roads of class M3.
+    luminance=25.0,
     lamps=1.0,
     windows=0.3,
 )
@@ -188,6 +192,7 @@ _OVERCAST_DAY = replace(
     fog_density=1.0 / 5000.0,
     clouds=1.0,
     exposure=1.45,
+    luminance=10_000.0,
 )
 _OVERCAST_NIGHT = replace(_FOG_NIGHT, fog_density=CLEAR_NIGHT.fog_density, foggy=False)
 
@@ -201,6 +206,7 @@ _RAIN_DAY = replace(
     fog_colour=(0.35, 0.365, 0.385),
     fog_density=1.0 / 1100.0,
     exposure=1.7,
+    luminance=7_000.0,
     # Drivers have their lamps on, and some rooms need light.
     daytime_lamps=0.6,
     windows=0.05,
@@ -226,6 +232,7 @@ _DUST_DAY = replace(
     mist=1.0 / 260.0,
     mist_depth=14.0,
     glare=0.35,
+    luminance=15_000.0,
 )
 _DUST_NIGHT = replace(
     _FOG_NIGHT,
@@ -260,6 +267,7 @@ _AUTUMN_DAY = replace(
     fog_density=1.0 / 3500.0,
     clouds=0.5,
     exposure=1.1,
+    luminance=27_000.0,
     mist=1.0 / 160.0,
     mist_depth=5.0,
     glare=0.3,
@@ -355,6 +363,7 @@ def _at_hour(weather: Weather, hour: float) -> Lighting:
             *("rain", "leaves", "wet", "litter", "mist", "mist_depth", "glare", "longest_shadow"),
         )
     }
+    (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)
     # Sun and moon change places while neither throws a shadow, so that none jumps.
     if height > _MOONLIGHT:
         mixed["sun_direction"] = _lifted(direction, _LOW_SUN)

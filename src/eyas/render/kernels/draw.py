@@ -7,6 +7,7 @@ from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import (
     Air,
     Band,
+    Canvas,
     Direction,
     Geometry,
     Illumination,
@@ -78,26 +79,39 @@ def _draw_band(
     world = i8(job.world[number])
     band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
     count = draw_scene(band)
+    into = job.picture[number]
     if len(output.depth) > 0:
-        write_depth(band.key, output.depth[number, top:bottom])
+        write_depth(band.key, output.depth[into, top:bottom])
     if len(output.object_id) > 0:
-        write_objects(band, output.object_id[number, top:bottom])
+        write_objects(band, output.object_id[into, top:bottom])
     if len(output.class_id) > 0:
-        write_classes(band, output.class_id[number, top:bottom])
+        write_classes(band, output.class_id[into, top:bottom])
     if len(output.normal) > 0 and until >= RASTERISING:
-        write_normals(band, output.normal[number, top:bottom])
+        write_normals(band, output.normal[into, top:bottom])
     if len(output.subject) > 0 and until >= RASTERISING:
         measure_subject(band, job.subject[number], count, output.subject[index])
     if len(output.actor) > 0 and until >= RASTERISING:
         measure_actors(band, count, output.actor[index])
-    if len(output.rgb) > 0 and until > RASTERISING:
+    coloured = len(output.rgb) > 0 or len(output.radiance) > 0
+    if coloured and until > RASTERISING:
         cast_light(band)
-    if len(output.rgb) > 0 and until > MOVERS_LIGHT:
-        pixels = output.rgb[number, top:bottom]
-        draw_backdrop(band, pixels)
-        shade_band(band, pixels)
+    if coloured and until > MOVERS_LIGHT:
+        canvas = address_of(canvas_of(output, into, top, bottom))
+        draw_backdrop(band, canvas)
+        shade_band(band, canvas)
         if len(job.instant) > 0 and lit.air.flakes > f4(0.0):
-            let_flakes_fall(band, job.instant[number], pixels)
+            let_flakes_fall(band, job.instant[number], canvas)
+
+
+@kernel(inline=True)
+def canvas_of(output: Output, picture: int, top: int, bottom: int) -> Canvas:
+    """Return where the colours of some rows of a picture are written."""
+    return Canvas(
+        output.rgb[picture, top:bottom],
+        output.radiance[picture, 0, top:bottom],
+        output.radiance[picture, 1, top:bottom],
+        output.radiance[picture, 2, top:bottom],
+    )
 
 
 @kernel(inline=True)

@@ -11,12 +11,15 @@ from eyas.lanes.vector import (
     lane,
     lane_numbers,
     load,
+    store,
     store_triples,
     to_u4,
 )
+from eyas.render.kernels.bundles import Canvas, Light
+from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import i4, i8, u4
 
-__all__ = ["keys_of", "pack", "write_pixels"]
+__all__ = ["keys_of", "pack", "write_colours", "write_pixels"]
 
 _ALL = (1 << WIDTH) - 1
 
@@ -41,6 +44,50 @@ def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, p
         pixels[row, column, 0] = value & u4(255)
         pixels[row, column, 1] = (value >> u4(8)) & u4(255)
         pixels[row, column, 2] = (value >> u4(16)) & u4(255)
+
+
+@kernel(inline=True)
+def _write_plane(
+    plane: NDArray[np.float32], row: int, first: int, chosen: int, value: float
+) -> None:
+    """Write those of eight numbers, from column `first` on, whose bit is set."""
+    if chosen == _ALL:
+        store(plane, row * plane.shape[1] + first, value)
+        return
+    while chosen != 0:
+        number = first_bit(chosen)
+        chosen &= chosen - 1
+        plane[row, first + number] = lane(value, number)
+
+
+@kernel(inline=True)
+def write_colours(
+    canvas: Canvas,
+    light: Light,
+    exposure: float,
+    row: int,
+    first: int,
+    chosen: int,
+    colour: tuple[float, float, float],
+) -> None:
+    """Write the colours of those of eight pixels, from column `first` on, whose bit is set.
+
+    Args:
+        canvas: Where to.
+        light: Has the table of tones.
+        exposure: See `Air`.
+        row: Row of the band.
+        first: Column of the first pixel.
+        chosen: A bit for each pixel.
+        colour: Linear radiance.
+    """
+    if len(canvas.red) > 0:
+        _write_plane(canvas.red, row, first, chosen, colour[0])
+        _write_plane(canvas.green, row, first, chosen, colour[1])
+        _write_plane(canvas.blue, row, first, chosen, colour[2])
+        return
+    red, green, blue = tone_bytes(light, exposure, colour)
+    write_pixels(canvas.pixels, row, first, chosen, pack(red, green, blue))
 
 
 @kernel(inline=True)

@@ -1,6 +1,7 @@
 """Pictures of the worlds of a simulation, from its trackers' cameras or from any others."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
+from eyas.sim.views.camera_model import CameraModel
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
@@ -34,6 +36,7 @@ class PictureDrawer:
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
         snapshot: State of the trackers.
+        camera: What else is modelled of their cameras; None: nothing.
         visible: Whether trackers see each other.
     """
 
@@ -44,6 +47,7 @@ class PictureDrawer:
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
+        camera: CameraModel | None = None,
         *,
         visible: bool = True,
     ) -> None:
@@ -52,7 +56,7 @@ class PictureDrawer:
         actors, part = worlds.actors, assets.body_part
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
-        self._snapshot = snapshot
+        self._snapshot, self._camera = snapshot, camera
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
@@ -83,7 +87,11 @@ class PictureDrawer:
         fields = cameras.field_of_view.tolist()
         views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
         deep = picture if overlaid is None else with_depth(picture)
-        self._renderer.draw(views, movers, deep, self._samples, until)
+        draw = partial(self._renderer.draw, views, movers, samples=self._samples, until=until)
+        if self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
+            draw(deep)
+        else:
+            self._camera.draw(draw, chosen, self._snapshot.episodes.step_count, deep)
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
 

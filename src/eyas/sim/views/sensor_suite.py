@@ -17,6 +17,7 @@ from eyas.sensors.obstacles import Obstacles, obstacles_of
 from eyas.sensors.readings import Readings, has_errors
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
+from eyas.sim.views.camera_model import CameraModel
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import Crash
@@ -37,6 +38,7 @@ class SensorSuite:
         lidar: None if it is off.
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
+        camera: None if the camera is a pinhole without errors.
         follow: Whether `advance` must be called after each physics step.
 
     Args:
@@ -80,6 +82,7 @@ class SensorSuite:
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
+        self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
@@ -103,6 +106,7 @@ class SensorSuite:
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
+            "camera": self.camera,
         }
         for name, sensor in sensors.items():
             if sensor is not None:

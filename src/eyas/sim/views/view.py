@@ -55,7 +55,8 @@ class View:
         visible: bool,
     ) -> None:
         self.state = state
-        self.pictures = PictureDrawer(config, assets, worlds, light, state.shown, visible=visible)
+        shown, camera = state.shown, sensors.camera
+        self.pictures = PictureDrawer(config, assets, worlds, light, shown, camera, visible=visible)
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds

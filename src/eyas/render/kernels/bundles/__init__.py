@@ -21,7 +21,7 @@ from eyas.render.kernels.bundles.light import (
     MapFrame,
 )
 from eyas.render.kernels.bundles.view import NEAR, Plane, Planes, Point, Projection, Row, View
-from eyas.render.kernels.bundles.work import Job, Output, Scratch, Task
+from eyas.render.kernels.bundles.work import Canvas, Job, Output, Scratch, Task
 
 __all__ = [
     "GROUP",
@@ -29,6 +29,7 @@ __all__ = [
     "TILE",
     "Air",
     "Band",
+    "Canvas",
     "Direction",
     "Geometry",
     "Illumination",

@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from eyas.state.lighting import LightState
 
-__all__ = ["Job", "Output", "Scratch", "Task"]
+__all__ = ["Canvas", "Job", "Output", "Scratch", "Task"]
 
 
 class Job(NamedTuple):
     """The cameras, and which rows of which view each job draws."""
+
+    picture: NDArray[np.int32]
+    """Picture that each view is drawn into, shape (V,)."""
 
     band: NDArray[np.int32]
     """View, first row, last row + 1, shape (J, 3)."""
@@ -71,6 +74,7 @@ class Output(NamedTuple):
     """Arrays to write; those of length 0 are not wanted."""
 
     rgb: NDArray[np.uint8]
+    radiance: NDArray[np.float32]
     depth: NDArray[np.float32]
     object_id: NDArray[np.int32]
     class_id: NDArray[np.uint8]
@@ -80,6 +84,17 @@ class Output(NamedTuple):
     if it covers none, then left, top, right, bottom of the seen ones, shape (J, 10)."""
     actor: NDArray[np.int32]
     """The same for each actor of the view's world, shape (J, A, 10)."""
+
+
+class Canvas(NamedTuple):
+    """Where the colours of a band are written: as bytes, or as radiance; the other is empty."""
+
+    pixels: NDArray[np.uint8]
+    """sRGB, shape (rows, columns, 3)."""
+    red: NDArray[np.float32]
+    """Linear radiance, shape (rows, columns)."""
+    green: NDArray[np.float32]
+    blue: NDArray[np.float32]
 
 
 class Task(NamedTuple):

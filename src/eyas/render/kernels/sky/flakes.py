@@ -8,11 +8,8 @@ same. Around the camera are shells, the farther with larger cells, to limit the 
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import address_of, kernel
-from eyas.render.kernels.bundles import Band, Illumination, Light, View
+from eyas.render.kernels.bundles import Band, Canvas, Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
@@ -48,10 +45,11 @@ class Snowfall(NamedTuple):
     """Time [s]."""
     most: int
     """Largest number of flakes in a cell."""
-    white: tuple[int, int, int]
-    """Bytes of a flake."""
-    pixels: NDArray[np.uint8]
-    """sRGB, shape (rows, columns, 3)."""
+    white: tuple[float, float, float]
+    """Radiance of a flake."""
+    bytes: tuple[int, int, int]
+    """Its bytes."""
+    canvas: Canvas
 
 
 @kernel(inline=True)
@@ -62,29 +60,37 @@ def _wave(turn: float) -> float:
 
 
 @kernel(inline=True)
-def _white(light: Light, lit: Illumination) -> tuple[int, int, int]:
-    """Return a flake's bytes: it is lit by the sky and, a little, by sunlight shining through."""
+def _white(lit: Illumination) -> tuple[float, float, float]:
+    """Return a flake's radiance: the sky lights it, and, a little, sunlight shining through."""
     above, sun = lit.above, lit.sun_colour
-    colour = (
+    return (
         f4(1.1) * above.x + f4(0.35) * sun.x,
         f4(1.1) * above.y + f4(0.35) * sun.y,
         f4(1.1) * above.z + f4(0.35) * sun.z,
     )
-    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+
+
+@kernel(inline=True)
+def _bytes(
+    light: Light, exposure: float, colour: tuple[float, float, float]
+) -> tuple[int, int, int]:
+    red, green, blue = tone_bytes(light, exposure, colour)
     return i8(red), i8(green), i8(blue)
 
 
 @kernel
-def let_flakes_fall(band: Band, instant: float, pixels: NDArray[np.uint8]) -> None:
+def let_flakes_fall(band: Band, instant: float, canvas: Canvas) -> None:
     """Draw flakes into a band.
 
     Args:
         band: The band.
         instant: Time [s].
-        pixels: sRGB, shape (rows, columns, 3).
+        canvas: Its colours.
     """
     view, most = band.camera, math.ceil(MOST * band.lit.air.flakes)
-    snowfall = Snowfall(band, instant, most, _white(band.light, band.lit), pixels)
+    white = _white(band.lit)
+    pale = _bytes(band.light, band.lit.air.exposure, white)
+    snowfall = Snowfall(band, instant, most, white, pale, canvas)
     begin = NEAREST
     for shell in range(SHELLS):
         end = begin * GROWTH
@@ -233,18 +239,18 @@ def _smear(
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    pixels, key, step = snowfall.pixels, snowfall.band.key, snowfall.band.camera.samples
+    key, view = snowfall.band.key, snowfall.band.camera
+    step = view.samples
     first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
-    last = min(i8(math.ceil(max(row, row + to_row) + reach)), pixels.shape[0])
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)), view.rows // step)
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
-    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), pixels.shape[1])
+    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), view.width // step)
     if first >= last or start >= stop:
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
     # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
     strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
     strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
-    red, green, blue = snowfall.white
     for i in range(first, last):
         for j in range(start, stop):
             if distance_inverse(key[i * step, j * step]) > inverse:
@@ -255,6 +261,20 @@ def _smear(
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red - pixels[i, j, 0]) + 0.5)
-            pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green - pixels[i, j, 1]) + 0.5)
-            pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue - pixels[i, j, 2]) + 0.5)
+            _blend(snowfall, i, j, cover)
+
+
+@kernel(inline=True)
+def _blend(snowfall: Snowfall, i: int, j: int, cover: float) -> None:
+    """Let a flake cover a share of a pixel."""
+    canvas = snowfall.canvas
+    if len(canvas.red) > 0:
+        red, green, blue = snowfall.white
+        canvas.red[i, j] += f4(cover) * (red - canvas.red[i, j])
+        canvas.green[i, j] += f4(cover) * (green - canvas.green[i, j])
+        canvas.blue[i, j] += f4(cover) * (blue - canvas.blue[i, j])
+        return
+    pixels, (red_byte, green_byte, blue_byte) = canvas.pixels, snowfall.bytes
+    pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red_byte - pixels[i, j, 0]) + 0.5)
+    pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green_byte - pixels[i, j, 1]) + 0.5)
+    pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue_byte - pixels[i, j, 2]) + 0.5)

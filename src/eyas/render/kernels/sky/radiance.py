@@ -26,10 +26,9 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-from eyas.render.kernels.bundles import Band, Direction, Illumination, Light
+from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
 from eyas.render.kernels.chance import hashed
-from eyas.render.kernels.light.tone import tone_bytes
-from eyas.render.kernels.pixels import keys_of, pack, write_pixels
+from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
@@ -45,7 +44,7 @@ __all__ = [
     "draw_backdrop",
     "reflection",
     "sky",
-    "sky_pixel",
+    "sky_colour",
     "surroundings",
 ]
 
@@ -354,13 +353,11 @@ def reflection(
 
 
 @kernel(inline=True)
-def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: float) -> int:
-    """Return the packed bytes of the sky at a place of the picture [samples]."""
+def sky_colour(light: Light, lit: Illumination, rays: Rays, line: float, column: float) -> Colour:
+    """Return the radiance of the sky at a place of the picture [samples]."""
     x, y, z = ray_of(rays, line, column)
     unit = f4(1.0) / root(x * x + y * y + z * z)
-    colour = sky(light, lit, x * unit, y * unit, z * unit, rays.pixel)
-    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
-    return pack(red, green, blue)
+    return sky(light, lit, x * unit, y * unit, z * unit, rays.pixel)
 
 
 @kernel(inline=True)
@@ -374,20 +371,20 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
 
 
 @kernel
-def draw_backdrop(band: Band, pixels: NDArray[np.uint8]) -> None:
+def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """Write the sky at the centre of each pixel in which any sample shows it.
 
     Separate from `shade_band`, so that the code that shades surfaces stays small.
 
     Args:
         band: The band.
-        pixels: sRGB, shape (rows, columns, 3).
+        canvas: Its colours.
     """
     view, light, lit, key = band.camera, band.light, band.lit, band.key
     rays, samples = rays_of(view), view.samples
     side, half = f4(samples), f4(0.5) * f4(samples)
-    width = pixels.shape[1]
-    for row in range(pixels.shape[0]):
+    width = view.width // samples
+    for row in range(view.rows // samples):
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(key, row * samples, first * samples, samples)
             if width - first < WIDTH:
@@ -395,5 +392,5 @@ def draw_backdrop(band: Band, pixels: NDArray[np.uint8]) -> None:
             if chosen == 0:
                 continue
             column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
-            packed = sky_pixel(light, lit, rays, rays.top + f4(row) * side + half, column)
-            write_pixels(pixels, row, first, chosen, packed)
+            colour = sky_colour(light, lit, rays, rays.top + f4(row) * side + half, column)
+            write_colours(canvas, light, lit.air.exposure, row, first, chosen, colour)

@@ -1,4 +1,4 @@
-"""Shading of a band: from the key of each sample to the bytes of the picture."""
+"""Shading of a band: from the key of each sample to the colours of the picture."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +20,9 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-from eyas.render.kernels.bundles import Band
+from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.light.tone import tone_bytes
-from eyas.render.kernels.pixels import keys_of, pack, write_pixels
+from eyas.render.kernels.pixels import keys_of, pack, write_colours, write_pixels
 from eyas.render.kernels.rays import Rays, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
@@ -55,24 +55,23 @@ def _one_instance(
     away: float,
     pixel: float,
     shade: int,
-) -> int:
-    """Return the packed bytes of eight points of one instance, a row of `Band.drawn`.
+) -> Colour:
+    """Return the radiance of eight points of one instance, a row of `Band.drawn`.
 
     A function of its own: inlined into the loops that call it, the hundred numbers that are the
     same for all points would be spread over lanes before each loop, kept in memory and read again.
     """
-    light, lit, frame, first = band.light, band.lit, no_frame(), i4(0)
+    frame, first = no_frame(), i4(0)
     if row >= 0:
         frame, first = instance_frame(band, row), band.drawn[row, 0]
-    colour = shade_point(
-        band.geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
-    )
-    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
-    return pack(red, green, blue)
+    return shade_point(
+        band.geometry, band.light, band.lit, triangle + first, row >= 0, frame, eye, ray, away,
+        pixel, shade,
+    )  # fmt: skip
 
 
 @kernel(inline=True)
-def _packed_points(
+def _colours_of(
     band: Band,
     rays: Rays,
     tag: int,
@@ -81,22 +80,24 @@ def _packed_points(
     line: float,
     column: float,
     shade: int,
-) -> int:
-    """Return the packed bytes of eight samples; those not wanted are 0.
+) -> Colour:
+    """Return the radiance of eight samples; that of those not wanted is 0.
 
     All samples of one instance are computed together: its pose is the same number in all lanes.
     """
     ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
     row, triangle = drawn_of(tag), triangle_of(tag)
-    packed, left = splat(u4(0)), bits_of(wanted)
+    red, green, blue, left = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), bits_of(wanted)
     while left != 0:
         which = lane(row, first_bit(left))
         same = wanted & (row == which)
         left &= ~bits_of(same)
         known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
         shown = _one_instance(band, which, known, eye, ray, away, rays.pixel, shade)
-        packed = select(same, shown, packed)
-    return packed
+        red = select(same, shown[0], red)
+        green = select(same, shown[1], green)
+        blue = select(same, shown[2], blue)
+    return red, green, blue
 
 
 @kernel(inline=True)
@@ -129,23 +130,24 @@ def _alike(
 
 
 @kernel(inline=True)
-def _shade_one(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int) -> None:
+def _shade_one(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, first: int) -> None:
     """Write eight pixels of a row, with one sample each."""
     key, numbers, half = band.key, to_f4(lane_numbers()), splat(f4(0.5))
     keys = keys_of(key, row, first, 1)
-    seen = (numbers < f4(pixels.shape[1] - first)) & (keys != i8(0))
+    seen = (numbers < f4(width - first)) & (keys != i8(0))
     if not any_of(seen):
         return
     words = load_words(band.shade, 4 * (row * key.shape[1] + first))
     distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
     line, column = half + (rays.top + f4(row)), numbers + f4(first) + half
-    packed = _packed_points(band, rays, tag_of(keys), seen, distance, line, column, words)
-    write_pixels(pixels, row, first, bits_of(seen), packed)
+    colour = _colours_of(band, rays, tag_of(keys), seen, distance, line, column, words)
+    exposure = band.lit.air.exposure
+    write_colours(canvas, band.light, exposure, row, first, bits_of(seen), colour)
 
 
 @kernel(inline=True)
 def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int) -> None:
-    """Write eight pixels of a row, with four samples each.
+    """Write the bytes of eight pixels of a row, with four samples each.
 
     Each triangle that a pixel shows is computed once, in the middle of the samples that show it,
     and counts as often as there are of them; 1/distance is linear on the screen, so the mean of
@@ -169,7 +171,9 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
         words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
         distance = f4(1.0) / select(seen, inverse, f4(1.0))
         down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
-        packed = _packed_points(band, rays, tag, seen, distance, down, right, words)
+        colour = _colours_of(band, rays, tag, seen, distance, down, right, words)
+        red_byte, green_byte, blue_byte = tone_bytes(band.light, band.lit.air.exposure, colour)
+        packed = select(seen, pack(red_byte, green_byte, blue_byte), u4(0))
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
     if shown != 0:
         two, halves = u4(2), u4(0x00020002)
@@ -177,23 +181,66 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
         write_pixels(pixels, row, first, shown, to_u4(both | (green << eight)))
 
 
+@kernel(inline=True)
+def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, first: int) -> None:
+    """Write the mean radiance of eight pixels of a row, with four samples each; see `_shade_four`.
+
+    Light is added up, not bytes: a lamp in a quarter of a pixel keeps a quarter of its light.
+    """
+    numbers, line, sample = to_f4(lane_numbers()), 2 * row, 2 * first
+    key, inside = band.key, numbers < f4(width - first)
+    red, green, blue, shown = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), i8(0)
+    zero, one = f4(0.0), splat(f4(1.0))
+    for k in range(4):
+        keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
+        seen = inside & (keys != i8(0))
+        shown |= bits_of(seen)
+        sky = inside & ~seen
+        if any_of(sky):
+            at = select(sky, lane_numbers() + i4(row * width + first), i4(0))
+            red += select(sky, gather(canvas.red, at), zero)
+            green += select(sky, gather(canvas.green, at), zero)
+            blue += select(sky, gather(canvas.blue, at), zero)
+        tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
+        seen &= is_first
+        if not any_of(seen):
+            continue
+        words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
+        distance = f4(1.0) / select(seen, inverse, one)
+        down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+        colour = _colours_of(band, rays, tag, seen, distance, down, right, words)
+        share = to_f4(to_i4(weight))
+        red += share * colour[0]
+        green += share * colour[1]
+        blue += share * colour[2]
+    if shown != 0:
+        part = f4(0.25)
+        colour = (part * red, part * green, part * blue)
+        write_colours(canvas, band.light, band.lit.air.exposure, row, first, shown, colour)
+
+
 @kernel
-def shade_band(band: Band, pixels: NDArray[np.uint8]) -> None:
+def shade_band(band: Band, canvas: Canvas) -> None:
     """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
 
     Args:
         band: The band.
-        pixels: sRGB, shape (rows, columns, 3).
+        canvas: Its colours.
     """
-    rays, width = rays_of(band.camera), pixels.shape[1]
-    if band.camera.samples == 1:
-        for row in range(pixels.shape[0]):
+    rays, view = rays_of(band.camera), band.camera
+    width, rows = view.width // view.samples, view.rows // view.samples
+    if view.samples == 1:
+        for row in range(rows):
             for first in range(0, width, WIDTH):
-                _shade_one(band, rays, pixels, row, first)
+                _shade_one(band, rays, canvas, width, row, first)
+    elif len(canvas.red) > 0:
+        for row in range(rows):
+            for first in range(0, width, WIDTH):
+                _mean_of_four(band, rays, canvas, width, row, first)
     else:
-        for row in range(pixels.shape[0]):
+        for row in range(rows):
             for first in range(0, width, WIDTH):
-                _shade_four(band, rays, pixels, row, first)
+                _shade_four(band, rays, canvas.pixels, row, first)
 
 
 @kernel(inline=True)
