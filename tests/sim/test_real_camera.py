@@ -45,7 +45,7 @@ def test_a_tracker_alone_sees_what_it_sees_among_others():
 
 
 def test_ids_are_those_of_the_clean_picture():
-    plain, real = simulation_of(), simulation_of(model="small-drone", dirt={})
+    plain, real = simulation_of(), simulation_of(imager={}, dirt={}, link={})
     seen, shown = picture_of(plain), picture_of(real)
     np.testing.assert_array_equal(seen.object_id, shown.object_id)
     assert (seen.rgb != shown.rgb).any()
