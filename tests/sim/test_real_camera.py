@@ -51,6 +51,18 @@ def test_ids_are_those_of_the_clean_picture():
     assert (seen.rgb != shown.rgb).any()
 
 
+def test_boxes_are_measured_beside_blurred_colours():
+    simulation = simulation_of(1, shutter={"blur": True, "exposure": 0.1})
+    for _ in range(3):
+        simulation.advance(np.array([[8.0, 0.0, 0.0, 0.8]]), 50)
+    picture = Picture.create(1, 48, 64, subject=True)
+    simulation.draw(np.zeros(1, np.int32), picture)
+    assert simulation.snapshot.trackers.velocity[0, :2].any()
+    whole = Picture.create(1, 48, 64, rgb=False, subject=True, object_id=True)
+    simulation.draw(np.zeros(1, np.int32), whole)
+    np.testing.assert_array_equal(picture.subject_box, whole.subject_box)
+
+
 def test_night_is_noisy_and_day_is_not():
     noise = {}
     for weather in ("day", "night"):

@@ -27,6 +27,9 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Chosen = NDArray[np.int32]
 
+_PLANES = ("rgb", "depth", "object_id", "class_id", "normal")
+"""What says the size of a picture without light."""
+
 _MOST_BANDS = 64
 _LIGHT = 8 << 20
 """Bytes of light that are drawn before they are added: few enough to stay in caches."""
@@ -59,9 +62,7 @@ class Stage(Protocol):
         ...
 
 
-def exposure_of(
-    chosen: Chosen, steady: Snapshot, vibration: Vibration | None
-) -> Exposure:
+def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -> Exposure:
     """Return the exposures of some trackers.
 
     Args:
@@ -139,6 +140,9 @@ class Exposures:
         others = replace(picture, radiance=None)
         if any(getattr(others, one.name) is not None for one in fields(others)):
             middle = pieces_of(once, bands, open_for, readout, height)
+            if not any(getattr(others, name) is not None for name in _PLANES):
+                # Boxes alone do not say of what size the picture is.
+                others.class_id = np.empty((len(chosen), height, width), np.uint8)
             self._draw(chosen, exposure, middle, others, until)
         passes = pieces_of(samples, bands, open_for, readout, height)
         self._add(chosen, exposure, passes, picture.radiance, until)
