@@ -53,8 +53,8 @@ def information(simulation: Simulation) -> Info:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
       nothing was within range);
-    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`) of
-      its last picture; 0 before the first.
+    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
+      of its last picture; 0 before the first.
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot

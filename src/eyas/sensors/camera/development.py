@@ -302,7 +302,7 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
         first, last = band * _BAND, min((band + 1) * _BAND, height)
         if work.mosaic > 0:
             raw = developed.raw[worker]
-            read_mosaic(readout, developed.radiance, view, first, last, work.uneven, raw)
+            read_mosaic(readout, developed.radiance, view, (first, last), work.uneven, raw)
             _develop_mosaic(work, developed, view, first, last, raw)
         elif work.grey:
             _develop_grey(work, developed, readout, view, first, last)
@@ -314,7 +314,8 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
 def _byte(tone: NDArray[np.uint8], value: float) -> int:
     """Return the byte for a value, 1 at saturation; not a number becomes black."""
     step = lesser(greater(value, f4(0.0)), f4(1.0)) * f4(TONE_STEPS - 1)
-    return gather(tone, to_i4(step + f4(0.5)))
+    byte: int = gather(tone, to_i4(step + f4(0.5)))
+    return byte
 
 
 @kernel
@@ -384,8 +385,6 @@ def _develop_mosaic(
         for start in range(0, width + WIDTH - 1, WIDTH):
             column = min(start, width - WIDTH)
             colours = demosaicked(raw, row, row - first, column, malvar)
-            packed = pack(
-                _byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2])
-            )
+            packed = pack(_byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2]))
             at = 3 * ((view * height + row) * width + column)
             store_triples(developed.rgb, at, packed)

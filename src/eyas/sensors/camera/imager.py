@@ -111,9 +111,20 @@ class ImagerState(NamedTuple):
     @classmethod
     def create(cls, count: int) -> "ImagerState":
         """Return the state of sensors before their first episode."""
-        numbers = (np.ones(count) for _ in range(8))
-        seeds = (np.zeros(count, np.int64) for _ in range(2))
-        return cls(np.ones((count, 3)), *numbers, *seeds)
+        one, none = np.ones(count), np.zeros(count, np.int64)
+        return cls(
+            electrons=np.ones((count, 3)),
+            white=one,
+            full_well=one.copy(),
+            read_noise=one.copy(),
+            dark_current=one.copy(),
+            dark_nonuniformity=one.copy(),
+            gain_nonuniformity=one.copy(),
+            row_noise=one.copy(),
+            base_iso=one.copy(),
+            fixed_seed=none,
+            noise_seed=none.copy(),
+        )
 
     def begin(
         self,

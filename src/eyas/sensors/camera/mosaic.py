@@ -34,8 +34,7 @@ def read_mosaic(
     readout: Readout,
     radiance: NDArray[np.float32],
     view: int,
-    first: int,
-    last: int,
+    rows: tuple[int, int],
     uneven: bool,
     raw: NDArray[np.float32],
 ) -> None:
@@ -45,14 +44,14 @@ def read_mosaic(
         readout: How they are read.
         radiance: Shape (V, 3, H, W).
         view: Which picture.
-        first: Its first row.
-        last: The row after the last.
+        rows: Its first row, and the row after the last.
         uneven: Whether there is a fixed pattern.
         raw: Written: values, 1 at saturation, with white balanced; shape (rows + 2 `HALO`,
             W + 2 `MARGIN`).
     """
     height, width = radiance.shape[2], radiance.shape[3]
     plane, line = height * width, raw.shape[1]
+    first, last = rows
     for k in range(last - first + 2 * HALO):
         row = _mirrored(first + k - HALO, height)
         below = row & 1

@@ -105,7 +105,8 @@ def readout_of(
 def bell(word: int) -> float:
     """Return a nearly normal number of mean 0 and deviation 147.8 from 32 random bits."""
     pairs = to_u4((word & u4(0x00FF00FF)) + ((word >> u4(8)) & u4(0x00FF00FF)))
-    return to_f4(to_i4((pairs & u4(0xFFFF)) + (pairs >> u4(16)))) - f4(510.0)
+    total: float = to_f4(to_i4((pairs & u4(0xFFFF)) + (pairs >> u4(16))))
+    return total - f4(510.0)
 
 
 @kernel(inline=True)
@@ -135,4 +136,5 @@ def read_out(readout: Readout, electrons: float, index: int, row: float, uneven:
         held += light * (readout.uneven_gain * (to_f4(to_i4(pairs & u4(0xFFFF))) - f4(255.0)))
         held += readout.uneven_dark * (to_f4(to_i4(pairs >> u4(16))) - f4(255.0))
     step = whole(lesser(held, readout.most) * readout.steps + f4(0.5))
-    return lesser(step, readout.levels)
+    number: float = lesser(step, readout.levels)
+    return number

@@ -59,7 +59,7 @@ class CameraModel:
                 sensor, config.exposure, config.spectrum, lighting.luminance, count
             )
         if config.dirt is not None:
-            self._dirt = Dirt(config.dirt, count)
+            self._dirt = Dirt(config.dirt, lighting.flakes, count)
         if config.link is not None:
             self._link = Link(config.link, count)
 
