@@ -52,7 +52,9 @@ def information(simulation: Simulation) -> Info:
       frame [m]), the object that was touched (`contact_object`, as in `Picture.object_id`; -1:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
-      nothing was within range).
+      nothing was within range);
+    - what the sensor of events has told since the last time, if there is one (`events`, for each
+      tracker an array of `eyas.sensors.camera.esim.EVENT`: column, row, polarity, time [us]).
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -71,7 +73,19 @@ def information(simulation: Simulation) -> Info:
         info["contact_class"] = simulation.classes_of(episodes.contact_object)
     if (lidar := simulation.view.lidar) is not None:
         info["lidar"] = lidar.ranges()
+    if simulation.config.camera.events.enabled:
+        info["events"] = _events(simulation)
     return info
+
+
+def _events(simulation: Simulation) -> NDArray[np.object_]:
+    """Return the events of all trackers, which are different in number."""
+    sensors = simulation.view.events(np.arange(simulation.count, dtype=np.int32))
+    assert sensors is not None
+    told = np.empty(simulation.count, object)
+    for tracker in range(simulation.count):
+        told[tracker] = sensors.events_of(tracker)
+    return told
 
 
 def by_term(terms: dict[str, Floats]) -> Info:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
 from eyas.envs.information import privileged_state, sensor_state
-from eyas.sensors.config import ColourLayout, LidarConfig
+from eyas.sensors.config import CameraConfig, ColourLayout, LidarConfig
 from eyas.sensors.stack import FrameStack
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
@@ -31,26 +31,32 @@ _PRIVILEGED = 16
 _Parts = ObservationPart
 
 
-def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasium.Space[Any]:
+def observation_space(
+    config: ObservationConfig, lidar: LidarConfig, camera: CameraConfig
+) -> gymnasium.Space[Any]:
     """Return the space of one agent's observations.
 
     Raises:
-        ConfigError: The agent is to observe a lidar that it does not have, or words alone.
+        ConfigError: The agent is to observe a sensor that it does not have, or words alone.
     """
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
         )
+    if _Parts.EVENTS in config.parts and not camera.events.enabled:
+        raise ConfigError(
+            "env.observation.parts: 'events' needs the sensor: camera.events.enabled is false"
+        )
     if set(config.parts) == {_Parts.WORDS}:
         raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
     spaces: dict[str, gymnasium.Space[Any]] = {
-        part.value: _space(part, config, lidar) for part in dict.fromkeys(config.parts)
+        part.value: _space(part, config, lidar, camera) for part in dict.fromkeys(config.parts)
     }
     return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
 
 
 def _space(
-    part: ObservationPart, config: ObservationConfig, lidar: LidarConfig
+    part: ObservationPart, config: ObservationConfig, lidar: LidarConfig, camera: CameraConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
     size = config.height, config.width
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
@@ -66,12 +72,23 @@ def _space(
             return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
+        case _Parts.EVENTS:
+            shape = _event_shape(config, camera)
+            return gymnasium.spaces.Box(0, 255, shape, np.uint8)
         case _Parts.WORDS:
             return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
         case _Parts.ATTRIBUTES:
             return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
         case _Parts.PRIVILEGED:
             return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
+
+
+def _event_shape(config: ObservationConfig, camera: CameraConfig) -> tuple[int, int, int]:
+    events = camera.events
+    height, width = events.height or camera.height, events.width or camera.width
+    if config.layout is ColourLayout.CHW:
+        return 2 * events.bins, height, width
+    return height, width, 2 * events.bins
 
 
 def phrase_of_target(simulation: Simulation, tracker: int) -> Phrase:
@@ -98,8 +115,8 @@ class Observer:
     """
 
     def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
-        lidar = simulation.config.lidar
-        self.space = observation_space(config, lidar)
+        lidar, camera = simulation.config.lidar, simulation.config.camera
+        self.space = observation_space(config, lidar, camera)
         self._simulation = simulation
         count, size = simulation.count, (config.height, config.width)
         wanted = frozenset(config.parts)
@@ -115,12 +132,13 @@ class Observer:
         self._latest: dict[ObservationPart, Array] = {}
         self._words: list[str] | None = None
         for part in config.parts:
-            space = _space(part, config, lidar)
+            space = _space(part, config, lidar, camera)
             if isinstance(space, gymnasium.spaces.Text):
                 self._words = [""] * count
             else:
                 self._latest[part] = np.zeros((count, *space.shape), space.dtype)
         self._names_targets = bool(wanted & {_Parts.WORDS, _Parts.ATTRIBUTES})
+        self._last_axis = config.layout is ColourLayout.HWC
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
 
@@ -150,6 +168,8 @@ class Observer:
             seen = self._simulation.view
             assert seen.lidar is not None  # its space says so
             seen.lidar.fill(ranges, seen.state.late)
+        if (events := self._latest.get(_Parts.EVENTS)) is not None:
+            self._count_events(chosen, events)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 
@@ -170,6 +190,15 @@ class Observer:
             if plane is not None:
                 latest = self._latest[part]
                 latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
+
+    def _count_events(self, chosen: NDArray[np.int32], out: Array) -> None:
+        """Write how many events the pixels of some trackers have told."""
+        sensors = self._simulation.view.events(chosen)
+        assert sensors is not None  # its space says so
+        planes = np.moveaxis(out, -1, 1) if self._last_axis else out
+        counts = np.empty((len(chosen), *planes.shape[1:]), np.uint8)
+        sensors.count(chosen.astype(np.int64), counts)
+        planes[chosen] = counts
 
     def copy_to(self, out: Observation, rows: NDArray[np.integer] | slice) -> None:
         """Copy the latest observation of each tracker.

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import CameraPose, Floats, Frame, RecordedAction, RecordedBody, Subject
@@ -47,10 +48,18 @@ class Moment(NamedTuple):
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
     parts: MovingParts | None = None
     """See `Frame.parts`; nothing changes it later."""
+    events: NDArray[np.void] | None = None
+    """See `Frame.events`; nothing changes it later."""
 
 
 def moment_of(
-    simulation: Simulation, tracker: int, picture: Picture, view: int, *, parts: bool = False
+    simulation: Simulation,
+    tracker: int,
+    picture: Picture,
+    view: int,
+    *,
+    parts: bool = False,
+    events: bool = False,
 ) -> Moment:
     """Return what is known of a tracker at the time of its picture, which has just been drawn.
 
@@ -60,6 +69,7 @@ def moment_of(
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
         parts: Whether to draw which moving part each pixel shows, too.
+        events: Whether to ask the sensor of events, too.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -72,7 +82,10 @@ def moment_of(
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
     told = seen.packets()[0][tracker, SENSOR_COLUMNS]
     moving = seen.parts(tracker, actors or seen.actors(tracker)) if parts else None
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told, moving)
+    sensor = seen.events(np.array([tracker], np.int32)) if events else None
+    seen_events = None if sensor is None else sensor.events_of(tracker)
+    now = simulation.snapshot.episodes
+    return Moment(shown, now, actors, whole_box, lidar, told, moving, seen_events)
 
 
 def frame_of(
@@ -115,6 +128,7 @@ def frame_of(
         lidar=moment.lidar,
         sensors=moment.sensors,
         parts=moment.parts,
+        events=moment.events,
     )
 
 

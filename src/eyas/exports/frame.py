@@ -27,9 +27,9 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-Output = Literal["rgb", "depth", "object_id", "class_id", "normal", "others", "parts"]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, or their parts.
-"""
+Output = Literal["rgb", "depth", "object_id", "class_id", "normal", "others", "parts", "events"]
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts, or
+events."""
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
 """All these names."""
@@ -204,6 +204,10 @@ class Frame:
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
+
+    events: NDArray[np.void] | None = None
+    """What the sensor of events has told since the last frame, in the order of time, of dtype
+    `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""
 
     @property
     def episode_time(self) -> float:

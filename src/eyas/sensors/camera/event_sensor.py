@@ -19,8 +19,6 @@ class EventSensors:
 
     Attributes:
         size: Height and width [pixels].
-        pixels: Their pixels.
-        begin_time: When what `pixels` has told began [s], shape (N,).
 
     Args:
         config: The settings.
@@ -30,9 +28,8 @@ class EventSensors:
 
     def __init__(self, config: EventsConfig, size: tuple[int, int], count: int) -> None:
         self.size = config.height or size[0], config.width or size[1]
-        self.pixels = EventPixels.create(count, self.size[0] * self.size[1])
-        self.begin_time = np.zeros(count)
-        self._config = config
+        self._pixels = EventPixels.create(count, self.size[0] * self.size[1])
+        self._told, self._since = self._pixels.told, np.zeros(count)
         self._settings = EventSettings(
             float(config.positive),
             float(config.negative),
@@ -51,8 +48,13 @@ class EventSensors:
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode: the first light that is seen tells no events."""
-        self.pixels.seed[tracker] = rng.integers(SEEDS)
-        self.pixels.seen[tracker] = 0
+        self._pixels.seed[tracker] = rng.integers(SEEDS)
+        self._pixels.seen[tracker] = 0
+
+    @property
+    def pixels(self) -> EventPixels:
+        """Their pixels, and what these have told."""
+        return self._pixels._replace(told=self._told)  # there may be more room by now
 
     def forget(self, chosen: Integers, time: Floats) -> None:
         """Begin to tell anew.
@@ -61,8 +63,8 @@ class EventSensors:
             chosen: The sensors, shape (V,).
             time: When each has last seen [s], shape (V,).
         """
-        self.pixels.count[chosen] = 0
-        self.begin_time[chosen] = time
+        self._pixels.count[chosen] = 0
+        self._since[chosen] = time
 
     def see(self, chosen: Integers, of: Integers, time: Floats, light: NDArray[np.float32]) -> None:
         """See light.
@@ -81,17 +83,16 @@ class EventSensors:
         workers = min(thread_count(), len(chosen))
         see_light(workers, self.pixels, self._settings, look)
         while (look.next < look.end).any():
-            told = self.pixels.told
-            grown = np.zeros((len(told), 2 * told.shape[1]), told.dtype)
-            grown[:, : told.shape[1]] = told
-            self.pixels = self.pixels._replace(told=grown)
+            told = self._told
+            self._told = np.zeros((len(told), 2 * told.shape[1]), told.dtype)
+            self._told[:, : told.shape[1]] = told
             see_light(workers, self.pixels, self._settings, look)
 
     def events_of(self, tracker: int) -> NDArray[np.void]:
         """Return the events of a sensor since it last began to tell, in the order of their times,
         of dtype `eyas.sensors.camera.esim.EVENT`; times count from the episode's start.
         """
-        told = self.pixels.told[tracker, : self.pixels.count[tracker]]
+        told = self._told[tracker, : self._pixels.count[tracker]]
         return told[np.argsort(told["t"], kind="stable")]
 
     def count(self, chosen: Integers, out: NDArray[np.uint8]) -> None:
@@ -104,7 +105,7 @@ class EventSensors:
         """
         flat = out.reshape(len(out), -1)
         workers = min(thread_count(), len(chosen))
-        _count(workers, self.pixels, chosen, self.begin_time, self._settings.width, flat)
+        _count(workers, self.pixels, chosen, self._since, self._settings.width, flat)
 
 
 @parallel
