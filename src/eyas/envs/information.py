@@ -54,7 +54,8 @@ def information(simulation: Simulation) -> Info:
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
       nothing was within range);
     - what the sensor of events has told since the last time, if there is one (`events`, for each
-      tracker an array of `eyas.sensors.camera.esim.EVENT`: column, row, polarity, time [us]).
+      tracker a row for each event: column, row, time since the reset [us], and 1 for more light or
+      0 for less).
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -84,7 +85,8 @@ def _events(simulation: Simulation) -> NDArray[np.object_]:
     assert sensors is not None
     told = np.empty(simulation.count, object)
     for tracker in range(simulation.count):
-        told[tracker] = sensors.events_of(tracker)
+        events = sensors.events_of(tracker)
+        told[tracker] = np.stack([events[name].astype(np.int64) for name in "xytp"], axis=1)
     return told
 
 
