@@ -65,6 +65,8 @@ class Moment(NamedTuple):
     """See `Frame.cameras`; nothing changes them later."""
     exposure: tuple[float, float] | None = None
     """See `Frame.exposure`."""
+    events: NDArray[np.void] | None = None
+    """See `Frame.events`; nothing changes it later."""
 
 
 def moment_of(
@@ -81,7 +83,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is drawn besides: "parts", "clean", "cameras"; others are in the picture.
+        wanted: What is asked for besides: "parts", "clean", "cameras", "events"; others are in the
+            picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -98,8 +101,10 @@ def moment_of(
     cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
     exposed = seen.exposure
     exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
+    sensor = seen.events(np.array([tracker], np.int32)) if "events" in wanted else None
+    events = None if sensor is None else sensor.events_of(tracker)
     now = simulation.snapshot.episodes
-    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure)
+    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events)
     return Moment(shown, now, *known)
 
 
@@ -158,6 +163,7 @@ def frame_of(
         clean=moment.clean,
         cameras=moment.cameras,
         exposure=moment.exposure,
+        events=moment.events,
     )
 
 

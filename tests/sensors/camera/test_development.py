@@ -312,3 +312,12 @@ def test_pictures_that_are_too_small_are_refused():
         developed(uniform(0.1, 1, 8, 6))
     with pytest.raises(ConfigError, match=r"time: .* ascending"):
         ExposureConfig(time=(0.1, 0.01))
+
+
+def test_hot_pixels_are_as_many_as_said_and_stay():
+    light = np.full((1, 3, 64, 64), 0.05, np.float32)
+    shown = [_developed(light, step, hot_pixels=0.1) for step in (1, 2)]
+    hot = [(each[0] > 200) for each in shown]
+    assert hot[0].mean() == pytest.approx(0.1, abs=0.012)
+    assert np.array_equal(hot[0], hot[1])
+    assert not (_developed(light, 1, hot_pixels=0.0)[0] > 200).any()

@@ -4,7 +4,6 @@ An exposure is drawn at several instants, and a picture whose rows are exposed o
 in bands. All outputs but colours are those of the middle of the exposure of each band.
 """
 
-from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import NamedTuple, Protocol
 
@@ -59,9 +58,7 @@ class Stage(Protocol):
         ...
 
 
-def exposure_of(
-    chosen: Chosen, steady: Snapshot, vibration: Vibration | None
-) -> Exposure:
+def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -> Exposure:
     """Return the exposures of some trackers.
 
     Args:
@@ -73,7 +70,8 @@ def exposure_of(
     shake = no_shake(len(chosen))
     if vibration is not None:
         shake = Shake(*(array[chosen] for array in vibration.shake))
-    return Exposure(cameras, shake, steady.episodes.tick[chosen] * PHYSICS_STEP)
+    instant = np.multiply(steady.episodes.tick[chosen], PHYSICS_STEP)
+    return Exposure(cameras, shake, instant)
 
 
 def ways_of(

@@ -29,6 +29,9 @@ __all__ = ["Moving", "VisibleActors"]
 _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
 
+_LONGEST = 3.0
+"""Reach of a thing beyond which it is not said to move in a picture: half a long car [m]."""
+
 _CHOICES = 32
 """Groups of actors that are kept: those of one picture are mostly those of the next."""
 
@@ -228,6 +231,9 @@ class Moving(NamedTuple):
     """Reference points, world frame [m], shape (E, 3)."""
     velocity: NDArray[np.float64]
     """[m/s], shape (E, 3)."""
+    reach: NDArray[np.float64]
+    """How far they reach from there, at most `_LONGEST` [m], shape (E,). Those that reach into a
+    view are the same whatever other views there are."""
 
 
 class _Size(NamedTuple):
@@ -260,6 +266,7 @@ class VisibleActors:
         )
         actor = np.concatenate([np.zeros(0, np.int64), *(group.actor for group in groups)])
         self._rigs = rigs
+        self._reach = np.minimum(kinds.reach, _LONGEST)
         self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
         self._size = _Size(0, 0, 0, 0)
 
@@ -297,12 +304,17 @@ class VisibleActors:
     ) -> "Moving":
         """Return where these actors are, and how fast, without posing them; see `of`."""
         self._list_for(worlds, time, row, cameras, aspect)
-        entries, (state, slots) = int(self._listed.needed[0]), (self._listed.state, self._size.slots)
+        entries, (state, slots) = (
+            int(self._listed.needed[0]),
+            (self._listed.state, self._size.slots),
+        )
         world = self._listed.slot[:entries] // max(slots, 1)
         order = np.argsort(world, kind="stable")
         rows = np.arange(len(worlds)) if row is None else row
         first, end = (np.searchsorted(world[order], rows, side) for side in ("left", "right"))
-        return Moving(first, end, state.position[0, order], state.velocity[0, order])
+        per_kind = np.diff(self._listed.end, prepend=0)
+        reach = np.repeat(self._reach, per_kind)[order]
+        return Moving(first, end, state.position[0, order], state.velocity[0, order], reach)
 
     def _list_for(
         self,
