@@ -315,9 +315,9 @@ def test_pictures_that_are_too_small_are_refused():
 
 
 def test_hot_pixels_are_as_many_as_said_and_stay():
-    light = np.full((1, 3, 64, 64), 0.05, np.float32)
-    shown = [_developed(light, step, hot_pixels=0.1) for step in (1, 2)]
-    hot = [(each[0] > 200) for each in shown]
-    assert hot[0].mean() == pytest.approx(0.1, abs=0.012)
-    assert np.array_equal(hot[0], hot[1])
-    assert not (_developed(light, 1, hot_pixels=0.0)[0] > 200).any()
+    light = uniform(0.05, height=64, width=64)
+    sensor = developed(light, fixed(), hot_pixels=0.1)[1]
+    hot = [drawn(sensor, light, step).max(axis=-1)[0] > 240 for step in (1, 2)]
+    assert hot[0].mean() == pytest.approx(1.0 - 0.9**3, abs=0.02)  # in each of three colours
+    assert (hot[0] == hot[1]).mean() > 0.99
+    assert not (developed(light, fixed())[0] > 240).any()

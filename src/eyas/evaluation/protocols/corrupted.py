@@ -25,36 +25,50 @@ def _camera(**settings: Any) -> Settings:  # noqa: ANN401  # settings of any typ
     return {"camera": settings}
 
 
+def _between(low: float, high: float) -> Settings:
+    return {"uniform": (low, high)}
+
+
 def _exposed(seconds: float) -> Settings:
-    """Return a sensor whose exposure is too short to catch many photons."""
-    return _camera(imager={}, exposure={"time": (seconds, seconds), "iso": (100.0, 1e7)})
+    """Return a sensor of tiny photosites whose exposure is too short to catch many photons."""
+    short = {"time": (seconds, seconds), "iso": (100.0, 1e7)}
+    return _camera(imager={"pixel_pitch": 0.5, "read_noise": 0.0}, exposure=short)
+
+
+def _open_for(seconds: float) -> dict[str, Any]:
+    """Return a sensor whose iris is so small, behind a grey filter, that it is exposed for a given time."""
+    return {
+        "imager": {"f_number": 32.0, "transmission": 0.25},
+        "exposure": {"time": (seconds, seconds), "iso": (1.0, 1e6)},
+        "shutter": {"blur": True, "most_samples": 16},
+    }
 
 
 def _brighter(steps: float) -> Settings:
-    return _camera(imager={}, exposure={"compensation": steps, "speed": 0.0})
+    return _camera(exposure={"compensation": steps, "speed": 0.0, "time": (1e-6, 0.02)})
 
 
 CORRUPTIONS: Mapping[str, tuple[Settings, ...]] = {
     # Noise.
     "read-noise": tuple(
-        _camera(imager={"read_noise": electrons}) for electrons in (60.0, 120.0, 240.0, 400.0, 700.0)
+        _camera(imager={"read_noise": electrons})
+        for electrons in (60.0, 120.0, 240.0, 400.0, 700.0)
     ),
-    "shot-noise": tuple(map(_exposed, (4e-6, 1.5e-6, 7e-7, 3e-7, 1.5e-7))),
+    "shot-noise": tuple(map(_exposed, (5e-5, 2e-5, 8e-6, 3e-6, 1.2e-6))),
     "hot-pixels": tuple(
         _camera(imager={"hot_pixels": share}) for share in (0.01, 0.03, 0.07, 0.13, 0.22)
     ),
     # Blur.
     "defocus": tuple(_camera(defocus=share) for share in (0.02, 0.035, 0.05, 0.075, 0.11)),
     "drops": tuple(
-        _camera(dirt={"spots": 0, "drops": count, "drop_size": (0.05, 0.15)})
+        _camera(dirt={"spots": 0, "drops": count, "drop_size": _between(0.05, 0.15)})
         for count in (4, 8, 14, 22, 32)
     ),
     "motion-blur": tuple(
-        _camera(shutter={"blur": True, "exposure": seconds, "most_samples": 16})
-        for seconds in (0.02, 0.04, 0.06, 0.08, 0.1)
+        _camera(**_open_for(seconds)) for seconds in (0.02, 0.04, 0.06, 0.08, 0.1)
     ),
     "vibration": tuple(
-        _camera(vibration={"angle": angle}, shutter={"blur": True, "exposure": 0.02})
+        _camera(vibration={"angle": angle}, **_open_for(0.02))
         for angle in (0.004, 0.008, 0.016, 0.03, 0.05)
     ),
     # Weather.
@@ -62,7 +76,13 @@ CORRUPTIONS: Mapping[str, tuple[Settings, ...]] = {
         {"world": {"weather": "snow", "precipitation": much}} for much in (0.5, 1.0, 1.5, 2.25, 3.0)
     ),
     "dirt": tuple(
-        _camera(dirt={"spots": count, "spot_size": (0.06, 0.14), "opacity": (0.5, 0.9)})
+        _camera(
+            dirt={
+                "spots": count,
+                "spot_size": _between(0.06, 0.14),
+                "opacity": _between(0.5, 0.9),
+            }
+        )
         for count in (4, 8, 14, 22, 32)
     ),
     "fog": tuple(
@@ -113,7 +133,7 @@ def in_all_variants(
 CORRUPTED = Protocol(
     "corrupted",
     "3 s: as standard, behind fifteen faults of camera and air at five strengths",
-    STANDARD.changes,
+    {**STANDARD.changes, "camera": {"imager": {}}},
     directions=STANDARD.directions,
     episodes=1,
     columns=("tsr", "fall", "flawless", "seen"),
