@@ -55,7 +55,9 @@ def information(simulation: Simulation) -> Info:
       nothing was within range);
     - what the sensor of events has told since the last time, if there is one (`events`, for each
       tracker a row for each event: column, row, time since the reset [us], and 1 for more light or
-      0 for less).
+      0 for less);
+    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
+      of its last picture; 0 before the first.
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -76,6 +78,9 @@ def information(simulation: Simulation) -> Info:
         info["lidar"] = lidar.ranges()
     if simulation.config.camera.events.enabled:
         info["events"] = _events(simulation)
+    if (exposure := simulation.view.exposure) is not None:
+        info["exposure_time"] = exposure.time.copy()
+        info["iso"] = exposure.iso.copy()
     return info
 
 

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
 from eyas.envs.information import privileged_state, sensor_state
-from eyas.sensors.config import CameraConfig, ColourLayout, LidarConfig
+from eyas.sensors.config import CameraConfig, ColourLayout
 from eyas.sensors.stack import FrameStack
+from eyas.sim.config import SimConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
@@ -31,56 +32,65 @@ _PRIVILEGED = 16
 _Parts = ObservationPart
 
 
-def observation_space(
-    config: ObservationConfig, lidar: LidarConfig, camera: CameraConfig
-) -> gymnasium.Space[Any]:
+def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Space[Any]:
     """Return the space of one agent's observations.
 
+    Args:
+        config: What is observed.
+        sim: Which sensors there are.
+
     Raises:
-        ConfigError: The agent is to observe a sensor that it does not have, or words alone.
+        ConfigError: The agent is to observe what it does not have, or words alone.
     """
+    lidar, cameras = sim.lidar, len(sim.cameras)
+    if _Parts.CAMERAS in config.parts and cameras == 0:
+        raise ConfigError(
+            "env.observation.parts: 'cameras' needs further cameras: 'cameras' is empty"
+        )
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
         )
-    if _Parts.EVENTS in config.parts and not camera.events.enabled:
+    if _Parts.EVENTS in config.parts and not sim.camera.events.enabled:
         raise ConfigError(
             "env.observation.parts: 'events' needs the sensor: camera.events.enabled is false"
         )
     if set(config.parts) == {_Parts.WORDS}:
         raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
     spaces: dict[str, gymnasium.Space[Any]] = {
-        part.value: _space(part, config, lidar, camera) for part in dict.fromkeys(config.parts)
+        part.value: _space(part, config, sim) for part in dict.fromkeys(config.parts)
     }
     return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
 
 
 def _space(
-    part: ObservationPart, config: ObservationConfig, lidar: LidarConfig, camera: CameraConfig
+    part: ObservationPart, config: ObservationConfig, sim: SimConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
-    size = config.height, config.width
+    lidar, size = sim.lidar, (config.height, config.width)
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
         case _Parts.IMAGE:
             shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
             return gymnasium.spaces.Box(0, 255, shape, np.uint8)
+        case _Parts.CAMERAS:
+            shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
+            return gymnasium.spaces.Box(0, 255, (len(sim.cameras), *shape), np.uint8)
         case _Parts.CLASSES:
             return gymnasium.spaces.Box(0, int(max(ObjectClass)), plane, np.uint8)
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
-        case _Parts.SENSORS:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
+        case _Parts.SENSORS | _Parts.PRIVILEGED:
+            count = _SENSORS if part is _Parts.SENSORS else _PRIVILEGED
+            return gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
         case _Parts.EVENTS:
-            shape = _event_shape(config, camera)
+            shape = _event_shape(config, sim.camera)
             return gymnasium.spaces.Box(0, 255, shape, np.uint8)
         case _Parts.WORDS:
             return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
         case _Parts.ATTRIBUTES:
             return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
-        case _Parts.PRIVILEGED:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
 
 
 def _event_shape(config: ObservationConfig, camera: CameraConfig) -> tuple[int, int, int]:
@@ -115,8 +125,8 @@ class Observer:
     """
 
     def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
-        lidar, camera = simulation.config.lidar, simulation.config.camera
-        self.space = observation_space(config, lidar, camera)
+        sim = simulation.config
+        self.space = observation_space(config, sim)
         self._simulation = simulation
         count, size = simulation.count, (config.height, config.width)
         wanted = frozenset(config.parts)
@@ -132,7 +142,7 @@ class Observer:
         self._latest: dict[ObservationPart, Array] = {}
         self._words: list[str] | None = None
         for part in config.parts:
-            space = _space(part, config, lidar, camera)
+            space = _space(part, config, sim)
             if isinstance(space, gymnasium.spaces.Text):
                 self._words = [""] * count
             else:
@@ -141,6 +151,13 @@ class Observer:
         self._last_axis = config.layout is ColourLayout.HWC
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
+        self._further: dict[str, FrameStack] = {}
+        if _Parts.CAMERAS in wanted:
+            self._further = {
+                camera.name: FrameStack(count, size, config.colours, config.layout, config.frames)
+                for camera in sim.cameras
+            }
+            self._through = Picture.create(count, *size)
 
     def look(
         self,
@@ -162,6 +179,9 @@ class Observer:
                 self._say(tracker, phrase.words, phrase.attributes)
         if self._draws:
             self._draw(chosen, begun, covered)
+        for row, (name, stack) in enumerate(self._further.items()):
+            self._look_through(name, stack, chosen, begun, covered)
+            self._latest[_Parts.CAMERAS][:, row] = stack.images
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
@@ -172,6 +192,22 @@ class Observer:
             self._count_events(chosen, events)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
+
+    def _look_through(
+        self,
+        name: str,
+        stack: FrameStack,
+        chosen: NDArray[np.int32],
+        begun: NDArray[np.bool_],
+        covered: NDArray[np.bool_] | None,
+    ) -> None:
+        """Draw what further cameras of some trackers see, see `look`."""
+        picture = self._through.first(len(chosen))
+        self._simulation.view.further[name].draw(chosen, picture)
+        if covered is not None and covered.any():
+            _cover(picture, covered)
+        assert picture.rgb is not None
+        stack.add(picture.rgb, chosen, begun)
 
     def _draw(
         self,

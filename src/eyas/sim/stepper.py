@@ -65,7 +65,7 @@ class Stepper:
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
         mount = config.camera.mount
         self._mount = mount_of(mount or MountConfig())
-        carried, velocities = CARRIED[mount is not None], config.camera.needs_velocities
+        carried, velocities = CARRIED[mount is not None], config.needs_velocities
         self._kernels = step_of(tracker, carried, velocities=velocities)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)

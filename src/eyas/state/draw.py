@@ -105,6 +105,9 @@ class Views:
     """Changes of the light for each view; None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
     """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
+    lens: NDArray[np.float64] | None = None
+    """The numbers of the lens of each view, see `eyas.core.lens.Lens`, shape (V, 10); None: all
+    are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
     picture: NDArray[np.int32] | None = None
     """Which of the P pictures each view draws into, those of one picture next to each other,
     shape (V,); None: each into its own."""

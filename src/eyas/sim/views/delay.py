@@ -1,5 +1,7 @@
 """What agents see: the present, or, by a latency or by what their cameras are like, the past."""
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +15,7 @@ from eyas.sensors.config import ReadingConfig
 from eyas.sim.latency import Latency, is_always_0
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["SeenState"]
+__all__ = ["SeenState", "ShownState"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -113,6 +115,25 @@ class PastState:
         slots = self._slot[(self._row - late) % self._kept]
         for seen, past in zip(self._seen, self._past, strict=True):
             seen[...] = past[slots, self._every]
+
+
+class ShownState(Protocol):
+    """What pictures show."""
+
+    @property
+    def shown(self) -> Snapshot:
+        """The state, with the vibration of the cameras."""
+        ...
+
+    @property
+    def steady(self) -> Snapshot:
+        """The same without it."""
+        ...
+
+    @property
+    def vibration(self) -> Vibration | None:
+        """That of the cameras; None: there is none."""
+        ...
 
 
 class SeenState:

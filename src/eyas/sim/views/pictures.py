@@ -11,15 +11,15 @@ from eyas.core.pinhole import field_along
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
-from eyas.sensors.camera.shutter import Shutter
+from eyas.sensors.camera.lens import Lenses
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
-from eyas.sim.views.camera_model import CameraModel
-from eyas.sim.views.delay import SeenState
+from eyas.sim.views.delay import ShownState
 from eyas.sim.views.exposures import Exposures, Moment
-from eyas.sim.views.visible_actors import Moving
+from eyas.sim.views.optics import Optics
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
@@ -44,8 +44,7 @@ class PictureDrawer:
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
         state: State of the trackers.
-        camera: What else is modelled of their cameras; None: nothing.
-        shutter: Their shutters; None: all rows see one instant.
+        optics: What is modelled of their cameras beyond pinholes.
         visible: Whether trackers see each other.
     """
 
@@ -55,9 +54,8 @@ class PictureDrawer:
         assets: Assets,
         worlds: Worlds,
         light: LightChanges,
-        state: SeenState,
-        camera: CameraModel | None = None,
-        shutter: Shutter | None = None,
+        state: ShownState,
+        optics: Optics | None = None,
         *,
         visible: bool = True,
     ) -> None:
@@ -67,7 +65,9 @@ class PictureDrawer:
         actors, part = worlds.actors, assets.body_part
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
-        self._snapshot, self._camera = snapshot, camera
+        self._snapshot = snapshot
+        self._camera = None if optics is None else optics.model
+        self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
@@ -75,16 +75,16 @@ class PictureDrawer:
         self.aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
         self._exposures: Exposures | None = None
-        if shutter is not None:
+        if optics is not None and optics.shutter is not None:
             steady, vibration = state.steady, state.vibration
-            self._exposures = Exposures(shutter, steady, vibration, self.aspect, self)
+            self._exposures = Exposures(optics.shutter, steady, vibration, self.aspect, self)
 
     def draw(
         self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
     ) -> None:
         """Draw the pictures of trackers' cameras.
 
-        Cameras are pinholes with the aspect ratio of the configured picture. Pictures with another
+        Cameras have the aspect ratio of the configured picture. Pictures with another
         one show the same view distorted, like the original's observations: 320x240 resized to
         84x84.
 
@@ -107,6 +107,11 @@ class PictureDrawer:
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
 
+    def draw_clean(self, chosen: Chosen, picture: Picture) -> None:
+        """Draw the pictures of trackers' cameras as if nothing but their lenses were modelled."""
+        cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
+        self.render(*self._own_views(chosen, cameras), picture, DrawStage.SHADING)
+
     def views_at(self, moment: Moment) -> tuple[Views, DrawList]:
         """Return views of trackers' cameras at moments of their exposures, and the moving things as
         these see them.
@@ -116,7 +121,8 @@ class PictureDrawer:
     def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
         """Return the motion of the actors that trackers' cameras may show."""
         ticks = self._snapshot.episodes.tick
-        return self._worlds.moving(trackers, ticks, cameras, self.aspect)
+        seeing = _seeing(trackers, cameras, self.aspect, self._lenses)
+        return self._worlds.moving(trackers, ticks, seeing, self.aspect)
 
     def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
         """Draw views of trackers' cameras."""
@@ -158,7 +164,7 @@ class PictureDrawer:
         """
         chosen = np.array([tracker], np.int32)
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, _ = self._views(chosen, cameras, self.aspect)
+        views, _ = self._views(chosen, cameras, self.aspect, self._lenses)
         views.world = np.zeros(1, np.int32)
         if self._bodies.any:
             posed = self._bodies.added(chosen, views.world, posed, self._snapshot.trackers)
@@ -175,7 +181,7 @@ class PictureDrawer:
         self, chosen: Chosen, cameras: CameraState, later: Floats | None = None
     ) -> tuple[Views, DrawList]:
         """Return views of trackers' own cameras, in pictures of any shape, see `_views`."""
-        views, movers = self._views(chosen, cameras, self.aspect, later)
+        views, movers = self._views(chosen, cameras, self.aspect, self._lenses, later)
         if self._bodies.any:
             bodies = self._snapshot.trackers
             movers = self._bodies.added(chosen, views.world, movers, bodies, later)
@@ -186,15 +192,24 @@ class PictureDrawer:
         return views, movers
 
     def _views(
-        self, chosen: Chosen, cameras: CameraState, aspect: float, later: Floats | None = None
+        self,
+        chosen: Chosen,
+        cameras: CameraState,
+        aspect: float,
+        lenses: Lenses | None = None,
+        later: Floats | None = None,
     ) -> tuple[Views, DrawList]:
         """Return views of the worlds of trackers: cameras, with square pixels, and movers.
 
-        `aspect` is the height of what the cameras show over its width; they are `later` than what
-        is seen [s].
+        Args:
+            chosen: The trackers, shape (V,).
+            cameras: V cameras.
+            aspect: Height of what they show over its width.
+            lenses: The lenses of all trackers, if the cameras are theirs.
+            later: How long after what is seen each looks [s], shape (V,); None: then.
         """
-        ticks = self._snapshot.episodes.tick
-        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect, later)
+        ticks, seeing = self._snapshot.episodes.tick, _seeing(chosen, cameras, aspect, lenses)
+        world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
         instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
         if instant is not None and later is not None:
             instant += later
@@ -206,5 +221,16 @@ class PictureDrawer:
             field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
             instant=instant,
+            lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers
+
+
+def _seeing(
+    chosen: Chosen, cameras: CameraState, aspect: float, lenses: Lenses | None
+) -> CameraState:
+    """Return pinhole cameras that see at least what cameras see through lenses."""
+    if lenses is None:
+        return cameras
+    field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
+    return cameras._replace(field_of_view=field)

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
 from eyas.sensors.camera.event_sensor import EventSensors
-from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.sensors.obstacles import Obstacles, obstacles_of
 from eyas.sensors.readings import Readings, has_errors
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.views.camera_model import CameraModel
+from eyas.sim.views.further_camera import FurtherOptics
+from eyas.sim.views.optics import Optics
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import Crash
@@ -40,8 +40,8 @@ class SensorSuite:
         lidar: None if it is off.
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
-        camera: None if the camera is a pinhole without errors.
-        shutter: None if all rows of a picture see one instant.
+        optics: What is modelled of the camera beyond a pinhole.
+        further: The cameras that trackers have beside that one.
         events: None if there are no sensors of events.
         follow: Whether `advance` must be called after each physics step.
 
@@ -86,10 +86,12 @@ class SensorSuite:
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
-        self.shutter = Shutter.of(config.camera.shutter, len(active))
         size = config.camera.height, config.camera.width
         self.events = EventSensors.of(config.camera.events, size, len(active))
-        self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
+        self.optics = Optics(config.camera, assets.lighting, len(active))
+        self.further = tuple(
+            FurtherOptics(camera, assets.lighting, len(active)) for camera in config.cameras
+        )
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
@@ -113,14 +115,15 @@ class SensorSuite:
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
-            "shutter": self.shutter,
             "events": self.events,
-            "camera": self.camera,
         }
         for name, sensor in sensors.items():
             if sensor is not None:
                 for tracker in trackers:
                     sensor.begin(tracker, key_of(tracker).stream(name))
+        for tracker in trackers:
+            for optics in (self.optics, *self.further):
+                optics.begin(tracker, key_of(tracker).stream)
         self.advance()
 
     def renew(self) -> None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from eyas.lanes import address_of, kernel
 from eyas.render.kernels.bundles import Band, Canvas, Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
+from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.visibility.key import distance_inverse
@@ -35,6 +36,10 @@ EXPOSED = 1.0 / 110.0
 
 SMALLEST = 0.35
 """Radius below which flakes are invisible [pixels]."""
+
+_LONGEST = 400.0
+"""Columns and rows of streaks through a lens that are longer lie at its edge, half of them outside
+[pixels]."""
 
 
 class Snowfall(NamedTuple):
@@ -208,11 +213,36 @@ def _draw_flake(
     radius = _radius(size, ahead) * view.focal / ahead
     if radius < SMALLEST:
         return
+    if snowfall.band.glass.on == 1:
+        _draw_bent((ahead, left, up), (aside, above), _radius(size, ahead), snowfall)
+        return
     across = view.focal_x / (ahead * view.samples)
     down = view.focal_y / (ahead * view.samples)
     column = 0.5 * view.width / view.samples - left * across
     row = (0.5 * view.height - view.top) / view.samples - up * down
     _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, snowfall)
+
+
+@kernel
+def _draw_bent(
+    place: tuple[float, float, float], moved: tuple[float, float], radius: float, snowfall: Snowfall
+) -> None:
+    """Draw a flake that is seen through a lens.
+
+    Args:
+        place: Forward, left and up in its face [m].
+        moved: How far it moves left and up while the picture is exposed [m].
+        radius: [m]
+        snowfall: Band to draw into.
+    """
+    glass, (ahead, left, up) = snowfall.band.glass, place
+    column, row = shown_at(glass, ahead, left, up)
+    to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
+    edge_column, edge_row = shown_at(glass, ahead, left - radius, up)
+    wide = math.sqrt((edge_column - column) ** 2 + (edge_row - row) ** 2)
+    if wide < SMALLEST or abs(to_column - column) + abs(to_row - row) > _LONGEST:
+        return
+    _smear(column, row, to_column - column, to_row - row, wide, 1.0 / ahead, snowfall)
 
 
 @kernel
@@ -239,12 +269,11 @@ def _smear(
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    key, view = snowfall.band.key, snowfall.band.camera
-    step = view.samples
+    band, key, step = snowfall.band, snowfall.band.key, snowfall.band.camera.samples
     first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
-    last = min(i8(math.ceil(max(row, row + to_row) + reach)), view.rows // step)
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)), band.lines)
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
-    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), view.width // step)
+    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), band.columns)
     if first >= last or start >= stop:
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
@@ -253,7 +282,8 @@ def _smear(
     strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     for i in range(first, last):
         for j in range(start, stop):
-            if distance_inverse(key[i * step, j * step]) > inverse:
+            shown = key[i * step, j * step]
+            if shown < i8(0) or distance_inverse(shown) > inverse:
                 continue
             y, x = i + 0.5 - row, j + 0.5 - column
             share = (x * to_column + y * to_row) / (length * length + 1e-9)

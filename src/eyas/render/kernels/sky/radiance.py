@@ -22,16 +22,18 @@ from eyas.lanes.vector import (
     magnitude,
     root,
     select,
+    splat,
     to_f4,
     to_i4,
     to_u4,
 )
-from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
+from eyas.render.kernels.bundles import Band, Canvas, Direction, Glass, Illumination, Light
 from eyas.render.kernels.chance import hashed
 from eyas.render.kernels.pixels import keys_of, write_colours
-from eyas.render.kernels.rays import Rays, ray_of, rays_of
+from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
+from eyas.render.kernels.sky.mist import glare, veil
 
 __all__ = [
     "CLOUDS_FROM",
@@ -44,6 +46,7 @@ __all__ = [
     "reflection",
     "sky",
     "sky_colour",
+    "surroundings",
 ]
 
 CLOUD_BEND = 0.8
@@ -219,6 +222,10 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: fl
         colour = _open_sky(light, lit, x, y, z, around, pixel)
     if any_of(cover > zero):
         colour = blended(colour, _hills(light, lit, z, around), cover)
+    if lit.air.glare > f4(0.0):
+        sun, way = lit.sun_colour, (x, y, z)
+        shine = glare(lit, way) * (one - f4(0.6) * cover) + veil(lit, way)
+        colour = colour[0] + shine * sun.x, colour[1] + shine * sun.y, colour[2] + shine * sun.z
     return colour
 
 
@@ -281,11 +288,16 @@ def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     red *= direct * sun.x + above.x
     green *= direct * sun.y + above.y
     blue *= direct * sun.z + above.z
-    return blended((red, green, blue), lit.fog, hidden_at(lit, away))
+    hidden = hidden_at(lit, away)
+    if lit.air.mist > zero:
+        # The layer of mist hides the foot of the hills and the plain below.
+        deep = lesser(f4(250.0) * lit.air.mist, one) * (one - rise)
+        hidden += deep * (one - hidden)
+    return blended((red, green, blue), lit.fog, hidden)
 
 
 @kernel(inline=True)
-def _surroundings(lit: Illumination) -> Colour:
+def surroundings(lit: Illumination) -> Colour:
     """Return the mean radiance of walls and trees: half in the sun, and half of the sky above."""
     sun, above, below, share = lit.sun_colour, lit.above, lit.below, f4(0.5)
     return (
@@ -333,7 +345,7 @@ def reflection(
     # Around a point that gets half of the sky's light, things are some 45 degrees high.
     around = lesser(greater((f4(1.5) * hidden - z) * f4(5.0), zero), one)
     around *= f4(0.8) * (one - below)
-    red, green, blue = blended((red, green, blue), _surroundings(lit), around)
+    red, green, blue = blended((red, green, blue), surroundings(lit), around)
     shine = _dot(x, y, z, lit.sun)
     for _ in range(6):
         shine *= shine
@@ -359,6 +371,17 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
     return bits
 
 
+@kernel(inline=True)
+def _middle(glass: Glass, row: int, first: int, samples: int) -> tuple[float, float]:
+    """Return line and column in their face of the middles of eight pixels."""
+    line, column, _ = place_in_face(glass, row, first, samples)
+    for k in range(1, samples * samples):
+        down, right, _ = place_in_face(glass, row + (k >> 1), first + (k & 1), samples)
+        line, column = line + down, column + right
+    part = f4(1.0) / f4(samples * samples)
+    return line * part, column * part
+
+
 @kernel
 def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """Write the sky at the centre of each pixel in which any sample shows it.
@@ -372,8 +395,8 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     view, light, lit, key = band.camera, band.light, band.lit, band.key
     rays, samples = rays_of(view), view.samples
     side, half = f4(samples), f4(0.5) * f4(samples)
-    width = view.width // samples
-    for row in range(view.rows // samples):
+    width, glass = band.columns, band.glass
+    for row in range(band.lines):
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(key, row * samples, first * samples, samples)
             if width - first < WIDTH:
@@ -381,5 +404,8 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
             if chosen == 0:
                 continue
             column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
-            colour = sky_colour(light, lit, rays, rays.top + f4(row) * side + half, column)
+            line = splat(rays.top + f4(row) * side + half)
+            if glass.on == 1:
+                line, column = _middle(glass, row * samples, first * samples, samples)
+            colour = sky_colour(light, lit, rays, line, column)
             write_colours(canvas, light, lit.air.exposure, row, first, chosen, colour)
