@@ -17,6 +17,7 @@ from eyas.sensors.camera.lens import LensConfig
 from eyas.sensors.camera.link import LinkConfig
 from eyas.sensors.camera.models import MODELS, ModelName, laid_under, without
 from eyas.sensors.camera.shutter import ShutterConfig
+from eyas.sensors.camera.thermal import ThermalConfig
 from eyas.sensors.camera.vibration import VibrationConfig
 
 __all__ = [
@@ -85,7 +86,10 @@ class CameraConfig(Config):
     model: ModelName | None = None
     """A camera by its data sheets, whose values take the place of defaults below; None: none."""
     spectrum: Spectrum = Spectrum.COLOUR
-    """What light its sensor tells apart; `grey` has a sensor, with or without `imager`."""
+    """What light its sensor tells apart: `colour`, `grey`, `near-infrared`, of which the last two
+    have a sensor with or without `imager`, or `thermal`, whose sensor is `thermal`."""
+    thermal: ThermalConfig = ThermalConfig()
+    """The sensor of a thermal camera."""
     imager: ImagerConfig | None = None
     """The sensor, which counts photons; None: pictures without noise, as bright as by day."""
     exposure: ExposureConfig = ExposureConfig()
@@ -111,6 +115,8 @@ class CameraConfig(Config):
     @property
     def sensor(self) -> ImagerConfig | None:
         """The sensor, None if pictures are drawn without one."""
+        if self.spectrum is Spectrum.THERMAL:
+            return None
         if self.imager is None and self.spectrum is not Spectrum.COLOUR:
             return ImagerConfig()
         return self.imager
@@ -128,6 +134,20 @@ class CameraConfig(Config):
         model = values.get("model") if isinstance(values, Mapping) else None
         under = MODELS.get(model) if isinstance(model, str) else None  # type: ignore[call-overload]
         return values if under is None else laid_under(cls, under, values)
+
+    @model_validator(mode="after")
+    def _thermal_alone(self) -> Self:
+        if self.spectrum is not Spectrum.THERMAL:
+            return self
+        for name, set_ in (
+            ("imager", self.imager is not None),
+            ("lens", self.lens.bends or self.lens.changes_light),
+            ("shutter", self.shutter.blur or self.shutter.rolls),
+            ("dirt", self.dirt is not None),
+        ):
+            if set_:
+                raise ValueError(f"{name} must be left out where spectrum is 'thermal'")
+        return self
 
     def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """Return the values that stay; those of a model go with it."""

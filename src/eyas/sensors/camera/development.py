@@ -107,7 +107,7 @@ class Development:
         self._imagers = ImagerState.create(count)
         self._config, self._spectrum, self._luminance = imager, spectrum, luminance
         self._exposing = exposure
-        grey = spectrum is Spectrum.GREY
+        grey = spectrum is not Spectrum.COLOUR
         mosaic = Demosaicking.NONE if grey else imager.mosaic
         self._work = Held(
             _Work(

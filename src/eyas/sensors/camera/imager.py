@@ -32,6 +32,8 @@ class Spectrum(StrEnum):
 
     COLOUR = "colour"
     GREY = "grey"
+    NEAR_INFRARED = "near-infrared"
+    THERMAL = "thermal"
 
 
 class Demosaicking(StrEnum):
@@ -143,7 +145,7 @@ class ImagerState(NamedTuple):
         by_lux = PHOTONS * pitch * pitch * np.array(config.quantum_efficiency)
         lux = 0.25 * math.pi * config.transmission * luminance / (f_number * f_number)
         self.electrons[tracker] = by_lux * lux
-        of_white = by_lux.sum() if spectrum is Spectrum.GREY else by_lux.max()
+        of_white = by_lux.sum() if spectrum is not Spectrum.COLOUR else by_lux.max()
         self.white[tracker] = of_white * lux
         self.base_iso[tracker] = SATURATION * of_white / self.full_well[tracker]
 

@@ -161,7 +161,7 @@ class ThermalImager:
         self,
         config: ThermalConfig,
         temperatures: SurfaceTemperatures,
-        object_class: NDArray[np.uint8],
+        object_class: NDArray[np.integer],
     ) -> None:
         low, high = config.span or (0.0, 0.0)
         self._scene = _Scene(

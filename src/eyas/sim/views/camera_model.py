@@ -10,8 +10,10 @@ from eyas.render.outputs import picture_size
 from eyas.sensors.camera.development import Development
 from eyas.sensors.camera.dirt import Dirt
 from eyas.sensors.camera.glass import change_light
+from eyas.sensors.camera.imager import Spectrum
 from eyas.sensors.camera.lens import Lenses
 from eyas.sensors.camera.link import Link
+from eyas.sensors.camera.near_infrared import near_infrared
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.tone import ToneCurve
 from eyas.sensors.config import CameraConfig
@@ -50,6 +52,7 @@ class CameraModel:
         self._dirt: Dirt | None = None
         self._link: Link | None = None
         self._curve = ToneCurve(lighting.exposure)
+        self._infrared = config.spectrum is Spectrum.NEAR_INFRARED
         self.development: Development | None = None
         if sensor is not None:
             self.development = Development(
@@ -101,7 +104,13 @@ class CameraModel:
             if self._shutter is not None:
                 self._shutter.exposure[trackers] = self.development.exposure.time[trackers]
         light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
-        draw(replace(picture, rgb=None, radiance=light))
+        seen = replace(picture, rgb=None, radiance=light)
+        if self._infrared and seen.class_id is None:
+            seen.class_id = np.empty((len(light), *light.shape[2:]), np.uint8)
+        draw(seen)
+        if self._infrared:
+            assert seen.class_id is not None
+            near_infrared(light, seen.class_id)
         if self._lenses is not None:
             light = change_light(light, trackers, self._lenses)
         if self._dirt is not None:
@@ -110,5 +119,11 @@ class CameraModel:
             self._curve.develop(light, picture.rgb)
         else:
             self.development.develop(light, picture.rgb, trackers, step)
+        self.send(trackers, step, picture.rgb)
+
+    def send(
+        self, trackers: NDArray[np.int32], step: NDArray[np.int64], rgb: NDArray[np.uint8]
+    ) -> None:
+        """Change pictures to what their link makes of them, if they have one; see `draw`."""
         if self._link is not None:
-            self._link.carry(picture.rgb, trackers, step)
+            self._link.carry(rgb, trackers, step)

@@ -21,7 +21,6 @@ from eyas.sim.views.optics import Optics
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
-from eyas.state.lighting import Lighting
 from eyas.state.snapshot import CameraState, Snapshot
 
 __all__ = ["FurtherCamera", "FurtherOptics"]
@@ -41,12 +40,15 @@ class FurtherOptics(Optics):
 
     Args:
         config: The settings.
-        lighting: Light and air of the weather.
+        assets: Scene, light and renderer.
+        hour: Hour of the day; None: the weather's own.
         count: N.
     """
 
-    def __init__(self, config: FurtherCameraConfig, lighting: Lighting, count: int) -> None:
-        super().__init__(config, lighting, count)
+    def __init__(
+        self, config: FurtherCameraConfig, assets: Assets, hour: float | None, count: int
+    ) -> None:
+        super().__init__(config, assets, hour, count)
         self.config = config
         self.field_of_view = np.ones(count)
 

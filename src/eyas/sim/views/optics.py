@@ -4,11 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from eyas.sensors.camera.imager import Spectrum
 from eyas.sensors.camera.lens import Lenses
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.config import CameraConfig
+from eyas.sim.assets import Assets
 from eyas.sim.views.camera_model import CameraModel
-from eyas.state.lighting import Lighting
+from eyas.sim.views.thermal_views import ThermalViews
 
 __all__ = ["Optics"]
 
@@ -20,17 +22,25 @@ class Optics:
         lenses: None: they are pinholes that lose no light.
         shutter: None: all rows of a picture see one instant.
         model: What makes pictures of light; None: the renderer.
+        thermal: What makes pictures of temperatures; None: they are made of light.
 
     Args:
         config: The settings.
-        lighting: Light and air of the weather.
+        assets: Scene, light and renderer.
+        hour: Hour of the day; None: the weather's own.
         count: N.
     """
 
-    def __init__(self, config: CameraConfig, lighting: Lighting, count: int) -> None:
+    def __init__(
+        self, config: CameraConfig, assets: Assets, hour: float | None, count: int
+    ) -> None:
+        lighting = assets.lighting
         self.lenses = Lenses.of(config.lens, count)
         self.shutter = Shutter.of(config.shutter, count)
         self.model = CameraModel.of(config, lighting, count, self.lenses, self.shutter)
+        self.thermal: ThermalViews | None = None
+        if config.spectrum is Spectrum.THERMAL:
+            self.thermal = ThermalViews(config.thermal, assets, hour, count)
 
     @property
     def bent(self) -> Lenses | None:
@@ -50,3 +60,5 @@ class Optics:
             self.shutter.begin(tracker, stream("shutter"))
         if self.model is not None:
             self.model.begin(tracker, stream("camera"))
+        if self.thermal is not None:
+            self.thermal.begin(tracker, stream("thermal"))

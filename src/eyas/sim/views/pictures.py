@@ -67,6 +67,7 @@ class PictureDrawer:
         self._light = light
         self._snapshot = snapshot
         self._camera = None if optics is None else optics.model
+        self._thermal = None if optics is None else optics.thermal
         self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
@@ -100,10 +101,16 @@ class PictureDrawer:
         draw = partial(self.render, views, movers, until=until)
         if self._exposures is not None:
             draw = partial(self._exposures.draw, chosen, until)
-        if self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
+        step = self._snapshot.episodes.step_count
+        if self._thermal is not None and deep.rgb is not None:
+            draw(replace(deep, rgb=None, depth=with_depth(deep).depth))
+            self._thermal.draw(views, movers, chosen, step, deep.rgb)
+            if self._camera is not None:
+                self._camera.send(chosen, step, deep.rgb)
+        elif self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
             draw(deep)
         else:
-            self._camera.draw(draw, chosen, self._snapshot.episodes.step_count, deep)
+            self._camera.draw(draw, chosen, step, deep)
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
 

@@ -88,10 +88,9 @@ class SensorSuite:
         self.grain = Grain.of(config.sensors.camera, len(active))
         size = config.camera.height, config.camera.width
         self.events = EventSensors.of(config.camera.events, size, len(active))
-        self.optics = Optics(config.camera, assets.lighting, len(active))
-        self.further = tuple(
-            FurtherOptics(camera, assets.lighting, len(active)) for camera in config.cameras
-        )
+        taken = assets, config.world.hour, len(active)
+        self.optics = Optics(config.camera, *taken)
+        self.further = tuple(FurtherOptics(camera, *taken) for camera in config.cameras)
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
