@@ -51,7 +51,7 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
         )
-    if _Parts.EVENTS in config.parts and not camera.events.enabled:
+    if _Parts.EVENTS in config.parts and not sim.camera.events.enabled:
         raise ConfigError(
             "env.observation.parts: 'events' needs the sensor: camera.events.enabled is false"
         )
@@ -79,19 +79,18 @@ def _space(
             return gymnasium.spaces.Box(0, int(max(ObjectClass)), plane, np.uint8)
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
-        case _Parts.SENSORS:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
+        case _Parts.SENSORS | _Parts.PRIVILEGED:
+            count = _SENSORS if part is _Parts.SENSORS else _PRIVILEGED
+            return gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
         case _Parts.EVENTS:
-            shape = _event_shape(config, camera)
+            shape = _event_shape(config, sim.camera)
             return gymnasium.spaces.Box(0, 255, shape, np.uint8)
         case _Parts.WORDS:
             return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
         case _Parts.ATTRIBUTES:
             return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
-        case _Parts.PRIVILEGED:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
 
 
 def _event_shape(config: ObservationConfig, camera: CameraConfig) -> tuple[int, int, int]:

@@ -236,7 +236,6 @@ class Frame:
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
     exposure: tuple[float, float] | None = None
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
-
     events: NDArray[np.void] | None = None
     """What the sensor of events has told since the last frame, in the order of time, of dtype
     `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""

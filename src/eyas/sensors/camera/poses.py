@@ -11,7 +11,16 @@ from eyas.lanes.elementary import sin_cos, tan
 from eyas.sensors.camera.vibration import Shake, shaken_axes
 from eyas.state.snapshot import CameraState
 
-__all__ = ["Exposure", "Moments", "Seen", "motion_in_pixels", "poses_at", "turned"]
+__all__ = [
+    "INSTANTS",
+    "Exposure",
+    "Moments",
+    "Moving",
+    "Seen",
+    "motion_in_pixels",
+    "poses_at",
+    "turned",
+]
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -87,6 +96,22 @@ def poses_at(exposure: Exposure, moments: Moments) -> None:
         _pose(exposure, moments.of[k], moments.later[k], place, axes)
 
 
+class Moving(NamedTuple):
+    """E things that V views may show, with their motion."""
+
+    first: NDArray[np.int64]
+    """Where the things of each view begin, shape (V,)."""
+    end: NDArray[np.int64]
+    """Where they end, shape (V,)."""
+    position: Floats
+    """Reference points, world frame [m], shape (E, 3)."""
+    velocity: Floats
+    """[m/s], shape (E, 3)."""
+    reach: Floats
+    """How far they reach from there, a few metres at most [m], shape (E,). Those that reach into a
+    view must be the same whatever other views there are."""
+
+
 class Seen(NamedTuple):
     """What V cameras see, as far as its motion in the picture is asked."""
 
@@ -97,16 +122,7 @@ class Seen(NamedTuple):
     frame: Floats
     """Width of the picture [pixels]; height over width of what it shows; its rows over those that
     it had if its pixels were square; shape (3,)."""
-    first: NDArray[np.int64]
-    """Where the things of each view begin, shape (V,)."""
-    end: NDArray[np.int64]
-    """Where they end, shape (V,)."""
-    position: Floats
-    """Things that move, world frame [m], shape (E, 3)."""
-    velocity: Floats
-    """[m/s], shape (E, 3)."""
-    reach: Floats
-    """How far they reach from there [m], shape (E,)."""
+    things: Moving
     place: Floats
     """Working memory, shape (INSTANTS, 3)."""
     axes: Floats
@@ -186,10 +202,11 @@ def motion_in_pixels(exposure: Exposure, seen: Seen) -> None:
             for down in range(-1, 2):
                 way = _way_of_ground(exposure, seen, v, lens, across, down)
                 longest = max(longest, way)
-        for e in range(seen.first[v], seen.end[v]):
-            point, speed = seen.position[e], seen.velocity[e]
+        things = seen.things
+        for e in range(things.first[v], things.end[v]):
+            point, speed = things.position[e], things.velocity[e]
             velocity = speed[0], speed[1], speed[2]
             place = point[0], point[1], point[2]
-            way = _way(seen, v, lens, seen.reach[e], place, velocity)
+            way = _way(seen, v, lens, things.reach[e], place, velocity)
             longest = max(longest, way)
         seen.motion[v] = longest

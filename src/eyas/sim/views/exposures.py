@@ -13,10 +13,17 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.passes import Pieces, add_passes, pieces_of
-from eyas.sensors.camera.poses import Exposure, Moments, Seen, motion_in_pixels, poses_at
+from eyas.sensors.camera.poses import (
+    INSTANTS,
+    Exposure,
+    Moments,
+    Moving,
+    Seen,
+    motion_in_pixels,
+    poses_at,
+)
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.vibration import Shake, Vibration, no_shake
-from eyas.sim.views.visible_actors import Moving
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 
@@ -86,9 +93,8 @@ def ways_of(
         frame: See `Seen.frame`.
         moving: Things that move.
     """
-    seen = Seen(
-        window, floor, frame, *moving, np.zeros((5, 3)), np.zeros((5, 3, 3)), np.zeros(len(window))
-    )
+    place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
+    seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)
     return seen.motion
 

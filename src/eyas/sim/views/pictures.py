@@ -12,6 +12,7 @@ from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.lens import Lenses
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
@@ -19,7 +20,6 @@ from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.views.delay import ShownState
 from eyas.sim.views.exposures import Exposures, Moment
 from eyas.sim.views.optics import Optics
-from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
@@ -128,7 +128,8 @@ class PictureDrawer:
     def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
         """Return the motion of the actors that trackers' cameras may show."""
         ticks = self._snapshot.episodes.tick
-        return self._worlds.moving(trackers, ticks, cameras, self.aspect)
+        seeing = _seeing(trackers, cameras, self.aspect, self._lenses)
+        return self._worlds.moving(trackers, ticks, seeing, self.aspect)
 
     def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
         """Draw views of trackers' cameras."""
@@ -214,10 +215,7 @@ class PictureDrawer:
             lenses: The lenses of all trackers, if the cameras are theirs.
             later: How long after what is seen each looks [s], shape (V,); None: then.
         """
-        ticks, seeing = self._snapshot.episodes.tick, cameras
-        if lenses is not None:
-            field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
-            seeing = cameras._replace(field_of_view=field)
+        ticks, seeing = self._snapshot.episodes.tick, _seeing(chosen, cameras, aspect, lenses)
         world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
         instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
         if instant is not None and later is not None:
@@ -233,3 +231,13 @@ class PictureDrawer:
             lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers
+
+
+def _seeing(
+    chosen: Chosen, cameras: CameraState, aspect: float, lenses: Lenses | None
+) -> CameraState:
+    """Return pinhole cameras that see at least what cameras see through lenses."""
+    if lenses is None:
+        return cameras
+    field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
+    return cameras._replace(field_of_view=field)

@@ -15,6 +15,7 @@ from eyas.lanes import Held, compiled, kernel
 from eyas.lanes.elementary import tan
 from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
@@ -24,7 +25,7 @@ from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before, write_actor
 
-__all__ = ["Moving", "VisibleActors"]
+__all__ = ["VisibleActors"]
 
 _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
@@ -220,22 +221,6 @@ def _list_actors(  # the records that it reads
     listed.needed[0] = entries
 
 
-class Moving(NamedTuple):
-    """E actors that matter for V views, with their motion."""
-
-    first: NDArray[np.int64]
-    """Where the actors of each view begin, shape (V,)."""
-    end: NDArray[np.int64]
-    """Where they end, shape (V,)."""
-    position: NDArray[np.float64]
-    """Reference points, world frame [m], shape (E, 3)."""
-    velocity: NDArray[np.float64]
-    """[m/s], shape (E, 3)."""
-    reach: NDArray[np.float64]
-    """How far they reach from there, at most `_LONGEST` [m], shape (E,). Those that reach into a
-    view are the same whatever other views there are."""
-
-
 class _Size(NamedTuple):
     """Capacity of the buffers."""
 
@@ -301,7 +286,7 @@ class VisibleActors:
         row: NDArray[np.integer] | None,
         cameras: CameraState,
         aspect: float,
-    ) -> "Moving":
+    ) -> Moving:
         """Return where these actors are, and how fast, without posing them; see `of`."""
         self._list_for(worlds, time, row, cameras, aspect)
         entries, (state, slots) = (
