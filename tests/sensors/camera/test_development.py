@@ -102,6 +102,24 @@ def test_the_variance_is_that_of_photon_transfer(level, binning):
         assert seen.var() < expected
 
 
+def test_noise_of_colours_pixels_pictures_and_trackers_is_unrelated():
+    rgb, made = developed(uniform(0.3, 8, 64, 64), fixed(0.01, 1600.0), 10.0, **NOISELESS)
+    later = drawn(made, uniform(0.3, 8, 64, 64), 1)
+    values = values_of(rgb)
+    pairs = [
+        (values[..., 0], values[..., 1]),
+        (values[..., 0], values[..., 2]),
+        (values[..., 1], values[..., 2]),
+        (values[:, 1:], values[:, :-1]),
+        (values[:, :, 1:], values[:, :, :-1]),
+        (values[:, :, 8:], values[:, :, :-8]),
+        (values[1:], values[:-1]),
+        (values, values_of(later)),
+    ]
+    for one, other in pairs:
+        assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.025
+
+
 def test_row_noise_is_shared_by_a_row_and_differs_from_row_to_row():
     imager = SMOOTH | {"row_noise": 20.0 * 4096**0.25}
     rgb, _ = developed(uniform(0.3, 1, 256, 8), fixed(1e-4), **imager)

@@ -247,7 +247,7 @@ def _join(
     for row in range(height):
         _smooth(lines[0], blue, row, height, width)
         _smooth(lines[1], red, row, height, width)
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             first = min(start, width - WIDTH)
             grey = load(luminance, row * luminance.shape[1] + first)
             bluer, redder = _widened(lines[0], first, last), _widened(lines[1], first, last)
