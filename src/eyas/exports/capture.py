@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.lens import NO_LENS, Lens
 from eyas.exports.frame import CameraPose, Floats, Frame, RecordedAction, RecordedBody, Subject
 from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
@@ -47,6 +48,8 @@ class Moment(NamedTuple):
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
     parts: MovingParts | None = None
     """See `Frame.parts`; nothing changes it later."""
+    lens: Lens | None = None
+    """The lens of its camera; None: it is a pinhole."""
 
 
 def moment_of(
@@ -72,7 +75,8 @@ def moment_of(
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
     told = seen.packets()[0][tracker, SENSOR_COLUMNS]
     moving = seen.parts(tracker, actors or seen.actors(tracker)) if parts else None
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told, moving)
+    now, lens = simulation.snapshot.episodes, seen.lens_of(tracker)
+    return Moment(shown, now, actors, whole_box, lidar, told, moving, lens)
 
 
 def frame_of(
@@ -93,14 +97,14 @@ def frame_of(
     words = ""
     others: tuple[Subject, ...] = ()
     if moment.actors is not None:
-        words = target_in_words(shown, moment.actors, tracker, picture.aspect)
+        words = target_in_words(shown, moment.actors, tracker, picture.aspect, moment.lens)
         others = others_of(moment, tracker, picture, view)
     return Frame(
         number=number,
         time=float(shown.episodes.tick[tracker]) * PHYSICS_STEP,
         step=int(shown.episodes.step_count[tracker]),
         tracker=_body(shown.trackers, tracker),
-        camera=_camera(shown.cameras, tracker, picture),
+        camera=_camera(shown.cameras, tracker, picture, moment.lens),
         target=_target(moment, tracker, picture, view, words),
         others=others,
         action=action,
@@ -129,7 +133,9 @@ def _body(trackers: TrackerState, tracker: int) -> RecordedBody:
     )
 
 
-def _camera(cameras: CameraState, tracker: int, picture: Picture) -> CameraPose:
+def _camera(
+    cameras: CameraState, tracker: int, picture: Picture, lens: Lens | None
+) -> CameraPose:
     height, width = picture_size(picture)
     return CameraPose(
         position=cameras.position[tracker].copy(),
@@ -137,6 +143,7 @@ def _camera(cameras: CameraState, tracker: int, picture: Picture) -> CameraPose:
         field_of_view=float(cameras.field_of_view[tracker]),
         width=width,
         height=height,
+        lens=lens or NO_LENS,
     )
 
 
