@@ -272,6 +272,11 @@ FIELDS = (
                unit="m/s, rad/s", frame="tracker's body"),
     LabelField("distortion_model", TEXT, "Model of the lens: `brown` or `fisheye`; only of those "
                "that bend the picture.", lambda f, e: f.camera.distortion_model, left_out=True),
+    LabelField("exposure_time", NUMBER, "How long the picture was exposed; only with "
+               "`camera.imager`.", lambda f, e: f.exposure and round(float(f.exposure[0]), 9),
+               unit="s", left_out=True),
+    LabelField("iso", NUMBER, "Speed of the picture (ISO 12232); only with `camera.imager`.",
+               lambda f, e: f.exposure and rounded(f.exposure[1]), left_out=True),
 )  # fmt: skip
 """All fields, in the order of the file."""
 

@@ -11,6 +11,7 @@ from eyas.core.errors import ConfigError
 from eyas.lanes import Held, interpreted, thread_count
 from eyas.lanes.vector import WIDTH
 from eyas.render.bake.ambient import bake_ambient
+from eyas.render.bake.land import land_map, no_land
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.jobs import Size, new_task, set_views
@@ -70,8 +71,9 @@ class CpuRenderer:
 
     def influence(self, reach: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distance up to which things may show [m], see `Renderer`."""
-        sun, lamps_on = self._light.weather.sun, bool(self._light.weather.air.lamps > 0.0)
-        return np.array([_influence(one, sun, lamps_on) for one in reach.tolist()])
+        sun, air = self._light.weather.sun, self._light.weather.air
+        longest, lamps_on = float(air.longest_shadow), bool(air.lamps > 0.0)
+        return np.array([_influence(one, sun, longest, lamps_on) for one in reach.tolist()])
 
     def draw(
         self,
@@ -210,7 +212,9 @@ def build_renderer(
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)
-    light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
+    covered = lighting.mist > 0 or lighting.litter > 0
+    land = land_map(scene, ambient, cache) if covered else no_land()
+    light = build_light(scene, lighting, shadows, ambient, land, tracks, geometry)
     return CpuRenderer(geometry, light, ready)
 
 

@@ -138,11 +138,16 @@ class Views:
         return focal
 
 
-def _focal_lengths(size: int, fields: float | NDArray[np.float64]) -> float | list[float]:
+def _focal_lengths(
+    size: int, fields: float | NDArray[np.float64]
+) -> float | NDArray[np.float64]:
     """Return the focal length, or that of each view [pixels]."""
     if isinstance(fields, np.ndarray):
-        # One by one: numpy's own tangents differ between processors.
-        return [focal_length(size, field) for field in fields.tolist()]
+        # One by one, since numpy's own tangents differ between processors; but views of one lens
+        # are many.
+        values, which = np.unique(fields, return_inverse=True)
+        lengths = np.array([focal_length(size, field) for field in values.tolist()])
+        return lengths[which]
     return focal_length(size, fields)
 
 

@@ -64,6 +64,29 @@ class Lighting:
     """Share of the sky that clouds cover."""
     flakes: float = 0.0
     """Density of falling snow: 0 none, 1 heavy snowfall."""
+    rain: float = 0.0
+    """Density of falling rain: 0 none, 1 a cloudburst."""
+    leaves: float = 0.0
+    """Density of falling leaves: 0 none, 1 a gust in a wood."""
+    wet: float = 0.0
+    """Water on what faces up: 0 dry, 1 roads that mirror, with puddles."""
+    litter: float = 0.0
+    """Fallen leaves on the ground: 0 none, 1 it is covered under trees."""
+    mist: float = 0.0
+    """Extinction on the ground of a layer that is thick over open land and water [1/m]."""
+    mist_depth: float = 8.0
+    """Height over the ground at which that has thinned to 1/e [m]."""
+    glare: float = 0.0
+    """Sunlight that haze and lens scatter forward, against a low sun: 0 none, 1 dazzling."""
+    longest_shadow: float = 4.0
+    """Longest shadow of what moves, in heights; with a low sun it would be endless."""
+    daytime_lamps: float = 0.0
+    """Brightness of lamps that are seen, but light nothing around them: in rain by day."""
+    moon: float | None = None
+    """Age of the moon as a share of a month, 0.5: full. Its disc shows the phase, and moon and
+    stars stand where the hour has them. None: a full moon under stars that stand still."""
+    star_turn: float = 0.0
+    """How far the stars have turned round the pole [rad]."""
 
 
 class LightState(NamedTuple):

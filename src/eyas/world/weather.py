@@ -13,12 +13,17 @@ from eyas.core.registry import Registry
 from eyas.state.lighting import Lighting
 
 __all__ = [
+    "AUTUMN",
     "CLEAR_DAY",
     "CLEAR_NIGHT",
     "DAY",
+    "DUSK",
+    "DUST",
     "FOG",
     "FOGGY",
     "NIGHT",
+    "OVERCAST",
+    "RAIN",
     "SNOW",
     "WEATHERS",
     "WINTER_DAY",
@@ -38,6 +43,8 @@ class Season(StrEnum):
 
     SUMMER = "summer"
     WINTER = "winter"
+    AUTUMN = "autumn"
+    """As in summer, but the leaves of trees have turned, and some have fallen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,6 +61,8 @@ class Weather:
     """The same while the sun is deep below the horizon; its `sun_direction` is the moon's."""
     dark: bool = False
     """Whether it is night unless an hour is given."""
+    hour: float | None = None
+    """Hour at which it is shown unless another is given; None: `day` or `night` as they are."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):
@@ -67,6 +76,7 @@ class Weather:
 
     def light(self, hour: float | None = None) -> Lighting:
         """Return light and air at an hour, 0 to 24; None: the weather's own, day or night."""
+        hour = self.hour if hour is None else hour
         if hour is None:
             return self.night if self.dark else self.day
         return _at_hour(self, hour)
@@ -168,18 +178,131 @@ _WINTER_NIGHT = replace(
     flakes=WINTER_DAY.flakes,
 )
 
+# What the original does not have.
+
+# Grey light without shadows from a closed sky that is brighter above (CIE's overcast sky).
+_OVERCAST_DAY = replace(
+    CLEAR_DAY,
+    sun_colour=(0.035, 0.035, 0.036),
+    zenith_colour=(0.46, 0.48, 0.51),
+    horizon_colour=(0.42, 0.44, 0.47),
+    ambient_up=(0.44, 0.455, 0.48),
+    ambient_down=(0.15, 0.148, 0.137),
+    fog_colour=(0.46, 0.48, 0.51),
+    fog_density=1.0 / 5000.0,
+    clouds=1.0,
+    exposure=1.45,
+    luminance=10_000.0,
+)
+_OVERCAST_NIGHT = replace(_FOG_NIGHT, fog_density=CLEAR_NIGHT.fog_density, foggy=False)
+
+_RAIN_DAY = replace(
+    _OVERCAST_DAY,
+    sun_colour=(0.02, 0.02, 0.021),
+    zenith_colour=(0.30, 0.315, 0.34),
+    horizon_colour=(0.36, 0.375, 0.40),
+    ambient_up=(0.30, 0.315, 0.34),
+    ambient_down=(0.085, 0.086, 0.085),
+    fog_colour=(0.35, 0.365, 0.385),
+    fog_density=1.0 / 1100.0,
+    exposure=1.7,
+    luminance=7_000.0,
+    # Drivers have their lamps on, and some rooms need light.
+    daytime_lamps=0.6,
+    windows=0.05,
+    rain=0.6,
+    wet=1.0,
+)
+_RAIN_NIGHT = replace(
+    _FOG_NIGHT, fog_density=_RAIN_DAY.fog_density, foggy=False, rain=_RAIN_DAY.rain, wet=1.0
+)
+
+# Dust that a storm has raised: thicker near the ground, and the sun is a pale disc.
+_DUST_DAY = replace(
+    CLEAR_DAY,
+    sun_colour=(0.46, 0.36, 0.21),
+    zenith_colour=(0.50, 0.39, 0.23),
+    horizon_colour=(0.64, 0.48, 0.27),
+    ambient_up=(0.42, 0.34, 0.23),
+    ambient_down=(0.21, 0.165, 0.105),
+    fog_colour=(0.60, 0.45, 0.255),
+    fog_density=1.0 / 380.0,
+    foggy=True,
+    clouds=0.0,
+    mist=1.0 / 260.0,
+    mist_depth=14.0,
+    glare=0.35,
+    luminance=15_000.0,
+)
+_DUST_NIGHT = replace(
+    _FOG_NIGHT,
+    zenith_colour=(0.022, 0.018, 0.013),
+    horizon_colour=(0.040, 0.031, 0.020),
+    fog_colour=(0.038, 0.029, 0.019),
+    fog_density=_DUST_DAY.fog_density,
+    clouds=0.0,
+    mist=_DUST_DAY.mist,
+    mist_depth=_DUST_DAY.mist_depth,
+)
+
+# The half hour before sunset: long shadows, a dazzling sun, the first lamps and windows lit.
+_EVENING = replace(
+    CLEAR_DAY,
+    fog_density=1.0 / 4500.0,
+    clouds=0.4,
+    glare=1.0,
+    longest_shadow=16.0,
+    lamps=0.45,
+    windows=0.3,
+)
+
+# A low October sun, mist over fields and ponds, leaves on the ground and in the air.
+_AUTUMN_DAY = replace(
+    CLEAR_DAY,
+    sun_direction=(-0.78, 0.40, 0.48),
+    sun_colour=(1.0, 0.89, 0.70),
+    horizon_colour=(0.52, 0.64, 0.82),
+    ambient_up=(0.28, 0.31, 0.37),
+    fog_colour=(0.60, 0.65, 0.72),
+    fog_density=1.0 / 3500.0,
+    clouds=0.5,
+    exposure=1.1,
+    luminance=27_000.0,
+    mist=1.0 / 160.0,
+    mist_depth=5.0,
+    glare=0.3,
+    longest_shadow=6.0,
+    litter=1.0,
+    leaves=0.35,
+)
+_AUTUMN_NIGHT = replace(
+    CLEAR_NIGHT,
+    mist=_AUTUMN_DAY.mist,
+    mist_depth=_AUTUMN_DAY.mist_depth,
+    litter=_AUTUMN_DAY.litter,
+    leaves=_AUTUMN_DAY.leaves,
+)
+
 DAY = Weather(name="day", day=CLEAR_DAY, night=CLEAR_NIGHT)
 FOGGY = Weather(name="foggy", day=FOG, night=_FOG_NIGHT)
 NIGHT = replace(DAY, name="night", dark=True)
 SNOW = Weather(name="snow", season=Season.WINTER, day=WINTER_DAY, night=_WINTER_NIGHT)
+RAIN = Weather(name="rain", day=_RAIN_DAY, night=_RAIN_NIGHT)
+DUSK = Weather(name="dusk", day=_EVENING, night=CLEAR_NIGHT, hour=18.9)
+OVERCAST = Weather(name="overcast", day=_OVERCAST_DAY, night=_OVERCAST_NIGHT)
+DUST = Weather(name="dust", day=_DUST_DAY, night=_DUST_NIGHT)
+AUTUMN = Weather(name="autumn", season=Season.AUTUMN, day=_AUTUMN_DAY, night=_AUTUMN_NIGHT)
 
 WEATHERS: Registry[Weather] = Registry(
     "world.weather",
     Weather,
-    {each.name: f"{__name__}:{each.name.upper()}" for each in (DAY, FOGGY, NIGHT, SNOW)},
+    {
+        each.name: f"{__name__}:{each.name.upper()}"
+        for each in (DAY, FOGGY, NIGHT, SNOW, RAIN, DUSK, OVERCAST, DUST, AUTUMN)
+    },
     group="eyas.weathers",
 )
-"""The weathers of the original, and those of a user's own."""
+"""The four weathers of the original, Eyas' own, and those of a user."""
 
 
 def unchanged(weather: Weather) -> Weather:
@@ -216,7 +339,7 @@ def sun_at(hour: float) -> Colour:
 _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 """Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
 the third it is night."""
-_LAMPS = ("lamps", "windows")
+_LAMPS = ("lamps", "windows", "daytime_lamps")
 """What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
 _LOWEST = 1.5
 """Height of the sun below which the formulas of daylight would go on to black [deg]."""
@@ -237,6 +360,7 @@ def _at_hour(weather: Weather, hour: float) -> Lighting:
         for name in (
             *("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down"),
             *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
+            *("rain", "leaves", "wet", "litter", "mist", "mist_depth", "glare", "longest_shadow"),
         )
     }
     (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)

@@ -11,7 +11,7 @@ from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
 
-__all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "track_map"]
+__all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "blurred", "track_map"]
 
 TEXEL = 0.3
 """Side of a texel, unless there would be too many [m]."""
@@ -89,9 +89,9 @@ def track_map(scene: Scene) -> TrackMap:
         much = strength * (0.86 + 0.16 * uneven) * _profile(aside + 0.1 * sway)
         np.maximum.at(worn, (cell[inside, 1], cell[inside, 0]), much[inside].astype(np.float32))
     worn = _sheltered(scene, worn, low, texel)
-    near = _blurred(worn, max(round(_NEAR / texel), 1))
+    near = blurred(worn, max(round(_NEAR / texel), 1))
     both = np.empty((*worn.shape, 2), np.uint8)
-    for index, map_ in enumerate((near, _blurred(near, max(round(_FAR / texel), 1)))):
+    for index, map_ in enumerate((near, blurred(near, max(round(_FAR / texel), 1)))):
         both[..., index] = np.round(255.0 * map_)
     return TrackMap(both, np.array([*low, 1.0 / texel]))
 
@@ -190,7 +190,7 @@ def _waves(points: Line, length: float, seed: int) -> Line:
     return np.asarray(exact.sin(exact.product(points, way) + phase).sum(axis=1) / 2.5)
 
 
-def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
+def blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
     """Return means over squares of so many texels; all values beyond the edges are 0."""
     if texels == 1:
         return values

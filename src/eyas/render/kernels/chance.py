@@ -1,10 +1,10 @@
 """Hash-based noise: numbers that look random but are always the same."""
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import greater, to_f4, to_i4, to_u4
+from eyas.lanes.vector import any_of, greater, lesser, like, to_f4, to_i4, to_u4
 from eyas.render.kernels.scalars import f4, u4
 
-__all__ = ["hashed", "noise", "scrambled", "tenth"]
+__all__ = ["hashed", "noise", "scrambled", "seen_noise", "tenth"]
 
 
 @kernel(inline=True)
@@ -54,3 +54,13 @@ def noise(x: float, y: float) -> float:
     c, d = _grain(left, lower_row), _grain(right, lower_row)
     upper = a + across * (b - a)
     return upper + down * (c + across * (d - c) - upper)
+
+
+@kernel(inline=True)
+def seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
+    """Return noise with some cells in a metre, faded to its mean where a pixel covers them [m]."""
+    sharp = greater(f4(1.6) - f4(2.0) * cells * footprint, f4(0.0))
+    value = like(x, f4(0.5))
+    if any_of(sharp > f4(0.0)):
+        value += lesser(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
+    return value

@@ -1,14 +1,19 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.core.lens import Lens
 from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import (
+    Air,
     Band,
     Canvas,
     Direction,
     Geometry,
     Glass,
     Illumination,
+    Job,
     LensTables,
     Light,
     Movers,
@@ -20,6 +25,7 @@ from eyas.render.kernels.bundles import (
 from eyas.render.kernels.lens.look import face_rows, face_view, glass_of, look_through
 from eyas.render.kernels.lens.outputs import darken, write_bent_depth
 from eyas.render.kernels.light.casters import cast_light
+from eyas.render.kernels.light.sunlight import sunlit
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.flakes import let_flakes_fall
 from eyas.render.kernels.sky.radiance import draw_backdrop
@@ -32,7 +38,7 @@ from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import DrawStage
 from eyas.state.lighting import LightState
 
-__all__ = ["band_of", "draw_views", "view_light"]
+__all__ = ["band_of", "draw_views", "view_light", "with_veil"]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
@@ -78,7 +84,7 @@ def _draw_band(
     job, until = task.job, task.until
     number = job.band[index, 0]
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light, number))
+    lit = address_of(_light_at(light, job, number))
     world = i8(job.world[number])
     band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
     count = draw_scene(band)
@@ -104,7 +110,7 @@ def _draw_through_lens(
     job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     slot = job.lens[number]
-    lit = address_of(view_light(light.weather, job.light, number))
+    lit = address_of(_light_at(light, job, number))
     world, coloured = i8(job.world[number]), until > RASTERISING and _coloured(output)
     if tables.dark[slot] == 1:
         darken(task, tables, output, index)
@@ -124,6 +130,15 @@ def _draw_through_lens(
         look_through(band, scratch.word[worker], bent, coloured)
         _write_facts(band, bent, count, output, task, index)
         _write_colours(bent, output, task, index)
+
+
+@kernel(inline=True)
+def _light_at(light: Light, job: Job, number: int) -> Illumination:
+    """Return light and air of a view, where it is."""
+    here = view_light(light.weather, job.light, number)
+    if light.weather.air.glare > f4(0.0):
+        here = with_veil(light, here, job.eye[number])
+    return here
 
 
 @kernel(inline=True)
@@ -246,6 +261,22 @@ def bent_band(
         i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,
         scratch.bent_shade[worker, :rows], face.drawn, face.mesh, face.tiles, face.order,
         face.triangle, face.polygon, face.span,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illumination:
+    """Return light and air of a view with as much veil as sun reaches its lens."""
+    x, y, z = f4(eye[0]), f4(eye[1]), f4(eye[2])
+    air = lit.air
+    return Illumination(
+        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.fog,
+        lit.fog_density,
+        Air(
+            air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
+            air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
+            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.longest_shadow,
+        ),
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from eyas.core.cache.folder import Kind
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
+from eyas.render.bake.puddles import hollows, no_hollows
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.bundles import (
@@ -49,6 +50,7 @@ def build_light(
     lighting: Lighting,
     shadows: ShadowMap,
     ambient: AmbientMap,
+    land: NDArray[np.uint16],
     tracks: TrackMap,
     geometry: Geometry,
 ) -> Light:
@@ -71,6 +73,8 @@ def build_light(
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
         ambient=ambient.openness,
         ambient_frame=MapFrame(*_floats(ambient.frame)),
+        land=land,
+        hollows=hollows() if lighting.wet > 0 else no_hollows(),
         lamp=lamp,
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,
@@ -109,6 +113,16 @@ def _weather(
         windows=_float(lighting.windows),
         clouds=_float(lighting.clouds),
         flakes=_float(lighting.flakes),
+        rain=_float(lighting.rain),
+        leaves=_float(lighting.leaves),
+        wet=_float(lighting.wet),
+        litter=_float(lighting.litter),
+        mist=_float(lighting.mist),
+        per_mist_depth=_float(1.0 / lighting.mist_depth),
+        glare=_float(lighting.glare),
+        veil=_float(1.0),
+        daytime_lamps=_float(lighting.daytime_lamps),
+        longest_shadow=_float(lighting.longest_shadow),
     )
     return Illumination(
         sun=_direction(sun),

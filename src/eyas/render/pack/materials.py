@@ -14,6 +14,9 @@ from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["MaterialTable", "crown_middles", "material_table", "snow_beds"]
 
+_POROUS = {"lawn", "lawn_mown", "soil", "sand", "dry_leaves"}
+"""Textures of ground into which rain soaks; crops let none be seen."""
+
 _MIDDLE = 0.3
 """Height of a crown's middle between its lower end and its top: crowns are flat below."""
 
@@ -61,7 +64,9 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
             return Bed.BARE
         if material.surface in (Surface.FOLIAGE, Surface.CROWN):
             return Bed.LEAVES
-        return Bed.DRIVEN if material in driven_on else Bed.OPEN
+        if material in driven_on:
+            return Bed.DRIVEN
+        return Bed.POROUS if material.texture in _POROUS else Bed.OPEN
 
     return np.array([bed(material) for material in palette], np.int32)
 

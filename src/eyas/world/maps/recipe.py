@@ -119,7 +119,8 @@ class MapRecipe:
     """Names of the weathers that the map does not have."""
     seasons: bool = False
     """Whether the winter scene differs from that of summer: other trees, roofs or crops. Snow on an
-    unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
+    unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own. The leaves
+    of autumn turn on every map."""
     package: str | None = None
     """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
     (`traffic*.npz`), and a change of its code or data rebuilds the scene. None: nothing is shipped,
@@ -155,13 +156,13 @@ class MapRecipe:
         return self.weather(self._known(weather)).light(hour)
 
     def season(self, weather: str) -> Season:
-        """Return the season of the scene in a weather; summer on a map without seasons.
+        """Return the season of the scene in a weather; no winter on a map without seasons.
 
         Raises:
             UnknownNameError: The map has no such weather.
         """
         season = self._known(weather).season
-        return season if self.seasons else Season.SUMMER
+        return season if self.seasons or season is Season.AUTUMN else Season.SUMMER
 
     @property
     def folder(self) -> Traversable | None:

@@ -240,7 +240,8 @@ def _paved(work: _Work, layer: p.Paved) -> None:
 
 
 def _ground(work: _Work, layer: p.GroundCover) -> None:
-    if layer.season not in (None, work.season.value):
+    season = Season.WINTER if work.season is Season.WINTER else Season.SUMMER
+    if layer.season not in (None, season.value):
         return
     work.builder.add(layer.kind, *(_PIECES[type(piece)](work, piece) for piece in layer.pieces))
 

@@ -17,6 +17,7 @@ from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
+from eyas.world.weather import Season
 
 __all__ = ["FROSTED", "SPECIES", "STAND", "TREES", "Species", "stand_levels"]
 
@@ -47,14 +48,24 @@ class Species:
     leaves: Tint
     """Colour of the sunlit leaves, sRGB."""
     bark: Tint = (0.80, 0.76, 0.70)
+    autumn: Tint | None = None
+    """The same in autumn; None: it is evergreen."""
+
+    def look(self, season: Season) -> Tint:
+        """Return the colour of its leaves in a season."""
+        if season is Season.WINTER:
+            return FROSTED
+        return (self.autumn or self.leaves) if season is Season.AUTUMN else self.leaves
 
 
 SPECIES = (
-    Species("crab apple", "round", (3.0, 6.5), 0.72, (1.0, 0.62, 0.76)),
-    Species("hackberry", "round", (4.0, 9.0), 0.58, (0.74, 0.92, 0.32)),
-    Species("oak", "round", (4.5, 10.0), 0.62, (0.36, 0.50, 0.22)),
-    Species("cherry", "round", (3.0, 7.0), 0.64, (0.98, 0.86, 0.90)),
-    Species("birch", "round", (5.0, 10.0), 0.42, (0.62, 0.78, 0.40), (1.0, 1.0, 1.0)),
+    Species("crab apple", "round", (3.0, 6.5), 0.72, (1.0, 0.62, 0.76), autumn=(0.74, 0.34, 0.20)),
+    Species("hackberry", "round", (4.0, 9.0), 0.58, (0.74, 0.92, 0.32), autumn=(0.94, 0.78, 0.26)),
+    Species("oak", "round", (4.5, 10.0), 0.62, (0.36, 0.50, 0.22), autumn=(0.58, 0.38, 0.18)),
+    Species("cherry", "round", (3.0, 7.0), 0.64, (0.98, 0.86, 0.90), autumn=(0.82, 0.40, 0.20)),
+    Species(
+        "birch", "round", (5.0, 10.0), 0.42, (0.62, 0.78, 0.40), (1.0, 1.0, 1.0), (0.96, 0.82, 0.34)
+    ),
     Species("palm", "palm", (4.5, 9.0), 0.52, (0.52, 0.72, 0.30), (0.78, 0.68, 0.54)),
     Species("spruce", "cone", (4.0, 10.0), 0.40, (0.26, 0.42, 0.32), (0.66, 0.58, 0.50)),
 )
@@ -64,7 +75,7 @@ FROSTED: Tint = (0.84, 0.82, 0.90)
 """Colour of leaves under frost."""
 
 
-def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted: bool) -> Levels:
+def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, season: Season) -> Levels:
     """Return a stand about the origin, the finest level of detail first; lengths in metres.
 
     The levels have about 3,400, 1,200, 400 and 32 triangles.
@@ -72,9 +83,9 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted:
     Args:
         kinds: Kinds of its trees.
         rng: Random numbers of the forest.
-        frosted: Whether frost covers the leaves.
+        season: Of their leaves; frost covers them in winter.
     """
-    shapes = [_unit_levels(kinds[k % len(kinds)], rng, frosted) for k in range(_SHAPES)]
+    shapes = [_unit_levels(kinds[k % len(kinds)], rng, season) for k in range(_SHAPES)]
     levels: list[list[Mesh]] = [[], [], []]
     tops = np.zeros((_COLUMNS, _ROWS))
     for index in range(TREES):
@@ -88,7 +99,7 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted:
             level.append(transformed(mesh, pose))
         tops[column, row] = height
     main = kinds[int(rng.integers(len(kinds)))]
-    cover = _leafy("pale_foliage", main, frosted, 0.76)
+    cover = _leafy("pale_foliage", main, season, 0.76)
     return (*(concatenate(level) for level in levels), _canopy(tops, cover, rng))
 
 
@@ -99,17 +110,19 @@ def _pose(place: Array, turn: float, size: float) -> Array:
     )
 
 
-def _leafy(texture: str, kind: Species, frosted: bool, light: float) -> Material:
-    red, green, blue = FROSTED if frosted else kind.leaves
+def _leafy(texture: str, kind: Species, season: Season, light: float) -> Material:
+    red, green, blue = kind.look(season)
     surface = Surface.FOLIAGE if texture == "pale_leaves" else Surface.CROWN
     return Material(texture, (light * red, light * green, light * blue), surface)
 
 
-def _unit_levels(kind: Species, rng: np.random.Generator, frosted: bool) -> tuple[Mesh, Mesh, Mesh]:
+def _unit_levels(
+    kind: Species, rng: np.random.Generator, season: Season
+) -> tuple[Mesh, Mesh, Mesh]:
     """Return a tree of height 1: with many cards, with few, and as a closed shape."""
     crown = _CROWNS[kind.shape](kind.width / 2, rng)
-    dark, closed = (_leafy("pale_foliage", kind, frosted, light) for light in (0.66, 0.78))
-    tints = tuple(_leafy("pale_leaves", kind, frosted, k).tint for k in (0.78, 0.9, 1.0))
+    dark, closed = (_leafy("pale_foliage", kind, season, light) for light in (0.66, 0.78))
+    tints = tuple(_leafy("pale_leaves", kind, season, k).tint for k in (0.78, 0.9, 1.0))
     trunk = _trunk(kind)
     wide = kind.width
     fine = leaf_cards(crown, 42, (0.3 * wide, 0.5 * wide), tints, rng, bent=False)

@@ -13,7 +13,7 @@ from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["PIECE", "PLANTS"]
+__all__ = ["DECIDUOUS", "PIECE", "PLANTS"]
 
 PIECE = 4.0
 """Length of a piece of a hedge or of a border of shrubs, along x [m]."""
@@ -98,3 +98,6 @@ PLANTS: dict[str, Callable[[np.random.Generator], Levels]] = {
     "island": _island,
 }
 """Makers of borders of shrubs along walls, hedges, beds in car parks."""
+
+DECIDUOUS = ("border", "low border", "tall border")
+"""Those whose leaves turn in autumn."""

@@ -49,7 +49,7 @@ def _tracks(field: Field, season: Season) -> Mesh:
         corners = corners[:, ::-1, ::-1]
     z = np.full((*corners.shape[:2], 1), field.z + _ABOVE)
     soil = material("soil", (0.95, 0.84, 0.62))
-    worn = soil if season is Season.SUMMER else material("soil", (0.9, 0.84, 0.7))
+    worn = soil if season is not Season.WINTER else material("soil", (0.9, 0.84, 0.7))
     uvs = corners / TEXTURES["soil"]
     return quads(np.concatenate([corners, z], axis=2), uvs, worn)
 

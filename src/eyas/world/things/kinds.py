@@ -17,7 +17,8 @@ from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import cottages
 from eyas.world.buildings.skyline import FLOOR
 from eyas.world.plants import cones, forest, trees
-from eyas.world.plants.shrubs import PLANTS
+from eyas.world.plants.autumn import in_autumn
+from eyas.world.plants.shrubs import DECIDUOUS, PLANTS
 from eyas.world.street import furniture, gantries, lamps, parked_cars, signals
 from eyas.world.things import subway
 from eyas.world.weather import Season
@@ -123,6 +124,8 @@ SOLIDS: dict[str, Solid] = {
 
 def _street_tree(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     made = trees.street_tree_levels(rng, kind.variant)
+    if season is Season.AUTUMN:
+        made = in_autumn(made, kind.variant)
     return made if kind.width == 1.0 else tuple(_widened(level, kind.width) for level in made)
 
 
@@ -140,7 +143,7 @@ def _widened(mesh: Mesh, width: float) -> Mesh:
 def _stand(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     """Return a stand of one of `forest.SPECIES`, or of all of them, by the variant."""
     one = forest.SPECIES[kind.variant : kind.variant + 1]
-    return forest.stand_levels(one or forest.SPECIES, rng, frosted=season is Season.WINTER)
+    return forest.stand_levels(one or forest.SPECIES, rng, season)
 
 
 def _house(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
@@ -165,7 +168,12 @@ def _always(
 
 
 def _plant(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
-    return lambda kind, rng, season: PLANTS[name](rng)
+    def levels(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
+        made = PLANTS[name](rng)
+        turns = season is Season.AUTUMN and name in DECIDUOUS
+        return in_autumn(made, DECIDUOUS.index(name)) if turns else made
+
+    return levels
 
 
 _TREE, _POLE = ObjectClass.TREE, ObjectClass.POLE

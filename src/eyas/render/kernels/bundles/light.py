@@ -33,6 +33,19 @@ class Air(NamedTuple):
     windows: float
     clouds: float
     flakes: float
+    rain: float
+    leaves: float
+    wet: float
+    litter: float
+    mist: float
+    """[1/m]"""
+    per_mist_depth: float
+    """One over the depth of that layer [1/m]."""
+    glare: float
+    veil: float
+    """Share of `glare` that a lens in the sun adds to the whole picture."""
+    daytime_lamps: float
+    longest_shadow: float
 
 
 class Illumination(NamedTuple):
@@ -92,6 +105,11 @@ class Light(NamedTuple):
     ambient: NDArray[np.uint16]
     """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
     ambient_frame: MapFrame
+    land: NDArray[np.uint16]
+    """What lies under trees and what is open to mist, in the frame of `ambient`, see
+    `eyas.render.bake.land.land_map`; shape (2, 2) where neither leaves nor mist lie."""
+    hollows: NDArray[np.uint16]
+    """Where rain stands, see `eyas.render.bake.puddles.hollows`; (1, 2) where none falls."""
     lamp: NDArray[np.float32]
     """Position [m], axis, strength and 0 for each street lamp, shape (L, 8)."""
     lamp_cell: NDArray[np.int32]

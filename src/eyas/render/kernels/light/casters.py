@@ -44,30 +44,31 @@ __all__ = ["cast_light", "influence"]
 SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
 
-_LONGEST = 4.0
-"""Longest shadow, in heights: with the sun near the horizon it would be endless."""
-
 _BELOW = 0.3
 """Distance below the bottom of a thing down to which its shadow falls [m]."""
 
 
 @kernel(inline=True)
-def _throw(sun: Direction) -> float:
-    """Return the distance of a shadow's end, per metre of height and unit of the sun's x and y."""
-    return min(1.0 / max(float(sun.z), 1e-3), _LONGEST)
+def _throw(sun: Direction, longest: float) -> float:
+    """Return the distance of a shadow's end, per metre of height and unit of the sun's x and y.
+
+    `longest` is `Air.longest_shadow`.
+    """
+    return min(1.0 / max(float(sun.z), 1e-3), float(longest))
 
 
 @kernel
-def influence(reach: float, sun: Direction, lamps_on: bool) -> float:
+def influence(reach: float, sun: Direction, longest: float, lamps_on: bool) -> float:
     """Return the distance up to which a thing, its shadow and its light may be in a picture [m].
 
     Args:
         reach: How far the corners of its parts are from any point of it, at most [m].
         sun: Unit vector to the sun.
+        longest: Longest shadow, in heights.
         lamps_on: Whether the lamps of vehicles are on.
     """
     height = 2.0 * reach
-    length = _throw(sun) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
+    length = _throw(sun, longest) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
     most = CORNER * (reach + beyond(height)) + _BELOW + length
     return max(most, CORNER * reach + BEAM_REACH) if lamps_on else most
 
@@ -78,7 +79,8 @@ def _may_reach(band: Band, first: int, last: int, lamps_on: bool) -> bool:
 
     This is tested first because it needs no box around the thing.
     """
-    most = influence(reach_of(band, first, last), band.lit.sun, lamps_on)
+    lit = band.lit
+    most = influence(reach_of(band, first, last), lit.sun, lit.air.longest_shadow, lamps_on)
     origin = band.movers.pose[band.world, first]
     return sphere_is_visible(
         band.camera.planes, float(origin[0, 3]), float(origin[1, 3]), float(origin[2, 3]), most
@@ -86,10 +88,10 @@ def _may_reach(band: Band, first: int, last: int, lamps_on: bool) -> bool:
 
 
 @kernel
-def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
+def _may_show(caster: Caster, sun: Direction, longest: float, view: View) -> bool:
     """Return whether a shadow may be in the picture, and large enough to see."""
     height = caster.top - caster.bottom
-    half = 0.5 * _throw(sun) * height
+    half = 0.5 * _throw(sun, longest) * height
     x, y, z = caster.x - half * sun.x, caster.y - half * sun.y, 0.5 * (caster.top + caster.bottom)
     length = math.sqrt(caster.length**2 + caster.width**2)
     ahead = view.screen.distance
@@ -100,10 +102,10 @@ def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
 
 
 @kernel
-def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
+def _screen_box(caster: Caster, sun: Direction, longest: float, view: View) -> ScreenBox:
     """Return the box around a thing and its shadow on the ground, see `around`."""
     box = empty_box()
-    throw = _throw(sun) * (caster.top - caster.bottom)
+    throw = _throw(sun, longest) * (caster.top - caster.bottom)
     for corner in range(16):
         along = (caster.length + caster.beyond) * (1.0 if corner & 1 else -1.0)
         aside = (caster.width + caster.beyond) * (1.0 if corner & 2 else -1.0)
@@ -122,7 +124,7 @@ def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
 def _cast_shadow(caster: Caster, band: Band, first: int, last: int) -> None:
     """Darken the samples that instances `first` to `last` shade, but not these themselves."""
     sun, view, key, drawn, shade = band.lit.sun, band.camera, band.key, band.drawn, band.shade
-    box = _screen_box(caster, sun, view)
+    box = _screen_box(caster, sun, band.lit.air.longest_shadow, view)
     camera, boxes = camera_of(caster, view), boxes_of(caster, sun)
     stride = key.shape[1]
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
@@ -202,7 +204,8 @@ def cast_light(band: Band) -> None:
             while begin < last:
                 end = _end_of_body(band, begin, last)
                 caster = address_of(caster_of(band, begin, end))
-                if _may_show(caster, band.lit.sun, band.camera):
+                longest = band.lit.air.longest_shadow
+                if _may_show(caster, band.lit.sun, longest, band.camera):
                     _cast_shadow(caster, band, fixtures + first, fixtures + last)
                 if lamps_on and has_lamps(band, begin, end):
                     reach = 0.0

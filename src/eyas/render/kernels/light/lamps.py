@@ -18,7 +18,7 @@ from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.chance import hashed
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["night_light", "window_light"]
+__all__ = ["lamp_gloss", "night_light", "window_light"]
 
 _HEAD = f4(0.95 / 255.0)
 """Brightest light of head lamps, for each step of `Scratch.shade`."""
@@ -96,6 +96,57 @@ def _street_light(
         lit &= (lean > zero) & (spot > zero)
         total += select(lit, spot * spot * lean * inverse * lamp[6] / square, zero)
     return total
+
+
+@kernel(inline=True)
+def lamp_gloss(
+    light: Light,
+    on: float,
+    point: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    way: tuple[float, float, float],
+    share: float,
+) -> tuple[float, float, float]:
+    """Return the radiance of street lamps that a wet surface mirrors, drawn out by its roughness.
+
+    Blinn's lobe of half vectors, which is long towards the eye where it is grazed.
+
+    Args:
+        light: Its lamps.
+        on: Their strength, 0 to 1.
+        point: The point [m].
+        normal: Unit normal of the surface.
+        way: Unit vector from the eye.
+        share: Share of light that the surface mirrors; 0: it is dry.
+    """
+    frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
+    x, y, z = point
+    zero, one = f4(0.0), f4(1.0)
+    total = like(x, zero)
+    rows, columns, most = cells.shape
+    across, down = (x - frame.west) * frame.per_metre, (y - frame.south) * frame.per_metre
+    inside = (across >= zero) & (down >= zero) & (across < f4(columns)) & (down < f4(rows))
+    inside &= share > zero
+    if any_of(inside):
+        column, row = to_i4(select(inside, across, zero)), to_i4(select(inside, down, zero))
+        first = (row * i4(columns) + column) * i4(most)
+        for k in range(most):
+            which = gather(cells, first + i4(k))
+            lit = inside & (which >= i4(0))
+            if not any_of(lit):
+                break  # lists end with the first empty place
+            lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
+            dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
+            square = dx * dx + dy * dy + dz * dz + f4(0.25)
+            inverse = one / root(square)
+            hx, hy, hz = dx * inverse - way[0], dy * inverse - way[1], dz * inverse - way[2]
+            lean = normal[0] * hx + normal[1] * hy + normal[2] * hz
+            lobe = greater(lean, zero) * lean / (hx * hx + hy * hy + hz * hz + f4(1e-6))
+            for _ in range(6):
+                lobe *= lobe
+            total += select(lit, lobe * lamp[6] / square, zero)
+    total *= (f4(130.0 / 25.0) * on) * share
+    return total, f4(0.86) * total, f4(0.62) * total
 
 
 @kernel(inline=True)

@@ -33,6 +33,7 @@ from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
+from eyas.render.kernels.sky.mist import glare, veil
 
 __all__ = [
     "CLOUDS_FROM",
@@ -45,6 +46,7 @@ __all__ = [
     "reflection",
     "sky",
     "sky_colour",
+    "surroundings",
 ]
 
 CLOUD_BEND = 0.8
@@ -220,6 +222,10 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: fl
         colour = _open_sky(light, lit, x, y, z, around, pixel)
     if any_of(cover > zero):
         colour = blended(colour, _hills(light, lit, z, around), cover)
+    if lit.air.glare > f4(0.0):
+        sun, way = lit.sun_colour, (x, y, z)
+        shine = glare(lit, way) * (one - f4(0.6) * cover) + veil(lit, way)
+        colour = colour[0] + shine * sun.x, colour[1] + shine * sun.y, colour[2] + shine * sun.z
     return colour
 
 
@@ -282,11 +288,16 @@ def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     red *= direct * sun.x + above.x
     green *= direct * sun.y + above.y
     blue *= direct * sun.z + above.z
-    return blended((red, green, blue), lit.fog, hidden_at(lit, away))
+    hidden = hidden_at(lit, away)
+    if lit.air.mist > zero:
+        # The layer of mist hides the foot of the hills and the plain below.
+        deep = lesser(f4(250.0) * lit.air.mist, one) * (one - rise)
+        hidden += deep * (one - hidden)
+    return blended((red, green, blue), lit.fog, hidden)
 
 
 @kernel(inline=True)
-def _surroundings(lit: Illumination) -> Colour:
+def surroundings(lit: Illumination) -> Colour:
     """Return the mean radiance of walls and trees: half in the sun, and half of the sky above."""
     sun, above, below, share = lit.sun_colour, lit.above, lit.below, f4(0.5)
     return (
@@ -334,7 +345,7 @@ def reflection(
     # Around a point that gets half of the sky's light, things are some 45 degrees high.
     around = lesser(greater((f4(1.5) * hidden - z) * f4(5.0), zero), one)
     around *= f4(0.8) * (one - below)
-    red, green, blue = blended((red, green, blue), _surroundings(lit), around)
+    red, green, blue = blended((red, green, blue), surroundings(lit), around)
     shine = _dot(x, y, z, lit.sun)
     for _ in range(6):
         shine *= shine

@@ -11,10 +11,13 @@ from eyas.render.kernels.light.lamps import night_light, window_light
 from eyas.render.kernels.light.sunlight import sunlight
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.sky.fog import fog_share
+from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
+from eyas.render.kernels.surface.litter import littered
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
+from eyas.render.kernels.surface.wet import wetted
 from eyas.state.mesh import MARGIN, Surface
 
 __all__ = ["painted_share", "shade_point", "water_slope"]
@@ -204,6 +207,11 @@ def shade_point(
             (red, green, blue), light, air.snow, at.bed, at.crown_middle, point, at.own,
             normal[2], footprint,
         )  # fmt: skip
+    if air.litter > zero:
+        footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        red, green, blue = littered(
+            (red, green, blue), light, air.litter, at.bed, point, normal[2], footprint
+        )
 
     leafy = surface == FOLIAGE
     unit = f4(1.0 / 255.0)
@@ -229,6 +237,9 @@ def shade_point(
         light_r += lamp_r + glow
         light_g += lamp_g + glow
         light_b += lamp_b + glow
+    elif air.daytime_lamps > zero:
+        glow = air.daytime_lamps * select(signal, zero, at.emission)
+        light_r, light_g, light_b = light_r + glow, light_g + glow, light_b + glow
     window = surface == FACADE
     if air.windows > zero and any_of(window):
         shown = select(window, one - alpha, zero)
@@ -249,6 +260,16 @@ def shade_point(
         share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
         share = select(mirror > zero, share, zero)
         red, green, blue = blended((red, green, blue), mirrored, share)
-    if lit.fog_density > zero:
+    if air.wet > zero:
+        unblocked = to_f4((shade >> u4(8)) & byte) * unit
+        footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        red, green, blue = wetted(
+            light, lit, (red, green, blue), at.bed, point, normal, way, open_share, unblocked,
+            footprint,
+        )  # fmt: skip
+    if air.mist > zero or air.glare > zero:
+        colour = red, green, blue
+        red, green, blue = aired(light, lit, colour, eye, point, way, distance * stretch)
+    elif lit.fog_density > zero:
         red, green, blue = blended((red, green, blue), lit.fog, fog_share(lit, distance * stretch))
     return red, green, blue

@@ -15,7 +15,7 @@ from eyas.lanes.vector import (
     to_i4,
 )
 from eyas.render.kernels.bundles import Light
-from eyas.render.kernels.chance import noise
+from eyas.render.kernels.chance import noise, seen_noise
 from eyas.render.kernels.scalars import f4, i4
 
 __all__ = ["Bed", "snowed"]
@@ -36,6 +36,8 @@ class Bed(IntEnum):
     """Crowns of trees: clumps on branches."""
     VEHICLE = 4
     """Painted body of vehicles: a thin layer on level surfaces."""
+    POROUS = 5
+    """Lawn and soil: like `OPEN`, but rain soaks in."""
 
 
 BARE, DRIVEN = i4(int(Bed.BARE)), i4(int(Bed.DRIVEN))
@@ -46,16 +48,6 @@ LEAVES, VEHICLE = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE))
 def _clip(value: float) -> float:
     """Return a value brought into 0 to 1."""
     return lesser(greater(value, f4(0.0)), f4(1.0))
-
-
-@kernel(inline=True)
-def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
-    """Return noise with some cells in a metre, faded to its mean where a pixel covers them [m]."""
-    sharp = greater(f4(1.6) - f4(2.0) * cells * footprint, f4(0.0))
-    value = like(x, f4(0.5))
-    if any_of(sharp > f4(0.0)):
-        value += lesser(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
-    return value
 
 
 @kernel(inline=True)
@@ -110,7 +102,7 @@ def _on_leaves(
     # A cluster of leaves is flat and has one normal; the crown's roundness changes smoothly.
     open_ = f4(0.7) * above[2] / away + f4(0.3) * rise
     # The second axis runs down the crown's sides too, faster: boughs are wider than high.
-    bough = _seen_noise(x + f4(0.3) * y, y + f4(1.7) * z - f4(0.3) * x, f4(0.75), footprint)
+    bough = seen_noise(x + f4(0.3) * y, y + f4(1.7) * z - f4(0.3) * x, f4(0.75), footprint)
     leaf = _clip(f4(5.5) * green)
     cover = f4(0.8) * open_ + (bough - f4(0.5)) + f4(1.1) * (leaf - f4(0.5))
     return f4(0.92) * _clip(f4(1.7) * (cover - f4(0.1))), f4(0.78) + f4(0.2) * leaf
@@ -160,7 +152,7 @@ def _lying(
     partly = (rise < f4(0.97)) | like(rise < f4(0.97), depth < f4(1.0))
     if any_of(partly):
         # Steep faces are bare; where little has fallen, it lies in the hollows.
-        patch = _seen_noise(x, y, f4(0.9), footprint)
+        patch = seen_noise(x, y, f4(0.9), footprint)
         hollow = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
         hollow = greater(hollow, foot * _clip(f4(0.5) + patch))
         fallen = (patch + (depth - f4(0.76))) * f4(4.0) + greater(depth - f4(0.9), f4(0.0)) * f4(
@@ -204,7 +196,7 @@ def snowed(
         share, bright = _on_leaves(colour[1], point, above, rise, footprint)
         result = _where(leaves, _mixed(colour, depth * share, bright), result)
     if any_of(vehicle):
-        grain = _seen_noise(own[0], own[1], f4(9.0), footprint)
+        grain = seen_noise(own[0], own[1], f4(9.0), footprint)
         share = depth * _clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
         result = _where(vehicle, _mixed(colour, share, f4(0.9)), result)
     # Wind piles it up against kerbs and the feet of walls.
@@ -216,8 +208,8 @@ def snowed(
         # The map of tracks does not cover bridges.
         worn = select(point[2] < f4(1.0), _worn(light, x, y, footprint), f4(0.45))
         # Each turned differently, to hide the square cells of the noise.
-        grain = _seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
-        fine = _seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
+        grain = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
+        fine = seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
         worn += f4(1.2) * (f4(1.0) - depth)
         result = _where(road, _on_road(colour, worn, grain, fine), result)
     lying = ground & ~road

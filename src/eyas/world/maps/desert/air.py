@@ -4,7 +4,16 @@ from dataclasses import replace
 from typing import Any
 
 from eyas.state.lighting import Lighting
-from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY, Weather
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DUST,
+    FOG,
+    OVERCAST,
+    RAIN,
+    WINTER_DAY,
+    Weather,
+)
 
 __all__ = ["desert_weather"]
 
@@ -63,8 +72,15 @@ _NIGHT = replace(
 _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
 
 
+_SKY = ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
+_CLOSED = {weather.name for weather in (RAIN, OVERCAST, DUST)}
+"""Weathers whose sky no sun shines through."""
+
+
 def desert_weather(weather: Weather) -> Weather:
     """Return how a weather is in the desert."""
+    if weather.name in _CLOSED:
+        return weather.each(_sandy)
     return weather.each(lambda light: _SKIES.get(light) or _dusty(light))
 
 
@@ -76,6 +92,15 @@ def _dusty(light: Lighting) -> Lighting:
             0.5 * (own + dust)
             for own, dust in zip(getattr(light, name), getattr(sky, name), strict=True)
         )
-        for name in ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
+        for name in _SKY
     }
     return replace(light, snow=0.0, **half)
+
+
+def _sandy(light: Lighting) -> Lighting:
+    """Return light under a closed sky, as warm as the sand that it is reflected by."""
+    tinted: dict[str, Any] = {}
+    for name in _SKY:
+        red, green, blue = getattr(light, name)
+        tinted[name] = (1.06 * red, green, 0.86 * blue)
+    return replace(light, snow=0.0, **tinted)

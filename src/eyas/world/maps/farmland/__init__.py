@@ -39,7 +39,7 @@ def _weather(weather: Weather) -> Weather:
         ambient_up=(0.115, 0.12, 0.14),
         ambient_down=(0.056, 0.052, 0.046),
     )
-    if not day.foggy:
+    if not day.foggy and not day.rain:
         day = replace(day, fog_density=_CLEAR)
     return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
 

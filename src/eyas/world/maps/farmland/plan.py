@@ -52,6 +52,8 @@ _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 """The beams lean over the road, as in the original."""
 _BALES_APART, _BALES = 17.0, 0.0035
 """Least distance between bales of hay [m], and number of attempts on a square metre."""
+_SEASONS = (Season.SUMMER, Season.WINTER)
+"""Seasons in which crops differ."""
 _FROM_EDGE = 7.0
 """From the edge of a field to its bales [m]."""
 
@@ -96,7 +98,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
 
 def _field(lot: FieldLot, area: shapely.Polygon) -> Field:
     crop = CROPS[lot.crop]
-    summer, winter = (_shaded(crop.look(season), lot.shade) for season in Season)
+    summer, winter = (_shaded(crop.look(season), lot.shade) for season in _SEASONS)
     return Field(area=area, z=crop.height, cover=summer, winter=winter, north=lot.north)
 
 
@@ -107,7 +109,7 @@ def _shaded(look: Material, shade: float) -> Material:
 
 def _far_fields() -> Far:
     """Return larger fields of the same crops, up to the mountains."""
-    summer, winter = ((SOIL, _MEADOW, *(crop.look(one) for crop in CROPS)) for one in Season)
+    summer, winter = ((SOIL, _MEADOW, *(crop.look(one) for crop in CROPS)) for one in _SEASONS)
     shares = (0.24, 0.2, *(0.56 * crop.share for crop in CROPS))
     chance = Chance(stream="farmland far fields")
     return Far(rule="fields", covers=summer, winter=winter, shares=shares, chance=chance)
