@@ -183,4 +183,4 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 
 def _lighting(world: WorldConfig) -> Lighting:
-    return MAPS.get(world.map).light(world.weather, world.hour)
+    return MAPS.get(world.map).light(world.weather, world.hour, world.moon)

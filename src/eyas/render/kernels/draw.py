@@ -99,7 +99,7 @@ def _draw_band(
         canvas = address_of(canvas_of(output, into, top, bottom))
         draw_backdrop(band, canvas)
         shade_band(band, canvas)
-        if len(job.instant) > 0 and lit.air.flakes > f4(0.0):
+        if len(job.instant) > 0:
             let_flakes_fall(band, job.instant[number], canvas)
 
 
@@ -147,7 +147,8 @@ def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illu
         Air(
             air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
             air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
-            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.longest_shadow,
+            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.stars, air.star_cosine,
+            air.star_sine, air.moon_lit, air.limb_x, air.limb_y, air.limb_z, air.longest_shadow,
         ),
     )  # fmt: skip
 
