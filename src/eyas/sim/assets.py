@@ -185,7 +185,7 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 
 def _lighting(world: WorldConfig) -> Lighting:
-    light = MAPS.get(world.map).light(world.weather, world.hour)
+    light = MAPS.get(world.map).light(world.weather, world.hour, world.moon)
     if world.precipitation == 1.0:
         return light
     falls = {name: world.precipitation * getattr(light, name) for name in _FALLING}
