@@ -171,7 +171,7 @@ def read_out(
         held += light * (readout.uneven_gain * (to_f4(to_i4(pairs & u4(0xFFFF))) - f4(255.0)))
         held += readout.uneven_dark * (to_f4(to_i4(pairs >> u4(16))) - f4(255.0))
         if readout.hot > f4(0.0):
-            drawn = to_f4(to_i4(scrambled(word) >> u4(8))) * f4(1.0 / (1 << 24))
+            drawn = to_f4(to_i4(scrambled(pattern) >> u4(8))) * f4(1.0 / (1 << 24))
             held = select(drawn < readout.hot, held + readout.most, held)
     step = whole(lesser(held, readout.most) * readout.steps + f4(0.5))
     number: float = lesser(step, readout.levels)
