@@ -330,3 +330,12 @@ def test_pictures_that_are_too_small_are_refused():
         developed(uniform(0.1, 1, 8, 6))
     with pytest.raises(ConfigError, match=r"time: .* ascending"):
         ExposureConfig(time=(0.1, 0.01))
+
+
+def test_hot_pixels_are_as_many_as_said_and_stay():
+    light = uniform(0.05, height=64, width=64)
+    sensor = developed(light, fixed(), hot_pixels=0.1)[1]
+    hot = [drawn(sensor, light, step).max(axis=-1)[0] > 240 for step in (1, 2)]
+    assert hot[0].mean() == pytest.approx(1.0 - 0.9**3, abs=0.02)  # in each of three colours
+    assert (hot[0] == hot[1]).mean() > 0.99
+    assert not (developed(light, fixed())[0] > 240).any()

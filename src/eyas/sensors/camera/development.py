@@ -127,7 +127,7 @@ class Development:
                 imager.binning,
                 grey,
                 imager.white_balance is WhiteBalance.AUTO and not grey,
-                imager.dark_nonuniformity != 0.0 or imager.gain_nonuniformity != 0.0,
+                any(getattr(imager, name) != 0.0 for name in _FIXED_PATTERN),
                 list(Demosaicking).index(mosaic),
             )
         )
@@ -187,6 +187,9 @@ class Development:
         if size not in self._sizes:
             self._sizes[size] = Zones.of(self._exposing.metering, height, width)
         return self._sizes[size]
+
+
+_FIXED_PATTERN = ("dark_nonuniformity", "gain_nonuniformity", "hot_pixels")
 
 
 class _Work(NamedTuple):

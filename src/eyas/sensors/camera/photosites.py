@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
-from eyas.lanes.vector import greater, lesser, root, to_f4, to_i4, to_u4, whole
+from eyas.lanes.vector import greater, lesser, root, select, to_f4, to_i4, to_u4, whole
 from eyas.render.kernels.chance import scrambled
 from eyas.render.kernels.scalars import f4, u4
 from eyas.sensors.camera.exposure import ExposureState, gain_of
@@ -47,6 +47,8 @@ class Readout(NamedTuple):
     """Standard deviation of the gain from photosite to photosite, averaged."""
     uneven_dark: float
     """The same of the dark level."""
+    hot: float
+    """Share of photosites that read as full."""
     row: float
     """Standard deviation that a row shares."""
     steps: float
@@ -96,6 +98,7 @@ def readout_of(
         f4(sites),
         f4(imagers.gain_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
         f4(imagers.dark_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
+        f4(imagers.hot_pixels[n]),
         # So many photosites lie in the square root of as many rows.
         f4(imagers.row_noise[n] * math.sqrt(spread) / _DEVIATION_OF_FOUR),
         f4(gain * levels / imagers.full_well[n]),
@@ -167,6 +170,9 @@ def read_out(
         pairs = to_u4((pattern & u4(0x00FF00FF)) + ((pattern >> u4(8)) & u4(0x00FF00FF)))
         held += light * (readout.uneven_gain * (to_f4(to_i4(pairs & u4(0xFFFF))) - f4(255.0)))
         held += readout.uneven_dark * (to_f4(to_i4(pairs >> u4(16))) - f4(255.0))
+        if readout.hot > f4(0.0):
+            drawn = to_f4(to_i4(scrambled(pattern) >> u4(8))) * f4(1.0 / (1 << 24))
+            held = select(drawn < readout.hot, held + readout.most, held)
     step = whole(lesser(held, readout.most) * readout.steps + f4(0.5))
     number: float = lesser(step, readout.levels)
     return number
