@@ -48,9 +48,7 @@ def test_another_model_takes_the_place_of_the_first():
     assert other.camera.link is None
     grey = updated(other, {"camera": {"model": "global-shutter"}})
     assert grey.camera.spectrum is Spectrum.GREY
-    none = updated(
-        updated(SimConfig(), {"camera": {"model": "small-drone"}}), {"camera": {"model": None}}
-    )
+    none = updated(updated(SimConfig(), {"camera": {"model": "small-drone"}}), {"camera": {"model": None}})
     assert none.camera == SimConfig().camera
 
 

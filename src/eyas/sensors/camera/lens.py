@@ -140,7 +140,9 @@ class Lenses:
         row = self.numbers[tracker].tolist()
         return Lens(int(row[0]), *row[1:])
 
-    def fields_around(self, trackers: NDArray[np.integer], fields: Floats, aspect: float) -> Floats:
+    def fields_around(
+        self, trackers: NDArray[np.integer], fields: Floats, aspect: float
+    ) -> Floats:
         """Return fields of view of pinholes that show all that lenses show [rad], shape (V,).
 
         Args:
@@ -155,7 +157,9 @@ class Lenses:
         model = FISHEYE if self._config.model is LensModel.FISHEYE else BROWN
         radial = value["k1"], value["k2"], value["k3"], value["k4"]
         tangential = value["p1"], value["p2"]
-        self.numbers[tracker] = lens_of(model, radial, tangential, value["right"], value["below"])
+        self.numbers[tracker] = lens_of(
+            model, radial, tangential, value["right"], value["below"]
+        )
         self.vignetting[tracker] = value["vignetting"]
         self.fringes[tracker] = value["red"], value["blue"]
 
