@@ -151,7 +151,9 @@ class Exposures:
     def _pieces(
         self, chosen: Chosen, exposure: Exposure, frame: Floats, height: int
     ) -> tuple[Integers, Integers]:
-        """Return the numbers of passes and of bands: one for each pixel that anything moves."""
+        """Return the numbers of passes and of bands: neighbours are less than a pixel of motion
+        apart, and what moves less than half a pixel has one.
+        """
         targets, shutter = self._steady.targets, self._shutter
         floor = (targets.position[:, 2] - targets.rise)[chosen]
         moving = self._stage.moving(chosen, exposure.cameras)
@@ -161,7 +163,8 @@ class Exposures:
             count = np.ones(len(chosen), np.int64)
             if window[chosen].any():
                 ways = ways_of(exposure, window[chosen], floor, frame, moving)
-                count = np.clip(np.ceil(np.minimum(ways, most)), 1, most).astype(np.int64)
+                whole = np.floor(np.minimum(ways, most) + 0.5).astype(np.int64)
+                count = np.minimum(1 + whole, most)
             counts.append(count)
         # Of an odd number of bands, the one in the middle sees the instant of the picture.
         return counts[0], np.minimum(counts[1] | 1, height)
