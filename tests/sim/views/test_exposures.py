@@ -194,7 +194,11 @@ def test_a_rolling_shutter_goes_through_a_bent_lens():
     """Each row of a fisheye's picture is that of the global picture at the row's instant."""
     readout, lens = 0.03, {"model": "fisheye"}
     camera = CameraConfig(
-        width=SIZE, height=SIZE, field_of_view=1.8, lens=lens, shutter=ShutterConfig(readout=readout)
+        width=SIZE,
+        height=SIZE,
+        field_of_view=1.8,
+        lens=lens,
+        shutter=ShutterConfig(readout=readout),
     )
     simulation = build_simulation(SimConfig(camera=camera), each_alone(1))
     simulation.reset()
