@@ -53,11 +53,11 @@ def information(simulation: Simulation) -> Info:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
       nothing was within range);
+    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
+      of its last picture; 0 before the first;
     - what the sensor of events has told since the last time, if there is one (`events`, for each
       tracker a row for each event: column, row, time since the reset [us], and 1 for more light or
-      0 for less);
-    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
-      of its last picture; 0 before the first.
+      0 for less).
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -76,11 +76,11 @@ def information(simulation: Simulation) -> Info:
         info["contact_class"] = simulation.classes_of(episodes.contact_object)
     if (lidar := simulation.view.lidar) is not None:
         info["lidar"] = lidar.ranges()
-    if simulation.config.camera.events.enabled:
-        info["events"] = _events(simulation)
     if (exposure := simulation.view.exposure) is not None:
         info["exposure_time"] = exposure.time.copy()
         info["iso"] = exposure.iso.copy()
+    if simulation.config.camera.events.enabled:
+        info["events"] = _events(simulation)
     return info
 
 

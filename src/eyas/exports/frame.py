@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.pinhole import intrinsics
+from eyas.core.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
 from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
 from eyas.state.draw import MovingParts
 from eyas.state.scene import ObjectClass
@@ -91,11 +91,26 @@ class CameraPose:
     """Width of the picture [pixels]."""
     height: int
     """Height of the picture [pixels]."""
+    lens: Lens = NO_LENS
+    """The lens that bends the picture. With one, the field of view is that of a pinhole with the
+    same focal length."""
 
     @property
     def intrinsics(self) -> Floats:
         """Camera matrix, see `Episode.intrinsics`."""
-        return intrinsics(self.width, self.height, self.field_of_view)
+        return camera_matrix(self.lens, self.width, self.height, self.field_of_view)
+
+    @property
+    def distortion(self) -> list[float]:
+        """OpenCV's coefficients of the lens: k1, k2, p1, p2, k3, or a fisheye's k1 to k4."""
+        return coefficients(self.lens)
+
+    @property
+    def distortion_model(self) -> str:
+        """What they belong to: `brown` or `fisheye`; empty for a pinhole."""
+        if self.lens.model == BROWN:
+            return "brown" if any(self.distortion) else ""
+        return "fisheye"
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ from eyas.render.outputs import (
     wanted_output,
     write_measured,
 )
-from eyas.render.pack.light import build_light
+from eyas.render.pack.light import Baked, build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
@@ -214,7 +214,7 @@ def build_renderer(
     ambient = bake_ambient(scene, cache)
     covered = lighting.mist > 0 or lighting.litter > 0
     land = land_map(scene, ambient, cache) if covered else no_land()
-    light = build_light(scene, lighting, shadows, ambient, land, tracks, geometry)
+    light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
     return CpuRenderer(geometry, light, ready)
 
 

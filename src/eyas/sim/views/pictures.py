@@ -127,8 +127,9 @@ class PictureDrawer:
 
     def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
         """Return the motion of the actors that trackers' cameras may show."""
-        ticks = self._snapshot.episodes.tick
-        seeing = _seeing(trackers, cameras, self.aspect, self._lenses)
+        ticks, seeing = self._snapshot.episodes.tick, cameras
+        if self._lenses is not None:
+            seeing = self._lenses.seeing(trackers, cameras, self.aspect)
         return self._worlds.moving(trackers, ticks, seeing, self.aspect)
 
     def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
@@ -215,7 +216,9 @@ class PictureDrawer:
             lenses: The lenses of all trackers, if the cameras are theirs.
             later: How long after what is seen each looks [s], shape (V,); None: then.
         """
-        ticks, seeing = self._snapshot.episodes.tick, _seeing(chosen, cameras, aspect, lenses)
+        ticks, seeing = self._snapshot.episodes.tick, cameras
+        if lenses is not None:
+            seeing = lenses.seeing(chosen, cameras, aspect)
         world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
         instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
         if instant is not None and later is not None:
@@ -231,13 +234,3 @@ class PictureDrawer:
             lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers
-
-
-def _seeing(
-    chosen: Chosen, cameras: CameraState, aspect: float, lenses: Lenses | None
-) -> CameraState:
-    """Return pinhole cameras that see at least what cameras see through lenses."""
-    if lenses is None:
-        return cameras
-    field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
-    return cameras._replace(field_of_view=field)
