@@ -155,9 +155,7 @@ def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Si
 
 
 @kernel(inline=True)
-def _tell(
-    pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float
-) -> None:
+def _tell(pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float) -> None:
     """Let sensor `n` see the light at a time, and append its events."""
     base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
     for at in range(light.shape[0]):

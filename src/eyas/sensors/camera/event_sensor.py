@@ -74,7 +74,9 @@ class EventSensors:
             time: Of the pictures [s], shape (P,).
             light: Linear radiance, shape (P, 3, H, W).
         """
-        first, end = (np.searchsorted(of, np.arange(len(chosen)), side) for side in ("left", "right"))
+        first, end = (
+            np.searchsorted(of, np.arange(len(chosen)), side) for side in ("left", "right")
+        )
         flat = light.reshape(len(light), 3, -1)
         memory = np.empty((len(chosen), flat.shape[2]), np.float32)
         look = Look(chosen, first, end, flat, time, memory)

@@ -73,8 +73,8 @@ class LensConfig(Config):
         allowed = _ALLOWED[self.model]
         for name in ("k1", "k2", "k3", "k4", "p1", "p2"):
             if name not in allowed and getattr(self, name) != 0.0:
-                those = ", ".join(allowed) or "no coefficients"
-                raise ValueError(f"{name} is not one of the model {self.model.value}: {those}")
+                those = ", ".join(allowed) or "none"
+                raise ValueError(f"{name} must be 0; coefficients of {self.model.value}: {those}")
         return self
 
     @property
@@ -162,9 +162,7 @@ class Lenses:
         model = FISHEYE if self._config.model is LensModel.FISHEYE else BROWN
         radial = value["k1"], value["k2"], value["k3"], value["k4"]
         tangential = value["p1"], value["p2"]
-        self.numbers[tracker] = lens_of(
-            model, radial, tangential, value["right"], value["below"]
-        )
+        self.numbers[tracker] = lens_of(model, radial, tangential, value["right"], value["below"])
         self.vignetting[tracker] = value["vignetting"]
         self.fringes[tracker] = value["red"], value["blue"]
 

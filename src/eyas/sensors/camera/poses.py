@@ -177,9 +177,7 @@ def motion_in_pixels(exposure: Exposure, seen: Seen) -> None:
         longest = 0.0
         for across in range(-1, 2):
             for down in range(-1, 2):
-                longest = max(
-                    longest, _way_of_ground(exposure, seen, v, focal, half, across, down)
-                )
+                longest = max(longest, _way_of_ground(exposure, seen, v, focal, half, across, down))
         for e in range(seen.first[v], seen.end[v]):
             point, speed = seen.position[e], seen.velocity[e]
             way = _way(
