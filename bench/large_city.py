@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
 from eyas.render.bake.ambient import bake_ambient
+from eyas.render.bake.land import no_land
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.visibility.passes import SMALLEST_DETAIL
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.pack.light import build_light
+from eyas.render.pack.light import Baked, build_light
 from eyas.render.renderer import CpuRenderer
 from eyas.render.textures.library import build_textures
 from eyas.sim.scenes import load_scene
@@ -184,7 +185,8 @@ def _report(name: str, scene: Scene) -> None:
         print(f"  shadows: {held:.1f} MiB, texels of {shadows.texel:.3f} m")
         print(f"  baked in {baked - packed:.1f} s CPU")
         print(f"  ambient: {ambient.openness.nbytes / 2**20:.1f} MiB in {opened - baked:.1f} s CPU")
-        light = build_light(scene, lighting, shadows, ambient, TrackMap.empty(), geometry)
+        maps = Baked(shadows, ambient, no_land(), TrackMap.empty())
+        light = build_light(scene, lighting, maps, geometry)
         renderer = CpuRenderer(geometry, light)
         _measured("  street, 84x84", renderer, street_views(scene))
         _measured("  street, pitch 0.3", renderer, street_views(scene, pitch=0.3))

@@ -8,7 +8,8 @@ import pytest
 from eyas.lanes import kernel
 from eyas.render.bake.clouds import build_clouds, plan_directions
 from eyas.render.bake.hills import build_hills
-from eyas.render.kernels.sky.radiance import HILL_TOP, azimuth
+from eyas.render.kernels.sky.night import azimuth
+from eyas.render.kernels.sky.radiance import HILL_TOP
 from eyas.render.pack.light import tone_table
 from eyas.state.lighting import Horizon, LightState
 from eyas.world.maps.citystreet import CITYSTREET

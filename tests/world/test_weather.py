@@ -14,6 +14,7 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.envs.registration import register_map
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.settings.file import load_settings
+from eyas.world.hours import sun_at
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.weather import (
@@ -25,7 +26,6 @@ from eyas.world.weather import (
     SNOW,
     WEATHERS,
     Season,
-    sun_at,
 )
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -66,6 +66,8 @@ class Moment(NamedTuple):
     """See `Frame.cameras`; nothing changes them later."""
     exposure: tuple[float, float] | None = None
     """See `Frame.exposure`."""
+    events: NDArray[np.void] | None = None
+    """See `Frame.events`; nothing changes it later."""
     lens: Lens | None = None
     """The lens of its camera; None: it is a pinhole."""
 
@@ -84,7 +86,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is drawn besides: "parts", "clean", "cameras"; others are in the picture.
+        wanted: What is asked for besides: "parts", "clean", "cameras", "events"; others are in the
+            picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -101,9 +104,11 @@ def moment_of(
     cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
     exposed = seen.exposure
     exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
+    sensor = seen.events(np.array([tracker], np.int32)) if "events" in wanted else None
+    events = None if sensor is None else sensor.events_of(tracker)
     now = simulation.snapshot.episodes
     lens = seen.lens_of(tracker)
-    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, lens)
+    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
     return Moment(shown, now, *known)
 
 
@@ -162,6 +167,7 @@ def frame_of(
         clean=moment.clean,
         cameras=moment.cameras,
         exposure=moment.exposure,
+        events=moment.events,
     )
 
 

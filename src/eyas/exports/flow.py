@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.lens import NO_LENS, Lens, distorted, principal_point, undistorted
 from eyas.core.pinhole import focal_length
 from eyas.core.png import png_bytes
 from eyas.exports.frame import CameraPose, Floats, Frame
 from eyas.exports.per_frame import numbered
-from eyas.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
 from eyas.lanes import compiled, kernel
 from eyas.render.kernels.bundles import NEAR
 from eyas.state.draw import MovingParts
@@ -34,11 +35,21 @@ what depths of neighbouring pixels leave open."""
 class FlowWriter(Writer):
     """`flow/NNNNNN.png`: where each pixel's point is in the next picture of the episode, as KITTI
     has it; the last picture of an episode has no valid pixel.
+
+    Args:
+        run: The recording.
+
+    Raises:
+        ConfigError: Rows of pictures are exposed one after the other (`camera.shutter.readout`).
     """
 
     name = "flow/{:06d}.png"
     wants = frozenset({"parts"})
     files = Files(frame=(name,))
+
+    def __init__(self, run: Run) -> None:
+        if run.config.camera.shutter.rolls:
+            raise ConfigError("video.writers: 'flow' is not known of a rolling shutter")
 
     def begin(self, episode: Episode) -> "FlowEpisode":
         """Return the writer of an episode's flow."""

@@ -29,10 +29,19 @@ __all__ = [
 Floats: TypeAlias = NDArray[np.float64]
 
 Output = Literal[
-    "rgb", "depth", "object_id", "class_id", "normal", "others", "parts", "clean", "cameras"
+    "rgb",
+    "depth",
+    "object_id",
+    "class_id",
+    "normal",
+    "others",
+    "parts",
+    "clean",
+    "cameras",
+    "events",
 ]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts, or
-pictures of other cameras.
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts,
+pictures of other cameras, or events.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
@@ -242,6 +251,9 @@ class Frame:
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
     exposure: tuple[float, float] | None = None
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
+    events: NDArray[np.void] | None = None
+    """What the sensor of events has told since the last frame, in the order of time, of dtype
+    `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""
 
     @property
     def episode_time(self) -> float:

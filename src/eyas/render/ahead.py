@@ -11,11 +11,12 @@ import numpy as np
 from eyas.lanes.entry import nothing_compiled
 from eyas.lanes.folder import kernel_folder, made_folder, not_kept, refusal
 from eyas.render.bake.ambient import AmbientMap
+from eyas.render.bake.land import no_land
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.draw import draw_views
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.pack.light import build_light
+from eyas.render.pack.light import Baked, build_light
 from eyas.render.renderer import CpuRenderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.lighting import Lighting
@@ -101,7 +102,8 @@ def draw_nothing() -> None:
     ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
     black = (0.0, 0.0, 0.0)
     lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
-    light = build_light(scene, lighting, ShadowMap.empty(), ambient, TrackMap.empty(), geometry)
+    baked = Baked(ShadowMap.empty(), ambient, no_land(), TrackMap.empty())
+    light = build_light(scene, lighting, baked, geometry)
     views = Views(
         position=np.zeros((1, 3)),
         rotation=np.eye(3)[None],

@@ -31,7 +31,7 @@ from eyas.render.outputs import (
     wanted_output,
     write_measured,
 )
-from eyas.render.pack.light import build_light
+from eyas.render.pack.light import Baked, build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
@@ -133,8 +133,12 @@ class CpuRenderer:
             output = measured_alone(output, jobs)
         rows = height if jobs == size.views else int((band[:, 2] - band[:, 1]).max(initial=0))
         face = None if bank is None else bank.size
+<<<<<<< HEAD
         slots = movers.part.shape[1]
         scratch = self._scratch_for(workers, rows, size, slots, wanted, face)
+=======
+        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted, face)
+>>>>>>> main
         # Mostly the same arrays as in the last call.
         tables = NO_TABLES if bank is None else bank.tables
         last = self._last
@@ -213,7 +217,7 @@ def build_renderer(
     ambient = bake_ambient(scene, cache)
     covered = lighting.mist > 0 or lighting.litter > 0
     land = land_map(scene, ambient, cache) if covered else no_land()
-    light = build_light(scene, lighting, shadows, ambient, land, tracks, geometry)
+    light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
     return CpuRenderer(geometry, light, ready)
 
 

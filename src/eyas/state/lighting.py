@@ -82,11 +82,14 @@ class Lighting:
     """Longest shadow of what moves, in heights; with a low sun it would be endless."""
     daytime_lamps: float = 0.0
     """Brightness of lamps that are seen, but light nothing around them: in rain by day."""
-    moon: float | None = None
-    """Age of the moon as a share of a month, 0.5: full. Its disc shows the phase, and moon and
-    stars stand where the hour has them. None: a full moon under stars that stand still."""
+    stars: float | None = None
+    """Brightness of the stars; None: 1 where lamps are on, else 0."""
     star_turn: float = 0.0
     """How far the stars have turned round the pole [rad]."""
+    moon_limb: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Unit vector from the middle of the moon's disc to its bright limb; 0: it is full."""
+    moon_lit: float = 1.0
+    """Share of its disc that is lit."""
 
 
 class LightState(NamedTuple):

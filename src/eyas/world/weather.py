@@ -5,12 +5,11 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
 
-from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.core.registry import Registry
 from eyas.state.lighting import Lighting
+from eyas.world.hours import at_hour, under_moon
 
 __all__ = [
     "AUTUMN",
@@ -30,12 +29,8 @@ __all__ = [
     "Season",
     "Weather",
     "in_fog",
-    "sun_at",
     "unchanged",
 ]
-
-Colour = tuple[float, float, float]
-"""Linear red, green and blue; also a direction."""
 
 
 class Season(StrEnum):
@@ -74,12 +69,21 @@ class Weather:
         """Return the weather with its light by day and by night changed alike."""
         return replace(self, day=change(self.day), night=change(self.night))
 
-    def light(self, hour: float | None = None) -> Lighting:
-        """Return light and air at an hour, 0 to 24; None: the weather's own, day or night."""
+    def light(self, hour: float | None = None, moon: float | None = None) -> Lighting:
+        """Return light and air at an hour.
+
+        Args:
+            hour: 0 to 24; None: the weather's own, day or night.
+            moon: Age of the moon as a share of a month, 0 new, 0.5 full; None: it is always full
+                and stands where the weather has it, under stars that stand still.
+        """
         hour = self.hour if hour is None else hour
-        if hour is None:
+        if hour is None and (moon is None or not self.dark):
             return self.night if self.dark else self.day
-        return _at_hour(self, hour)
+        if moon is None:
+            return at_hour(self.day, self.night, hour or 0.0)
+        hour = hour or 0.0
+        return at_hour(self.day, under_moon(self.night, hour, moon), hour)
 
 
 # Light and air. A map uses these, or variants made from them with `dataclasses.replace`.
@@ -183,7 +187,7 @@ _WINTER_NIGHT = replace(
 # Grey light without shadows from a closed sky that is brighter above (CIE's overcast sky).
 _OVERCAST_DAY = replace(
     CLEAR_DAY,
-    sun_colour=(0.035, 0.035, 0.036),
+    sun_colour=(0.0, 0.0, 0.0),
     zenith_colour=(0.46, 0.48, 0.51),
     horizon_colour=(0.42, 0.44, 0.47),
     ambient_up=(0.44, 0.455, 0.48),
@@ -198,7 +202,6 @@ _OVERCAST_NIGHT = replace(_FOG_NIGHT, fog_density=CLEAR_NIGHT.fog_density, foggy
 
 _RAIN_DAY = replace(
     _OVERCAST_DAY,
-    sun_colour=(0.02, 0.02, 0.021),
     zenith_colour=(0.30, 0.315, 0.34),
     horizon_colour=(0.36, 0.375, 0.40),
     ambient_up=(0.30, 0.315, 0.34),
@@ -248,12 +251,15 @@ _DUST_NIGHT = replace(
 # The half hour before sunset: long shadows, a dazzling sun, the first lamps and windows lit.
 _EVENING = replace(
     CLEAR_DAY,
+    horizon_colour=(0.68, 0.62, 0.66),
+    fog_colour=(0.57, 0.55, 0.60),
     fog_density=1.0 / 4500.0,
     clouds=0.4,
     glare=1.0,
     longest_shadow=16.0,
     lamps=0.45,
-    windows=0.3,
+    windows=0.22,
+    stars=0.0,
 )
 
 # A low October sun, mist over fields and ponds, leaves on the ground and in the air.
@@ -268,8 +274,8 @@ _AUTUMN_DAY = replace(
     clouds=0.5,
     exposure=1.1,
     luminance=27_000.0,
-    mist=1.0 / 160.0,
-    mist_depth=5.0,
+    mist=1.0 / 70.0,
+    mist_depth=7.0,
     glare=0.3,
     longest_shadow=6.0,
     litter=1.0,
@@ -313,120 +319,3 @@ def unchanged(weather: Weather) -> Weather:
 def in_fog(light: Lighting, visibility: float) -> Lighting:
     """Return light and air with another visibility range [m], if there is fog."""
     return replace(light, fog_density=1.0 / visibility) if light.foggy else light
-
-
-_LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)
-"""A day in May at 45 degrees north; the sun stands in the south at 12."""
-_DIMMING = (0.06, 0.12, 0.26)
-"""How much of red, green and blue a vertical way through the air takes; a low sun is orange."""
-
-
-def sun_at(hour: float) -> Colour:
-    """Return the unit vector towards the sun: east, north, up.
-
-    The usual formulas of hour angle, declination and latitude, by true solar time.
-    """
-    turn = math.radians(15.0 * (hour - 12.0))
-    south = exact.cos(_DECLINATION) * exact.cos(turn)
-    up = exact.sin(_DECLINATION)
-    return (
-        -exact.cos(_DECLINATION) * exact.sin(turn),
-        exact.cos(_LATITUDE) * up - exact.sin(_LATITUDE) * south,
-        exact.sin(_LATITUDE) * up + exact.cos(_LATITUDE) * south,
-    )
-
-
-_LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
-"""Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
-the third it is night."""
-_LAMPS = ("lamps", "windows", "daytime_lamps")
-"""What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
-_LOWEST = 1.5
-"""Height of the sun below which the formulas of daylight would go on to black [deg]."""
-
-
-def _at_hour(weather: Weather, hour: float) -> Lighting:
-    """Return the light of the day, of the night, or of the twilight between them."""
-    direction = sun_at(hour)
-    height = math.degrees(float(exact.asin(direction[2])))
-    if height >= _LOW_SUN:
-        return _by_day(weather.day, direction)
-    if height <= _DARK:
-        return weather.night
-    day = _by_day(weather.day, _lifted(direction, max(height, _LOWEST)))
-    night, share = weather.night, (_LOW_SUN - height) / (_LOW_SUN - _DARK)
-    mixed = {
-        name: _mixed(getattr(day, name), getattr(night, name), share)
-        for name in (
-            *("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down"),
-            *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
-            *("rain", "leaves", "wet", "litter", "mist", "mist_depth", "glare", "longest_shadow"),
-        )
-    }
-    (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)
-    # Sun and moon change places while neither throws a shadow, so that none jumps.
-    if height > _MOONLIGHT:
-        mixed["sun_direction"] = _lifted(direction, _LOW_SUN)
-        mixed["sun_colour"] = _scaled(day.sun_colour, max(height, 0.0) / _LOW_SUN)
-    else:
-        risen = (_MOONLIGHT - height) / (_MOONLIGHT - _DARK)
-        mixed["sun_direction"] = night.sun_direction
-        mixed["sun_colour"] = _scaled(night.sun_colour, risen)
-    lit = min(max(-height, 0.0) / _LOW_SUN, 1.0)
-    mixed |= {name: _mixed(getattr(day, name), getattr(night, name), lit) for name in _LAMPS}
-    return replace(day, **mixed)
-
-
-def _by_day(light: Lighting, direction: Colour) -> Lighting:
-    """Return light and air of a weather with the sun somewhere above the horizon."""
-    longer = _way(direction[2]) - _way(light.sun_direction[2])
-    sun = _dimmed(light.sun_colour, longer)
-    sky = min(math.sqrt(direction[2] / light.sun_direction[2]), 1.1)
-    return replace(
-        light,
-        sun_direction=direction,
-        sun_colour=sun,
-        zenith_colour=_scaled(light.zenith_colour, sky),
-        horizon_colour=_scaled(_dimmed(light.horizon_colour, 0.3 * longer), 0.5 + 0.5 * sky),
-        fog_colour=_scaled(_dimmed(light.fog_colour, 0.3 * longer), 0.5 + 0.5 * sky),
-        ambient_up=_scaled(light.ambient_up, sky),
-        ambient_down=_scaled(light.ambient_down, sky),
-        exposure=light.exposure / math.sqrt(sky),
-    )
-
-
-def _lifted(direction: Colour, height: float) -> Colour:
-    """Return the direction of the same azimuth, `height` degrees above the horizon."""
-    east, north, _ = direction
-    flat = exact.cos(math.radians(height)) / math.sqrt(east * east + north * north)
-    return flat * east, flat * north, exact.sin(math.radians(height))
-
-
-def _mixed(day: Any, night: Any, share: float) -> Any:  # noqa: ANN401  # numbers or colours
-    """Return a mixture of day and night; colours by their logarithms, as eyes see."""
-    if not isinstance(day, tuple):
-        return (1.0 - share) * day + share * night
-    return tuple(
-        exact.exp((1.0 - share) * exact.log(a) + share * exact.log(b))
-        for a, b in zip(day, night, strict=True)
-    )
-
-
-def _way(height: float) -> float:
-    """Return the way of light through the air, given the sine of the sun's height; zenith: 1.
-
-    Rozenberg, Twilight (1966): finite at the horizon, where 1 / sine is not.
-    """
-    return float(1.0 / (height + 0.025 * exact.exp(-11.0 * height)))
-
-
-def _dimmed(colour: Colour, way: float) -> Colour:
-    red, green, blue = (
-        part * exact.exp(-taken * way) for part, taken in zip(colour, _DIMMING, strict=True)
-    )
-    return red, green, blue
-
-
-def _scaled(colour: Colour, factor: float) -> Colour:
-    red, green, blue = colour
-    return factor * red, factor * green, factor * blue

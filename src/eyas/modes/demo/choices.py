@@ -71,7 +71,7 @@ def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
         raise UnknownNameError("world.weather", said.weather, recipe.weathers)
     hour = now.hour if said.hour is None else None if said.hour == "own" else said.hour
     changes["world"]["hour"] = hour
-    lighting = recipe.light(said.weather or now.weather, hour)
+    lighting = recipe.light(said.weather or now.weather, hour, now.moon)
     if said.target is not None:
         changes["target"] = said.target
     if said.tracker is not None:

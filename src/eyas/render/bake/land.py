@@ -27,9 +27,7 @@ def no_land() -> NDArray[np.uint16]:
     return np.zeros((2, 2), np.uint16)
 
 
-def land_map(
-    scene: Scene, ambient: AmbientMap, folder: Path | None = None
-) -> NDArray[np.uint16]:
+def land_map(scene: Scene, ambient: AmbientMap, folder: Path | None = None) -> NDArray[np.uint16]:
     """Return the map of a scene in the frame of its `AmbientMap`; kept in the cache.
 
     Low byte: how much of a place lies under crowns; high byte: how open to mist it is, 0 to 255
@@ -60,7 +58,7 @@ def _water(scene: Scene) -> NDArray[np.float64]:
     """Return the triangles of water in plan view [m], shape (., 3, 2)."""
     wet = scene.object_class[scene.static_object] == ObjectClass.WATER
     corners = scene.static.positions[scene.static.triangles[wet]]
-    return corners[:, :, :2].astype(np.float64)
+    return np.asarray(corners[:, :, :2], np.float64)
 
 
 def _map(
@@ -88,4 +86,4 @@ def _map(
     open_ = np.maximum(0.72 * land, shore) * (1.0 - built)
     under = np.clip(1.5 * spread(crowns, _LITTER), 0.0, 1.0)
     low, high = np.round(255.0 * under), np.round(255.0 * open_)
-    return low.astype(np.uint16) | (high.astype(np.uint16) << 8)
+    return np.asarray(low.astype(np.uint16) | (high.astype(np.uint16) << 8), np.uint16)

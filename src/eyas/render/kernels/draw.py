@@ -191,7 +191,7 @@ def _write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     canvas = address_of(canvas_of(output, job.picture[number], top, bottom))
     draw_backdrop(shown, canvas)
     shade_band(shown, canvas)
-    if len(job.instant) > 0 and shown.lit.air.flakes > f4(0.0):
+    if len(job.instant) > 0:
         let_flakes_fall(shown, job.instant[number], canvas)
 
 
@@ -275,7 +275,8 @@ def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illu
         Air(
             air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
             air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
-            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.longest_shadow,
+            air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.stars, air.star_cosine,
+            air.star_sine, air.moon_lit, air.limb_x, air.limb_y, air.limb_z, air.longest_shadow,
         ),
     )  # fmt: skip
 

@@ -1,7 +1,7 @@
 """Light and air as the kernels read them: weather, street lamps, the tone curve."""
 
 from functools import partial
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,7 +29,7 @@ from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.state.lighting import Horizon, Lighting
 from eyas.state.scene import Lamps, Scene
 
-__all__ = ["build_light", "lamp_grid", "tile_starts", "tone_table"]
+__all__ = ["Baked", "build_light", "lamp_grid", "tile_starts", "tone_table"]
 
 CELL = 8.0
 """Side of a square of the grid of street lamps [m]."""
@@ -45,16 +45,19 @@ PAPER = 1.05
 intensity 30 then give the road below about half the light of the sun."""
 
 
-def build_light(
-    scene: Scene,
-    lighting: Lighting,
-    shadows: ShadowMap,
-    ambient: AmbientMap,
-    land: NDArray[np.uint16],
-    tracks: TrackMap,
-    geometry: Geometry,
-) -> Light:
+class Baked(NamedTuple):
+    """Maps of a scene in a weather."""
+
+    shadows: ShadowMap
+    ambient: AmbientMap
+    land: NDArray[np.uint16]
+    """See `eyas.render.bake.land`."""
+    tracks: TrackMap
+
+
+def build_light(scene: Scene, lighting: Lighting, baked: Baked, geometry: Geometry) -> Light:
     """Return the light of a weather over a scene."""
+    shadows, ambient, tracks = baked.shadows, baked.ambient, baked.tracks
     lit = scene.lamps if lighting.lamps > 0 else Lamps.none()
     lamp, lamp_cell, lamp_frame = lamp_grid(lit)
     sun = np.array(lighting.sun_direction, np.float64)
@@ -73,7 +76,7 @@ def build_light(
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
         ambient=ambient.openness,
         ambient_frame=MapFrame(*_floats(ambient.frame)),
-        land=land,
+        land=baked.land,
         hollows=hollows() if lighting.wet > 0 else no_hollows(),
         lamp=lamp,
         lamp_cell=lamp_cell,
@@ -122,6 +125,13 @@ def _weather(
         glare=_float(lighting.glare),
         veil=_float(1.0),
         daytime_lamps=_float(lighting.daytime_lamps),
+        stars=_float(float(lighting.lamps > 0) if lighting.stars is None else lighting.stars),
+        star_cosine=_float(float(exact.cos(lighting.star_turn))),
+        star_sine=_float(float(exact.sin(lighting.star_turn))),
+        moon_lit=_float(lighting.moon_lit),
+        limb_x=_float(lighting.moon_limb[0]),
+        limb_y=_float(lighting.moon_limb[1]),
+        limb_z=_float(lighting.moon_limb[2]),
         longest_shadow=_float(lighting.longest_shadow),
     )
     return Illumination(

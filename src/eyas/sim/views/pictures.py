@@ -12,6 +12,7 @@ from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.lens import Lenses
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
@@ -19,7 +20,6 @@ from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.views.delay import ShownState
 from eyas.sim.views.exposures import Exposures, Moment
 from eyas.sim.views.optics import Optics
-from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT

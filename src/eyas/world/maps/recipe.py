@@ -147,13 +147,13 @@ class MapRecipe:
         """Names of the weathers of the map."""
         return tuple(name for name in WEATHERS.names() if name not in self.without)
 
-    def light(self, weather: str, hour: float | None = None) -> Lighting:
-        """Return light and air of a weather at an hour, 0 to 24; None: the weather's own.
+    def light(self, weather: str, hour: float | None = None, moon: float | None = None) -> Lighting:
+        """Return light and air of a weather at an hour under a moon, see `Weather.light`.
 
         Raises:
             UnknownNameError: The map has no such weather.
         """
-        return self.weather(self._known(weather)).light(hour)
+        return self.weather(self._known(weather)).light(hour, moon)
 
     def season(self, weather: str) -> Season:
         """Return the season of the scene in a weather; no winter on a map without seasons.

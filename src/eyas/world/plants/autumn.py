@@ -58,9 +58,10 @@ def _turned(mesh: Mesh, colour: Tint, share: float) -> Mesh:
 
 def _left(triangles: NDArray[np.int32], share: float) -> NDArray[np.bool_]:
     """Return which triangles of leaves are on cards that are left; cards share no vertex."""
-    card = np.cumsum(np.r_[True, np.diff(triangles.min(axis=1)) > 2]) if len(triangles) else []
+    first = triangles.min(axis=1)
+    card = np.cumsum(np.diff(first, prepend=first[:1]) > 2)
     # Multiples of the golden ratio: evenly spread, and the same in all places.
-    return np.asarray((np.asarray(card) * 0.6180339887498949) % 1.0 < share, np.bool_)
+    return np.asarray((card * 0.6180339887498949) % 1.0 < share, np.bool_)
 
 
 def _brightness(one: Material) -> float:
@@ -73,8 +74,7 @@ def _coloured(one: Material, colour: Tint, share: float, brightest: float) -> Ma
     light = _brightness(one) / brightest
     if one.surface == Surface.CROWN:  # through a thin crown, twigs are seen
         red, green, blue = (
-            part + (1.0 - share) * (twig - part)
-            for part, twig in zip(colour, _TWIGS, strict=True)
+            part + (1.0 - share) * (twig - part) for part, twig in zip(colour, _TWIGS, strict=True)
         )
         colour = red, green, blue
     return replace(

@@ -45,6 +45,15 @@ class Air(NamedTuple):
     veil: float
     """Share of `glare` that a lens in the sun adds to the whole picture."""
     daytime_lamps: float
+    stars: float
+    star_cosine: float
+    """Of the angle by which the stars have turned round the pole; then its sine."""
+    star_sine: float
+    moon_lit: float
+    limb_x: float
+    """Vector to the moon's bright limb, see `eyas.state.lighting.Lighting.moon_limb`."""
+    limb_y: float
+    limb_z: float
     longest_shadow: float
 
 

@@ -1,41 +1,41 @@
-"""Falling snow, drawn over a finished band.
+"""Falling snow, rain and leaves, drawn over a finished band.
 
-Flakes lie in a lattice of cells that sinks with the wind. The position of each depends only on
-its cell and the time, so flakes pass the camera as real ones do, and one instant always looks the
-same. Around the camera are shells, the farther with larger cells, to limit the number of flakes.
+Flakes, as all of them are called here, lie in a lattice of cells that sinks with the wind. The
+position of each depends only on its cell and the time, so flakes pass the camera as real ones do,
+and one instant always looks the same. Around the camera are shells, the farther with larger cells,
+to limit the number of flakes.
 """
 
 import math
 from typing import NamedTuple
 
 from eyas.lanes import address_of, kernel
-from eyas.render.kernels.bundles import Band, Canvas, Illumination, Light, View
+from eyas.render.kernels.bundles import Band, Canvas, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.sky.falling import (
+    Falling,
+    drop_lit,
+    leaf_colour,
+    leaves,
+    lit_by_lamps,
+    rain,
+    sky_lit,
+    snow,
+    under_trees,
+)
 from eyas.render.kernels.visibility.key import distance_inverse
 
 __all__ = ["let_flakes_fall"]
 
-SHELLS = 3
-"""Shells around the camera; each reaches `GROWTH` times as far as the one before."""
+Colour = tuple[float, float, float]
 
 NEAREST = 0.7
 """Distance of the first shell [m]; nearer flakes would be blurs."""
 
 GROWTH = 2.6
-CELLS, MOST = 6.0, 10.0
-"""Cells from the camera to the end of a shell; largest number of flakes in a cell."""
-
-WIND_X, WIND_Y, SINKING, SWAY = 0.55, 0.3, 1.25, 0.06
-"""Velocity of flakes [m/s], and amplitude of their sway [m]."""
-
-EXPOSED = 1.0 / 110.0
-"""Exposure time of the picture, which turns flakes into streaks [s]."""
-
-SMALLEST = 0.35
-"""Radius below which flakes are invisible [pixels]."""
 
 _LONGEST = 400.0
 """Columns and rows of streaks through a lens that are longer lie at its edge, half of them outside
@@ -48,8 +48,7 @@ class Snowfall(NamedTuple):
     band: Band
     instant: float
     """Time [s]."""
-    most: int
-    """Largest number of flakes in a cell."""
+    falling: Falling
     white: tuple[float, float, float]
     """Radiance of a flake."""
     bytes: tuple[int, int, int]
@@ -65,17 +64,6 @@ def _wave(turn: float) -> float:
 
 
 @kernel(inline=True)
-def _white(lit: Illumination) -> tuple[float, float, float]:
-    """Return a flake's radiance: the sky lights it, and, a little, sunlight shining through."""
-    above, sun = lit.above, lit.sun_colour
-    return (
-        f4(1.1) * above.x + f4(0.35) * sun.x,
-        f4(1.1) * above.y + f4(0.35) * sun.y,
-        f4(1.1) * above.z + f4(0.35) * sun.z,
-    )
-
-
-@kernel(inline=True)
 def _bytes(
     light: Light, exposure: float, colour: tuple[float, float, float]
 ) -> tuple[int, int, int]:
@@ -85,34 +73,50 @@ def _bytes(
 
 @kernel
 def let_flakes_fall(band: Band, instant: float, canvas: Canvas) -> None:
-    """Draw flakes into a band.
+    """Draw what falls into a band.
 
     Args:
         band: The band.
         instant: Time [s].
         canvas: Its colours.
     """
-    view, most = band.camera, math.ceil(MOST * band.lit.air.flakes)
-    white = _white(band.lit)
+    lit, none = band.lit, f4(0.0)
+    if lit.air.flakes > none:
+        _let_fall(band, instant, snow(lit.air.flakes), sky_lit(lit), canvas)
+    if lit.air.rain > none:
+        _let_fall(band, instant, rain(lit.air.rain), drop_lit(lit), canvas)
+    if lit.air.leaves > none:
+        _let_fall(band, instant, leaves(lit.air.leaves), sky_lit(lit), canvas)
+
+
+@kernel
+def _let_fall(
+    band: Band,
+    instant: float,
+    falling: Falling,
+    white: tuple[float, float, float],
+    canvas: Canvas,
+) -> None:
+    """Draw one thing that falls; `white` is the radiance of a white flake."""
     pale = _bytes(band.light, band.lit.air.exposure, white)
-    snowfall = Snowfall(band, instant, most, white, pale, canvas)
-    begin = NEAREST
-    for shell in range(SHELLS):
+    snowfall = Snowfall(band, instant, falling, white, pale, canvas)
+    begin, focal = NEAREST, band.camera.focal
+    for shell in range(falling.shells):
         end = begin * GROWTH
-        if _radius(1.0, begin) * view.focal / begin > SMALLEST:
+        if _radius(falling, 1.0, begin) * focal / begin > falling.smallest:
             _fill_shell(shell, begin, end, address_of(snowfall))
         begin = end
 
 
 @kernel(inline=True)
-def _radius(size: float, distance: float) -> float:
+def _radius(falling: Falling, size: float, distance: float) -> float:
     """Return the radius of a flake [m]; a distant flake represents several."""
-    return (0.4 + 0.6 * size) * (0.0035 + 0.0007 * distance)
+    return (0.4 + 0.6 * size) * (falling.radius + falling.growth * distance)
 
 
 @kernel(inline=True)
 def _cells(
-    ahead: float, left: float, up: float, end: float, origin: float, view: View
+    ahead: float, left: float, up: float, end: float, side: float, origin: float, view: View
 ) -> tuple[int, int]:
     """Return the first cell along an axis of the world that the view reaches, and after the last.
 
@@ -121,10 +125,10 @@ def _cells(
         left: The same.
         up: The same.
         end: Distance up to which the view reaches [m].
+        side: Side of a cell [m].
         origin: The eye in the lattice [m].
         view: Says where the camera looks.
     """
-    side = end / CELLS
     aside = abs(left) * 0.5 * view.width / view.focal_x
     aside += abs(up) * 0.5 * view.height / view.focal_y
     first = math.floor((origin + end * min(ahead - aside, 0.0)) / side)
@@ -135,25 +139,26 @@ def _cells(
 @kernel
 def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> None:
     """Draw the flakes of all cells that the band may show."""
-    view, instant, side = snowfall.band.camera, snowfall.instant, end / CELLS
-    ahead, left, up = view.ahead, view.left, view.up
-    x = view.eye.x - WIND_X * instant
-    y = view.eye.y - WIND_Y * instant
-    z = view.eye.z + SINKING * instant
+    view, instant, side = snowfall.band.camera, snowfall.instant, end / snowfall.falling.cells
+    ahead, left, up, falling = view.ahead, view.left, view.up, snowfall.falling
+    x = view.eye.x - falling.wind_x * instant
+    y = view.eye.y - falling.wind_y * instant
+    z = view.eye.z + falling.sinking * instant
     high = (0.5 * view.height - view.top) / view.focal_y
     low = high - view.rows / view.focal_y
-    first_x, last_x = _cells(ahead.x, left.x, up.x, end, x, view)
-    first_y, last_y = _cells(ahead.y, left.y, up.y, end, y, view)
-    first_z, last_z = _cells(ahead.z, left.z, up.z, end, z, view)
+    ball = 0.87 * end / falling.cells + max(0.1, 1.5 * falling.sway)
+    first_x, last_x = _cells(ahead.x, left.x, up.x, end, side, x, view)
+    first_y, last_y = _cells(ahead.y, left.y, up.y, end, side, y, view)
+    first_z, last_z = _cells(ahead.z, left.z, up.z, end, side, z, view)
     for i in range(first_x, last_x):
         for j in range(first_y, last_y):
             for k in range(first_z, last_z):
                 middle = (i + 0.5) * side - x, (j + 0.5) * side - y, (k + 0.5) * side - z
-                if not _in_band(middle, begin, end, low, high, view):
+                if not _in_band(middle, begin, end, low, high, ball, view):
                     continue
                 cell = scrambled(u4(u4(i + 32768) * u4(0x9E3779B1)) ^ u4(j + 32768))
                 cell = scrambled(cell ^ u4(u4(k + 32768) * u4(0x85EBCA77)) ^ u4(shell << 28))
-                for flake in range(snowfall.most):
+                for flake in range(falling.most):
                     number = scrambled(u4(cell + u4(flake)))
                     _draw_flake(number, middle, begin, end, snowfall)
 
@@ -176,10 +181,10 @@ def _in_band(
     end: float,
     low: float,
     high: float,
+    ball: float,
     view: View,
 ) -> bool:
-    """Return whether a ball round a cell and the sway of its flakes may be seen."""
-    ball = 0.87 * end / CELLS + 0.1
+    """Return whether a ball round a cell and the sway of its flakes, of a radius, may be seen."""
     wide = 0.5 * view.width / view.focal_x
     ahead, left, up = _seen_from(view, middle[0], middle[1], middle[2])
     if ahead < begin - ball or ahead > end + ball:
@@ -191,43 +196,84 @@ def _in_band(
     return bool(up >= low * ahead - ball * math.sqrt(1.0 + low * low))
 
 
+class Streak(NamedTuple):
+    """A flake on the screen."""
+
+    column: float
+    """Column of its end [pixels]."""
+    row: float
+    """Row of its end in the band [pixels]."""
+    to_column: float
+    """Columns from there to its start [pixels]."""
+    to_row: float
+    """Rows from there to its start [pixels]."""
+    radius: float
+    """Half its width [pixels]."""
+    inverse: float
+    """One over its distance [1/m]."""
+
+
 @kernel
 def _draw_flake(
     number: int, middle: tuple[float, float, float], begin: float, end: float, snowfall: Snowfall
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
-    view, instant = snowfall.band.camera, snowfall.instant
-    other, side = scrambled(number), end / CELLS
+    view, instant, falling = snowfall.band.camera, snowfall.instant, snowfall.falling
+    other, side = scrambled(number), end / falling.cells
     size = tenth(other, 20) ** 2
-    if _radius(size, begin) * view.focal < SMALLEST * begin:
+    if _radius(falling, size, begin) * view.focal < falling.smallest * begin:
         return
     turn = tenth(other, 0) + instant * (0.22 + 0.25 * tenth(other, 10))
-    x = middle[0] + (tenth(number, 0) - 0.5) * side + SWAY * _wave(turn)
-    y = middle[1] + (tenth(number, 10) - 0.5) * side + SWAY * _wave(turn + 0.25)
+    eye = view.eye
+    if falling.coloured and not under_trees(
+        snowfall.band.light, eye.x + middle[0], eye.y + middle[1], eye.z + middle[2],
+        tenth(other, 5),
+    ):  # fmt: skip
+        return
+    x = middle[0] + (tenth(number, 0) - 0.5) * side + falling.sway * _wave(turn)
+    y = middle[1] + (tenth(number, 10) - 0.5) * side + falling.sway * _wave(turn + 0.25)
     z = middle[2] + (tenth(number, 20) - 0.5) * side
     ahead, left, up = _seen_from(view, x, y, z)
     if ahead < begin or ahead > end:
         return
     # From its position at the start of the exposure.
-    _, aside, above = _seen_from(view, -WIND_X * EXPOSED, -WIND_Y * EXPOSED, SINKING * EXPOSED)
-    radius = _radius(size, ahead) * view.focal / ahead
-    if radius < SMALLEST:
-        return
-    if snowfall.band.glass.on == 1:
-        _draw_bent((ahead, left, up), (aside, above), _radius(size, ahead), snowfall)
+    exposed = falling.exposed
+    _, aside, above = _seen_from(
+        view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.sinking * exposed
+    )
+    tumbling = 0.35 + 0.65 * abs(_wave(2.7 * turn)) if falling.coloured else 1.0
+    real = _radius(falling, size, ahead)
+    radius = real * view.focal / ahead
+    if falling.coloured:
+        radius *= tumbling
+    if radius < falling.smallest:
         return
     across = view.focal_x / (ahead * view.samples)
     down = view.focal_y / (ahead * view.samples)
     column = 0.5 * view.width / view.samples - left * across
     row = (0.5 * view.height - view.top) / view.samples - up * down
-    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, snowfall)
+    streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
+    if snowfall.band.glass.on == 1:
+        moved = aside, above
+        streak = _bent_streak((ahead, left, up), moved, real * tumbling, snowfall)
+        if streak.radius < falling.smallest:
+            return
+    colour, pale = snowfall.white, snowfall.bytes
+    if falling.coloured:
+        colour = leaf_colour(colour, tenth(number ^ other, 5))
+    if falling.lit and snowfall.band.lit.air.lamps > f4(0.0):
+        place = eye.x + x, eye.y + y, eye.z + z
+        colour = lit_by_lamps(colour, snowfall.band, place)
+    if falling.coloured or falling.lit:
+        pale = _bytes(snowfall.band.light, snowfall.band.lit.air.exposure, colour)
+    _smear(streak, colour, pale, snowfall)
 
 
-@kernel
-def _draw_bent(
+@kernel(inline=True)
+def _bent_streak(
     place: tuple[float, float, float], moved: tuple[float, float], radius: float, snowfall: Snowfall
-) -> None:
-    """Draw a flake that is seen through a lens.
+) -> Streak:
+    """Return a flake as a lens shows it; of radius 0 where it would lie across the picture's edge.
 
     Args:
         place: Forward, left and up in its face [m].
@@ -240,32 +286,22 @@ def _draw_bent(
     to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
     edge_column, edge_row = shown_at(glass, ahead, left - radius, up)
     wide = math.sqrt((edge_column - column) ** 2 + (edge_row - row) ** 2)
-    if wide < SMALLEST or abs(to_column - column) + abs(to_row - row) > _LONGEST:
-        return
-    _smear(column, row, to_column - column, to_row - row, wide, 1.0 / ahead, snowfall)
+    if abs(to_column - column) + abs(to_row - row) > _LONGEST:
+        wide = 0.0
+    return Streak(column, row, to_column - column, to_row - row, wide, 1.0 / ahead)
 
 
 @kernel
-def _smear(
-    column: float,
-    row: float,
-    to_column: float,
-    to_row: float,
-    radius: float,
-    inverse: float,
-    snowfall: Snowfall,
-) -> None:
+def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall: Snowfall) -> None:
     """Draw a soft streak.
 
     Args:
-        column: Column of its end [pixels].
-        row: Row of its end in the band [pixels].
-        to_column: Columns from there to its start [pixels].
-        to_row: Rows from there to its start [pixels].
-        radius: Half its width [pixels].
-        inverse: One over its distance [1/m].
+        streak: Where it is.
+        colour: Its radiance.
+        pale: Its bytes.
         snowfall: Band to draw into.
     """
+    column, row, to_column, to_row, radius, inverse = streak
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
@@ -278,8 +314,11 @@ def _smear(
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
     # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
-    strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
-    strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
+    share = radius / drawn
+    if not snowfall.falling.thin:
+        share *= share
+    strength = share * min(1.0, 2.6 * drawn / (drawn + length))
+    strength *= snowfall.falling.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     for i in range(first, last):
         for j in range(start, stop):
             shown = key[i * step, j * step]
@@ -291,20 +330,21 @@ def _smear(
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            _blend(snowfall, i, j, cover)
+            _blend(snowfall.canvas, i, j, cover, colour, pale)
 
 
 @kernel(inline=True)
-def _blend(snowfall: Snowfall, i: int, j: int, cover: float) -> None:
+def _blend(
+    canvas: Canvas, i: int, j: int, cover: float, colour: Colour, pale: tuple[int, int, int]
+) -> None:
     """Let a flake cover a share of a pixel."""
-    canvas = snowfall.canvas
     if len(canvas.red) > 0:
-        red, green, blue = snowfall.white
+        red, green, blue = colour
         canvas.red[i, j] += f4(cover) * (red - canvas.red[i, j])
         canvas.green[i, j] += f4(cover) * (green - canvas.green[i, j])
         canvas.blue[i, j] += f4(cover) * (blue - canvas.blue[i, j])
         return
-    pixels, (red_byte, green_byte, blue_byte) = canvas.pixels, snowfall.bytes
+    pixels, (red_byte, green_byte, blue_byte) = canvas.pixels, pale
     pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red_byte - pixels[i, j, 0]) + 0.5)
     pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green_byte - pixels[i, j, 1]) + 0.5)
     pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue_byte - pixels[i, j, 2]) + 0.5)

@@ -19,28 +19,25 @@ from eyas.lanes.vector import (
     lane_numbers,
     lesser,
     like,
-    magnitude,
     root,
     select,
     splat,
     to_f4,
     to_i4,
-    to_u4,
 )
 from eyas.render.kernels.bundles import Band, Canvas, Direction, Glass, Illumination, Light
-from eyas.render.kernels.chance import hashed
 from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
-from eyas.render.kernels.scalars import f4, i4, i8, u4
+from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
 from eyas.render.kernels.sky.mist import glare, veil
+from eyas.render.kernels.sky.night import azimuth, moon_face, starlight, turned_stars
 
 __all__ = [
     "CLOUDS_FROM",
     "CLOUD_BEND",
     "HILL_FARTHEST",
     "HILL_TOP",
-    "azimuth",
     "blended",
     "draw_backdrop",
     "reflection",
@@ -68,60 +65,8 @@ _FARTHEST = f4(1000.0 * HAZE_END)
 _FOOT = f4(0.012)
 """Sine of the elevation over which the plain turns into hills."""
 
-_STAR_ROWS = f4(72.0)
-"""Rows of cells from the horizon to the zenith, of equal area."""
-
-_STAR_COLUMNS = f4(80.0)
-"""Columns of cells in a quarter of the horizon."""
-
-_STAR_SIZE = f4(0.0011)
-"""Radius to which the brightness of stars refers [rad]; wider pixels dim them."""
-
 
 Colour = tuple[float, float, float]
-
-
-@kernel(inline=True)
-def _starlight(x: float, y: float, z: float, around: float, pixel: float) -> tuple[float, float]:
-    """Return the radiance of the star in a direction of length 1, and its tint: red above 0.
-
-    Each cell's hash says where its star stands and how bright it is: few are bright, most cells
-    have one too faint to see.
-
-    Args:
-        x: The direction.
-        y: The direction.
-        z: The direction.
-        around: Its `azimuth`.
-        pixel: Angle that a pixel spans [rad].
-    """
-    zero, one, unit, byte = f4(0.0), f4(1.0), f4(1.0 / 255.0), u4(255)
-    column, row = to_i4(around * _STAR_COLUMNS), to_i4(greater(z, zero) * _STAR_ROWS)
-    bits = hashed(to_u4(column), to_u4(row), like(to_u4(row), u4(0x57A2)))
-    # Not too near to the cell's edge, where the star would be cut.
-    aside = f4(0.25) + f4(0.5 / 255.0) * to_f4(bits & byte)
-    over = f4(0.25) + f4(0.5 / 255.0) * to_f4((bits >> u4(8)) & byte)
-    turn, high = (to_f4(column) + aside) / _STAR_COLUMNS, (to_f4(row) + over) / _STAR_ROWS
-    east = magnitude(turn - f4(2.0)) - one
-    north = select(turn < f4(3.0), one - magnitude(turn - one), turn - f4(4.0))
-    flat = root((one - high * high) / (east * east + north * north))
-    dx, dy, dz = x - east * flat, y - north * flat, z - high
-    radius = greater(like(x, _STAR_SIZE), f4(0.62) * pixel)
-    near = greater(one - (dx * dx + dy * dy + dz * dz) / (radius * radius), zero)
-    rank = to_f4((bits >> u4(16)) & byte) * unit
-    rank *= rank
-    rank *= rank
-    dim = _STAR_SIZE / radius
-    tint = f4(0.3) * to_f4((bits >> u4(24)) & u4(127)) * f4(1.0 / 127.0) - f4(0.15)
-    return lesser(f4(0.9) * rank * rank * rank * near * dim, one), tint
-
-
-@kernel(inline=True)
-def azimuth(x: float, y: float) -> float:
-    """Return the azimuth of the direction (x, y), 0 to 4."""
-    share = y / (magnitude(x) + magnitude(y) + f4(1e-9))
-    south = select(y < f4(0.0), share + f4(4.0), share)
-    return select(x < f4(0.0), f4(2.0) - share, south)
 
 
 @kernel(inline=True)
@@ -256,11 +201,17 @@ def _open_sky(
     ring = toward_sun * toward_sun
     for _ in range(10):
         ring *= ring
+    if lit.air.moon_lit < one:
+        disc *= moon_face(lit, x, y, z)
+        ring *= lit.air.moon_lit
     disc = (disc + f4(1.5) * ring) * clear
     red, green, blue = red + disc * sun.x, green + disc * sun.y, blue + disc * sun.z
-    if lit.air.lamps > zero:
-        star, tint = _starlight(x, y, z, around, pixel)
-        star *= clear
+    if lit.air.stars > zero:
+        if lit.air.star_sine != zero:
+            x, y, z = turned_stars(lit, x, y, z)
+            around = azimuth(x, y)
+        star, tint = starlight(x, y, z, around, pixel)
+        star *= clear * lit.air.stars
         red += star * (one + tint)
         green += star
         blue += star * (one - tint)

@@ -216,7 +216,9 @@ def shade_point(
     leafy = surface == FOLIAGE
     unit = f4(1.0 / 255.0)
     sun_share, sky_share = to_f4(shade & byte) * unit, to_f4((shade >> u4(8)) & byte) * unit
-    direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
+    direct, reaching = like(sun_share, zero), like(sun_share, zero)
+    if lit.sun_colour.x > zero:  # not below a closed sky
+        direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
     tilt = f4(0.5) * normal[2]
     tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
     open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
