@@ -133,12 +133,8 @@ class CpuRenderer:
             output = measured_alone(output, jobs)
         rows = height if jobs == size.views else int((band[:, 2] - band[:, 1]).max(initial=0))
         face = None if bank is None else bank.size
-<<<<<<< HEAD
         slots = movers.part.shape[1]
         scratch = self._scratch_for(workers, rows, size, slots, wanted, face)
-=======
-        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted, face)
->>>>>>> main
         # Mostly the same arrays as in the last call.
         tables = NO_TABLES if bank is None else bank.tables
         last = self._last
