@@ -50,8 +50,9 @@ def seen_from_above(
     if protocol.reference:  # its variants differ by cameras and air, which hide nothing
         plain = [episode._replace(variant="") for episode in episodes]
         alone = list(dict.fromkeys(plain))
-        unlike = {"variants": {}, "reference": "", "changes": _without_camera(protocol.changes)}
-        seen = seen_from_above(alone, replace(protocol, **unlike), period)
+        changes = _without_camera(protocol.changes)
+        one = replace(protocol, variants={}, reference="", changes=changes)
+        seen = seen_from_above(alone, one, period)
         rows = [alone.index(episode) for episode in plain]
         return FromAbove(*(array[rows] for array in seen))
     make = partial(_seen, episodes, protocol, period)
