@@ -55,6 +55,10 @@ class Config(BaseModel):
     # the error and can give the whole path.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+    def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the values of fields that stay when some are changed; others get defaults."""
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
     @classmethod
     def __get_pydantic_core_schema__(
         cls, source: type[BaseModel], handler: GetCoreSchemaHandler
@@ -171,7 +175,7 @@ def _besides_null(field: FieldInfo | None) -> object:
 
 def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
     fields = type(config).model_fields
-    values: dict[str, Any] = {name: getattr(config, name) for name in fields}
+    values = config.kept(changes)
     for name, change in changes.items():
         old, group = values.get(name), group_of(fields.get(name))
         change = _spelt_out(type(config), name, change)

@@ -63,6 +63,8 @@ class ObservationPart(StrEnum):
 
     IMAGE = "image"
     """The camera's picture, uint8."""
+    CAMERAS = "cameras"
+    """Pictures of the cameras that `cameras` adds, in their order, uint8, along a first axis."""
     DEPTH = "depth"
     """Distance along the optical axis [m], float32, infinity for the sky."""
     CLASSES = "classes"

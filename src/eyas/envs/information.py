@@ -52,7 +52,9 @@ def information(simulation: Simulation) -> Info:
       frame [m]), the object that was touched (`contact_object`, as in `Picture.object_id`; -1:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
-      nothing was within range).
+      nothing was within range);
+    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`) of
+      its last picture; 0 before the first.
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -71,6 +73,9 @@ def information(simulation: Simulation) -> Info:
         info["contact_class"] = simulation.classes_of(episodes.contact_object)
     if (lidar := simulation.view.lidar) is not None:
         info["lidar"] = lidar.ranges()
+    if (exposure := simulation.view.exposure) is not None:
+        info["exposure_time"] = exposure.time.copy()
+        info["iso"] = exposure.iso.copy()
     return info
 
 

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
 from eyas.envs.information import privileged_state, sensor_state
-from eyas.sensors.config import ColourLayout, LidarConfig
+from eyas.sensors.config import ColourLayout
 from eyas.sensors.stack import FrameStack
+from eyas.sim.config import SimConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
@@ -31,12 +32,21 @@ _PRIVILEGED = 16
 _Parts = ObservationPart
 
 
-def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasium.Space[Any]:
+def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Space[Any]:
     """Return the space of one agent's observations.
 
+    Args:
+        config: What is observed.
+        sim: Which sensors there are.
+
     Raises:
-        ConfigError: The agent is to observe a lidar that it does not have, or words alone.
+        ConfigError: The agent is to observe what it does not have, or words alone.
     """
+    lidar, cameras = sim.lidar, len(sim.cameras)
+    if _Parts.CAMERAS in config.parts and cameras == 0:
+        raise ConfigError(
+            "env.observation.parts: 'cameras' needs further cameras: 'cameras' is empty"
+        )
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
@@ -44,20 +54,23 @@ def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasiu
     if set(config.parts) == {_Parts.WORDS}:
         raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
     spaces: dict[str, gymnasium.Space[Any]] = {
-        part.value: _space(part, config, lidar) for part in dict.fromkeys(config.parts)
+        part.value: _space(part, config, sim) for part in dict.fromkeys(config.parts)
     }
     return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
 
 
 def _space(
-    part: ObservationPart, config: ObservationConfig, lidar: LidarConfig
+    part: ObservationPart, config: ObservationConfig, sim: SimConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
-    size = config.height, config.width
+    lidar, size = sim.lidar, (config.height, config.width)
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
         case _Parts.IMAGE:
             shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
             return gymnasium.spaces.Box(0, 255, shape, np.uint8)
+        case _Parts.CAMERAS:
+            shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
+            return gymnasium.spaces.Box(0, 255, (len(sim.cameras), *shape), np.uint8)
         case _Parts.CLASSES:
             return gymnasium.spaces.Box(0, int(max(ObjectClass)), plane, np.uint8)
         case _Parts.DEPTH:
@@ -98,8 +111,8 @@ class Observer:
     """
 
     def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
-        lidar = simulation.config.lidar
-        self.space = observation_space(config, lidar)
+        sim = simulation.config
+        self.space = observation_space(config, sim)
         self._simulation = simulation
         count, size = simulation.count, (config.height, config.width)
         wanted = frozenset(config.parts)
@@ -115,7 +128,7 @@ class Observer:
         self._latest: dict[ObservationPart, Array] = {}
         self._words: list[str] | None = None
         for part in config.parts:
-            space = _space(part, config, lidar)
+            space = _space(part, config, sim)
             if isinstance(space, gymnasium.spaces.Text):
                 self._words = [""] * count
             else:
@@ -123,6 +136,13 @@ class Observer:
         self._names_targets = bool(wanted & {_Parts.WORDS, _Parts.ATTRIBUTES})
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
+        self._further: dict[str, FrameStack] = {}
+        if _Parts.CAMERAS in wanted:
+            self._further = {
+                camera.name: FrameStack(count, size, config.colours, config.layout, config.frames)
+                for camera in sim.cameras
+            }
+            self._through = Picture.create(count, *size)
 
     def look(
         self,
@@ -144,6 +164,9 @@ class Observer:
                 self._say(tracker, phrase.words, phrase.attributes)
         if self._draws:
             self._draw(chosen, begun, covered)
+        for row, (name, stack) in enumerate(self._further.items()):
+            self._look_through(name, stack, chosen, begun, covered)
+            self._latest[_Parts.CAMERAS][:, row] = stack.images
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
@@ -152,6 +175,22 @@ class Observer:
             seen.lidar.fill(ranges, seen.state.late)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
+
+    def _look_through(
+        self,
+        name: str,
+        stack: FrameStack,
+        chosen: NDArray[np.int32],
+        begun: NDArray[np.bool_],
+        covered: NDArray[np.bool_] | None,
+    ) -> None:
+        """Draw what further cameras of some trackers see, see `look`."""
+        picture = self._through.first(len(chosen))
+        self._simulation.view.further[name].draw(chosen, picture)
+        if covered is not None and covered.any():
+            _cover(picture, covered)
+        assert picture.rgb is not None
+        stack.add(picture.rgb, chosen, begun)
 
     def _draw(
         self,

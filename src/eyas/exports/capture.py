@@ -1,15 +1,27 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.exports.frame import CameraPose, Floats, Frame, RecordedAction, RecordedBody, Subject
+from eyas.exports.frame import (
+    CameraPicture,
+    CameraPose,
+    Floats,
+    Frame,
+    Output,
+    RecordedAction,
+    RecordedBody,
+    Subject,
+)
 from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
 from eyas.render.outputs import picture_size
 from eyas.sim.simulation import Simulation
+from eyas.sim.views.view import View
 from eyas.sim.views.words import target_in_words
 from eyas.state.draw import MovingParts, Picture
 from eyas.state.episode import EpisodeState
@@ -47,10 +59,20 @@ class Moment(NamedTuple):
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
     parts: MovingParts | None = None
     """See `Frame.parts`; nothing changes it later."""
+    clean: NDArray[np.uint8] | None = None
+    """See `Frame.clean`; nothing changes it later."""
+    cameras: tuple[CameraPicture, ...] = ()
+    """See `Frame.cameras`; nothing changes them later."""
+    exposure: tuple[float, float] | None = None
+    """See `Frame.exposure`."""
 
 
 def moment_of(
-    simulation: Simulation, tracker: int, picture: Picture, view: int, *, parts: bool = False
+    simulation: Simulation,
+    tracker: int,
+    picture: Picture,
+    view: int,
+    wanted: Collection[Output] = (),
 ) -> Moment:
     """Return what is known of a tracker at the time of its picture, which has just been drawn.
 
@@ -59,20 +81,38 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        parts: Whether to draw which moving part each pixel shows, too.
+        wanted: What is drawn besides: "parts", "clean", "cameras"; others are in the picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
     if picture.actor_pixels is not None:
         actors = seen.actors(tracker)
-        wanted = picture.actor_pixels[view, :, 0] > 0
-        wanted[shown.targets.actor[tracker]] = True
+        boxed = picture.actor_pixels[view, :, 0] > 0
+        boxed[shown.targets.actor[tracker]] = True
         whole_box = np.zeros((simulation.actors, 4))
-        whole_box[wanted] = seen.whole_boxes(tracker, actors, np.flatnonzero(wanted))
+        whole_box[boxed] = seen.whole_boxes(tracker, actors, np.flatnonzero(boxed))
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
     told = seen.packets()[0][tracker, SENSOR_COLUMNS]
-    moving = seen.parts(tracker, actors or seen.actors(tracker)) if parts else None
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told, moving)
+    moving = seen.parts(tracker, actors or seen.actors(tracker)) if "parts" in wanted else None
+    clean = seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None
+    cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
+    exposed = seen.exposure
+    exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
+    now = simulation.snapshot.episodes
+    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure)
+    return Moment(shown, now, *known)
+
+
+def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
+    """Return pictures of all further cameras of a tracker."""
+    pictures = []
+    for name, camera in seen.further.items():
+        picture = Picture.create(1, camera.config.height, camera.config.width)
+        camera.draw(np.array([tracker], np.int32), picture)
+        assert picture.rgb is not None
+        pose = _camera(camera.cameras, tracker, picture)
+        pictures.append(CameraPicture(name, pose, picture.rgb[0]))
+    return tuple(pictures)
 
 
 def frame_of(
@@ -115,6 +155,9 @@ def frame_of(
         lidar=moment.lidar,
         sensors=moment.sensors,
         parts=moment.parts,
+        clean=moment.clean,
+        cameras=moment.cameras,
+        exposure=moment.exposure,
     )
 
 

@@ -17,6 +17,7 @@ from eyas.task.done import DoneReason
 
 __all__ = [
     "OUTPUTS",
+    "CameraPicture",
     "CameraPose",
     "Frame",
     "Output",
@@ -27,8 +28,11 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-Output = Literal["rgb", "depth", "object_id", "class_id", "normal", "others", "parts"]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, or their parts.
+Output = Literal[
+    "rgb", "depth", "object_id", "class_id", "normal", "others", "parts", "clean", "cameras"
+]
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts, or
+pictures of other cameras.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
@@ -83,6 +87,17 @@ class CameraPose:
     def intrinsics(self) -> Floats:
         """Camera matrix, see `Episode.intrinsics`."""
         return intrinsics(self.width, self.height, self.field_of_view)
+
+
+@dataclass(frozen=True, slots=True)
+class CameraPicture:
+    """A picture of a camera that a tracker has beside its own."""
+
+    name: str
+    """Its name in the setting `cameras`."""
+    pose: CameraPose
+    rgb: NDArray[np.uint8]
+    """Colours, shape (H, W, 3)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,9 +216,17 @@ class Frame:
     (points,); None: there is no lidar."""
     parts: MovingParts | None = None
     """Which moving part each pixel shows; None if no writer wants it."""
+    clean: NDArray[np.uint8] | None = None
+    """The colours as they would be without noise, blur, dirt and the like: the same instant, pose
+    and lens, shape (H, W, 3); None if no writer wants them."""
+    cameras: tuple[CameraPicture, ...] = ()
+    """Pictures of the tracker's further cameras, in the order of the setting `cameras`; empty if no
+    writer wants them."""
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
+    exposure: tuple[float, float] | None = None
+    """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
 
     @property
     def episode_time(self) -> float:

@@ -10,7 +10,15 @@ from eyas.exports.per_frame import PerFrameWriter
 from eyas.exports.writer import Files, Run
 from eyas.state.scene import ACTOR_OBJECT
 
-__all__ = ["ArrayWriter", "ClassWriter", "DepthWriter", "MaskWriter", "NormalWriter", "PngWriter"]
+__all__ = [
+    "ArrayWriter",
+    "ClassWriter",
+    "CleanWriter",
+    "DepthWriter",
+    "MaskWriter",
+    "NormalWriter",
+    "PngWriter",
+]
 
 _MOST = np.iinfo(np.uint16).max
 
@@ -26,6 +34,21 @@ class PngWriter(PerFrameWriter):
         """Return a frame's picture."""
         assert frame.rgb is not None
         return png_bytes(frame.rgb)
+
+
+class CleanWriter(PerFrameWriter):
+    """`clean/NNNNNN.png`: the colours without noise, blur, dirt and the like, of the same instant,
+    pose and lens as the picture.
+    """
+
+    name = "clean/{:06d}.png"
+    wants = frozenset({"clean"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's clean picture."""
+        assert frame.clean is not None
+        return png_bytes(frame.clean)
 
 
 class MaskWriter(PerFrameWriter):

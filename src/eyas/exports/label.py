@@ -266,6 +266,11 @@ FIELDS = (
     LabelField("command", COMMAND, "What the tracker is told to do: forward, left, up and yaw "
                "rate; null when it is carried with its target (`exact`).", _command,
                unit="m/s, rad/s", frame="tracker's body"),
+    LabelField("exposure_time", NUMBER, "How long the picture was exposed; only with "
+               "`camera.imager`.", lambda f, e: f.exposure and round(float(f.exposure[0]), 9),
+               unit="s", left_out=True),
+    LabelField("iso", NUMBER, "Speed of the picture (ISO 12232); only with `camera.imager`.",
+               lambda f, e: f.exposure and rounded(f.exposure[1]), left_out=True),
 )  # fmt: skip
 """All fields, in the order of the file."""
 

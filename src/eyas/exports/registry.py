@@ -21,6 +21,8 @@ WRITERS: Registry[type[Any]] = Registry(
         "mp4": "eyas.exports.mp4:Mp4Writer",
         "labels": "eyas.exports.label:LabelWriter",
         "mark": "eyas.exports.mark:MarkWriter",
+        "clean": "eyas.exports.images:CleanWriter",
+        "cameras": "eyas.exports.cameras:CameraWriter",
         "masks": "eyas.exports.images:MaskWriter",
         "classes": "eyas.exports.images:ClassWriter",
         "depth": "eyas.exports.images:DepthWriter",

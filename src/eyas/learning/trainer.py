@@ -249,7 +249,7 @@ def _shape(config: EyasConfig) -> NetworkShape:
             "env.observation: only pictures alone are trained, with channels first: "
             'parts ["image"], layout "chw"'
         )
-    shape = observation_space(seen, config.lidar).shape
+    shape = observation_space(seen, config).shape
     assert shape is not None
     if min(shape[1:]) < 20:
         raise ConfigError("env.observation: too small to be trained: at least 20x20 pixels")

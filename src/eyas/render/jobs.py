@@ -38,6 +38,8 @@ class Size(NamedTuple):
     """Whether each view draws some rows only, which are then one band."""
     threads: int
     """Number of threads that share the work."""
+    bent: bool = False
+    """Whether lenses bend the pictures."""
 
 
 def new_task(size: Size) -> Task:
@@ -55,6 +57,7 @@ def new_task(size: Size) -> Task:
         light=LightState.create(views),
         instant=np.empty(views if size.falls else 0),
         focal=np.empty((views, 2)),
+        lens=np.zeros(views if size.bent else 0, np.int32),
     )
     return Task(size.side, size.width, size.height, size.until, job)
 

@@ -23,6 +23,7 @@ from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.hidden import TILE
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
+from eyas.render.lenses import NO_TABLES, LensBank
 from eyas.render.outputs import (
     NO_OUTPUT,
     measured_alone,
@@ -56,8 +57,9 @@ class CpuRenderer:
         self._geometry, self._light = geometry, light
         self._ready = ready
         self._held = Held(geometry), Held(light)
-        self._last = Held(_NO_MOVERS), Held(NO_OUTPUT)
-        self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
+        self._last = Held(_NO_MOVERS), Held(NO_OUTPUT), Held(NO_TABLES)
+        self._scratch: dict[tuple[object, ...], Held[Scratch]] = {}
+        self._banks: dict[tuple[int, int, int], LensBank] = {}
         self._tasks: dict[Size, Held[Task]] = {}
 
     def part_reach(self) -> NDArray[np.float64]:
@@ -113,39 +115,65 @@ class CpuRenderer:
         height, width = picture_size(picture)
         falls, threads = views.instant is not None, thread_count()
         parts = views.rows is not None
-        size = Size(len(views.position), height, width, side, int(until), falls, parts, threads)
+        bent = views.lens is not None
+        size = Size(
+            len(views.position), height, width, side, int(until), falls, parts, threads, bent
+        )
         # Taken away while it is in use, so that another thread that draws gets another one.
         task = self._tasks.pop(size, None) or Held(new_task(size))
         band = task.bundle.job.band
         jobs, workers = len(band), min(threads, len(band))
         set_views(task.bundle, views, float(self._light.weather.fog_density), workers)
+        bank = self._banks.pop((height, width, side), None) if bent else None
+        if views.lens is not None:
+            bank = bank or LensBank(height, width, side)
+            task.bundle.job.lens[:] = bank.slots(views.lens, task.bundle.job.focal)
         wanted = len(output.subject) + len(output.actor) > 0
         if wanted:
             output = measured_alone(output, jobs)
         rows = height if jobs == size.views else int((band[:, 2] - band[:, 1]).max(initial=0))
-        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted)
+        face = None if bank is None else bank.size
+        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted, face)
         # Mostly the same arrays as in the last call.
-        held = self._last[0].again(movers), self._last[1].again(output)
+        tables = NO_TABLES if bank is None else bank.tables
+        last = self._last
+        held = last[0].again(movers), last[1].again(output), last[2].again(tables)
         self._last = held
-        draw_views(workers, *self._held, scratch, *held, task)
+        draw_views(workers, *self._held, scratch, *held[:2], task, held[2])
         if wanted:
             write_measured(task.bundle.job, output, picture)
         _keep(self._tasks, size, task)
+        if bank is not None:
+            _keep(self._banks, (height, width, side), bank)
 
     def _scratch_for(
-        self, workers: int, rows: int, width: int, side: int, slots: int, measured: bool
+        self,
+        workers: int,
+        rows: int,
+        width: int,
+        side: int,
+        slots: int,
+        measured: bool,
+        face: tuple[int, int] | None,
     ) -> Held[Scratch]:
-        """Return working memory, the same as last time for the same size."""
-        key = (workers, rows, width, side, slots, measured)
+        """Return working memory, the same as last time for the same size.
+
+        `face` is the largest width and height of a lens' faces [pixels], None without lenses.
+        """
+        key = (workers, rows, width, side, slots, measured, face)
         if key not in self._scratch:
-            plane = (workers, rows * side, (width + -width % WIDTH) * side)
+            bent = (workers, 0, 0) if face is None else _plane(workers, rows, width, side)
+            plane = _plane(workers, rows, width, side)
+            if face is not None:
+                plane = _plane(workers, face[1], face[0], side)
+            shade = np.empty((*plane, 4), np.uint8)
             chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
             # What is measured alone takes rows after those of the whole picture.
             instances = min(fixtures + slots * (2 if measured else 1), MOST_INSTANCES)
             scratch = Scratch(
                 key=np.zeros(plane, np.int64),
                 alone=np.zeros(plane if measured else (workers, 0, 0), np.int64),
-                shade=np.empty((*plane, 4), np.uint8),
+                shade=shade,
                 drawn=np.empty((workers, instances, 2), np.int32),
                 mesh=np.empty((workers, instances), np.int32),
                 tiles=np.empty((workers, -(-plane[1] // TILE), plane[2] // TILE), np.float32),
@@ -153,6 +181,10 @@ class CpuRenderer:
                 triangle=np.empty((workers, TRIANGLE_ROWS, CLUSTER)),
                 polygon=np.zeros((workers, 15, CLUSTER)),
                 span=np.empty((workers, SPAN_ROWS, WIDTH), np.int32),
+                word=shade.view(np.uint32)[..., 0],
+                bent_key=np.zeros(bent, np.int64),
+                bent_shade=np.zeros((*bent, 4), np.uint8),
+                bent_tile=np.zeros((0, 0, 4), np.int32),
             )
             _keep(self._scratch, key, Held(scratch))
         return self._scratch[key]
@@ -199,6 +231,11 @@ _NO_MOVERS = Movers(
     object_id=np.empty((0, 0), np.int32),
     object_class=np.empty((0, 0), np.uint8),
 )
+
+
+def _plane(workers: int, rows: int, width: int, side: int) -> tuple[int, int, int]:
+    """Return the shape of a plane of samples for each worker; rows are padded."""
+    return workers, rows * side, (width + -width % WIDTH) * side
 
 
 def _keep(kept: dict[Key, Value], key: Key, value: Value) -> None:

@@ -1,18 +1,31 @@
 """Settings of the sensors."""
 
+import re
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
+from eyas.sensors.camera.dirt import DirtConfig
+from eyas.sensors.camera.events import EventsConfig
+from eyas.sensors.camera.exposure import ExposureConfig
+from eyas.sensors.camera.imager import ImagerConfig, Spectrum
+from eyas.sensors.camera.lens import LensConfig
+from eyas.sensors.camera.link import LinkConfig
+from eyas.sensors.camera.models import MODELS, ModelName, laid_under, without
+from eyas.sensors.camera.shutter import ShutterConfig
+from eyas.sensors.camera.thermal import ThermalConfig
+from eyas.sensors.camera.vibration import VibrationConfig
 
 __all__ = [
     "CameraConfig",
     "CameraErrors",
     "ColourLayout",
     "Colours",
+    "FurtherCameraConfig",
     "LidarConfig",
     "MountConfig",
     "ReadingConfig",
@@ -70,11 +83,94 @@ class CameraConfig(Config):
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
     drone by a gimbal."""
+    model: ModelName | None = None
+    """A camera by its data sheets, whose values take the place of defaults below; None: none."""
+    spectrum: Spectrum = Spectrum.COLOUR
+    """What light its sensor tells apart: `colour`, `grey`, `near-infrared`, of which the last two
+    have a sensor with or without `imager`, or `thermal`, whose sensor is `thermal`."""
+    thermal: ThermalConfig = ThermalConfig()
+    """The sensor of a thermal camera."""
+    imager: ImagerConfig | None = None
+    """The sensor, which counts photons; None: pictures without noise, as bright as by day."""
+    exposure: ExposureConfig = ExposureConfig()
+    """How the sensor is exposed."""
+    dirt: DirtConfig | None = None
+    """What sticks to the glass in front; None: nothing."""
+    link: LinkConfig | None = None
+    """What carries its pictures; None: nothing is coded or lost."""
+    lens: LensConfig = LensConfig()
+    """How its lens bends, darkens and colours pictures."""
+    shutter: ShutterConfig = ShutterConfig()
+    """Motion blur and rolling shutter."""
+    vibration: VibrationConfig = VibrationConfig()
+    """What a gimbal leaves of the shaking of its body."""
+    events: EventsConfig = EventsConfig()
+    """A sensor of events with the same lens."""
+
+    @property
+    def needs_velocities(self) -> bool:
+        """Whether the velocities of cameras must be known."""
+        return self.shutter.blur or self.shutter.rolls or self.events.enabled
+
+    @property
+    def sensor(self) -> ImagerConfig | None:
+        """The sensor, None if pictures are drawn without one."""
+        if self.spectrum is Spectrum.THERMAL:
+            return None
+        if self.imager is None and self.spectrum is not Spectrum.COLOUR:
+            return ImagerConfig()
+        return self.imager
 
     @property
     def is_modelled(self) -> bool:
-        """Whether more of it is modelled than a pinhole."""
-        return False
+        """Whether more of it is modelled than a pinhole, bent by a lens or not."""
+        parts = (self.sensor, self.dirt, self.link)
+        blurred = self.shutter.blur or self.lens.changes_light
+        return blurred or any(part is not None for part in parts)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_model(cls, values: Any) -> Any:  # noqa: ANN401  # whatever is given
+        model = values.get("model") if isinstance(values, Mapping) else None
+        under = MODELS.get(model) if isinstance(model, str) else None  # type: ignore[call-overload]
+        return values if under is None else laid_under(cls, under, values)
+
+    @model_validator(mode="after")
+    def _thermal_alone(self) -> Self:
+        if self.spectrum is not Spectrum.THERMAL:
+            return self
+        for name, set_ in (
+            ("imager", self.imager is not None),
+            ("lens", self.lens.bends or self.lens.changes_light),
+            ("shutter", self.shutter.blur or self.shutter.rolls),
+            ("dirt", self.dirt is not None),
+        ):
+            if set_:
+                raise ValueError(f"{name} must be left out where spectrum is 'thermal'")
+        return self
+
+    def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the values that stay; those of a model go with it."""
+        if self.model is None or changes.get("model", self.model) == self.model:
+            return super().kept(changes)
+        return without(self, MODELS[self.model])
+
+
+def _camera_name(name: str) -> str:
+    if not re.fullmatch(r"[a-z][a-z0-9_-]{0,31}", name):
+        raise ValueError("must be a small letter, then up to 31 small letters, digits, '-' and '_'")
+    return name
+
+
+class FurtherCameraConfig(CameraConfig):
+    """A camera that a tracker has beside its own, such as the other eye of a stereo pair:
+    `{"name": "right", "mount": {"y": -0.12}}`. Its `mount` says where it is on what carries it.
+    """
+
+    name: Annotated[str, AfterValidator(_camera_name)]
+    """By which it is known: lower-case letters, digits, hyphens and underscores."""
+    on: Literal["camera", "body"] = "camera"
+    """What carries it: the tracker's camera, with which it turns, or the tracker's body."""
 
 
 class LidarConfig(Config):

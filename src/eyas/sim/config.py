@@ -8,7 +8,7 @@ from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 from eyas.custom.config import CustomConfig
-from eyas.sensors.config import CameraConfig, LidarConfig, SensorsConfig
+from eyas.sensors.config import CameraConfig, FurtherCameraConfig, LidarConfig, SensorsConfig
 from eyas.targets.config import ObjectsConfig, TargetName
 from eyas.task.config import DoneConfig, RewardConfig, StartConfig
 from eyas.trackers.config import TrackerConfig
@@ -48,6 +48,8 @@ class SimConfig(Config):
     traffic: TrafficConfig = TrafficConfig()
     tracker: TrackerConfig = TrackerConfig()
     camera: CameraConfig = CameraConfig()
+    cameras: tuple[FurtherCameraConfig, ...] = ()
+    """Cameras that each tracker has beside that one, by name."""
     lidar: LidarConfig = LidarConfig()
     sensors: SensorsConfig = SensorsConfig()
     control: ControlConfig = ControlConfig()
@@ -60,6 +62,18 @@ class SimConfig(Config):
     """A target of one's own, in the place of `target`."""
     extras: tuple[ExtraConfig, ...] | None = None
     """Groups that share the world with the targets as distractors; None: the map's pedestrians."""
+
+    @model_validator(mode="after")
+    def _cameras_by_name(self) -> "SimConfig":
+        names = [camera.name for camera in self.cameras]
+        if len(names) != len({*names}):
+            raise ValueError("cameras must have names of their own")
+        return self
+
+    @property
+    def needs_velocities(self) -> bool:
+        """Whether the velocities of cameras must be known."""
+        return any(camera.needs_velocities for camera in (self.camera, *self.cameras))
 
     @model_validator(mode="after")
     def _vehicles_once(self) -> "SimConfig":

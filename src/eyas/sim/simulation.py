@@ -14,7 +14,6 @@ from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
 from eyas.sim.stepper import Stepper
-from eyas.sim.views.delay import SeenState
 from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
@@ -80,7 +79,7 @@ class Simulation:
         view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
         self._present = self.view = view(seen)
         if seen.is_late:
-            self._present = view(SeenState.on_time(self.snapshot, sensors.told))
+            self._present = view(seen.on_time())
         rules = make_rules(config.reward, config.done, config.camera)
         own = config.tracker.judged
         self.judged = tracker.judged if own is None else own

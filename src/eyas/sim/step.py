@@ -16,12 +16,13 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import wrap_angle
 from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
+from eyas.sensors.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.sensors.inertial import feel, rest
 from eyas.sensors.mount import Mount
 from eyas.sensors.mount import left_on_gimbal as carried
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import Motion
-from eyas.state.snapshot import Snapshot, TargetState
+from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.task.direction import target_centre
 from eyas.task.done import judge
@@ -149,11 +150,18 @@ class StepKernels(NamedTuple):
         return Step(*(kernel.bind(state, orders) for kernel in self))
 
 
-def step_of(tracker: Tracker, carried: Kernel = carried) -> StepKernels:
-    """Return the step of a kind of tracker; `carried` is one of `eyas.sensors.mount.CARRIED`."""
-    return _step_of(
-        tracker.start, tracker.launch, tracker.advance, tracker.carry, tracker.aim, carried
-    )
+def step_of(
+    tracker: Tracker, carried: Kernel = carried, *, velocities: bool = False
+) -> StepKernels:
+    """Return the step of a kind of tracker.
+
+    Args:
+        tracker: The kind.
+        carried: One of `eyas.sensors.mount.CARRIED`.
+        velocities: Whether the velocities of cameras are kept up.
+    """
+    start, launch, advance, carry = tracker.start, tracker.launch, tracker.advance, tracker.carry
+    return _step_of(start, launch, advance, carry, tracker.aim, carried, velocities)
 
 
 @lru_cache(maxsize=16)
@@ -164,13 +172,53 @@ def _step_of(
     carry: Kernel,
     aim: Kernel,
     carried: Kernel,
+    velocities: bool,  # noqa: FBT001  # a key of the cache
 ) -> StepKernels:
     seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
+    pointed = _point_in_motion if velocities else _point
+    pointing = point if pointed is _point and seen == _USUAL else _inlined(pointed, seen)
+    seen["stand"] = begin_at_rest if velocities else left_unknown
     return StepKernels(
-        fly=compiled(specialised(_fly, advance=advance, **seen)),
-        carry=compiled(specialised(_carry, carry=carry, **seen)),
+        fly=compiled(specialised(_fly, advance=advance, point=pointing)),
+        carry=compiled(specialised(_carry, carry=carry, point=pointing)),
         begin=compiled(specialised(_begin, start=start, launch=launch, **seen)),
     )
+
+
+def _inlined(pointed: Kernel, seen: dict[str, Kernel]) -> Kernel:
+    made: Kernel = kernel(inline=True)(specialised(pointed, **seen))
+    return made
+
+
+def _point(
+    trackers: TrackerState,
+    memory: Any,  # noqa: ANN401  # the record that the tracker's kernels use
+    cameras: CameraState,
+    n: int,
+    mount: Mount,
+) -> None:
+    """Write the pose of the camera of tracker `n`."""
+    aim(trackers, memory, cameras, n)
+    carried(trackers, cameras, n, mount)
+
+
+def _point_in_motion(
+    trackers: TrackerState,
+    memory: Any,  # noqa: ANN401  # as above
+    cameras: CameraState,
+    n: int,
+    mount: Mount,
+) -> None:
+    """Write the pose and the velocities of the camera of tracker `n`, after a physics step."""
+    before = pose_before(cameras, n)
+    aim(trackers, memory, cameras, n)
+    carried(trackers, cameras, n, mount)
+    moved_from(before, cameras, n)
+
+
+point = kernel(inline=True)(_point)
+stand = left_unknown
+_USUAL: dict[str, Kernel] = {"aim": aim, "carried": carried}
 
 
 def _fly(state: StepState, orders: Orders) -> None:
@@ -187,8 +235,7 @@ def _fly(state: StepState, orders: Orders) -> None:
             feel(trackers, n, share)
             episodes.tick[n] += 1
             _move_target(targets, episodes, n, around)
-            aim(trackers, memory, cameras, n)
-            carried(trackers, cameras, n, mount)
+            point(trackers, memory, cameras, n, mount)
             observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
@@ -211,8 +258,7 @@ def _carry(state: StepState, orders: Orders) -> None:
                 x, y, z, yaw = pose[0], pose[1], pose[2], wrap_angle(pose[3])
             carry(trackers, memory, n, x, y, z, yaw)
             feel(trackers, n, share)
-            aim(trackers, memory, cameras, n)
-            carried(trackers, cameras, n, mount)
+            point(trackers, memory, cameras, n, mount)
             observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
@@ -235,6 +281,7 @@ def _begin(state: StepState, orders: Orders) -> None:
         rest(trackers, n, share)
         aim(trackers, memory, cameras, n)
         carried(trackers, cameras, n, mount)
+        stand(trackers, cameras, n)
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
 from eyas.lanes import BoundCall, Held
+from eyas.sensors.camera.vibration import Vibration
 from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
 from eyas.sensors.mount import CARRIED, mount_of
@@ -64,7 +65,8 @@ class Stepper:
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
         mount = config.camera.mount
         self._mount = mount_of(mount or MountConfig())
-        self._kernels = step_of(tracker, CARRIED[mount is not None])
+        carried, velocities = CARRIED[mount is not None], config.needs_velocities
+        self._kernels = step_of(tracker, carried, velocities=velocities)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible
@@ -72,7 +74,8 @@ class Stepper:
         control = config.control
         self._late = LateCommands.of(control.action_latency_steps, count)
         camera, latency = config.sensors.camera, control.observation_latency_steps
-        self.seen = SeenState(latency, camera, snapshot, self.sensors.told)
+        vibration = Vibration.of(config.camera.vibration, count)
+        self.seen = SeenState(latency, camera, snapshot, self.sensors.told, vibration)
         self.samplers: list[Sampler] = [late.sample for late in (self._late, self.seen) if late]
         if tracker.sample:
             self.samplers.insert(0, partial(tracker.sample, self._memory))
@@ -133,6 +136,8 @@ class Stepper:
         if not self.sensors.follow and not self.seen.is_late:
             self._orders.steps[0] = steps
             step()
+            if self.seen.vibration is not None:
+                self.seen.see()
             return
         self._orders.steps[0] = 1
         for _ in range(steps):

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.views.visible_actors import VisibleActors
+from eyas.sim.views.visible_actors import Moving, VisibleActors
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, DRONE_CLASS
@@ -162,7 +162,12 @@ class Worlds:
         return actors, self.looks.model[self.of[tracker]]
 
     def draw_list(
-        self, trackers: NDArray[np.integer], tick: Integers, cameras: CameraState, aspect: float
+        self,
+        trackers: NDArray[np.integer],
+        tick: Integers,
+        cameras: CameraState,
+        aspect: float,
+        later: NDArray[np.float64] | None = None,
     ) -> tuple[NDArray[np.int32], DrawList]:
         """Return the row of each of V views in a list of moving parts, and that list.
 
@@ -174,13 +179,28 @@ class Worlds:
             tick: Time of all N trackers in physics steps, shape (N,).
             cameras: The V cameras.
             aspect: Height of what they show over its width.
+            later: How long after that time each view is [s], shape (V,); None: all are at it.
         """
-        worlds, rows = self.of[trackers], None
-        if self._any_lasting:
-            worlds, rows = np.unique(worlds, return_inverse=True)
-        time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
+        worlds, rows, time = self._at(trackers, tick, later)
         movers = self._near.of(worlds, time, rows, cameras, aspect)
         if self._assets.signals is not None:
             movers = self._assets.signals.added(movers, time)
         rows = np.arange(len(trackers)) if rows is None else rows
         return rows.astype(np.int32), movers
+
+    def moving(
+        self, trackers: NDArray[np.integer], tick: Integers, cameras: CameraState, aspect: float
+    ) -> Moving:
+        """Return the motion of the actors in the list of `draw_list`; the same arguments."""
+        worlds, rows, time = self._at(trackers, tick, None)
+        return self._near.moving(worlds, time, rows, cameras, aspect)
+
+    def _at(
+        self, trackers: NDArray[np.integer], tick: Integers, later: NDArray[np.float64] | None
+    ) -> tuple[NDArray[np.integer], NDArray[np.integer] | None, NDArray[np.float64]]:
+        """Return worlds, which of them each view shows (None: its own), and their times [s]."""
+        worlds, rows = self.of[trackers], None
+        if self._any_lasting and later is None:
+            worlds, rows = np.unique(worlds, return_inverse=True)
+        time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
+        return worlds, rows, time if later is None else time + later

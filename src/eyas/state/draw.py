@@ -105,6 +105,9 @@ class Views:
     """Changes of the light for each view; None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
     """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
+    lens: NDArray[np.float64] | None = None
+    """The numbers of the lens of each view, see `eyas.core.lens.Lens`, shape (V, 10); None: all
+    are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
     picture: NDArray[np.int32] | None = None
     """Which of the P pictures each view draws into, those of one picture next to each other,
     shape (V,); None: each into its own."""
@@ -135,11 +138,16 @@ class Views:
         return focal
 
 
-def _focal_lengths(size: int, fields: float | NDArray[np.float64]) -> float | list[float]:
+def _focal_lengths(
+    size: int, fields: float | NDArray[np.float64]
+) -> float | NDArray[np.float64]:
     """Return the focal length, or that of each view [pixels]."""
     if isinstance(fields, np.ndarray):
-        # One by one: numpy's own tangents differ between processors.
-        return [focal_length(size, field) for field in fields.tolist()]
+        # One by one, since numpy's own tangents differ between processors; but views of one lens
+        # are many.
+        values, which = np.unique(fields, return_inverse=True)
+        lengths = np.array([focal_length(size, field) for field in values.tolist()])
+        return lengths[which]
     return focal_length(size, fields)
 
 

@@ -23,6 +23,8 @@ __all__ = [
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+_UNKNOWN = np.zeros((0, 3))
+
 
 class TrackerState(NamedTuple):
     """State of N trackers, world frame (east, north, up)."""
@@ -89,11 +91,22 @@ class CameraState(NamedTuple):
     """Camera to world; columns are the camera's forward, left and up axes, shape (N, 3, 3)."""
     field_of_view: Floats
     """Horizontal [rad], shape (N,); that of a tracker is drawn at its reset."""
+    velocity: Floats = _UNKNOWN
+    """Difference of the last two positions over 2 ms, world frame [m/s], shape (N, 3). Of trackers
+    it is kept up where something needs it (`camera.shutter`, `camera.events`) and else 0."""
+    angular_velocity: Floats = _UNKNOWN
+    """The same of `rotation`, world frame [rad/s], shape (N, 3)."""
 
     @classmethod
     def create(cls, count: int) -> "CameraState":
-        """Return cameras at the origin that look east, with a field of view of 1 rad."""
-        return cls(np.zeros((count, 3)), np.tile(np.eye(3), (count, 1, 1)), np.ones(count))
+        """Return cameras at rest at the origin that look east, with a field of view of 1 rad."""
+        return cls(
+            position=np.zeros((count, 3)),
+            rotation=np.tile(np.eye(3), (count, 1, 1)),
+            field_of_view=np.ones(count),
+            velocity=np.zeros((count, 3)),
+            angular_velocity=np.zeros((count, 3)),
+        )
 
 
 class TargetState(NamedTuple):

@@ -125,9 +125,9 @@ class Recorder:
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
-        self._parts = "parts" in wanted
+        self._besides = wanted & {"parts", "clean", "cameras"}
         self._overlay = config.video.overlay and "rgb" in wanted
-        pictures = wanted - {"others", "parts"}
+        pictures = wanted - self._besides - {"others"}
         self._picture = Picture.create(
             count,
             config.camera.height,
@@ -190,7 +190,7 @@ class Recorder:
         assert going is not None
         assert going.files is not None
         number = going.summary.frames
-        moment = moment_of(self._sim, tracker, picture, view, parts=self._parts)
+        moment = moment_of(self._sim, tracker, picture, view, self._besides)
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
         self.reached[tracker].add(frame)

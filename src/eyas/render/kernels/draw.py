@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.lens import Lens
 from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import (
     Air,
@@ -10,7 +11,10 @@ from eyas.render.kernels.bundles import (
     Canvas,
     Direction,
     Geometry,
+    Glass,
     Illumination,
+    Job,
+    LensTables,
     Light,
     Movers,
     Output,
@@ -18,6 +22,8 @@ from eyas.render.kernels.bundles import (
     Task,
     View,
 )
+from eyas.render.kernels.lens.look import face_rows, face_view, glass_of, look_through
+from eyas.render.kernels.lens.outputs import darken, write_bent_depth
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.sunlight import sunlit
 from eyas.render.kernels.scalars import f4, i8
@@ -48,12 +54,18 @@ def draw_views(
     movers: Movers,
     output: Output,
     task: Task,
+    tables: LensTables,
 ) -> None:
     """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
     job = task.job
     index = i8(worker)
     while index < len(job.band):
-        _draw_band(index, geometry, light, scratch, movers, output, task, worker)
+        if len(job.lens) > 0:
+            _draw_through_lens(
+                index, geometry, light, scratch, movers, output, task, tables, worker
+            )
+        else:
+            _draw_band(index, geometry, light, scratch, movers, output, task, worker)
         index = claim(job.begun)
 
 
@@ -70,37 +82,117 @@ def _draw_band(
 ) -> None:
     """Draw job `index` with a worker's memory, and write what is wanted of it."""
     job, until = task.job, task.until
-    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    number = job.band[index, 0]
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
-    here = view_light(light.weather, job.light, number)
-    if light.weather.air.glare > f4(0.0):
-        here = with_veil(light, here, job.eye[number])
-    lit = address_of(here)
+    lit = address_of(_light_at(light, job, number))
     world = i8(job.world[number])
     band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
     count = draw_scene(band)
+    _write_facts(band, band, count, output, task, index)
+    if until > RASTERISING and _coloured(output):
+        cast_light(band)
+    _write_colours(band, output, task, index)
+
+
+@kernel
+def _draw_through_lens(
+    index: int,
+    geometry: Geometry,
+    light: Light,
+    scratch: Scratch,
+    movers: Movers,
+    output: Output,
+    task: Task,
+    tables: LensTables,
+    worker: int,
+) -> None:
+    """Draw job `index` face by face; each writes the pixels that show it."""
+    job, until = task.job, task.until
+    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    slot = job.lens[number]
+    lit = address_of(_light_at(light, job, number))
+    world, coloured = i8(job.world[number]), until > RASTERISING and _coloured(output)
+    if tables.dark[slot] == 1:
+        darken(task, tables, output, index)
+    for face in range(tables.faces[slot]):
+        first, last = face_rows(tables, slot, face, top, bottom)
+        if first >= last:
+            continue
+        view = address_of(face_view(task, tables, number, face, first, last))
+        band = address_of(
+            band_of(geometry, light, lit, movers, world, view, until, scratch, worker)
+        )
+        count = draw_scene(band)
+        if coloured:
+            cast_light(band)
+        glass = address_of(glass_of(task, tables, number, face, top))
+        bent = address_of(bent_band(band, glass, scratch, worker, task.width, bottom - top))
+        look_through(band, scratch.word[worker], bent, coloured)
+        _write_facts(band, bent, count, output, task, index)
+        _write_colours(bent, output, task, index)
+
+
+@kernel(inline=True)
+def _light_at(light: Light, job: Job, number: int) -> Illumination:
+    """Return light and air of a view, where it is."""
+    here = view_light(light.weather, job.light, number)
+    if light.weather.air.glare > f4(0.0):
+        here = with_veil(light, here, job.eye[number])
+    return here
+
+
+@kernel(inline=True)
+def _coloured(output: Output) -> bool:
+    """Return whether colours are wanted."""
+    return len(output.rgb) > 0 or len(output.radiance) > 0
+
+
+@kernel(inline=True)
+def _write_facts(
+    band: Band, shown: Band, count: int, output: Output, task: Task, index: int
+) -> None:
+    """Write what is wanted of job `index` but colours.
+
+    Args:
+        band: What was drawn, with `count` rows of `Band.drawn`.
+        shown: What the picture shows: the same, or the picture of which it is a face.
+        count: As above.
+        output: Where to.
+        task: The views.
+        index: The job.
+    """
+    job, until = task.job, task.until
+    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     into = job.picture[number]
     if len(output.depth) > 0:
-        write_depth(band.key, output.depth[into, top:bottom])
+        if shown.glass.on == 1:
+            write_bent_depth(shown, output.depth[into, top:bottom])
+        else:
+            write_depth(shown.key, output.depth[into, top:bottom])
     if len(output.object_id) > 0:
-        write_objects(band, output.object_id[into, top:bottom])
+        write_objects(shown, output.object_id[into, top:bottom])
     if len(output.class_id) > 0:
-        write_classes(band, output.class_id[into, top:bottom])
+        write_classes(shown, output.class_id[into, top:bottom])
     if len(output.normal) > 0 and until >= RASTERISING:
-        write_normals(band, output.normal[into, top:bottom])
+        write_normals(shown, output.normal[into, top:bottom])
     if len(output.subject) > 0 and until >= RASTERISING:
-        measure_subject(band, job.subject[number], count, output.subject[index])
+        measure_subject(band, shown, job.subject[number], count, output.subject[index])
     if len(output.actor) > 0 and until >= RASTERISING:
-        measure_actors(band, count, output.actor[index])
-    coloured = len(output.rgb) > 0 or len(output.radiance) > 0
-    if coloured and until > RASTERISING:
-        cast_light(band)
-    if coloured and until > MOVERS_LIGHT:
-        canvas = address_of(canvas_of(output, into, top, bottom))
-        draw_backdrop(band, canvas)
-        shade_band(band, canvas)
-        if len(job.instant) > 0:
-            let_flakes_fall(band, job.instant[number], canvas)
+        measure_actors(band, shown, count, output.actor[index])
+
+
+@kernel(inline=True)
+def _write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
+    """Write the colours of job `index`, if they are wanted."""
+    job = task.job
+    number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    if not _coloured(output) or task.until <= MOVERS_LIGHT:
+        return
+    canvas = address_of(canvas_of(output, job.picture[number], top, bottom))
+    draw_backdrop(shown, canvas)
+    shade_band(shown, canvas)
+    if len(job.instant) > 0:
+        let_flakes_fall(shown, job.instant[number], canvas)
 
 
 @kernel(inline=True)
@@ -127,12 +219,48 @@ def band_of(
     worker: int,
 ) -> Band:
     """Return a band of a view with a worker's rows of the working memory."""
-    rows = view.rows
+    rows, side = view.rows, view.samples
     return Band(
-        geometry, light, lit, movers, world, view, until, scratch.key[worker, :rows],
+        geometry, light, lit, movers, world, view, until, view.width // side, rows // side,
+        address_of(_no_glass(scratch, worker)), scratch.key[worker, :rows],
         scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
         scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
         scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def _no_glass(scratch: Scratch, worker: int) -> Glass:
+    """Return what stands for a lens where there is none: arrays of the same kinds."""
+    floats, whole = scratch.tiles[worker], scratch.drawn[worker]
+    zero, none = 0.0, i8(0)
+    lens = Lens(none, zero, zero, zero, zero, zero, zero, zero, zero, zero)
+    return Glass(
+        none, floats, floats, floats, whole, none, scratch.bent_tile, scratch.triangle[worker],
+        none, lens, zero, zero, zero, zero,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def bent_band(
+    face: Band, glass: Glass, scratch: Scratch, worker: int, columns: int, lines: int
+) -> Band:
+    """Return a band of a picture through a lens, of one of its faces.
+
+    Args:
+        face: The face, whose places are those of the camera.
+        glass: The lens.
+        scratch: The working memory.
+        worker: Whose.
+        columns: Width of the picture [pixels].
+        lines: Rows of the band [pixels].
+    """
+    rows = lines * face.camera.samples
+    return Band(
+        face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,
+        i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,
+        scratch.bent_shade[worker, :rows], face.drawn, face.mesh, face.tiles, face.order,
+        face.triangle, face.polygon, face.span,
     )  # fmt: skip
 
 

@@ -3,10 +3,11 @@
 from typing import NamedTuple
 
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import Direction, Point, View
-from eyas.render.kernels.scalars import f4
+from eyas.lanes.vector import gather, lane_numbers, load
+from eyas.render.kernels.bundles import Band, Direction, Glass, Point, View
+from eyas.render.kernels.scalars import f4, i4
 
-__all__ = ["Rays", "ray_of", "rays_of"]
+__all__ = ["Rays", "camera_axes", "place_in_face", "ray_of", "rays_of"]
 
 
 class Rays(NamedTuple):
@@ -68,3 +69,36 @@ def ray_of(rays: Rays, line: float, column: float) -> tuple[float, float, float]
         ahead.y + up * above.y + left * aside.y,
         ahead.z + up * above.z + left * aside.z,
     )
+
+
+@kernel(inline=True)
+def _turned(glass: Glass, view: View, axis: int) -> Direction:
+    """Return an axis of the camera, whose face the view is, in the world."""
+    a, b, c = glass.turn[0, axis], glass.turn[1, axis], glass.turn[2, axis]
+    ahead, left, up = view.ahead, view.left, view.up
+    return Direction(
+        f4(a * ahead.x + b * left.x + c * up.x),
+        f4(a * ahead.y + b * left.y + c * up.y),
+        f4(a * ahead.z + b * left.z + c * up.z),
+    )
+
+
+@kernel(inline=True)
+def camera_axes(band: Band) -> tuple[Direction, Direction, Direction]:
+    """Return forward, left and up of the camera in the world, also if the view is a face of it."""
+    view, glass = band.camera, band.glass
+    if glass.on == 0:
+        return _rounded(view.ahead), _rounded(view.left), _rounded(view.up)
+    return _turned(glass, view, 0), _turned(glass, view, 1), _turned(glass, view, 2)
+
+
+@kernel(inline=True)
+def place_in_face(
+    glass: Glass, row: int, first: int, step: int
+) -> tuple[float, float, float]:
+    """Return line, column and width, see `LensTables`, of eight samples that are `step` apart."""
+    at = row * glass.column.shape[1] + first
+    if step == 1:
+        return load(glass.line, at), load(glass.column, at), load(glass.size, at)
+    where = lane_numbers() * i4(step) + i4(at)
+    return gather(glass.line, where), gather(glass.column, where), gather(glass.size, where)

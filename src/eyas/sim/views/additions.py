@@ -49,6 +49,7 @@ class TrackerBodies:
         rows: NDArray[np.int32],
         movers: DrawList,
         trackers: TrackerState,
+        later: NDArray[np.float64] | None = None,
     ) -> DrawList:
         """Return a draw list with a row for each view: the movers of its world, and bodies.
 
@@ -57,9 +58,13 @@ class TrackerBodies:
             rows: Row of each view in `movers`, shape (V,).
             movers: The other moving things.
             trackers: State of all N trackers.
+            later: How long after that each view is [s], shape (V,): the bodies have moved on, but
+                not turned; None: all are at it.
         """
         others = self._others[chosen]
         pose = _poses(trackers)[others]
+        if later is not None:
+            pose[..., 3] += trackers.velocity[others] * later[:, None, None]
         classes = np.full((len(chosen), len(self._others)), ObjectClass.ROBOT, np.uint8)
         colour = np.ones((*others.shape, 3))
         object_id = np.where(others < 0, -1, ACTOR_OBJECT + self._actors + others)

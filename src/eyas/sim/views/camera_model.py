@@ -7,6 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.development import Development
+from eyas.sensors.camera.dirt import Dirt
+from eyas.sensors.camera.glass import change_light
+from eyas.sensors.camera.imager import Spectrum
+from eyas.sensors.camera.lens import Lenses
+from eyas.sensors.camera.link import Link
+from eyas.sensors.camera.near_infrared import near_infrared
+from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.tone import ToneCurve
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import Picture
@@ -18,22 +26,62 @@ __all__ = ["CameraModel"]
 class CameraModel:
     """The cameras of N trackers where more is modelled of them than a pinhole.
 
+    Attributes:
+        development: Their sensors; None: they have none.
+
     Args:
         config: The settings.
         lighting: Light and air of the weather.
         count: N.
+        lenses: Their lenses; None: they lose no light.
+        shutter: Their shutters, which stay open as long as the sensors are exposed; None: an
+            instant.
     """
 
-    def __init__(self, config: CameraConfig, lighting: Lighting, count: int) -> None:
+    def __init__(
+        self,
+        config: CameraConfig,
+        lighting: Lighting,
+        count: int,
+        lenses: Lenses | None = None,
+        shutter: Shutter | None = None,
+    ) -> None:
+        sensor = config.sensor
+        self._lenses = lenses if lenses is not None and lenses.change_light else None
+        self._shutter = shutter if config.shutter.blur else None
+        self._dirt: Dirt | None = None
+        self._link: Link | None = None
         self._curve = ToneCurve(lighting.exposure)
+        self._infrared = config.spectrum is Spectrum.NEAR_INFRARED
+        self.development: Development | None = None
+        if sensor is not None:
+            self.development = Development(
+                sensor, config.exposure, config.spectrum, lighting.luminance, count
+            )
+        if config.dirt is not None:
+            self._dirt = Dirt(config.dirt, count)
+        if config.link is not None:
+            self._link = Link(config.link, count)
 
     @classmethod
-    def of(cls, config: CameraConfig, lighting: Lighting, count: int) -> "CameraModel | None":
-        """Return the camera model of some settings; None: it is a pinhole camera without errors."""
-        return cls(config, lighting, count) if config.is_modelled else None
+    def of(
+        cls,
+        config: CameraConfig,
+        lighting: Lighting,
+        count: int,
+        lenses: Lenses | None = None,
+        shutter: Shutter | None = None,
+    ) -> "CameraModel | None":
+        """Return the camera model of some settings; None: the renderer's pictures are shown."""
+        return cls(config, lighting, count, lenses, shutter) if config.is_modelled else None
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
+        # Each part has a stream of its own: one more changes nothing in the others.
+        parts = self.development, self._dirt, self._link
+        for part, own in zip(parts, rng.spawn(len(parts)), strict=True):
+            if part is not None:
+                part.begin(tracker, own)
 
     def draw(
         self,
@@ -51,6 +99,31 @@ class CameraModel:
             picture: V pictures, with colours.
         """
         assert picture.rgb is not None
+        if self.development is not None:
+            self.development.expose(trackers, step)
+            if self._shutter is not None:
+                self._shutter.exposure[trackers] = self.development.exposure.time[trackers]
         light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
-        draw(replace(picture, rgb=None, radiance=light))
-        self._curve.develop(light, picture.rgb)
+        seen = replace(picture, rgb=None, radiance=light)
+        if self._infrared and seen.class_id is None:
+            seen.class_id = np.empty((len(light), *light.shape[2:]), np.uint8)
+        draw(seen)
+        if self._infrared:
+            assert seen.class_id is not None
+            near_infrared(light, seen.class_id)
+        if self._lenses is not None:
+            light = change_light(light, trackers, self._lenses)
+        if self._dirt is not None:
+            self._dirt.cover(light, trackers)
+        if self.development is None:
+            self._curve.develop(light, picture.rgb)
+        else:
+            self.development.develop(light, picture.rgb, trackers, step)
+        self.send(trackers, step, picture.rgb)
+
+    def send(
+        self, trackers: NDArray[np.int32], step: NDArray[np.int64], rgb: NDArray[np.uint8]
+    ) -> None:
+        """Change pictures to what their link makes of them, if they have one; see `draw`."""
+        if self._link is not None:
+            self._link.carry(rgb, trackers, step)

@@ -1,5 +1,7 @@
 """What agents see: the present, or, by a latency or by what their cameras are like, the past."""
 
+from typing import Protocol
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,12 +9,13 @@ from eyas.core.clock import PHYSICS_RATE
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Variation
 from eyas.lanes import interpreted
+from eyas.sensors.camera.vibration import Vibration
 from eyas.sensors.chance import SEEDS, uniform
 from eyas.sensors.config import ReadingConfig
 from eyas.sim.latency import Latency, is_always_0
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["SeenState"]
+__all__ = ["SeenState", "ShownState"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -114,12 +117,32 @@ class PastState:
             seen[...] = past[slots, self._every]
 
 
+class ShownState(Protocol):
+    """What pictures show."""
+
+    @property
+    def shown(self) -> Snapshot:
+        """The state, with the vibration of the cameras."""
+        ...
+
+    @property
+    def steady(self) -> Snapshot:
+        """The same without it."""
+        ...
+
+    @property
+    def vibration(self) -> Vibration | None:
+        """That of the cameras; None: there is none."""
+        ...
+
+
 class SeenState:
     """What N agents see: the truth, as far as neither a latency nor their cameras make it late.
 
     Attributes:
         snapshot: The state that packets tell.
-        shown: The state that pictures show.
+        shown: The state that pictures show, with the vibration of the cameras.
+        steady: The same without it.
         told: What sensors with errors tell, see `Readings.told`; None: none has errors.
         late: Steps by which messages to each tracker are late, shape (N,); None: none is.
 
@@ -128,14 +151,20 @@ class SeenState:
         camera: Rate, delay and drop-out of pictures.
         now: The present state.
         told: What sensors with errors tell now.
+        vibration: That of the cameras; None: there is none.
     """
 
     def __init__(
-        self, latency: Variation, camera: ReadingConfig, now: Snapshot, told: Floats | None
+        self,
+        latency: Variation,
+        camera: ReadingConfig,
+        now: Snapshot,
+        told: Floats | None,
+        vibration: Vibration | None = None,
     ) -> None:
         self._latency = Latency(latency, "observation_latency", len(now.light.sky))
         self._past: list[PastState] = []
-        self._now = now
+        self._now, self._told_now = now, told
         self.snapshot, self.shown, self.told, self.late = now, now, told, None
         if not is_always_0(latency):
             past = PastState(self._latency, now, told)
@@ -146,15 +175,17 @@ class SeenState:
             pictures = PastState(self._latency, now, None, camera)
             self._past.append(pictures)
             self.shown = pictures.snapshot
+        self.steady, self.vibration = self.shown, vibration
+        if vibration is not None:
+            self.shown = vibration.shaken(self.steady)
 
-    @classmethod
-    def on_time(cls, now: Snapshot, told: Floats | None) -> "SeenState":
+    def on_time(self) -> "SeenState":
         """Return the state as who sees the present has it."""
-        return cls(0.0, _ON_TIME, now, told)
+        return SeenState(0.0, _ON_TIME, self._now, self._told_now, self.vibration)
 
     @property
     def is_late(self) -> bool:
-        """Whether `record` must be called after each physics step, and then `see`."""
+        """Whether `record` must be called after each physics step."""
         return bool(self._past)
 
     def age_of(self, tracker: int) -> int:
@@ -167,6 +198,8 @@ class SeenState:
             self._latency.sample(tracker, key)
         for past in self._past:
             past.sample(tracker, key)
+        if self.vibration is not None:
+            self.vibration.sample(tracker, key)
 
     def record(self) -> None:
         """Remember the present state, after a physics step."""
@@ -177,11 +210,15 @@ class SeenState:
         """Begin the episodes of trackers, which are at their starts."""
         for past in self._past:
             past.begin(trackers)
+        if self.vibration is not None:
+            self.vibration.move()
 
     def see(self) -> None:
-        """Set what agents see now."""
+        """Set what agents see now, after some physics steps."""
         for past in self._past:
             past.see()
+        if self.vibration is not None:
+            self.vibration.move()
 
 
 def _timing_of(sensor: ReadingConfig) -> tuple[float, int, float]:

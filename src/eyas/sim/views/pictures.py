@@ -11,32 +11,40 @@ from eyas.core.pinhole import field_along
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.lens import Lenses
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
-from eyas.sim.views.camera_model import CameraModel
+from eyas.sim.views.delay import ShownState
+from eyas.sim.views.exposures import Exposures, Moment
+from eyas.sim.views.optics import Optics
+from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.snapshot import CameraState, Snapshot
+from eyas.state.snapshot import CameraState
 from eyas.task.rules import Rules
 
 __all__ = ["PictureDrawer"]
 
 Chosen = NDArray[np.int32]
+Floats = NDArray[np.float64]
 
 
 class PictureDrawer:
     """Draws the worlds around N trackers.
+
+    Attributes:
+        aspect: Height of what their cameras show over its width.
 
     Args:
         config: The settings.
         assets: Scene and renderer.
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
-        snapshot: State of the trackers.
-        camera: What else is modelled of their cameras; None: nothing.
+        state: State of the trackers.
+        optics: What is modelled of their cameras beyond pinholes.
         visible: Whether trackers see each other.
     """
 
@@ -46,30 +54,38 @@ class PictureDrawer:
         assets: Assets,
         worlds: Worlds,
         light: LightChanges,
-        snapshot: Snapshot,
-        camera: CameraModel | None = None,
+        state: ShownState,
+        optics: Optics | None = None,
         *,
         visible: bool = True,
     ) -> None:
+        snapshot = state.shown
         self._worlds = worlds
         mates = [worlds.trackers_of(n) for n in range(len(worlds.of))]
         actors, part = worlds.actors, assets.body_part
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
-        self._snapshot, self._camera = snapshot, camera
+        self._snapshot = snapshot
+        self._camera = None if optics is None else optics.model
+        self._thermal = None if optics is None else optics.thermal
+        self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
         self._size = config.camera.height, config.camera.width
-        self._aspect = config.camera.height / config.camera.width
+        self.aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
+        self._exposures: Exposures | None = None
+        if optics is not None and optics.shutter is not None:
+            steady, vibration = state.steady, state.vibration
+            self._exposures = Exposures(optics.shutter, steady, vibration, self.aspect, self)
 
     def draw(
         self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
     ) -> None:
         """Draw the pictures of trackers' cameras.
 
-        Cameras are pinholes with the aspect ratio of the configured picture. Pictures with another
+        Cameras have the aspect ratio of the configured picture. Pictures with another
         one show the same view distorted, like the original's observations: 320x240 resized to
         84x84.
 
@@ -80,20 +96,43 @@ class PictureDrawer:
             overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(chosen, cameras, self._aspect)
-        if self._bodies.any:
-            movers = self._bodies.added(chosen, views.world, movers, self._snapshot.trackers)
-            views.world = np.arange(len(chosen), dtype=np.int32)
-        fields = cameras.field_of_view.tolist()
-        views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
+        views, movers = self._own_views(chosen, cameras)
         deep = picture if overlaid is None else with_depth(picture)
-        draw = partial(self._renderer.draw, views, movers, samples=self._samples, until=until)
-        if self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
+        draw = partial(self.render, views, movers, until=until)
+        if self._exposures is not None:
+            draw = partial(self._exposures.draw, chosen, until)
+        step = self._snapshot.episodes.step_count
+        if self._thermal is not None and deep.rgb is not None:
+            draw(replace(deep, rgb=None, depth=with_depth(deep).depth))
+            self._thermal.draw(views, movers, chosen, step, deep.rgb)
+            if self._camera is not None:
+                self._camera.send(chosen, step, deep.rgb)
+        elif self._camera is None or deep.rgb is None or until < DrawStage.SHADING:
             draw(deep)
         else:
-            self._camera.draw(draw, chosen, self._snapshot.episodes.step_count, deep)
+            self._camera.draw(draw, chosen, step, deep)
         if overlaid is not None:
             paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
+
+    def draw_clean(self, chosen: Chosen, picture: Picture) -> None:
+        """Draw the pictures of trackers' cameras as if nothing but their lenses were modelled."""
+        cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
+        self.render(*self._own_views(chosen, cameras), picture, DrawStage.SHADING)
+
+    def views_at(self, moment: Moment) -> tuple[Views, DrawList]:
+        """Return views of trackers' cameras at moments of their exposures, and the moving things as
+        these see them.
+        """
+        return self._own_views(moment.trackers, moment.cameras, moment.later)
+
+    def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
+        """Return the motion of the actors that trackers' cameras may show."""
+        ticks = self._snapshot.episodes.tick
+        return self._worlds.moving(trackers, ticks, cameras, self.aspect)
+
+    def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
+        """Draw views of trackers' cameras."""
+        self._renderer.draw(views, movers, picture, self._samples, until)
 
     def draw_from(
         self,
@@ -131,7 +170,7 @@ class PictureDrawer:
         """
         chosen = np.array([tracker], np.int32)
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, _ = self._views(chosen, cameras, self._aspect)
+        views, _ = self._views(chosen, cameras, self.aspect, self._lenses)
         views.world = np.zeros(1, np.int32)
         if self._bodies.any:
             posed = self._bodies.added(chosen, views.world, posed, self._snapshot.trackers)
@@ -144,13 +183,45 @@ class PictureDrawer:
         row = np.maximum(picture.object_id[0] - ACTOR_OBJECT, -1)
         return MovingParts(row, picture.depth[0], posed.part[0].copy(), posed.pose[0].copy())
 
-    def _views(self, chosen: Chosen, cameras: CameraState, aspect: float) -> tuple[Views, DrawList]:
+    def _own_views(
+        self, chosen: Chosen, cameras: CameraState, later: Floats | None = None
+    ) -> tuple[Views, DrawList]:
+        """Return views of trackers' own cameras, in pictures of any shape, see `_views`."""
+        views, movers = self._views(chosen, cameras, self.aspect, self._lenses, later)
+        if self._bodies.any:
+            bodies = self._snapshot.trackers
+            movers = self._bodies.added(chosen, views.world, movers, bodies, later)
+            views.world = np.arange(len(chosen), dtype=np.int32)
+        fields, which = np.unique(cameras.field_of_view, return_inverse=True)
+        vertical = np.array([field_along(f, self.aspect) for f in fields.tolist()])
+        views.vertical_field_of_view = vertical[which]
+        return views, movers
+
+    def _views(
+        self,
+        chosen: Chosen,
+        cameras: CameraState,
+        aspect: float,
+        lenses: Lenses | None = None,
+        later: Floats | None = None,
+    ) -> tuple[Views, DrawList]:
         """Return views of the worlds of trackers: cameras, with square pixels, and movers.
 
-        `aspect` is the height of what the cameras show over its width.
+        Args:
+            chosen: The trackers, shape (V,).
+            cameras: V cameras.
+            aspect: Height of what they show over its width.
+            lenses: The lenses of all trackers, if the cameras are theirs.
+            later: How long after what is seen each looks [s], shape (V,); None: then.
         """
-        ticks = self._snapshot.episodes.tick
-        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect)
+        ticks, seeing = self._snapshot.episodes.tick, cameras
+        if lenses is not None:
+            field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
+            seeing = cameras._replace(field_of_view=field)
+        world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
+        instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
+        if instant is not None and later is not None:
+            instant += later
         views = Views(
             position=cameras.position,
             rotation=cameras.rotation,
@@ -158,6 +229,7 @@ class PictureDrawer:
             subject=self._worlds.object_ids(self._snapshot.targets.actor[chosen]),
             field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
-            instant=np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None,
+            instant=instant,
+            lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers

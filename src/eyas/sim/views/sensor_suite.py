@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.grain import Grain
 from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.sensors.obstacles import Obstacles, obstacles_of
 from eyas.sensors.readings import Readings, has_errors
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.views.camera_model import CameraModel
+from eyas.sim.views.further_camera import FurtherOptics
+from eyas.sim.views.optics import Optics
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import Crash
@@ -38,7 +40,9 @@ class SensorSuite:
         lidar: None if it is off.
         readings: None if the sensors have no errors.
         grain: None if the camera has no noise.
-        camera: None if the camera is a pinhole without errors.
+        optics: What is modelled of the camera beyond a pinhole.
+        further: The cameras that trackers have beside that one.
+        events: None if there are no sensors of events.
         follow: Whether `advance` must be called after each physics step.
 
     Args:
@@ -82,7 +86,11 @@ class SensorSuite:
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
-        self.camera = CameraModel.of(config.camera, assets.lighting, len(active))
+        size = config.camera.height, config.camera.width
+        self.events = EventSensors.of(config.camera.events, size, len(active))
+        taken = assets, config.world.hour, len(active)
+        self.optics = Optics(config.camera, *taken)
+        self.further = tuple(FurtherOptics(camera, *taken) for camera in config.cameras)
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
@@ -106,12 +114,15 @@ class SensorSuite:
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
-            "camera": self.camera,
+            "events": self.events,
         }
         for name, sensor in sensors.items():
             if sensor is not None:
                 for tracker in trackers:
                     sensor.begin(tracker, key_of(tracker).stream(name))
+        for tracker in trackers:
+            for optics in (self.optics, *self.further):
+                optics.begin(tracker, key_of(tracker).stream)
         self.advance()
 
     def renew(self) -> None:

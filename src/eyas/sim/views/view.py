@@ -5,11 +5,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.sensors.camera.event_sensor import EventSensors
+from eyas.sensors.camera.exposure import ExposureState
 from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.event_views import EventViews
+from eyas.sim.views.further_camera import FurtherCamera
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
@@ -32,6 +36,8 @@ class View:
     Attributes:
         state: The state that is seen, read at each call.
         pictures: Draws it.
+        lenses: The lenses of the trackers' cameras; None: they bend nothing.
+        further: The cameras that trackers have beside their own, by name.
 
     Args:
         config: The settings.
@@ -55,8 +61,21 @@ class View:
         visible: bool,
     ) -> None:
         self.state = state
-        shown, camera = state.shown, sensors.camera
-        self.pictures = PictureDrawer(config, assets, worlds, light, shown, camera, visible=visible)
+        self.lenses = sensors.optics.bent
+        self.pictures = PictureDrawer(
+            config, assets, worlds, light, state, sensors.optics, visible=visible
+        )
+        self.further = {
+            optics.config.name: FurtherCamera(
+                optics, config, assets, worlds, light, state, visible=visible
+            )
+            for optics in sensors.further
+        }
+        self._events: EventViews | None = None
+        if sensors.events is not None:
+            events, seen, aspect = config.camera.events, sensors.events, self.pictures.aspect
+            shown = state.steady, state.vibration, aspect, self.pictures
+            self._events = EventViews(events, seen, *shown)
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
@@ -81,6 +100,25 @@ class View:
         grain = self._sensors.grain
         if grain is not None and picture.rgb is not None:
             grain.add(picture.rgb, trackers, self.state.shown.episodes.step_count)
+
+    def clean(self, tracker: int, height: int, width: int) -> NDArray[np.uint8]:
+        """Return a tracker's picture as it would be without noise, blur, dirt and the like: the
+        same instant, pose and lens, shape (height, width, 3).
+        """
+        picture = Picture.create(1, height, width)
+        self.pictures.draw_clean(np.array([tracker], np.int32), picture)
+        assert picture.rgb is not None
+        clean: NDArray[np.uint8] = picture.rgb[0]
+        return clean
+
+    def events(self, trackers: NDArray[np.int32]) -> EventSensors | None:
+        """Return the sensors of events; those of these trackers have told what has changed between
+        the last two instants at which this was called. None: there are none.
+        """
+        if self._events is None:
+            return None
+        self._events.look(trackers)
+        return self._events.sensors
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
@@ -138,6 +176,12 @@ class View:
         aspect = self._camera.height / self._camera.width
         actors = self.actors(tracker, later)
         return in_view(self.state.shown, actors, tracker, aspect)
+
+    @property
+    def exposure(self) -> ExposureState | None:
+        """Exposure times and speeds of the last pictures; None: cameras have no modelled sensor."""
+        camera = self._sensors.optics.model
+        return None if camera is None or camera.development is None else camera.development.exposure
 
     @property
     def lidar(self) -> Lidar | None:

@@ -24,7 +24,7 @@ from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before, write_actor
 
-__all__ = ["VisibleActors"]
+__all__ = ["Moving", "VisibleActors"]
 
 _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
@@ -217,6 +217,19 @@ def _list_actors(  # the records that it reads
     listed.needed[0] = entries
 
 
+class Moving(NamedTuple):
+    """E actors that matter for V views, with their motion."""
+
+    first: NDArray[np.int64]
+    """Where the actors of each view begin, shape (V,)."""
+    end: NDArray[np.int64]
+    """Where they end, shape (V,)."""
+    position: NDArray[np.float64]
+    """Reference points, world frame [m], shape (E, 3)."""
+    velocity: NDArray[np.float64]
+    """[m/s], shape (E, 3)."""
+
+
 class _Size(NamedTuple):
     """Capacity of the buffers."""
 
@@ -267,6 +280,39 @@ class VisibleActors:
             cameras: The V cameras.
             aspect: Height of what they show over its width.
         """
+        self._list_for(worlds, time, row, cameras, aspect)
+        self._pose()
+        count = len(worlds)
+        if count not in self._first:
+            self._first[count] = self._movers.first(count)
+        return self._first[count]
+
+    def moving(
+        self,
+        worlds: NDArray[np.integer],
+        time: NDArray[np.float64],
+        row: NDArray[np.integer] | None,
+        cameras: CameraState,
+        aspect: float,
+    ) -> "Moving":
+        """Return where these actors are, and how fast, without posing them; see `of`."""
+        self._list_for(worlds, time, row, cameras, aspect)
+        entries, (state, slots) = int(self._listed.needed[0]), (self._listed.state, self._size.slots)
+        world = self._listed.slot[:entries] // max(slots, 1)
+        order = np.argsort(world, kind="stable")
+        rows = np.arange(len(worlds)) if row is None else row
+        first, end = (np.searchsorted(world[order], rows, side) for side in ("left", "right"))
+        return Moving(first, end, state.position[0, order], state.velocity[0, order])
+
+    def _list_for(
+        self,
+        worlds: NDArray[np.integer],
+        time: NDArray[np.float64],
+        row: NDArray[np.integer] | None,
+        cameras: CameraState,
+        aspect: float,
+    ) -> None:
+        """Find the actors that matter, see `of`."""
         count, views = len(worlds), len(cameras.position)
         self._grow(_Size(count, views, 0, 0))
         query = self._query
@@ -285,11 +331,7 @@ class VisibleActors:
         entries, slots = self._listed.needed.tolist()
         if entries > self._size.entries or slots > self._size.slots:
             self._grow(_Size(0, 0, entries, slots))
-            return self.of(worlds, time, row, cameras, aspect)
-        self._pose()
-        if count not in self._first:
-            self._first[count] = self._movers.first(count)
-        return self._first[count]
+            self._list_for(worlds, time, row, cameras, aspect)
 
     def _pose(self) -> None:
         """Let the rigs pose the actors, those of each kind at once."""

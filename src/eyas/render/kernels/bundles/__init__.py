@@ -11,6 +11,14 @@ themselves. Numbers of a bundle are float32 if their names are those of light, e
 
 from eyas.render.kernels.bundles.band import Band
 from eyas.render.kernels.bundles.geometry import GROUP, Geometry, Movers
+from eyas.render.kernels.bundles.lens import (
+    DARK,
+    ELSEWHERE,
+    FACES,
+    LENS_TILE,
+    Glass,
+    LensTables,
+)
 from eyas.render.kernels.bundles.light import (
     TILE,
     Air,
@@ -24,7 +32,11 @@ from eyas.render.kernels.bundles.view import NEAR, Plane, Planes, Point, Project
 from eyas.render.kernels.bundles.work import Canvas, Job, Output, Scratch, Task
 
 __all__ = [
+    "DARK",
+    "ELSEWHERE",
+    "FACES",
     "GROUP",
+    "LENS_TILE",
     "NEAR",
     "TILE",
     "Air",
@@ -32,9 +44,11 @@ __all__ = [
     "Canvas",
     "Direction",
     "Geometry",
+    "Glass",
     "Illumination",
     "Job",
     "LampFrame",
+    "LensTables",
     "Light",
     "MapFrame",
     "Movers",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles.geometry import Geometry, Movers
+from eyas.render.kernels.bundles.lens import Glass
 from eyas.render.kernels.bundles.light import Illumination, Light
 from eyas.render.kernels.bundles.view import View
 
@@ -31,6 +32,10 @@ class Band(NamedTuple):
     """Not `view`: numba takes that for the method of arrays."""
     until: int
     """The last `eyas.state.draw.DrawStage`."""
+    columns: int
+    """Width and height of what the band writes [pixels]: the camera's own, but through a lens."""
+    lines: int
+    glass: Glass
     key: NDArray[np.int64]
     """This and the following: the worker's rows of `Scratch`; of this, `alone` and `shade` only as
     many rows of samples as the band has."""

@@ -33,6 +33,8 @@ class Job(NamedTuple):
     """Time for falling snow [s], shape (V,), or (0,) if none falls."""
     focal: NDArray[np.float64]
     """Focal length along rows and along columns [pixels], shape (V, 2)."""
+    lens: NDArray[np.int32]
+    """Row of `LensTables` of each view, shape (V,), or (0,) if no lens bends the pictures."""
 
 
 class Scratch(NamedTuple):
@@ -68,6 +70,15 @@ class Scratch(NamedTuple):
     span: NDArray[np.int32]
     """A triangle in eight rows of samples, see `eyas.render.kernels.visibility.fill`,
     shape (K, 7, 8)."""
+    word: NDArray[np.uint32]
+    """`shade` again, four bytes in each element, shape (K, rows, columns)."""
+    bent_key: NDArray[np.int64]
+    """`key` as the picture shows it through a lens, `ELSEWHERE` where another face does,
+    shape (K, rows, columns), or (K, 0, 0)."""
+    bent_shade: NDArray[np.uint8]
+    """`shade` in the same way, shape (K, rows, columns, 4), or (K, 0, 0, 4)."""
+    bent_tile: NDArray[np.int32]
+    """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 
 
 class Output(NamedTuple):

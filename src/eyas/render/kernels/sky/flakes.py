@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 from eyas.lanes import address_of, kernel
-from eyas.render.kernels.bundles import Band, Canvas, Light, View
+from eyas.render.kernels.bundles import Band, Canvas, Glass, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
+from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.sky.falling import (
@@ -35,6 +36,10 @@ NEAREST = 0.7
 """Distance of the first shell [m]; nearer flakes would be blurs."""
 
 GROWTH = 2.6
+
+_LONGEST = 400.0
+"""Columns and rows of streaks through a lens that are longer lie at its edge, half of them outside
+[pixels]."""
 
 
 class Snowfall(NamedTuple):
@@ -219,16 +224,22 @@ def _draw_flake(
     _, aside, above = _seen_from(
         view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.sinking * exposed
     )
-    radius = _radius(falling, size, ahead) * view.focal / ahead
+    half = _radius(falling, size, ahead)
     if falling.coloured:  # a leaf that tumbles
-        radius *= 0.35 + 0.65 * abs(_wave(2.7 * turn))
+        half *= 0.35 + 0.65 * abs(_wave(2.7 * turn))
+    radius = half * view.focal / ahead
     if radius < falling.smallest:
         return
-    across = view.focal_x / (ahead * view.samples)
-    down = view.focal_y / (ahead * view.samples)
-    column = 0.5 * view.width / view.samples - left * across
-    row = (0.5 * view.height - view.top) / view.samples - up * down
-    streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
+    if snowfall.band.glass.on == 1:
+        streak = _bent(snowfall.band.glass, (ahead, left, up), (aside, above), half)
+        if streak.radius < falling.smallest:
+            return
+    else:
+        across = view.focal_x / (ahead * view.samples)
+        down = view.focal_y / (ahead * view.samples)
+        column = 0.5 * view.width / view.samples - left * across
+        row = (0.5 * view.height - view.top) / view.samples - up * down
+        streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
     colour, pale = snowfall.white, snowfall.bytes
     if falling.coloured:
         colour = leaf_colour(colour, tenth(number ^ other, 5))
@@ -258,6 +269,28 @@ class Streak(NamedTuple):
 
 
 @kernel
+def _bent(
+    glass: Glass, place: tuple[float, float, float], moved: tuple[float, float], radius: float
+) -> Streak:
+    """Return a flake that is seen through a lens; of radius 0 if it is not.
+
+    Args:
+        glass: The lens.
+        place: Forward, left and up in its face [m].
+        moved: How far it moves left and up while the picture is exposed [m].
+        radius: [m]
+    """
+    ahead, left, up = place
+    column, row = shown_at(glass, ahead, left, up)
+    to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
+    edge_column, edge_row = shown_at(glass, ahead, left - radius, up)
+    wide = math.sqrt((edge_column - column) ** 2 + (edge_row - row) ** 2)
+    if abs(to_column - column) + abs(to_row - row) > _LONGEST:
+        wide = 0.0
+    return Streak(column, row, to_column - column, to_row - row, wide, 1.0 / ahead)
+
+
+@kernel
 def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall: Snowfall) -> None:
     """Draw a soft streak.
 
@@ -271,12 +304,11 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    key, view = snowfall.band.key, snowfall.band.camera
-    step = view.samples
+    band, key, step = snowfall.band, snowfall.band.key, snowfall.band.camera.samples
     first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
-    last = min(i8(math.ceil(max(row, row + to_row) + reach)), view.rows // step)
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)), band.lines)
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
-    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), view.width // step)
+    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), band.columns)
     if first >= last or start >= stop:
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
@@ -288,7 +320,8 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
     strength *= snowfall.falling.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     for i in range(first, last):
         for j in range(start, stop):
-            if distance_inverse(key[i * step, j * step]) > inverse:
+            shown = key[i * step, j * step]
+            if shown < i8(0) or distance_inverse(shown) > inverse:
                 continue
             y, x = i + 0.5 - row, j + 0.5 - column
             share = (x * to_column + y * to_row) / (length * length + 1e-9)

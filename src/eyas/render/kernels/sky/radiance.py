@@ -21,12 +21,13 @@ from eyas.lanes.vector import (
     like,
     root,
     select,
+    splat,
     to_f4,
     to_i4,
 )
-from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
+from eyas.render.kernels.bundles import Band, Canvas, Direction, Glass, Illumination, Light
 from eyas.render.kernels.pixels import keys_of, write_colours
-from eyas.render.kernels.rays import Rays, ray_of, rays_of
+from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
 from eyas.render.kernels.sky.mist import glare, veil
@@ -321,6 +322,17 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
     return bits
 
 
+@kernel(inline=True)
+def _middle(glass: Glass, row: int, first: int, samples: int) -> tuple[float, float]:
+    """Return line and column in their face of the middles of eight pixels."""
+    line, column, _ = place_in_face(glass, row, first, samples)
+    for k in range(1, samples * samples):
+        down, right, _ = place_in_face(glass, row + (k >> 1), first + (k & 1), samples)
+        line, column = line + down, column + right
+    part = f4(1.0) / f4(samples * samples)
+    return line * part, column * part
+
+
 @kernel
 def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """Write the sky at the centre of each pixel in which any sample shows it.
@@ -334,8 +346,8 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     view, light, lit, key = band.camera, band.light, band.lit, band.key
     rays, samples = rays_of(view), view.samples
     side, half = f4(samples), f4(0.5) * f4(samples)
-    width = view.width // samples
-    for row in range(view.rows // samples):
+    width, glass = band.columns, band.glass
+    for row in range(band.lines):
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(key, row * samples, first * samples, samples)
             if width - first < WIDTH:
@@ -343,5 +355,8 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
             if chosen == 0:
                 continue
             column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
-            colour = sky_colour(light, lit, rays, rays.top + f4(row) * side + half, column)
+            line = splat(rays.top + f4(row) * side + half)
+            if glass.on == 1:
+                line, column = _middle(glass, row * samples, first * samples, samples)
+            colour = sky_colour(light, lit, rays, line, column)
             write_colours(canvas, light, lit.air.exposure, row, first, chosen, colour)

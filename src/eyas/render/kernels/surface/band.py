@@ -23,7 +23,7 @@ from eyas.lanes.vector import (
 from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import keys_of, pack, write_colours, write_pixels
-from eyas.render.kernels.rays import Rays, ray_of, rays_of
+from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -79,6 +79,7 @@ def _colours_of(
     distance: float,
     line: float,
     column: float,
+    wide: float,
     shade: int,
 ) -> Colour:
     """Return the radiance of eight samples; that of those not wanted is 0.
@@ -86,6 +87,10 @@ def _colours_of(
     All samples of one instance are computed together: its pose is the same number in all lanes.
     """
     ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
+    if band.glass.on == 1:
+        # A pixel spans an angle times the distance along the axis: the longer that, the wider it.
+        part = f4(1.0) / wide
+        ray, distance = (ray[0] * part, ray[1] * part, ray[2] * part), distance * wide
     row, triangle = drawn_of(tag), triangle_of(tag)
     red, green, blue, left = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), bits_of(wanted)
     while left != 0:
@@ -102,18 +107,22 @@ def _colours_of(
 
 @kernel(inline=True)
 def _alike(
-    key: NDArray[np.int64], line: int, sample: int, k: int
-) -> tuple[int, bool, int, float, float, float]:
+    band: Band, line: int, sample: int, k: int
+) -> tuple[int, bool, int, float, float, float, float]:
     """Compare sample `k` of four of eight pixels with the others.
 
     Returns:
         Its tag, whether no sample before it shows the same, and of all that show the same: how
-        many they are, and the means of 1/distance, row and column from the pixel's corner.
+        many they are, and the means of 1/distance, row and column from the pixel's corner, and 1;
+        through a lens, row, column and width in the face.
     """
+    key, glass = band.key, band.glass
     tag = tag_of(keys_of(key, line + (k >> 1), sample + (k & 1), 2))
     zero = f4(0.0)
     count, total = splat(zero), splat(zero)
-    down, right = splat(zero), splat(zero)
+    down, right, wide = splat(zero), splat(zero), splat(f4(1.0))
+    if glass.on == 1:
+        wide = splat(zero)
     is_first = splat(f4(1.0)) > zero
     for other in range(4):
         keys = keys_of(key, line + (other >> 1), sample + (other & 1), 2)
@@ -123,10 +132,16 @@ def _alike(
         share = select(same, splat(f4(1.0)), zero)
         count += share
         total += share * distance_inverse(keys)
-        down += share * (f4(other >> 1) + f4(0.5))
-        right += share * (f4(other & 1) + f4(0.5))
+        if glass.on == 1:
+            below, aside, size = place_in_face(glass, line + (other >> 1), sample + (other & 1), 2)
+            down, right, wide = down + share * below, right + share * aside, wide + share * size
+        else:
+            down += share * (f4(other >> 1) + f4(0.5))
+            right += share * (f4(other & 1) + f4(0.5))
     part = f4(1.0) / greater(count, f4(1.0))
-    return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part
+    if glass.on == 1:
+        wide = greater(wide * part, f4(1e-6))
+    return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part, wide
 
 
 @kernel(inline=True)
@@ -134,13 +149,15 @@ def _shade_one(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, fir
     """Write eight pixels of a row, with one sample each."""
     key, numbers, half = band.key, to_f4(lane_numbers()), splat(f4(0.5))
     keys = keys_of(key, row, first, 1)
-    seen = (numbers < f4(width - first)) & (keys != i8(0))
+    seen = (numbers < f4(width - first)) & (keys > i8(0))
     if not any_of(seen):
         return
     words = load_words(band.shade, 4 * (row * key.shape[1] + first))
     distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
-    line, column = half + (rays.top + f4(row)), numbers + f4(first) + half
-    colour = _colours_of(band, rays, tag_of(keys), seen, distance, line, column, words)
+    line, column, wide = half + (rays.top + f4(row)), numbers + f4(first) + half, half
+    if band.glass.on == 1:
+        line, column, wide = place_in_face(band.glass, row, first, 1)
+    colour = _colours_of(band, rays, tag_of(keys), seen, distance, line, column, wide, words)
     exposure = band.lit.air.exposure
     write_colours(canvas, band.light, exposure, row, first, bits_of(seen), colour)
 
@@ -160,18 +177,19 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
     even, eight = u4(0x00FF00FF), u4(8)
     for k in range(4):
         keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
-        seen = inside & (keys != i8(0))
+        seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
-        sky = _written(pixels, row, first, inside & ~seen)
+        sky = _written(pixels, row, first, inside & (keys == i8(0)))
         both, green = both + (sky & even), green + ((sky >> eight) & even)
-        tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
+        tag, is_first, weight, inverse, down, right, wide = _alike(band, line, sample, k)
         seen &= is_first
         if not any_of(seen):
             continue
         words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
         distance = f4(1.0) / select(seen, inverse, f4(1.0))
-        down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
-        colour = _colours_of(band, rays, tag, seen, distance, down, right, words)
+        if band.glass.on == 0:
+            down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+        colour = _colours_of(band, rays, tag, seen, distance, down, right, wide, words)
         red_byte, green_byte, blue_byte = tone_bytes(band.light, band.lit.air.exposure, colour)
         packed = select(seen, pack(red_byte, green_byte, blue_byte), u4(0))
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
@@ -193,22 +211,23 @@ def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, 
     zero, one = f4(0.0), splat(f4(1.0))
     for k in range(4):
         keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
-        seen = inside & (keys != i8(0))
+        seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
-        sky = inside & ~seen
+        sky = inside & (keys == i8(0))
         if any_of(sky):
             at = select(sky, lane_numbers() + i4(row * width + first), i4(0))
             red += select(sky, gather(canvas.red, at), zero)
             green += select(sky, gather(canvas.green, at), zero)
             blue += select(sky, gather(canvas.blue, at), zero)
-        tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
+        tag, is_first, weight, inverse, down, right, wide = _alike(band, line, sample, k)
         seen &= is_first
         if not any_of(seen):
             continue
         words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
         distance = f4(1.0) / select(seen, inverse, one)
-        down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
-        colour = _colours_of(band, rays, tag, seen, distance, down, right, words)
+        if band.glass.on == 0:
+            down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+        colour = _colours_of(band, rays, tag, seen, distance, down, right, wide, words)
         share = to_f4(to_i4(weight))
         red += share * colour[0]
         green += share * colour[1]
@@ -227,8 +246,7 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    rays, view = rays_of(band.camera), band.camera
-    width, rows = view.width // view.samples, view.rows // view.samples
+    rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
     if view.samples == 1:
         for row in range(rows):
             for first in range(0, width, WIDTH):

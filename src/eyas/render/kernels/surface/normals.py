@@ -20,7 +20,7 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.bundles import Band, Direction
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
-from eyas.render.kernels.rays import ray_of, rays_of
+from eyas.render.kernels.rays import camera_axes, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import attributes_of, no_frame
 from eyas.render.kernels.surface.band import instance_frame
@@ -52,8 +52,9 @@ def _of_instance(band: Band, row: int, triangle: int, ray: Vector, distance: flo
     # Leaves are seen from both sides, and smooth normals may turn away at outlines.
     away = at.normal[0] * x + at.normal[1] * y + at.normal[2] * z > f4(0.0)
     sign = select(away, f4(-1.0), f4(1.0))
-    right, down = _byte(rays.left, at.normal, -sign), _byte(rays.up, at.normal, -sign)
-    return pack(right, down, _byte(rays.ahead, at.normal, sign))
+    ahead, left, up = camera_axes(band)
+    right, down = _byte(left, at.normal, -sign), _byte(up, at.normal, -sign)
+    return pack(right, down, _byte(ahead, at.normal, sign))
 
 
 @kernel
@@ -66,20 +67,23 @@ def write_normals(band: Band, pixels: NDArray[np.uint8]) -> None:
         band: One sample for each pixel.
         pixels: Shape (rows, columns, 3).
     """
-    rays, key, width = rays_of(band.camera), band.key, pixels.shape[1]
+    rays, key, width, glass = rays_of(band.camera), band.key, pixels.shape[1], band.glass
     numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
     for line in range(pixels.shape[0]):
         for start in range(0, width, WIDTH):
             keys = keys_of(key, line, start, 1)
-            inside = numbers < f4(width - start)
+            inside = (numbers < f4(width - start)) & (keys >= i8(0))
             seen = inside & (keys != i8(0))
             distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
-            ray = ray_of(rays, half + (rays.top + f4(line)), numbers + f4(start) + half)
-            row, triangle = drawn_of(tag_of(keys)), triangle_of(tag_of(keys))
+            row, column = half + (rays.top + f4(line)), numbers + f4(start) + half
+            if glass.on == 1:
+                row, column, _ = place_in_face(glass, line, start, 1)
+            ray = ray_of(rays, row, column)
+            drawn, triangle = drawn_of(tag_of(keys)), triangle_of(tag_of(keys))
             packed, left = splat(u4(0)), bits_of(seen)
             while left != 0:
-                which = lane(row, first_bit(left))
-                same = seen & (row == which)
+                which = lane(drawn, first_bit(left))
+                same = seen & (drawn == which)
                 left &= ~bits_of(same)
                 known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
                 packed = select(same, _of_instance(band, which, known, ray, away), packed)

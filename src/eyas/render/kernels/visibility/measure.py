@@ -18,6 +18,7 @@ from eyas.lanes.vector import (
     to_i4,
 )
 from eyas.render.kernels.bundles import Band, View
+from eyas.render.kernels.lens.measure import count_bent
 from eyas.render.kernels.light.caster import Caster, caster_of
 from eyas.render.kernels.samples import ScreenBox, around, empty_box
 from eyas.render.kernels.scalars import i4, i8
@@ -113,21 +114,28 @@ def _count(band: Band, box: ScreenBox, first: int, last: int, result: NDArray[np
 
 
 @kernel
-def _measure(band: Band, first: int, last: int, count: int, result: NDArray[np.int32]) -> None:
+def _measure(
+    band: Band, shown: Band, first: int, last: int, count: int, result: NDArray[np.int32]
+) -> None:
     """Measure slots `first` to `last`; see `measure_actors`."""
     if draw_slots(band, first, last, count) == count:
         return
     box = _screen_box(address_of(caster_of(band, first, last)), band.camera)
     fixtures = len(band.geometry.fixture_prototype)
-    _count(band, box, fixtures + first, fixtures + last, result)
+    if shown.glass.on == 1:
+        things = fixtures + first, fixtures + last
+        count_bent(band, shown, box, _MARGIN, things, result)
+    else:
+        _count(band, box, fixtures + first, fixtures + last, result)
 
 
 @kernel
-def measure_actors(band: Band, count: int, output: NDArray[np.int32]) -> None:
+def measure_actors(band: Band, shown: Band, count: int, output: NDArray[np.int32]) -> None:
     """Measure all actors of a world in a band, each alone and as the band shows it.
 
     Args:
         band: One sample for each pixel; `alone` must be clear, and is so again.
+        shown: What the picture shows: the same, or the picture of which it is a face.
         count: Rows of `Band.drawn` that it uses.
         output: See `Output.actor`, shape (A, 10); rows of actors outside the band are not written.
     """
@@ -138,12 +146,14 @@ def measure_actors(band: Band, count: int, output: NDArray[np.int32]) -> None:
         last = end_of_thing(band, first)
         actor = movers.object_id[world, first] - ACTOR_OBJECT
         if 0 <= actor < len(output):
-            _measure(band, first, last, count, output[actor])
+            _measure(band, shown, first, last, count, output[actor])
         first = next_thing(band, last)
 
 
 @kernel
-def measure_subject(band: Band, subject: int, count: int, result: NDArray[np.int32]) -> None:
+def measure_subject(
+    band: Band, shown: Band, subject: int, count: int, result: NDArray[np.int32]
+) -> None:
     """Measure the object of an id, if it is one of the moving things; see `measure_actors`."""
     movers, world = band.movers, band.world
     slots = movers.part.shape[1]
@@ -151,4 +161,4 @@ def measure_subject(band: Band, subject: int, count: int, result: NDArray[np.int
     while first < slots and movers.object_id[world, first] != subject:
         first = next_thing(band, end_of_thing(band, first))
     if first < slots:
-        _measure(band, first, end_of_thing(band, first), count, result)
+        _measure(band, shown, first, end_of_thing(band, first), count, result)

@@ -53,7 +53,8 @@ def write_objects(band: Band, output: NDArray[np.int32]) -> None:
     key = band.key
     for row in range(output.shape[0]):
         for column in range(output.shape[1]):
-            output[row, column] = object_of(band, key[row, column])
+            if key[row, column] >= i8(0):
+                output[row, column] = object_of(band, key[row, column])
 
 
 @kernel
@@ -76,6 +77,8 @@ def write_classes(band: Band, output: NDArray[np.uint8]) -> None:
         before, shown = i8(0), _class_of(band, i8(0))
         for column in range(output.shape[1]):
             now = key[row, column]
+            if now < i8(0):
+                continue
             if tag_of(now) != tag_of(before) or (now == i8(0)) != (before == i8(0)):
                 shown = _class_of(band, now)
             before = now

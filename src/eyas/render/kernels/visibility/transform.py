@@ -10,7 +10,14 @@ from eyas.render.kernels.bundles import NEAR, Job, Point, Projection, Row, View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.cull import planes_of
 
-__all__ = ["clip_near", "in_frame", "object_projection", "scale_of", "view_of"]
+__all__ = [
+    "clip_near",
+    "in_frame",
+    "object_projection",
+    "scale_of",
+    "view_along",
+    "view_of",
+]
 
 
 @kernel(inline=True)
@@ -27,13 +34,37 @@ def view_of(job: Job, band: int, width: int, height: int, samples: int) -> View:
     number, top, bottom = job.band[band, 0], job.band[band, 1], job.band[band, 2]
     eye = Point(job.eye[number, 0], job.eye[number, 1], job.eye[number, 2])
     ahead, left, up = _axis(job, number, 0), _axis(job, number, 1), _axis(job, number, 2)
-    pixels_x, pixels_y = job.focal[number, 0], job.focal[number, 1]
+    focal = job.focal[number, 0], job.focal[number, 1]
+    return view_along(eye, (ahead, left, up), focal, (width, height), (top, bottom), samples)
+
+
+@kernel(inline=True)
+def view_along(
+    eye: Point,
+    axes: tuple[Point, Point, Point],
+    focal: tuple[float, float],
+    size: tuple[int, int],
+    rows: tuple[int, int],
+    samples: int,
+) -> View:
+    """Return a band of a view.
+
+    Args:
+        eye: Optical centre.
+        axes: Forward, left and up.
+        focal: Focal length along rows and along columns [pixels].
+        size: Width and height of the whole picture [pixels].
+        rows: Its first row, and the row after the last [pixels].
+        samples: Samples along a side of each pixel.
+    """
+    ahead, left, up = axes
+    pixels_x, pixels_y = focal
     focal_x, focal_y = pixels_x * samples, pixels_y * samples
     screen = Projection(
         _through(eye, -focal_x, left), _through(eye, -focal_y, up), _through(eye, 1.0, ahead)
     )
-    columns, lines = i8(width * samples), i8(height * samples)
-    first, last = i8(top * samples), i8(bottom * samples)
+    columns, lines = i8(size[0] * samples), i8(size[1] * samples)
+    first, last = i8(rows[0] * samples), i8(rows[1] * samples)
     return View(
         eye, ahead, left, up, focal_x, focal_y, math.sqrt(pixels_x * pixels_y), columns, lines,
         first, last - first, i8(samples), screen, planes_of(screen, columns, lines, first, last),

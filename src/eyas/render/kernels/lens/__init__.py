@@ -1,0 +1,1 @@
+"""Views through lenses that bend: tables, faces, what each sample shows."""

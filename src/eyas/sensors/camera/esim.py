@@ -1,0 +1,230 @@
+"""Pixels that see changes: the contrast model of ESIM, with the noise of real sensors.
+
+A pixel holds a reference of the logarithm of its light. Each time the light has changed by its
+contrast threshold, it tells an event and moves the reference by this; in between two pictures the
+logarithm is taken to change linearly (Rebecq, Gehrig, Scaramuzza: ESIM: an Open Event Camera
+Simulator, CoRL 2018, section 3). Real pixels differ in their thresholds, are blind for a while
+after an event, and leak: their reference drifts, which tells events of more light; in the dark,
+single photons tell events of either kind (Hu, Liu, Delbruck: v2e: From Video Frames to Realistic DVS
+Events, CVPRW 2021, section 4).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.lanes import kernel, parallel
+from eyas.lanes.elementary import log
+from eyas.sensors.chance import mixed, normal, uniform
+
+__all__ = ["EVENT", "EventPixels", "EventSettings", "Look", "see_light"]
+
+Single = NDArray[np.float32]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+EVENT = np.dtype([("x", "<u2"), ("y", "<u2"), ("p", "<i2"), ("t", "<i8")])
+"""An event: column and row [pixels], 1 for more light and 0 for less, and the time [us]. The same
+names and types as those of Metavision's and expelliarmus' arrays."""
+
+
+class EventSettings(NamedTuple):
+    """`EventsConfig`, for kernels."""
+
+    positive: float
+    negative: float
+    mismatch: float
+    refractory: float
+    leak: float
+    shot: float
+    dark: float
+    width: int
+    """Pixels in a row."""
+
+
+class EventPixels(NamedTuple):
+    """The pixels of N sensors, and what they have told."""
+
+    reference: Single
+    """Logarithm of the light at the last event, shape (N, pixels)."""
+    last: Single
+    """Logarithm of the light when it was last seen, shape (N, pixels)."""
+    positive: Single
+    """Threshold of more light, shape (N, pixels)."""
+    negative: Single
+    """Threshold of less light, shape (N, pixels)."""
+    blind: Floats
+    """Until when it tells nothing [s], shape (N, pixels)."""
+    time: Floats
+    """When each sensor has last seen [s], shape (N,)."""
+    seen: Integers
+    """How often each has seen in its episode, shape (N,); 0: it is to begin."""
+    seed: Integers
+    """Seed of the noise of each in its episode, shape (N,)."""
+    count: Integers
+    """Number of events of each, shape (N,)."""
+    told: NDArray[np.void]
+    """Its events, of dtype `EVENT`, in the first elements of its row, those of each pixel in the
+    order of their times, shape (N, room)."""
+
+    @classmethod
+    def create(cls, count: int, pixels: int) -> "EventPixels":
+        """Return pixels that have seen nothing."""
+        plane = (count, pixels)
+        light = [np.zeros(plane, np.float32) for _ in range(4)]
+        numbers = [np.zeros(count, np.int64) for _ in range(3)]
+        told = np.zeros((count, 4 * pixels), EVENT)
+        return cls(*light, np.zeros(plane), np.zeros(count), *numbers, told)
+
+
+class Look(NamedTuple):
+    """P pictures of the light that V of the sensors see, those of each in the order of time."""
+
+    sensor: Integers
+    """Which sensors, shape (V,)."""
+    next: Integers
+    """The first picture of each; written: the first that was not seen, since there is no room for
+    its events, shape (V,)."""
+    end: Integers
+    """Where those of each end, shape (V,)."""
+    radiance: Single
+    """Linear, red, green and blue, shape (P, 3, pixels)."""
+    time: Floats
+    """[s], shape (P,)"""
+    light: Single
+    """Working memory, shape (V, pixels)."""
+
+
+@parallel
+def see_light(
+    worker: int, workers: int, pixels: EventPixels, settings: EventSettings, look: Look
+) -> None:
+    """Let sensors see, and append their events, as far as there is room for them."""
+    for v in range(worker, look.sensor.shape[0], workers):
+        n, light = look.sensor[v], look.light[v]
+        for p in range(look.next[v], look.end[v]):
+            _log_of_light(look.radiance[p], settings.dark, light)
+            if pixels.seen[n] == 0:
+                _begin(pixels, settings, n, light)
+            elif pixels.count[n] + _most_events(pixels, settings, n, light) > pixels.told.shape[1]:
+                break
+            else:
+                _tell(pixels, settings, n, light, look.time[p])
+            pixels.time[n] = look.time[p]
+            pixels.seen[n] += 1
+            look.next[v] = p + 1
+
+
+@kernel(inline=True)
+def _log_of_light(radiance: Single, dark: float, light: Single) -> None:
+    """Write the natural logarithm of the luminance of each pixel (ITU-R BT.709)."""
+    for at in range(light.shape[0]):
+        red, green, blue = radiance[0, at], radiance[1, at], radiance[2, at]
+        light[at] = log(max(0.2126 * red + 0.7152 * green + 0.0722 * blue, 0.0) + dark)
+
+
+@kernel(inline=True)
+def _begin(pixels: EventPixels, settings: EventSettings, n: int, light: Single) -> None:
+    """Begin an episode of sensor `n`: each pixel has seen what it sees, and has its thresholds."""
+    for at in range(light.shape[0]):
+        pixels.reference[n, at] = pixels.last[n, at] = light[at]
+        pixels.blind[n, at] = -1.0
+        more, less = 1.0, 1.0
+        if settings.mismatch > 0.0:
+            more += settings.mismatch * normal(pixels.seed[n], at, 0)
+            less += settings.mismatch * normal(pixels.seed[n], at, 1)
+        pixels.positive[n, at] = settings.positive * max(more, _LEAST)
+        pixels.negative[n, at] = settings.negative * max(less, _LEAST)
+
+
+@kernel(inline=True)
+def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Single) -> int:
+    """Return how many events the next look may tell at most."""
+    most = 0
+    for at in range(light.shape[0]):
+        away = light[at] - pixels.reference[n, at]
+        step = pixels.positive[n, at] if away > 0.0 else pixels.negative[n, at]
+        most += int(abs(away) / step + 0.001)  # more than roundings
+    of_noise = 0
+    if settings.shot > 0.0:
+        of_noise += light.shape[0]
+    if settings.leak > 0.0:
+        of_noise += light.shape[0]
+    return most + of_noise
+
+
+@kernel(inline=True)
+def _tell(
+    pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float
+) -> None:
+    """Let sensor `n` see the light at a time, and append its events."""
+    base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
+    for at in range(light.shape[0]):
+        _shot_noise(pixels, settings, n, at, light[at], time, base)
+        _contrast(pixels, settings, n, at, light[at], time)
+        pixels.last[n, at] = light[at]
+
+
+_LEAST = 0.05
+"""Least threshold of any pixel, as a share: v2e's 0.01 of 0.2."""
+
+_BRIGHT = -1.6
+"""Logarithm of the light, of white paper in the sun, of what is bright for shot noise."""
+
+
+@kernel(inline=True)
+def _contrast(
+    pixels: EventPixels, settings: EventSettings, n: int, at: int, now: float, time: float
+) -> None:
+    """Append the events of one pixel, and move its reference.
+
+    The leak lowers the reference; as the difference to it is all that counts, the light is let
+    rise in its place, at constant speed, and the reference is put back at the end.
+    """
+    begin, length = pixels.time[n], time - pixels.time[n]
+    reference, before = float(pixels.reference[n, at]), float(pixels.last[n, at])
+    drift = settings.leak * float(pixels.positive[n, at]) * length
+    after = now + drift
+    more = after > before
+    step = float(pixels.positive[n, at]) if more else -float(pixels.negative[n, at])
+    sign = 1.0 if more else -1.0
+    level = reference + step
+    while sign * (after - level) >= 0.0 and after != before:
+        share = min(max((level - before) / (after - before), 0.0), 1.0)
+        crossed = begin + share * length
+        if crossed >= pixels.blind[n, at]:
+            _append(pixels, settings, n, at, 1 if more else 0, crossed)
+            pixels.blind[n, at] = crossed + settings.refractory
+        reference = level
+        level += step
+    pixels.reference[n, at] = reference - drift
+
+
+@kernel(inline=True)
+def _shot_noise(
+    pixels: EventPixels, settings: EventSettings, n: int, at: int, light: float, time: float,
+    base: int,
+) -> None:  # fmt: skip
+    """Append the event of a pixel that single photons tell, if one does.
+
+    At most one in a look: at 10 Hz and 2 ms, 1 % of those that would come are left out.
+    """
+    if settings.shot <= 0.0:
+        return
+    length = time - pixels.time[n]
+    bright = min(max(1.0 + (light - _BRIGHT) / 4.0, 0.0), 1.0)
+    rate = settings.shot * (1.0 - 0.75 * bright)
+    if uniform(base, at, 0) < rate * length:
+        came = pixels.time[n] + uniform(base, at, 1) * length
+        _append(pixels, settings, n, at, 1 if uniform(base, at, 2) < 0.5 else 0, came)
+
+
+@kernel(inline=True)
+def _append(
+    pixels: EventPixels, settings: EventSettings, n: int, at: int, sign: int, time: float
+) -> None:
+    event = pixels.told[n, pixels.count[n]]
+    event.x, event.y = at % settings.width, at // settings.width
+    event.p, event.t = sign, int(time * 1e6 + 0.5)
+    pixels.count[n] += 1
