@@ -113,7 +113,7 @@ def test_bands_change_no_byte(city, renderer_of, drawn, threads, monkeypatch, sa
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
     renderer._tasks.clear()  # which keep their bands
-    assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 0, False, 2)).job.band) == 24
+    assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 0, False, False, 2)).job.band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160), samples)).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
 

@@ -115,7 +115,7 @@ def test_a_low_sun_throws_shadows_as_long_as_the_light_says(drawn, renderer_of):
     views = looking([(-8.0, 0.0, 40.0)], pitch=1.5707, fov=0.9)
     ends = []
     for longest in (4.0, 10.0):
-        light = dataclasses.replace(LOW, longest_shadow=longest, ambient_up=(0.02, 0.02, 0.02))
+        light = dataclasses.replace(LOW, longest_shadow=longest, sun_colour=(4.0, 3.0, 2.0))
         renderer = renderer_of(plain(ObjectClass.ROAD, "asphalt"), car_parts(), light)
         bare = drawn(renderer, views).rgb[0].astype(int)
         dark = bare - drawn(renderer, views, cars).rgb[0].astype(int)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.state.lighting import Lighting
 from eyas.state.scene import ObjectClass
-from eyas.world.weather import sun_at
+from eyas.world.hours import sun_at
 
 __all__ = [
     "CLOTHES",
