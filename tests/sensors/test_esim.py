@@ -24,10 +24,10 @@ class Sensor:
         radiance = np.tile(np.exp(np.asarray(light, np.float64)).astype(np.float32), (1, 3, 1))
         end, time = np.ones(1, np.int64), self.pixels.time + length
         look = Look(end - 1, end - 1, end, radiance, time, np.zeros((1, len(light)), np.float32))
-        self.pixels.count[:] = 0
+        self.pixels.number[:] = 0
         see_light(1, self.pixels, self.settings, look)
         assert look.next[0] == 1
-        return self.pixels.told[0, : self.pixels.count[0]].copy()
+        return self.pixels.told[0, : self.pixels.number[0]].copy()
 
 
 def test_a_change_tells_an_event_for_each_threshold_at_the_times_of_the_crossings():
@@ -125,10 +125,10 @@ def test_what_there_is_no_room_for_is_not_seen():
         bright.astype(np.float32), np.array([0.01, 0.02]), np.zeros((1, 1), np.float32),
     )  # fmt: skip
     see_light(1, pixels, sensor.settings, look)
-    assert (look.next[0], pixels.count[0]) == (1, 1)
+    assert (look.next[0], pixels.number[0]) == (1, 1)
     roomy = pixels._replace(told=np.concatenate([pixels.told, pixels.told], axis=1))
     see_light(1, roomy, sensor.settings, look)
-    assert (look.next[0], roomy.count[0]) == (2, 3)
+    assert (look.next[0], roomy.number[0]) == (2, 3)
     whole = Sensor([0.0])
     times = [*whole.see([0.31])["t"], *whole.see([0.62])["t"]]
     np.testing.assert_array_equal(roomy.told[0, :3]["t"], times)

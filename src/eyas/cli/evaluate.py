@@ -86,7 +86,7 @@ _Changes = Annotated[
         "--set",
         metavar="KEY=VALUE",
         help="Change a setting of env, what the policy sees and does; one of tracker, control, "
-        "start.velocity or extras makes another protocol.",
+        "camera, start.velocity or extras makes another protocol.",
     ),
 ]
 _Out = Annotated[Path | None, typer.Option("--out", help="Folder to write to.")]
@@ -203,11 +203,11 @@ def _changes(said: list[str]) -> dict[str, Any]:
     changes: dict[str, Any] = {}
     for text in said:
         keys, value = parsed_override(text)
-        if keys[0] not in ("env", "tracker", "control") and keys not in _FREE:
+        if keys[0] not in ("env", "tracker", "control", "camera") and keys not in _FREE:
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
-                "tracker.KEY, control.KEY, start.velocity or extras; all else belongs to the "
-                "protocol"
+                "tracker.KEY, control.KEY, camera.KEY, start.velocity or extras; all else "
+                "belongs to the protocol"
             )
         group = changes
         for key in keys[:-1]:

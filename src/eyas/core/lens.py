@@ -31,6 +31,7 @@ __all__ = [
     "coefficients",
     "distorted",
     "lens_of",
+    "places",
     "principal_point",
     "project",
     "rays",
@@ -279,6 +280,18 @@ def coefficients(lens: Lens) -> list[float]:
     return [lens.k1, lens.k2, lens.p1, lens.p2, lens.k3]
 
 
+def places(lens: Lens, directions: Floats) -> Floats:
+    """Return where directions are shown on the plane behind the lens, right and down, (..., 2).
+
+    Args:
+        lens: The lens.
+        directions: Right, down and ahead, see `distorted`, shape (..., 3).
+    """
+    place = np.empty((*directions.shape[:-1], 2))
+    _distort_all(lens, np.array(directions.reshape(-1, 3), np.float64), place.reshape(-1, 2))
+    return place
+
+
 def project(  # noqa: PLR0913  # a pose and a lens, as they come
     points: ArrayLike,
     position: ArrayLike,
@@ -305,9 +318,7 @@ def project(  # noqa: PLR0913  # a pose and a lens, as they come
     offset = np.asarray(points, np.float64) - np.asarray(position, np.float64)
     forward, left, up = np.moveaxis(exact.product(offset, np.asarray(rotation, np.float64)), -1, 0)
     ahead = forward if lens.model == FISHEYE else np.where(forward == 0.0, np.nan, forward)
-    direction = np.stack([-left, -up, ahead], axis=-1)
-    place = np.empty((*direction.shape[:-1], 2))
-    _distort_all(lens, direction.reshape(-1, 3), place.reshape(-1, 2))
+    place = places(lens, np.stack([-left, -up, ahead], axis=-1))
     across, down = _focal(size, fields)
     column, row = principal_point(lens, *size)
     return column + across * place[..., 0], row + down * place[..., 1], forward

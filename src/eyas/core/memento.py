@@ -38,7 +38,7 @@ def recall(thing: object, memento: Memento) -> None:
         parent = thing
         for step in path[:-1]:
             parent = _part(parent, step)
-        if isinstance(value, np.ndarray):
+        if isinstance(value, np.ndarray) and value.shape == _part(parent, path[-1]).shape:
             _part(parent, path[-1])[...] = value
         elif isinstance(value, list):
             _part(parent, path[-1])[:] = value

@@ -53,8 +53,11 @@ def information(simulation: Simulation) -> Info:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
       nothing was within range);
-    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`) of
-      its last picture; 0 before the first.
+    - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
+      of its last picture; 0 before the first;
+    - what the sensor of events has told since the last time, if there is one (`events`, for each
+      tracker a row for each event: column, row, time since the reset [us], and 1 for more light or
+      0 for less).
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -76,7 +79,20 @@ def information(simulation: Simulation) -> Info:
     if (exposure := simulation.view.exposure) is not None:
         info["exposure_time"] = exposure.time.copy()
         info["iso"] = exposure.iso.copy()
+    if simulation.config.camera.events.enabled:
+        info["events"] = _events(simulation)
     return info
+
+
+def _events(simulation: Simulation) -> NDArray[np.object_]:
+    """Return the events of all trackers, which are different in number."""
+    sensors = simulation.view.events(np.arange(simulation.count, dtype=np.int32))
+    assert sensors is not None
+    told = np.empty(simulation.count, object)
+    for tracker in range(simulation.count):
+        events = sensors.events_of(tracker)
+        told[tracker] = np.stack([events[name].astype(np.int64) for name in "xytp"], axis=1)
+    return told
 
 
 def by_term(terms: dict[str, Floats]) -> Info:

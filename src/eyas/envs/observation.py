@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
 from eyas.envs.information import privileged_state, sensor_state
-from eyas.sensors.config import ColourLayout
+from eyas.sensors.config import CameraConfig, ColourLayout
 from eyas.sensors.stack import FrameStack
 from eyas.sim.config import SimConfig
 from eyas.sim.simulation import Simulation
@@ -40,9 +40,9 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
         sim: Which sensors there are.
 
     Raises:
-        ConfigError: The agent is to observe what it does not have, or words alone.
+        ConfigError: The agent is to observe a sensor that it does not have, or words alone.
     """
-    lidar, cameras = sim.lidar, len(sim.cameras)
+    lidar, camera, cameras = sim.lidar, sim.camera, len(sim.cameras)
     if _Parts.CAMERAS in config.parts and cameras == 0:
         raise ConfigError(
             "env.observation.parts: 'cameras' needs further cameras: 'cameras' is empty"
@@ -50,6 +50,10 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
     if _Parts.LIDAR in config.parts and not lidar.enabled:
         raise ConfigError(
             "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
+        )
+    if _Parts.EVENTS in config.parts and not sim.camera.events.enabled:
+        raise ConfigError(
+            "env.observation.parts: 'events' needs the sensor: camera.events.enabled is false"
         )
     if set(config.parts) == {_Parts.WORDS}:
         raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
@@ -62,7 +66,7 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
 def _space(
     part: ObservationPart, config: ObservationConfig, sim: SimConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
-    lidar, size = sim.lidar, (config.height, config.width)
+    lidar, camera, size = sim.lidar, sim.camera, (config.height, config.width)
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
         case _Parts.IMAGE:
@@ -75,16 +79,26 @@ def _space(
             return gymnasium.spaces.Box(0, int(max(ObjectClass)), plane, np.uint8)
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
-        case _Parts.SENSORS:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
+        case _Parts.SENSORS | _Parts.PRIVILEGED:
+            count = _SENSORS if part is _Parts.SENSORS else _PRIVILEGED
+            return gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
+        case _Parts.EVENTS:
+            shape = _event_shape(config, sim.camera)
+            return gymnasium.spaces.Box(0, 255, shape, np.uint8)
         case _Parts.WORDS:
             return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
         case _Parts.ATTRIBUTES:
             return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
-        case _Parts.PRIVILEGED:
-            return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
+
+
+def _event_shape(config: ObservationConfig, camera: CameraConfig) -> tuple[int, int, int]:
+    events = camera.events
+    height, width = events.height or camera.height, events.width or camera.width
+    if config.layout is ColourLayout.CHW:
+        return 2 * events.bins, height, width
+    return height, width, 2 * events.bins
 
 
 def phrase_of_target(simulation: Simulation, tracker: int) -> Phrase:
@@ -134,6 +148,7 @@ class Observer:
             else:
                 self._latest[part] = np.zeros((count, *space.shape), space.dtype)
         self._names_targets = bool(wanted & {_Parts.WORDS, _Parts.ATTRIBUTES})
+        self._last_axis = config.layout is ColourLayout.HWC
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
         self._further: dict[str, FrameStack] = {}
@@ -173,6 +188,8 @@ class Observer:
             seen = self._simulation.view
             assert seen.lidar is not None  # its space says so
             seen.lidar.fill(ranges, seen.state.late)
+        if (events := self._latest.get(_Parts.EVENTS)) is not None:
+            self._count_events(chosen, events)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 
@@ -209,6 +226,15 @@ class Observer:
             if plane is not None:
                 latest = self._latest[part]
                 latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
+
+    def _count_events(self, chosen: NDArray[np.int32], out: Array) -> None:
+        """Write how many events the pixels of some trackers have told."""
+        sensors = self._simulation.view.events(chosen)
+        assert sensors is not None  # its space says so
+        planes = np.moveaxis(out, -1, 1) if self._last_axis else out
+        counts = np.empty((len(chosen), *planes.shape[1:]), np.uint8)
+        sensors.count(chosen.astype(np.int64), counts)
+        planes[chosen] = counts
 
     def copy_to(self, out: Observation, rows: NDArray[np.integer] | slice) -> None:
         """Copy the latest observation of each tracker.

@@ -57,7 +57,8 @@ class EvaluationPlan(Config):
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same
-    """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
+    """Changes of `tracker`, `control`, `camera`, `start.velocity` and `extras`: another
+    protocol."""
     batch: Annotated[int, Field(ge=1, le=4096)] = 64
     """Episodes that are flown together. A network's last bits may depend on it."""
 

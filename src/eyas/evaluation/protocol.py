@@ -119,6 +119,8 @@ class Protocol:
     """Groups of rows in its tables, beside those of all protocols: what each record belongs to."""
     variants: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Versions of each episode, with changes of the settings; none: there is one."""
+    reference: str = ""
+    """The variant from which the others' figure `fall` counts; none: there is no such figure."""
     team: bool = False
     """Whether the variants are drones that follow one target together."""
     first_box: bool = True

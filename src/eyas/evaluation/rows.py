@@ -148,6 +148,8 @@ def rows_of(
             tsr = [figures["tsr"].read(record) for record in chosen]
             found["worst_fifth"] = worst_fifth_of(np.array(tsr, np.float64), clusters_in(chosen))
             found |= _times(chosen, horizon)
+            if protocol.reference:
+                found |= _fall(chosen, records, protocol.reference)
             rows.append(TableRow(group, name, chosen, found))
     return rows
 
@@ -206,6 +208,37 @@ def _means(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str
             else:
                 found[name] = mean_of(values, clusters, figure.high)
     return found
+
+
+def _fall(
+    chosen: list[EpisodeRecord], records: Sequence[EpisodeRecord], reference: str
+) -> dict[str, Estimate]:
+    """Return by which share of it the TSR is below that of the reference in the same episodes.
+
+    Its interval is that of a ratio of two means, linearised.
+    """
+    known = {_start_of(record): record.tsr for record in records if record.variant == reference}
+    pairs = [
+        (record, known[_start_of(record)])
+        for record in chosen
+        if record.variant != reference and _start_of(record) in known
+    ]
+    if not pairs:
+        return {}
+    own, expected = [record for record, _ in pairs], np.array([value for _, value in pairs])
+    values = np.array([record.tsr for record in own])
+    if expected.mean() == 0.0:
+        return {}
+    left = values.mean() / expected.mean()
+    falls = 1.0 - left - (values - left * expected) / expected.mean()
+    clusters = clusters_in(own)
+    spread = difference_interval(falls, clusters, 1.0)
+    return {"fall": Estimate(len(own), clusters.count, float(1.0 - left), spread)}
+
+
+def _start_of(record: EpisodeRecord) -> tuple[object, ...]:
+    """Return what the variants of one episode have in common."""
+    return record.map, record.weather, record.target, record.seed, record.direction
 
 
 def _times(records: list[EpisodeRecord], horizon: float) -> dict[str, Estimate]:

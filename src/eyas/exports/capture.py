@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.lens import NO_LENS, Lens
 from eyas.exports.frame import (
     CameraPicture,
     CameraPose,
@@ -65,6 +66,10 @@ class Moment(NamedTuple):
     """See `Frame.cameras`; nothing changes them later."""
     exposure: tuple[float, float] | None = None
     """See `Frame.exposure`."""
+    events: NDArray[np.void] | None = None
+    """See `Frame.events`; nothing changes it later."""
+    lens: Lens | None = None
+    """The lens of its camera; None: it is a pinhole."""
 
 
 def moment_of(
@@ -81,7 +86,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is drawn besides: "parts", "clean", "cameras"; others are in the picture.
+        wanted: What is asked for besides: "parts", "clean", "cameras", "events"; others are in the
+            picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -98,8 +104,11 @@ def moment_of(
     cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
     exposed = seen.exposure
     exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
+    sensor = seen.events(np.array([tracker], np.int32)) if "events" in wanted else None
+    events = None if sensor is None else sensor.events_of(tracker)
     now = simulation.snapshot.episodes
-    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure)
+    lens = seen.lens_of(tracker)
+    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
     return Moment(shown, now, *known)
 
 
@@ -110,7 +119,7 @@ def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
         picture = Picture.create(1, camera.config.height, camera.config.width)
         camera.draw(np.array([tracker], np.int32), picture)
         assert picture.rgb is not None
-        pose = _camera(camera.cameras, tracker, picture)
+        pose = _camera(camera.cameras, tracker, picture, camera.lens_of(tracker))
         pictures.append(CameraPicture(name, pose, picture.rgb[0]))
     return tuple(pictures)
 
@@ -133,14 +142,14 @@ def frame_of(
     words = ""
     others: tuple[Subject, ...] = ()
     if moment.actors is not None:
-        words = target_in_words(shown, moment.actors, tracker, picture.aspect)
+        words = target_in_words(shown, moment.actors, tracker, picture.aspect, moment.lens)
         others = others_of(moment, tracker, picture, view)
     return Frame(
         number=number,
         time=float(shown.episodes.tick[tracker]) * PHYSICS_STEP,
         step=int(shown.episodes.step_count[tracker]),
         tracker=_body(shown.trackers, tracker),
-        camera=_camera(shown.cameras, tracker, picture),
+        camera=_camera(shown.cameras, tracker, picture, moment.lens),
         target=_target(moment, tracker, picture, view, words),
         others=others,
         action=action,
@@ -158,6 +167,7 @@ def frame_of(
         clean=moment.clean,
         cameras=moment.cameras,
         exposure=moment.exposure,
+        events=moment.events,
     )
 
 
@@ -172,7 +182,9 @@ def _body(trackers: TrackerState, tracker: int) -> RecordedBody:
     )
 
 
-def _camera(cameras: CameraState, tracker: int, picture: Picture) -> CameraPose:
+def _camera(
+    cameras: CameraState, tracker: int, picture: Picture, lens: Lens | None
+) -> CameraPose:
     height, width = picture_size(picture)
     return CameraPose(
         position=cameras.position[tracker].copy(),
@@ -180,6 +192,7 @@ def _camera(cameras: CameraState, tracker: int, picture: Picture) -> CameraPose:
         field_of_view=float(cameras.field_of_view[tracker]),
         width=width,
         height=height,
+        lens=lens or NO_LENS,
     )
 
 

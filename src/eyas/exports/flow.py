@@ -10,12 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.core.files import refusals, write_atomic
+from eyas.core.lens import NO_LENS, Lens, distorted, principal_point, undistorted
 from eyas.core.pinhole import focal_length
 from eyas.core.png import png_bytes
 from eyas.exports.frame import CameraPose, Floats, Frame
 from eyas.exports.per_frame import numbered
-from eyas.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
 from eyas.lanes import compiled, kernel
 from eyas.render.kernels.bundles import NEAR
 from eyas.state.draw import MovingParts
@@ -33,11 +35,21 @@ what depths of neighbouring pixels leave open."""
 class FlowWriter(Writer):
     """`flow/NNNNNN.png`: where each pixel's point is in the next picture of the episode, as KITTI
     has it; the last picture of an episode has no valid pixel.
+
+    Args:
+        run: The recording.
+
+    Raises:
+        ConfigError: Rows of pictures are exposed one after the other (`camera.shutter.readout`).
     """
 
     name = "flow/{:06d}.png"
     wants = frozenset({"parts"})
     files = Files(frame=(name,))
+
+    def __init__(self, run: Run) -> None:
+        if run.config.camera.shutter.rolls:
+            raise ConfigError("video.writers: 'flow' is not known of a rolling shutter")
 
     def begin(self, episode: Episode) -> "FlowEpisode":
         """Return the writer of an episode's flow."""
@@ -86,6 +98,11 @@ class _Camera(NamedTuple):
     """Camera to world; columns forward, left, up, shape (3, 3)."""
     focal: Floats
     """Focal length [pixels], shape (1,)."""
+    middle: Floats
+    """Column and row of the principal point [pixels], shape (2,)."""
+    bent: int
+    """1: `lens` bends the picture."""
+    lens: Lens
     row: NDArray[np.int32]
     """See `MovingParts`, shape (H, W)."""
     depth: NDArray[np.float32]
@@ -122,7 +139,11 @@ def forward_flow(first: Frame, second: Frame) -> NDArray[np.uint16]:
 
 def _camera(pose: CameraPose, parts: MovingParts) -> _Camera:
     focal = np.array([focal_length(pose.width, pose.field_of_view)])
-    return _Camera(pose.position, pose.rotation, focal, parts.row, parts.depth)
+    middle = np.array(principal_point(pose.lens, pose.width, pose.height))
+    bent = int(pose.lens != NO_LENS)
+    return _Camera(
+        pose.position, pose.rotation, focal, middle, bent, pose.lens, parts.row, parts.depth
+    )
 
 
 def _motion(first: MovingParts, second: MovingParts) -> _Motion:
@@ -171,10 +192,14 @@ def _moved(  # what is known of a pixel
     first: _Camera, second: _Camera, motion: _Motion, line: int, column: int
 ) -> _Point:
     """Return where a pixel's point is in the second picture; `ahead` is 0 if it is not known."""
-    height, width = first.row.shape
     row, depth = first.row[line, column], float(first.depth[line, column])
-    left = (0.5 * width - (column + 0.5)) / first.focal[0]
-    up = (0.5 * height - (line + 0.5)) / first.focal[0]
+    left = (first.middle[0] - (column + 0.5)) / first.focal[0]
+    up = (first.middle[1] - (line + 0.5)) / first.focal[0]
+    if first.bent == 1:
+        right, down, forward, area = undistorted(first.lens, -left, -up)
+        if area == 0.0:
+            return _Point(0.0, 0.0, 0.0)
+        left, up = -right / forward, -down / forward
     sky = depth == np.inf
     scale = 1.0 if sky else depth
     x = scale * (first.axes[0, 0] + left * first.axes[0, 1] + up * first.axes[0, 2])
@@ -198,11 +223,11 @@ def _moved(  # what is known of a pixel
         return _Point(0.0, 0.0, 0.0)
     aside = axes[0, 1] * x + axes[1, 1] * y + axes[2, 1] * z
     above = axes[0, 2] * x + axes[1, 2] * y + axes[2, 2] * z
-    return _Point(
-        0.5 * width - focal * aside / ahead,
-        0.5 * height - focal * above / ahead,
-        np.inf if sky else ahead,
-    )
+    middle, far = second.middle, np.inf if sky else ahead
+    if second.bent == 1:
+        right, down = distorted(second.lens, -aside, -above, ahead)
+        return _Point(middle[0] + focal * right, middle[1] + focal * down, far)
+    return _Point(middle[0] - focal * aside / ahead, middle[1] - focal * above / ahead, far)
 
 
 @kernel(inline=True)

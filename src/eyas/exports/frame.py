@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.pinhole import intrinsics
+from eyas.core.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
 from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
 from eyas.state.draw import MovingParts
 from eyas.state.scene import ObjectClass
@@ -29,10 +29,19 @@ __all__ = [
 Floats: TypeAlias = NDArray[np.float64]
 
 Output = Literal[
-    "rgb", "depth", "object_id", "class_id", "normal", "others", "parts", "clean", "cameras"
+    "rgb",
+    "depth",
+    "object_id",
+    "class_id",
+    "normal",
+    "others",
+    "parts",
+    "clean",
+    "cameras",
+    "events",
 ]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts, or
-pictures of other cameras.
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts,
+pictures of other cameras, or events.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
@@ -82,11 +91,26 @@ class CameraPose:
     """Width of the picture [pixels]."""
     height: int
     """Height of the picture [pixels]."""
+    lens: Lens = NO_LENS
+    """The lens that bends the picture. With one, the field of view is that of a pinhole with the
+    same focal length."""
 
     @property
     def intrinsics(self) -> Floats:
         """Camera matrix, see `Episode.intrinsics`."""
-        return intrinsics(self.width, self.height, self.field_of_view)
+        return camera_matrix(self.lens, self.width, self.height, self.field_of_view)
+
+    @property
+    def distortion(self) -> list[float]:
+        """OpenCV's coefficients of the lens: k1, k2, p1, p2, k3, or a fisheye's k1 to k4."""
+        return coefficients(self.lens)
+
+    @property
+    def distortion_model(self) -> str:
+        """What they belong to: `brown` or `fisheye`; empty for a pinhole."""
+        if self.lens.model == BROWN:
+            return "brown" if any(self.distortion) else ""
+        return "fisheye"
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,6 +251,9 @@ class Frame:
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
     exposure: tuple[float, float] | None = None
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
+    events: NDArray[np.void] | None = None
+    """What the sensor of events has told since the last frame, in the order of time, of dtype
+    `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""
 
     @property
     def episode_time(self) -> float:

@@ -89,7 +89,10 @@ BOX = _array("4 whole numbers", {"type": "integer", "minimum": 0, "maximum": 2**
 EXTENT = _array("4 numbers", NUMBER.schema, 4)
 VECTOR = _array("3 numbers", NUMBER.schema, 3)
 MATRIX = _array("3 rows of 3 numbers", VECTOR.schema, 3)
-COEFFICIENTS = _array("5 numbers", NUMBER.schema, 5)
+COEFFICIENTS = Type(
+    "4 or 5 numbers",
+    {"type": "array", "items": NUMBER.schema, "minItems": 4, "maxItems": 5},
+)
 COMMAND = Type("4 numbers, or null", {**EXTENT.schema, "type": ["array", "null"]})
 CORNERS = _array("8 points", VECTOR.schema, 8)
 SECTIONS = Type(
@@ -194,7 +197,8 @@ FIELDS = (
                lambda f, e: rounded_list(f.camera.position), unit="m", frame="world"),
     LabelField("camera_rotation", MATRIX, "Camera to world; columns are the camera's forward, left "
                "and up axes.", lambda f, e: _points(f.camera.rotation), frame="camera to world"),
-    LabelField("field_of_view", NUMBER, "Horizontal field of view of the camera.",
+    LabelField("field_of_view", NUMBER, "Horizontal field of view of the camera; with "
+               "a lens that bends, that of a pinhole with the same focal length.",
                lambda f, e: rounded(f.camera.field_of_view), unit="rad"),
     LabelField("target_id", ID, "Its number in the id pictures; the same in all frames of an "
                "episode.", None, lambda f, s: s.object_id, "id"),
@@ -261,11 +265,13 @@ FIELDS = (
                "truncated"),
     LabelField("target_distance", NUMBER, "From the camera to its centre.", None, _distance,
                "distance", unit="m"),
-    LabelField("distortion", COEFFICIENTS, "Of the lens: k1, k2, p1, p2, k3; all 0, as it is a "
-               "pinhole.", lambda f, e: [0.0] * 5),
+    LabelField("distortion", COEFFICIENTS, "OpenCV's coefficients of the lens: k1, k2, p1, p2, k3, "
+               "or a fisheye's k1 to k4; all 0 for a pinhole.", lambda f, e: f.camera.distortion),
     LabelField("command", COMMAND, "What the tracker is told to do: forward, left, up and yaw "
                "rate; null when it is carried with its target (`exact`).", _command,
                unit="m/s, rad/s", frame="tracker's body"),
+    LabelField("distortion_model", TEXT, "Model of the lens: `brown` or `fisheye`; only of those "
+               "that bend the picture.", lambda f, e: f.camera.distortion_model, left_out=True),
     LabelField("exposure_time", NUMBER, "How long the picture was exposed; only with "
                "`camera.imager`.", lambda f, e: f.exposure and round(float(f.exposure[0]), 9),
                unit="s", left_out=True),

@@ -31,6 +31,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "arrays": "eyas.exports.images:ArrayWriter",
         "sensors": "eyas.exports.table:SensorWriter",
         "lidar": "eyas.exports.table:LidarWriter",
+        "events": "eyas.exports.events:EventWriter",
     },
     group="eyas.writers",
 )

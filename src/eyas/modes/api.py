@@ -192,7 +192,8 @@ class EvaluationChoices(TypedDict, total=False):
     env: Mapping[str, Any]
     """Changes of what the policy sees and does, settings of `env`."""
     settings: Mapping[str, Any]
-    """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
+    """Changes of `tracker`, `control`, `camera`, `start.velocity` and `extras`: another
+    protocol."""
     batch: int
     """Episodes that are flown together."""
 

@@ -48,9 +48,10 @@ def paint_area(canvas: Canvas, area: GroundArea) -> None:
 
 
 def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
-    """Return the rows and columns of the area; all if a part of it is behind the camera."""
+    """Return the rows and columns of the area; all if a part is behind the camera or a lens bends.
+    """
     places = canvas.project(corners)
-    if (places[:, 2] < NEAR).any():
+    if (places[:, 2] < NEAR).any() or canvas.lens is not None:  # edges may bend out of their box
         return slice(0, canvas.height), slice(0, canvas.width)
     return canvas.window(places[:, :2].min(axis=0), places[:, :2].max(axis=0), 1.0)
 
@@ -98,5 +99,4 @@ def _beyond(
     """Return how far pixels are to the left of a line on the ground, in the picture [pixels]."""
     offset = point - canvas.position
     normal = exact.product(canvas.rotation.T, np.cross(along, offset))
-    slope = float(exact.hypot(normal[1] / canvas.across, normal[2] / canvas.down))
-    return canvas.plane(normal / max(slope, 1e-12), where)
+    return canvas.distance(normal, where)

@@ -69,13 +69,25 @@ WIDTH = 1.5
 
 OPACITY = 0.85
 
+BENT_PIECES = 24
+"""Straight pieces of a line that is seen through a lens."""
+
 
 def paint_line(canvas: Canvas, line: ThinLine) -> None:
     """Paint the part of a line that is in front of the camera and of the picture's surfaces."""
     ends = _before_the_camera(canvas, line)
     if ends is None:
         return
-    start, end = canvas.project(ends)
+    pieces = 1 if canvas.lens is None else BENT_PIECES
+    places = canvas.project(np.linspace(ends[0], ends[1], pieces + 1))
+    for start, end in zip(places[:-1], places[1:], strict=True):
+        _paint_piece(canvas, line, start, end)
+
+
+def _paint_piece(
+    canvas: Canvas, line: ThinLine, start: NDArray[np.float64], end: NDArray[np.float64]
+) -> None:
+    """Paint a piece of a line, from one place to another: column, row [pixels] and depth [m]."""
     along = end[:2] - start[:2]
     length = float(exact.hypot(*along))
     if length < 1e-9:

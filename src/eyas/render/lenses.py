@@ -17,7 +17,10 @@ __all__ = ["NO_TABLES", "LensBank"]
 Floats = NDArray[np.float64]
 
 DENSITY = 1.0
-"""Samples of a face, at least, for each sample of the picture, along a side."""
+"""Samples of a face, at least, for each sample of the picture, along a side. At 84 x 84, against
+pictures of 64 samples for each pixel, single samples then have 29.3 dB (30.3 without a lens) and
+four 32.4 dB (33.0; bilinear resampling 31.6). With a density of 1.25 it is 29.7 and 33.4 dB, for a
+tenth of a picture's time."""
 
 MOST_SAMPLES = 2.5
 """If one face would have so many times the samples of the picture, more faces are drawn."""
@@ -25,6 +28,9 @@ MOST_SAMPLES = 2.5
 _ASIDE = 0.375 * math.pi
 """Angle between the optical axis and those of the faces aside: they begin at an eighth of a turn
 and end at a quarter."""
+
+_KEPT = 8
+"""Lenses for which tables are kept, if no more are in use."""
 
 _MARGIN = 1.5
 """Pixels around what is seen of a face."""
@@ -131,7 +137,7 @@ class LensBank:
         if len(self._slots) < lenses:
             return min({*range(lenses)} - {*self._slots.values()})
         old = next((key for key in self._slots if key not in used), None)
-        if old is not None and lenses >= 2 * len(used):
+        if old is not None and lenses >= max(_KEPT, 2 * len(used)):
             return self._slots.pop(old)
         self._enlarge(2 * lenses, self.tables.tile.shape[2:4])
         return lenses

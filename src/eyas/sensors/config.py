@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
-from eyas.core.variation import Variation, within
+from eyas.core.variation import Variation, bounds, within
 from eyas.sensors.camera.dirt import DirtConfig
 from eyas.sensors.camera.events import EventsConfig
 from eyas.sensors.camera.exposure import ExposureConfig
@@ -100,6 +100,9 @@ class CameraConfig(Config):
     """What carries its pictures; None: nothing is coded or lost."""
     lens: LensConfig = LensConfig()
     """How its lens bends, darkens and colours pictures."""
+    defocus: Annotated[Variation, AfterValidator(within(0.0, 0.3))] = 0.0
+    """Diameter of the disc that a point becomes out of focus, as a share of the picture's height;
+    0: all is sharp. Sampled at each reset."""
     shutter: ShutterConfig = ShutterConfig()
     """Motion blur and rolling shutter."""
     vibration: VibrationConfig = VibrationConfig()
@@ -122,10 +125,15 @@ class CameraConfig(Config):
         return self.imager
 
     @property
+    def is_defocused(self) -> bool:
+        """Whether it may be out of focus."""
+        return bounds(self.defocus)[1] > 0.0
+
+    @property
     def is_modelled(self) -> bool:
         """Whether more of it is modelled than a pinhole, bent by a lens or not."""
         parts = (self.sensor, self.dirt, self.link)
-        blurred = self.shutter.blur or self.lens.changes_light
+        blurred = self.shutter.blur or self.lens.changes_light or self.is_defocused
         return blurred or any(part is not None for part in parts)
 
     @model_validator(mode="before")

@@ -1,7 +1,7 @@
 """Data shared by simulations of the same map, weather and traffic; made once per process."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -37,6 +37,8 @@ from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]
+
+_FALLING = ("flakes", "rain", "leaves")
 
 _RATE = 10.0
 """Samples per second of worlds without vehicles, as of a recording [Hz]."""
@@ -183,4 +185,8 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 
 def _lighting(world: WorldConfig) -> Lighting:
-    return MAPS.get(world.map).light(world.weather, world.hour, world.moon)
+    light = MAPS.get(world.map).light(world.weather, world.hour, world.moon)
+    if world.precipitation == 1.0:
+        return light
+    falls = {name: world.precipitation * getattr(light, name) for name in _FALLING}
+    return replace(light, **falls)

@@ -172,7 +172,7 @@ def _step_of(
     carry: Kernel,
     aim: Kernel,
     carried: Kernel,
-    velocities: bool,  # noqa: FBT001  # a key of the cache
+    velocities: bool,  # a key of the cache
 ) -> StepKernels:
     seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
     pointed = _point_in_motion if velocities else _point

@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.views.visible_actors import Moving, VisibleActors
+from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, DRONE_CLASS

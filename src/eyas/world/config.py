@@ -26,6 +26,8 @@ class WorldConfig(Config):
     """Seed of the map: 0 is the canonical map, other seeds give other maps of the same kind."""
     hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
     """Time of day, which moves the sun and its shadows; None: the weather's own sun or moon."""
+    precipitation: Annotated[float, Field(ge=0.0, le=4.0)] = 1.0
+    """How much snow, rain or leaves fall, times as much as the weather's own."""
     moon: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     """Age of the moon as a share of a month, 0 new, 0.25 half, 0.5 full: then moon and stars stand
     where the hour has them, and a night is as dark as its moon. None: always full and high."""

@@ -102,6 +102,24 @@ def test_the_variance_is_that_of_photon_transfer(level, binning):
         assert seen.var() < expected
 
 
+def test_noise_of_colours_pixels_pictures_and_trackers_is_unrelated():
+    rgb, made = developed(uniform(0.3, 8, 64, 64), fixed(0.01, 1600.0), 10.0, **NOISELESS)
+    later = drawn(made, uniform(0.3, 8, 64, 64), 1)
+    values = values_of(rgb)
+    pairs = [
+        (values[..., 0], values[..., 1]),
+        (values[..., 0], values[..., 2]),
+        (values[..., 1], values[..., 2]),
+        (values[:, 1:], values[:, :-1]),
+        (values[:, :, 1:], values[:, :, :-1]),
+        (values[:, :, 8:], values[:, :, :-8]),
+        (values[1:], values[:-1]),
+        (values, values_of(later)),
+    ]
+    for one, other in pairs:
+        assert abs(np.corrcoef(one.ravel(), other.ravel())[0, 1]) < 0.025
+
+
 def test_row_noise_is_shared_by_a_row_and_differs_from_row_to_row():
     imager = SMOOTH | {"row_noise": 20.0 * 4096**0.25}
     rgb, _ = developed(uniform(0.3, 1, 256, 8), fixed(1e-4), **imager)
@@ -204,22 +222,18 @@ def test_compensation_and_automatic_white_balance():
 
 
 def test_a_grey_sensor_gathers_what_filters_take_away():
-    light = uniform(0.3, 20)
-    exposure = fixed(0.01, 3200.0)
-    noise = {}
+    light, noise = uniform(0.3, 40), {}
     for spectrum in Spectrum:
-        rgb, made = developed(
-            light * (80 / 206 if spectrum is Spectrum.GREY else 1),
-            exposure,
-            luminance=10.0,
-            spectrum=spectrum,
-            **NOISELESS,
+        rgb, _ = developed(
+            light, fixed(0.01, 3200.0), luminance=10.0, spectrum=spectrum, **NOISELESS
         )
         assert spectrum is Spectrum.COLOUR or (rgb == rgb[..., :1]).all()
         values = values_of(rgb[..., 1])
         noise[spectrum] = values.std() / values.mean()
-    colour = 1 / np.sqrt(electrons_of(0.3, 0.01, 10.0))
-    assert noise[Spectrum.COLOUR] == pytest.approx(colour, rel=0.05)
+    seen = {Spectrum.COLOUR: 0.52, Spectrum.GREY: 0.40 + 0.52 + 0.42}
+    for spectrum, efficiency in seen.items():
+        counted = electrons_of(0.3, 0.01, 10.0, efficiency)
+        assert noise[spectrum] == pytest.approx(1 / np.sqrt(counted), rel=0.03)
 
 
 @pytest.mark.parametrize("size", [(84, 84), (30, 43), (150, 24)])
@@ -314,5 +328,14 @@ def _demosaicked(raw, filters):
 def test_pictures_that_are_too_small_are_refused():
     with pytest.raises(ConfigError, match="at least 8x8"):
         developed(uniform(0.1, 1, 8, 6))
-    with pytest.raises(ConfigError, match="time: .* ascending"):
+    with pytest.raises(ConfigError, match=r"time: .* ascending"):
         ExposureConfig(time=(0.1, 0.01))
+
+
+def test_hot_pixels_are_as_many_as_said_and_stay():
+    light = uniform(0.05, height=64, width=64)
+    sensor = developed(light, fixed(), hot_pixels=0.1)[1]
+    hot = [drawn(sensor, light, step).max(axis=-1)[0] > 240 for step in (1, 2)]
+    assert hot[0].mean() == pytest.approx(1.0 - 0.9**3, abs=0.02)  # in each of three colours
+    assert (hot[0] == hot[1]).mean() > 0.99
+    assert not (developed(light, fixed())[0] > 240).any()

@@ -8,9 +8,9 @@ from eyas.lanes import limit_threads, thread_count
 from eyas.sensors.camera.dirt import Dirt, DirtConfig
 
 
-def covered(light, count=None, **settings):
+def covered(light, count=None, falling=0.0, **settings):
     count = len(light) if count is None else count
-    dirt = Dirt(DirtConfig(**settings), count)
+    dirt = Dirt(DirtConfig(**settings), falling, count)
     for n in range(count):
         dirt.begin(n, np.random.default_rng(n))
     changed = light.copy()
@@ -65,7 +65,7 @@ def test_each_episode_has_its_own_pattern_and_keeps_it():
     first = covered(light, drops=3)
     assert len({one.tobytes() for one in first}) == 6
     threads = thread_count()
-    dirt = Dirt(DirtConfig(drops=3), 6)
+    dirt = Dirt(DirtConfig(drops=3), 0.0, 6)
     for n in range(6):
         dirt.begin(n, np.random.default_rng(n))
     try:
@@ -76,6 +76,16 @@ def test_each_episode_has_its_own_pattern_and_keeps_it():
             np.testing.assert_array_equal(one[0], first[n])
     finally:
         limit_threads(threads)
+
+
+def test_rain_and_snow_wet_the_glass():
+    light = slope(1, 100)
+    dry, some, many = (
+        (covered(light, falling=f, spots=0, wet=30, drop_size=0.05) != light).mean()
+        for f in (0.0, 0.3, 1.0)
+    )
+    assert dry == 0.0
+    assert 0.0 < 2 * some < many
 
 
 def test_no_dirt_changes_nothing_and_too_much_is_refused():

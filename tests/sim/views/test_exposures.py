@@ -111,9 +111,7 @@ def test_a_passing_car_blurs_and_what_stands_still_does_not():
     )
     assert error < 0.25 * change
     still = ~moves
-    np.testing.assert_allclose(
-        levels(blurred)[:, :, still], levels(sharp)[:, :, still], atol=2.1
-    )
+    np.testing.assert_allclose(levels(blurred)[:, :, still], levels(sharp)[:, :, still], atol=2.1)
 
 
 def test_nothing_moves_and_nothing_is_blurred():
@@ -166,9 +164,7 @@ def test_boxes_hold_the_pixels_that_are_drawn():
 
 @pytest.mark.parametrize("worlds", [each_alone, together])
 def test_no_byte_depends_on_other_views(worlds):
-    simulation = simulation_of(
-        3, worlds, vibration=0.002, blur=True, exposure=0.02, readout=0.02
-    )
+    simulation = simulation_of(3, worlds, vibration=0.002, blur=True, exposure=0.02, readout=0.02)
     simulation.advance(np.array([[5.0, 0, 0, 1.0], [0, 0, 0, -2.0], [0, 0, 0, 0]]), 100)
     every = np.arange(3, dtype=np.int32)
     whole = Picture.create(3, SIZE, SIZE, depth=True)

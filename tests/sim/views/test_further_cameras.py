@@ -91,5 +91,7 @@ def test_further_cameras_change_nothing_else(config, assets):
 def test_names_are_checked():
     with pytest.raises(ConfigError, match="names of their own"):
         SimConfig(cameras=[{"name": "left"}, {"name": "left"}])
-    with pytest.raises(ConfigError, match=r"^cameras\.0\.name: 'Left Eye' is not allowed: must be a small letter"):
+    with pytest.raises(
+        ConfigError, match=r"^cameras\.0\.name: 'Left Eye' is not allowed: must be a small letter"
+    ):
         SimConfig(cameras=[{"name": "Left Eye"}])

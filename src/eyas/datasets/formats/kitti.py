@@ -9,7 +9,9 @@ KITTI's car drives upright: `rotation_y` and `alpha` are angles about the camera
 drone looks down, so here they are about the world's vertical, as seen by a camera that looks in the
 same direction without pitch and roll. What that takes away is in `poses/<episode>.txt`: twelve
 numbers a frame, camera (right, down, forward) to world, as in KITTI's odometry. A camera that zooms
-has a matrix for each frame in `intrinsics/<episode>.txt`; P2 is that of the first.
+has a matrix for each frame in `intrinsics/<episode>.txt`; P2 is that of the first. A lens that bends
+has its model and OpenCV's coefficients for each frame in `distortion/<episode>.txt`; boxes are those
+of the bent picture.
 
 Pixels are as in the labels of Eyas: the middle of the first one is at (0.5, 0.5).
 """
@@ -68,6 +70,9 @@ class Kitti(Format):
         self._job.write(f"{folder}/calib/{name}.txt", lines(_calibration(labels[0])))
         self._job.write(f"{folder}/poses/{name}.txt", lines(map(_pose, labels)))
         self._job.write(f"{folder}/intrinsics/{name}.txt", lines(matrices))
+        if "distortion_model" in labels[0]:
+            bends = (f"{row['distortion_model']} {_text(row['distortion'])}" for row in labels)
+            self._job.write(f"{folder}/distortion/{name}.txt", lines(bends))
 
     def _rows(self, number: int, label: Label) -> Iterable[str]:
         position, camera = camera_pose(label)

@@ -129,12 +129,13 @@ def _messages(frame: RecordedFrame, time: int) -> Iterator[tuple[str, Json]]:
 
 
 def _calibration(label: Json) -> Json:
+    fisheye = label.get("distortion_model") == "fisheye"
     matrix = [value for row in label["intrinsics"] for value in row]
     projection = [value for row in label["intrinsics"] for value in (*row, 0.0)]
     return {
         "width": label["width"],
         "height": label["height"],
-        "distortion_model": "plumb_bob",
+        "distortion_model": "kannala_brandt" if fisheye else "plumb_bob",
         "D": label["distortion"],
         "K": matrix,
         "R": [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],

@@ -163,6 +163,8 @@ def _add_frame(tables: Tables, own: _Tokens, frame: RecordedFrame, inside: str, 
         "token": own("calibrated_sensor", number), "sensor_token": _token("sensor"),
         "translation": _rounded(_rotate_back(body, *offset)),
         "rotation": _rounded(quaternion_of(from_body)), "camera_intrinsic": label["intrinsics"],
+        # As nuImages has it, whose calibrations know distortion.
+        **({"camera_distortion": label["distortion"]} if "distortion_model" in label else {}),
     })  # fmt: skip
 
 

@@ -60,6 +60,9 @@ class Rerun(Format):
         size = [label["width"], label["height"]]
         lens = rr.Pinhole(image_from_camera=np.array(label["intrinsics"]), resolution=size)
         stream.log("world/camera/image", lens)
+        if "distortion_model" in label:
+            bends = {key: label[key] for key in ("distortion_model", "distortion")}
+            stream.log("world/camera/image", rr.AnyValues(**bends))
         file = frame.episode.picture_file(frame.number)
         kind = f"image/{frame.episode.picture_kind}"
         picture = rr.EncodedImage(contents=file.read_bytes(), media_type=kind)

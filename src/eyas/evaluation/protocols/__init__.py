@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols.corrupted import CORRUPTED
 from eyas.evaluation.protocols.crowd import CROWD
 from eyas.evaluation.protocols.evade import EVADE
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
@@ -15,7 +16,7 @@ from eyas.evaluation.protocols.team import PAIR, TEAM
 __all__ = ["PROTOCOLS", "protocol_named"]
 
 _ALL = (
-    *(PAPER, STANDARD, UNSEEN, LONG, SEARCH, DISTRACTOR),
+    *(PAPER, STANDARD, UNSEEN, CORRUPTED, LONG, SEARCH, DISTRACTOR),
     *(RECOVER, RECOVER_CAMERA, EVADE, REFERRING, CROWD, PAIR, TEAM),
 )
 

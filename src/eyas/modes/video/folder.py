@@ -14,7 +14,7 @@ from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK
-from eyas.core.pinhole import intrinsics
+from eyas.core.lens import NO_LENS, Lens, camera_matrix
 from eyas.exports.checksums import CHECKSUMS, GROWING
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Files, Run, joined
@@ -75,7 +75,9 @@ class VideoFolder:
         )
         self.writers = tuple(writer(run) for writer in chosen_writers(writers_in(video.writers)))
 
-    def episode(self, tracker: int, number: int, field_of_view: float) -> Episode:
+    def episode(
+        self, tracker: int, number: int, field_of_view: float, lens: Lens = NO_LENS
+    ) -> Episode:
         """Return the description of an episode; its camera's field of view is horizontal [rad]."""
         name, camera = self.trackers[tracker], self._camera
         return Episode(
@@ -84,7 +86,7 @@ class VideoFolder:
             number=number,
             width=camera.width,
             height=camera.height,
-            intrinsics=intrinsics(camera.width, camera.height, field_of_view),
+            intrinsics=camera_matrix(lens, camera.width, camera.height, field_of_view),
             fps=self._fps,
         )
 

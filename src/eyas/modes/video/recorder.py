@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
+from eyas.core.lens import NO_LENS
 from eyas.exports.capture import frame_of, moment_of
 from eyas.exports.frame import RecordedAction
 from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
@@ -125,7 +126,7 @@ class Recorder:
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
-        self._besides = wanted & {"parts", "clean", "cameras"}
+        self._besides = wanted & {"parts", "clean", "cameras", "events"}
         self._overlay = config.video.overlay and "rgb" in wanted
         pictures = wanted - self._besides - {"others"}
         self._picture = Picture.create(
@@ -177,7 +178,8 @@ class Recorder:
     def _found_or_new(self, tracker: int) -> _Going:
         writers = self._folder.writers
         field = float(self._sim.snapshot.cameras.field_of_view[tracker])
-        episode = self._folder.episode(tracker, len(self.episodes[tracker]), field)
+        lens = self._sim.view.lens_of(tracker) or NO_LENS
+        episode = self._folder.episode(tracker, len(self.episodes[tracker]), field, lens)
         found = read_complete(writers, episode.folder)
         if found is not None and self._checksums.match(episode.folder):
             return _Going(episode, None, found)

@@ -115,7 +115,8 @@ def _turned(block: NDArray[np.float32], rows: Eight) -> Eight:
 @kernel(inline=True)
 def _rounded(value: float, step: float) -> float:
     """Return a multiple of a step."""
-    return whole(value / step + f4(0.5)) * step
+    multiple: float = whole(value / step + f4(0.5)) * step
+    return multiple
 
 
 @kernel(inline=False)
@@ -217,16 +218,21 @@ def _widened(lines: NDArray[np.float32], first: int, last: int) -> float:
     near = column >> i4(1)
     odd = (column & i4(1)) == i4(1)
     other = lesser(greater(select(odd, near + i4(1), near - i4(1)), i4(0)), i4(last))
-    return f4(0.75) * gather(lines, near) + f4(0.25) * gather(lines, other) - f4(128.0)
+    between = f4(0.75) * gather(lines, near) + f4(0.25) * gather(lines, other)
+    colour: float = between - f4(128.0)
+    return colour
 
 
 @kernel(inline=True)
 def _as_byte(value: float) -> int:
-    return to_u4(to_i4(lesser(greater(value + f4(0.5), f4(0.0)), f4(255.0))))
+    byte: int = to_u4(to_i4(lesser(greater(value + f4(0.5), f4(0.0)), f4(255.0))))
+    return byte
 
 
 @kernel
-def _join(rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[np.float32]) -> None:
+def _join(
+    rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[np.float32]
+) -> None:
     """Write the picture of three planes, of which those of colours are half as wide and high.
 
     Args:
@@ -235,14 +241,13 @@ def _join(rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[
         work: Colours, and two rows of working memory, see `code`.
     """
     height, width = rgb.shape[:2]
-    half_width = luminance.shape[1] // 2
     rows = luminance.shape[0] // 2
     blue, red, lines = work[:rows], work[rows : 2 * rows], work[2 * rows :]
     last = (width + 1) // 2 - 1
     for row in range(height):
         _smooth(lines[0], blue, row, height, width)
         _smooth(lines[1], red, row, height, width)
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             first = min(start, width - WIDTH)
             grey = load(luminance, row * luminance.shape[1] + first)
             bluer, redder = _widened(lines[0], first, last), _widened(lines[1], first, last)

@@ -26,7 +26,7 @@ from eyas.lanes.vector import (
     to_u4,
 )
 from eyas.render.kernels.pixels import pack
-from eyas.render.kernels.scalars import f4, i4, u4
+from eyas.render.kernels.scalars import f4, i4
 from eyas.sensors.camera.exposure import (
     ExposureConfig,
     ExposureState,
@@ -44,7 +44,15 @@ from eyas.sensors.camera.imager import (
     WhiteBalance,
 )
 from eyas.sensors.camera.mosaic import HALO, MARGIN, demosaicked, read_mosaic
-from eyas.sensors.camera.photosites import Readout, read_out, readout_of, row_error
+from eyas.sensors.camera.photosites import (
+    Readout,
+    noise_bits,
+    other_bits,
+    pattern_bits,
+    read_out,
+    readout_of,
+    row_error,
+)
 
 __all__ = ["TONE_STEPS", "Development", "tone_of_sensor"]
 
@@ -119,7 +127,7 @@ class Development:
                 imager.binning,
                 grey,
                 imager.white_balance is WhiteBalance.AUTO and not grey,
-                imager.dark_nonuniformity != 0.0 or imager.gain_nonuniformity != 0.0,
+                any(getattr(imager, name) != 0.0 for name in _FIXED_PATTERN),
                 list(Demosaicking).index(mosaic),
             )
         )
@@ -179,6 +187,9 @@ class Development:
         if size not in self._sizes:
             self._sizes[size] = Zones.of(self._exposing.metering, height, width)
         return self._sizes[size]
+
+
+_FIXED_PATTERN = ("dark_nonuniformity", "gain_nonuniformity", "hot_pixels")
 
 
 class _Work(NamedTuple):
@@ -302,7 +313,7 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
         first, last = band * _BAND, min((band + 1) * _BAND, height)
         if work.mosaic > 0:
             raw = developed.raw[worker]
-            read_mosaic(readout, developed.radiance, view, first, last, work.uneven, raw)
+            read_mosaic(readout, developed.radiance, view, (first, last), work.uneven, raw)
             _develop_mosaic(work, developed, view, first, last, raw)
         elif work.grey:
             _develop_grey(work, developed, readout, view, first, last)
@@ -314,7 +325,8 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
 def _byte(tone: NDArray[np.uint8], value: float) -> int:
     """Return the byte for a value, 1 at saturation; not a number becomes black."""
     step = lesser(greater(value, f4(0.0)), f4(1.0)) * f4(TONE_STEPS - 1)
-    return gather(tone, to_i4(step + f4(0.5)))
+    byte: int = gather(tone, to_i4(step + f4(0.5)))
+    return byte
 
 
 @kernel
@@ -327,7 +339,7 @@ def _develop_colours(
     plane = height * width
     for row in range(first, last):
         common = row_error(readout, row)
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             # The last eight overlap those before them: they are computed again, alike.
             pixel = row * width + min(start, width - WIDTH)
             at = 3 * view * plane + pixel
@@ -335,9 +347,12 @@ def _develop_colours(
             red = load(radiance, at) * readout.electrons[0]
             green = load(radiance, at + plane) * readout.electrons[1]
             blue = load(radiance, at + 2 * plane) * readout.electrons[2]
-            red = read_out(readout, red, index, common, work.uneven)
-            green = read_out(readout, green, to_u4(index + u4(plane)), common, work.uneven)
-            blue = read_out(readout, blue, to_u4(index + u4(2 * plane)), common, work.uneven)
+            noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
+            red = read_out(readout, red, noise, pattern, common, work.uneven)
+            noise, pattern = other_bits(noise), other_bits(pattern)
+            green = read_out(readout, green, noise, pattern, common, work.uneven)
+            noise, pattern = other_bits(noise), other_bits(pattern)
+            blue = read_out(readout, blue, noise, pattern, common, work.uneven)
             packed = pack(
                 _byte(tone, red * readout.balance[0]),
                 _byte(tone, green * readout.balance[1]),
@@ -356,14 +371,15 @@ def _develop_grey(
     plane = height * width
     for row in range(first, last):
         common = row_error(readout, row)
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             pixel = row * width + min(start, width - WIDTH)
             at = 3 * view * plane + pixel
             light = load(radiance, at) * readout.electrons[0]
             light += load(radiance, at + plane) * readout.electrons[1]
             light += load(radiance, at + 2 * plane) * readout.electrons[2]
             index = to_u4(lane_numbers() + i4(pixel))
-            value = read_out(readout, light, index, common, work.uneven)
+            noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
+            value = read_out(readout, light, noise, pattern, common, work.uneven)
             byte = _byte(tone, value * readout.balance[0])
             store_triples(developed.rgb, 3 * (view * plane + pixel), pack(byte, byte, byte))
 
@@ -381,11 +397,9 @@ def _develop_mosaic(
     height, width = developed.radiance.shape[2], developed.radiance.shape[3]
     tone, malvar = work.tone, work.mosaic == 2
     for row in range(first, last):
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             column = min(start, width - WIDTH)
             colours = demosaicked(raw, row, row - first, column, malvar)
-            packed = pack(
-                _byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2])
-            )
+            packed = pack(_byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2]))
             at = 3 * ((view * height + row) * width + column)
             store_triples(developed.rgb, at, packed)

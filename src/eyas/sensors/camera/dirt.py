@@ -34,16 +34,18 @@ class DirtConfig(Config):
     scatter: Annotated[float, Field(ge=0, le=1)] = 0.4
     """Share of what they take away that comes back as a veil of the whole picture's light."""
     drops: Count = 0
-    """Drops of water."""
-    drop_size: Size = Uniform(uniform=(0.03, 0.1))
+    """Drops of water in any weather."""
+    wet: Count = 8
+    """Drops that the heaviest rain or snow adds; lighter ones add as many fewer."""
+    drop_size: Size = Uniform(uniform=(0.04, 0.12))
     """Radius of each, as a share of the picture's height."""
 
 
 class _Spots(NamedTuple):
     """What is on the lenses of N trackers. Places and radii are shares of the height and width."""
 
-    count: NDArray[np.int64]
-    """Shape (N,)."""
+    number: NDArray[np.int64]
+    """How many, shape (N,)."""
     row: NDArray[np.float64]
     """Shape (N, MOST), as all below."""
     column: NDArray[np.float64]
@@ -56,12 +58,12 @@ class _Spots(NamedTuple):
         return cls(np.zeros(count, np.int64), *(np.zeros((count, MOST)) for _ in range(4)))
 
     def sample(
-        self, tracker: int, count: Variation, size: Variation, strength: Variation,
+        self, tracker: int, count: float, size: Variation, strength: Variation,
         rng: np.random.Generator,
     ) -> None:  # fmt: skip
         """Sample a pattern: places, radii and strengths."""
-        self.count[tracker] = round(sample(count, rng))
-        for k in range(int(self.count[tracker])):
+        self.number[tracker] = round(count)
+        for k in range(int(self.number[tracker])):
             self.row[tracker, k], self.column[tracker, k] = rng.random(2)
             self.radius[tracker, k] = sample(size, rng)
             self.strength[tracker, k] = sample(strength, rng)
@@ -81,18 +83,23 @@ class Dirt:
 
     Args:
         config: The settings.
+        falling: Density of rain and snow, see `eyas.state.lighting.Lighting`.
         count: N.
     """
 
-    def __init__(self, config: DirtConfig, count: int) -> None:
-        self._config = config
+    def __init__(self, config: DirtConfig, falling: float, count: int) -> None:
+        self._config, self._falling = config, falling
         self._spots, self._drops = _Spots.create(count), _Spots.create(count)
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
         config = self._config
-        self._spots.sample(tracker, config.spots, config.spot_size, config.opacity, rng)
-        self._drops.sample(tracker, config.drops, config.drop_size, _SMALLER, rng)
+        spots, drops, wet = (
+            sample(count, rng) for count in (config.spots, config.drops, config.wet)
+        )
+        self._spots.sample(tracker, spots, config.spot_size, config.opacity, rng)
+        drops = min(drops + wet * self._falling, MOST)
+        self._drops.sample(tracker, drops, config.drop_size, _SMALLER, rng)
 
     def cover(self, radiance: NDArray[np.float32], trackers: NDArray[np.integer]) -> None:
         """Change the light of pictures in place.
@@ -103,7 +110,7 @@ class Dirt:
         """
         chosen = trackers.astype(np.int64)
         workers = min(thread_count(), len(chosen))
-        drops = bool(self._drops.count[chosen].any())
+        drops = bool(self._drops.number[chosen].any())
         before = np.empty((workers, *radiance.shape[1:]) if drops else (0, 0, 0, 0), np.float32)
         scatter = self._config.scatter
         _cover(workers, _Work(self._spots, self._drops, radiance, before, chosen, scatter))
@@ -128,16 +135,16 @@ def _cover(worker: int, workers: int, work: _Work) -> None:
     """Cover the pictures whose turn is this worker's."""
     for view in range(worker, len(work.trackers), workers):
         n, light = work.trackers[view], work.radiance[view]
-        if work.spots.count[n] > 0:
+        if work.spots.number[n] > 0:
             for channel in range(3):
                 veil = work.scatter * _mean_of(light[channel])
-                for k in range(work.spots.count[n]):
+                for k in range(work.spots.number[n]):
                     _dim(light[channel], work.spots, n, k, veil)
-        if work.drops.count[n] > 0:
+        if work.drops.number[n] > 0:
             for channel in range(3):
                 before = work.before[worker, channel]
                 _copy(light[channel], before)
-                for k in range(work.drops.count[n]):
+                for k in range(work.drops.number[n]):
                     _refract(light[channel], before, work.drops, n, k)
 
 
@@ -150,7 +157,7 @@ def _mean_of(plane: NDArray[np.float32]) -> float:
     mean = 0.0
     for k in range(WIDTH):
         mean += lane(total, k)
-    return mean / pixels
+    return float(mean / pixels)
 
 
 @kernel(inline=True)
@@ -200,7 +207,7 @@ def _refract(
             if away < 1.0:
                 seen = _blurred(before, y - smaller * down, x - smaller * across, smaller)
                 seen *= 1.0 - 0.6 * away * away
-                share = min(3.0 * (1.0 - away), 1.0)
+                share = 1.0 - away * away
                 plane[row, column] = f4(plane[row, column] * (1.0 - share) + share * seen)
 
 
@@ -214,11 +221,11 @@ def _blurred(plane: NDArray[np.float32], y: float, x: float, step: float) -> flo
             row = _reflected(i8(y + i * step), height)
             column = _reflected(i8(x + j * step), width)
             total += plane[row, column]
-    return total / 9.0
+    return float(total / 9.0)
 
 
 @kernel(inline=True)
 def _reflected(at: int, size: int) -> int:
-    """Return the pixel of an axis for any whole number, mirrored at both ends as often as needed."""
+    """Return the pixel of an axis for any whole number, mirrored at its ends."""
     at = abs(at) % (2 * size)
     return at if at < size else 2 * size - 1 - at

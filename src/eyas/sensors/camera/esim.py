@@ -5,8 +5,8 @@ contrast threshold, it tells an event and moves the reference by this; in betwee
 logarithm is taken to change linearly (Rebecq, Gehrig, Scaramuzza: ESIM: an Open Event Camera
 Simulator, CoRL 2018, section 3). Real pixels differ in their thresholds, are blind for a while
 after an event, and leak: their reference drifts, which tells events of more light; in the dark,
-single photons tell events of either kind (Hu, Liu, Delbruck: v2e: From Video Frames to Realistic DVS
-Events, CVPRW 2021, section 4).
+single photons tell events of either kind (Hu, Liu, Delbruck: v2e: From Video Frames to Realistic
+DVS Events, CVPRW 2021, section 4).
 """
 
 from typing import NamedTuple
@@ -62,7 +62,7 @@ class EventPixels(NamedTuple):
     """How often each has seen in its episode, shape (N,); 0: it is to begin."""
     seed: Integers
     """Seed of the noise of each in its episode, shape (N,)."""
-    count: Integers
+    number: Integers
     """Number of events of each, shape (N,)."""
     told: NDArray[np.void]
     """Its events, of dtype `EVENT`, in the first elements of its row, those of each pixel in the
@@ -72,10 +72,18 @@ class EventPixels(NamedTuple):
     def create(cls, count: int, pixels: int) -> "EventPixels":
         """Return pixels that have seen nothing."""
         plane = (count, pixels)
-        light = [np.zeros(plane, np.float32) for _ in range(4)]
-        numbers = [np.zeros(count, np.int64) for _ in range(3)]
-        told = np.zeros((count, 4 * pixels), EVENT)
-        return cls(*light, np.zeros(plane), np.zeros(count), *numbers, told)
+        return cls(
+            reference=np.zeros(plane, np.float32),
+            last=np.zeros(plane, np.float32),
+            positive=np.zeros(plane, np.float32),
+            negative=np.zeros(plane, np.float32),
+            blind=np.zeros(plane),
+            time=np.zeros(count),
+            seen=np.zeros(count, np.int64),
+            seed=np.zeros(count, np.int64),
+            number=np.zeros(count, np.int64),
+            told=np.zeros((count, 4 * pixels), EVENT),
+        )
 
 
 class Look(NamedTuple):
@@ -107,7 +115,7 @@ def see_light(
             _log_of_light(look.radiance[p], settings.dark, light)
             if pixels.seen[n] == 0:
                 _begin(pixels, settings, n, light)
-            elif pixels.count[n] + _most_events(pixels, settings, n, light) > pixels.told.shape[1]:
+            elif pixels.number[n] + _most_events(pixels, settings, n, light) > pixels.told.shape[1]:
                 break
             else:
                 _tell(pixels, settings, n, light, look.time[p])
@@ -155,13 +163,12 @@ def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Si
 
 
 @kernel(inline=True)
-def _tell(
-    pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float
-) -> None:
+def _tell(pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float) -> None:
     """Let sensor `n` see the light at a time, and append its events."""
     base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
     for at in range(light.shape[0]):
-        _shot_noise(pixels, settings, n, at, light[at], time, base)
+        if settings.shot > 0.0:
+            _shot_noise(pixels, settings, n, at, (light[at], time), base)
         _contrast(pixels, settings, n, at, light[at], time)
         pixels.last[n, at] = light[at]
 
@@ -203,15 +210,26 @@ def _contrast(
 
 @kernel(inline=True)
 def _shot_noise(
-    pixels: EventPixels, settings: EventSettings, n: int, at: int, light: float, time: float,
+    pixels: EventPixels,
+    settings: EventSettings,
+    n: int,
+    at: int,
+    now: tuple[float, float],
     base: int,
-) -> None:  # fmt: skip
+) -> None:
     """Append the event of a pixel that single photons tell, if one does.
 
     At most one in a look: at 10 Hz and 2 ms, 1 % of those that would come are left out.
+
+    Args:
+        pixels: All sensors.
+        settings: The settings.
+        n: Which sensor.
+        at: Which pixel.
+        now: Logarithm of its light, and the time [s].
+        base: Seed of this look.
     """
-    if settings.shot <= 0.0:
-        return
+    light, time = now
     length = time - pixels.time[n]
     bright = min(max(1.0 + (light - _BRIGHT) / 4.0, 0.0), 1.0)
     rate = settings.shot * (1.0 - 0.75 * bright)
@@ -224,7 +242,7 @@ def _shot_noise(
 def _append(
     pixels: EventPixels, settings: EventSettings, n: int, at: int, sign: int, time: float
 ) -> None:
-    event = pixels.told[n, pixels.count[n]]
+    event = pixels.told[n, pixels.number[n]]
     event.x, event.y = at % settings.width, at // settings.width
     event.p, event.t = sign, int(time * 1e6 + 0.5)
-    pixels.count[n] += 1
+    pixels.number[n] += 1

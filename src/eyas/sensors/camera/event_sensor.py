@@ -1,5 +1,7 @@
 """Sensors of events beside the cameras of N trackers: their state, and their events as arrays."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,8 +21,6 @@ class EventSensors:
 
     Attributes:
         size: Height and width [pixels].
-        pixels: Their pixels.
-        begin_time: When what `pixels` has told began [s], shape (N,).
 
     Args:
         config: The settings.
@@ -30,9 +30,8 @@ class EventSensors:
 
     def __init__(self, config: EventsConfig, size: tuple[int, int], count: int) -> None:
         self.size = config.height or size[0], config.width or size[1]
-        self.pixels = EventPixels.create(count, self.size[0] * self.size[1])
-        self.begin_time = np.zeros(count)
-        self._config = config
+        self._pixels = EventPixels.create(count, self.size[0] * self.size[1])
+        self._told, self._since = self._pixels.told, np.zeros(count)
         self._settings = EventSettings(
             float(config.positive),
             float(config.negative),
@@ -51,8 +50,13 @@ class EventSensors:
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode: the first light that is seen tells no events."""
-        self.pixels.seed[tracker] = rng.integers(SEEDS)
-        self.pixels.seen[tracker] = 0
+        self._pixels.seed[tracker] = rng.integers(SEEDS)
+        self._pixels.seen[tracker] = 0
+
+    @property
+    def pixels(self) -> EventPixels:
+        """Their pixels, and what these have told."""
+        return self._pixels._replace(told=self._told)  # there may be more room by now
 
     def forget(self, chosen: Integers, time: Floats) -> None:
         """Begin to tell anew.
@@ -61,8 +65,8 @@ class EventSensors:
             chosen: The sensors, shape (V,).
             time: When each has last seen [s], shape (V,).
         """
-        self.pixels.count[chosen] = 0
-        self.begin_time[chosen] = time
+        self._pixels.number[chosen] = 0
+        self._since[chosen] = time
 
     def see(self, chosen: Integers, of: Integers, time: Floats, light: NDArray[np.float32]) -> None:
         """See light.
@@ -74,24 +78,25 @@ class EventSensors:
             time: Of the pictures [s], shape (P,).
             light: Linear radiance, shape (P, 3, H, W).
         """
-        first, end = (np.searchsorted(of, np.arange(len(chosen)), side) for side in ("left", "right"))
+        first, end = (
+            np.searchsorted(of, np.arange(len(chosen)), side) for side in ("left", "right")
+        )
         flat = light.reshape(len(light), 3, -1)
         memory = np.empty((len(chosen), flat.shape[2]), np.float32)
         look = Look(chosen, first, end, flat, time, memory)
         workers = min(thread_count(), len(chosen))
         see_light(workers, self.pixels, self._settings, look)
         while (look.next < look.end).any():
-            told = self.pixels.told
-            grown = np.zeros((len(told), 2 * told.shape[1]), told.dtype)
-            grown[:, : told.shape[1]] = told
-            self.pixels = self.pixels._replace(told=grown)
+            told = self._told
+            self._told = np.zeros((len(told), 2 * told.shape[1]), told.dtype)
+            self._told[:, : told.shape[1]] = told
             see_light(workers, self.pixels, self._settings, look)
 
     def events_of(self, tracker: int) -> NDArray[np.void]:
         """Return the events of a sensor since it last began to tell, in the order of their times,
         of dtype `eyas.sensors.camera.esim.EVENT`; times count from the episode's start.
         """
-        told = self.pixels.told[tracker, : self.pixels.count[tracker]]
+        told = self._told[tracker, : self._pixels.number[tracker]]
         return told[np.argsort(told["t"], kind="stable")]
 
     def count(self, chosen: Integers, out: NDArray[np.uint8]) -> None:
@@ -102,21 +107,26 @@ class EventSensors:
             out: For each part those of less light, then those of more, at most 255, shape
                 (V, 2 bins, H, W).
         """
-        flat = out.reshape(len(out), -1)
-        workers = min(thread_count(), len(chosen))
-        _count(workers, self.pixels, chosen, self.begin_time, self._settings.width, flat)
+        counting = _Counting(chosen, self._since, self._settings.width, out.reshape(len(out), -1))
+        _count(min(thread_count(), len(chosen)), self.pixels, counting)
+
+
+class _Counting(NamedTuple):
+    """Inputs and outputs of the kernel."""
+
+    chosen: Integers
+    begin: Floats
+    """When each sensor began to tell [s], shape (N,)."""
+    width: int
+    """Pixels in a row."""
+    out: NDArray[np.uint8]
+    """Shape (V, 2 bins * pixels)."""
 
 
 @parallel
-def _count(
-    worker: int,
-    workers: int,
-    pixels: EventPixels,
-    chosen: Integers,
-    begin: Floats,
-    width: int,
-    out: NDArray[np.uint8],
-) -> None:
+def _count(worker: int, workers: int, pixels: EventPixels, counting: _Counting) -> None:
+    chosen, begin = counting.chosen, counting.begin
+    width, out = counting.width, counting.out
     size = pixels.last.shape[1]
     bins = out.shape[1] // (2 * size)
     for v in range(worker, chosen.shape[0], workers):
@@ -124,7 +134,7 @@ def _count(
         out[v, :] = 0
         since = begin[n] * 1e6
         length = max(pixels.time[n] * 1e6 - since, 1.0)
-        for k in range(pixels.count[n]):
+        for k in range(pixels.number[n]):
             event = pixels.told[n, k]
             part = min(max(int(bins * (event.t - since) / length), 0), bins - 1)
             at = (2 * part + event.p) * size + event.y * width + event.x

@@ -102,9 +102,18 @@ class ExposureState(NamedTuple):
     @classmethod
     def create(cls, count: int) -> "ExposureState":
         """Return the state before the first episode."""
-        numbers = (np.zeros(count) for _ in range(6))
-        steps = (np.full(count, -1, np.int64) for _ in range(2))
-        return cls(*steps, *numbers, np.zeros((count, 4)))
+        none, zero = np.full(count, -1, np.int64), np.zeros(count)
+        return cls(
+            step=none,
+            metered=none.copy(),
+            value=zero,
+            error=zero.copy(),
+            speed=zero.copy(),
+            target=zero.copy(),
+            time=zero.copy(),
+            iso=zero.copy(),
+            tint=np.zeros((count, 4)),
+        )
 
     def begin(self, tracker: int, config: ExposureConfig, rng: np.random.Generator) -> None:
         """Begin an episode: its first picture will be well exposed."""
@@ -118,7 +127,7 @@ class ExposureState(NamedTuple):
 @kernel(inline=True)
 def gain_of(imagers: ImagerState, state: ExposureState, n: int) -> float:
     """Return the gain of tracker `n`, 1 for the sensor's own speed."""
-    return state.iso[n] / imagers.base_iso[n]
+    return float(state.iso[n] / imagers.base_iso[n])
 
 
 @kernel
@@ -138,9 +147,7 @@ def _set(
 
 
 @kernel
-def _begin(
-    state: ExposureState, imagers: ImagerState, limits: NDArray[np.float64], n: int
-) -> None:
+def _begin(state: ExposureState, imagers: ImagerState, limits: NDArray[np.float64], n: int) -> None:
     """Expose for a grey card."""
     level = GUESS * imagers.white[n] / imagers.full_well[n]
     _set(state, imagers, limits, n, log(state.target[n] / level) / _LN2)

@@ -74,6 +74,8 @@ class ImagerConfig(Config):
     """Standard deviation of the sensitivity from photosite to photosite (PRNU), as a share."""
     row_noise: Annotated[Variation, AfterValidator(within(0.0, 1000.0))] = 0.25
     """Standard deviation that all readings of a row share [electrons]."""
+    hot_pixels: Annotated[Variation, AfterValidator(within(0.0, 1.0))] = 0.0
+    """Share of photosites that are broken, and read as full."""
     bits: Annotated[int, Field(ge=6, le=16)] = 10
     """Bits of the converter."""
     binning: Annotated[int, Field(ge=1, le=4096)] = 1
@@ -101,6 +103,7 @@ class ImagerState(NamedTuple):
     dark_nonuniformity: NDArray[np.float64]
     gain_nonuniformity: NDArray[np.float64]
     row_noise: NDArray[np.float64]
+    hot_pixels: NDArray[np.float64]
     base_iso: NDArray[np.float64]
     """Speed at gain 1, which turns a full well into the largest number."""
     fixed_seed: NDArray[np.int64]
@@ -111,9 +114,21 @@ class ImagerState(NamedTuple):
     @classmethod
     def create(cls, count: int) -> "ImagerState":
         """Return the state of sensors before their first episode."""
-        numbers = (np.ones(count) for _ in range(8))
-        seeds = (np.zeros(count, np.int64) for _ in range(2))
-        return cls(np.ones((count, 3)), *numbers, *seeds)
+        one, none = np.ones(count), np.zeros(count, np.int64)
+        return cls(
+            electrons=np.ones((count, 3)),
+            white=one,
+            full_well=one.copy(),
+            read_noise=one.copy(),
+            dark_current=one.copy(),
+            dark_nonuniformity=one.copy(),
+            gain_nonuniformity=one.copy(),
+            row_noise=one.copy(),
+            hot_pixels=np.zeros(count),
+            base_iso=one.copy(),
+            fixed_seed=none,
+            noise_seed=none.copy(),
+        )
 
     def begin(
         self,
@@ -157,4 +172,5 @@ _SAMPLED = (
     "dark_nonuniformity",
     "gain_nonuniformity",
     "row_noise",
+    "hot_pixels",
 )

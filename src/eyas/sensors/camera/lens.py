@@ -13,6 +13,7 @@ from eyas.core.config import Config
 from eyas.core.lens import BROWN, FISHEYE, NO_LENS, Lens, lens_of, widest
 from eyas.core.pinhole import focal_length
 from eyas.core.variation import Variation, bounds, sample, within
+from eyas.state.snapshot import CameraState
 
 __all__ = ["LensConfig", "LensModel", "Lenses"]
 
@@ -140,33 +141,35 @@ class Lenses:
         row = self.numbers[tracker].tolist()
         return Lens(int(row[0]), *row[1:])
 
-    def fields_around(
-        self, trackers: NDArray[np.integer], fields: Floats, aspect: float
-    ) -> Floats:
-        """Return fields of view of pinholes that show all that lenses show [rad], shape (V,).
+    def seeing(
+        self, trackers: NDArray[np.integer], cameras: CameraState, aspect: float
+    ) -> CameraState:
+        """Return cameras without lenses that see all that cameras see through theirs.
 
         Args:
             trackers: The trackers, shape (V,).
-            fields: Of pinholes with the lenses' focal lengths, horizontal [rad], shape (V,).
+            cameras: V cameras.
             aspect: Height of the pictures over their width.
         """
-        keys = zip(self.numbers[trackers].tolist(), fields.tolist(), strict=True)
-        return np.array([_field_around(tuple(row), field, aspect) for row, field in keys])
+        numbers, fields = self.numbers[trackers], cameras.field_of_view
+        if (numbers == numbers[:1]).all() and (fields == fields[:1]).all():
+            numbers, fields = numbers[:1], fields[:1]  # mostly all are alike
+        keys = zip(numbers.tolist(), fields.tolist(), strict=True)
+        wide = [_field_around(tuple(row), field, aspect) for row, field in keys]
+        return cameras._replace(field_of_view=np.zeros(len(trackers)) + wide)
 
     def _set(self, tracker: int | slice, value: dict[str, Any]) -> None:
         model = FISHEYE if self._config.model is LensModel.FISHEYE else BROWN
         radial = value["k1"], value["k2"], value["k3"], value["k4"]
         tangential = value["p1"], value["p2"]
-        self.numbers[tracker] = lens_of(
-            model, radial, tangential, value["right"], value["below"]
-        )
+        self.numbers[tracker] = lens_of(model, radial, tangential, value["right"], value["below"])
         self.vignetting[tracker] = value["vignetting"]
         self.fringes[tracker] = value["red"], value["blue"]
 
 
 @lru_cache(maxsize=4096)
 def _field_around(numbers: tuple[float, ...], field: float, aspect: float) -> float:
-    """Return one number of `Lenses.fields_around`."""
+    """Return a horizontal field of view [rad] for `Lenses.seeing`."""
     lens = Lens(int(numbers[0]), *numbers[1:])
     focal = focal_length(1, field)
     tangent = widest(lens, (1.0, aspect), (focal, focal))

@@ -78,9 +78,11 @@ class Link:
     def __init__(self, config: LinkConfig, count: int) -> None:
         self._config, self._count = config, count
         self._links = _Links(
-            np.ones((count, 2, 64), np.float32),
-            *(np.zeros(count) for _ in range(3)),
-            np.zeros(count, np.int64),
+            tables=np.ones((count, 2, 64), np.float32),
+            slice_loss=np.zeros(count),
+            freezes=np.zeros(count),
+            freeze_time=np.zeros(count),
+            seed=np.zeros(count, np.int64),
         )
         self._loses = config.slice_loss != 0.0 or config.freezes != 0.0
         self._shown: dict[tuple[int, int], _Shown] = {}

@@ -9,8 +9,8 @@ those of the task. The sheets:
   strollswithmydog.com, 2020). Pictures of this size skip photosites: no binning.
 - `global-shutter`: a grey sensor of 3.45 micrometres with a global shutter, as for machine vision:
   signal to noise of 40.3 dB, dynamic range of 71.3 dB, 12 bits (Sony IMX255 in Matrix Vision's
-  manual of the mvBlueFOX3, 20.7). So its well holds 10^(40.3 / 10) = 10,700 electrons, and its noise
-  is 10^(71.3 / 20) times less: 2.9.
+  manual of the mvBlueFOX3, 20.7). So its well holds 10^(40.3 / 10) = 10,700 electrons, and its
+  noise is 10^(71.3 / 20) times less: 2.9.
 - `analogue-video`: a 1/4-inch camera on a chip for composite video, 656x492 photosites of 6
   micrometres: signal to noise of 48 dB, dynamic range of 49 dB, fixed pattern of 0.22 % of the
   highest signal (OmniVision OV7950, preliminary data sheet, 2006). So: 63,000 electrons, noise of
@@ -46,6 +46,7 @@ MODELS: dict[ModelName, Values] = {
             "bits": 12,
         },
         "exposure": {"time": (1.0 / 8000.0, 1.0 / 60.0), "iso": (100.0, 3200.0)},
+        "dirt": {"spots": 0},
         "link": {"quality": 70},
     },
     "global-shutter": {

@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4
 from eyas.render.kernels.scalars import f4, i4
-from eyas.sensors.camera.photosites import Readout, read_out, row_error
+from eyas.sensors.camera.photosites import (
+    Readout,
+    noise_bits,
+    pattern_bits,
+    read_out,
+    row_error,
+)
 
 __all__ = ["HALO", "MARGIN", "demosaicked", "read_mosaic"]
 
@@ -34,8 +40,7 @@ def read_mosaic(
     readout: Readout,
     radiance: NDArray[np.float32],
     view: int,
-    first: int,
-    last: int,
+    rows: tuple[int, int],
     uneven: bool,
     raw: NDArray[np.float32],
 ) -> None:
@@ -45,20 +50,20 @@ def read_mosaic(
         readout: How they are read.
         radiance: Shape (V, 3, H, W).
         view: Which picture.
-        first: Its first row.
-        last: The row after the last.
+        rows: Its first row, and the row after the last.
         uneven: Whether there is a fixed pattern.
         raw: Written: values, 1 at saturation, with white balanced; shape (rows + 2 `HALO`,
             W + 2 `MARGIN`).
     """
     height, width = radiance.shape[2], radiance.shape[3]
     plane, line = height * width, raw.shape[1]
+    first, last = rows
     for k in range(last - first + 2 * HALO):
         row = _mirrored(first + k - HALO, height)
         below = row & 1
         common = row_error(readout, row)
         even, odd = below, below + 1  # channels of the photosites in even and odd columns
-        for start in range(0, width + WIDTH - 1, WIDTH):
+        for start in range(0, width, WIDTH):
             column = min(start, width - WIDTH)
             pixel = row * width + column
             at = (3 * view + below) * plane + pixel
@@ -66,7 +71,9 @@ def read_mosaic(
             left = load(radiance, at) * readout.electrons[even]
             right = load(radiance, at + plane) * readout.electrons[odd]
             index = to_u4(lane_numbers() + i4(pixel))
-            value = read_out(readout, select(is_odd, right, left), index, common, uneven)
+            noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
+            light = select(is_odd, right, left)
+            value = read_out(readout, light, noise, pattern, common, uneven)
             white = select(is_odd, splat(readout.balance[odd]), splat(readout.balance[even]))
             store(raw, k * line + MARGIN + column, value * white)
         for beside in range(1, HALO + 1):

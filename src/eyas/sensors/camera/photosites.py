@@ -5,14 +5,23 @@ from typing import NamedTuple
 
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
-from eyas.lanes.vector import greater, lesser, root, to_f4, to_i4, to_u4, whole
+from eyas.lanes.vector import greater, lesser, root, select, to_f4, to_i4, to_u4, whole
 from eyas.render.kernels.chance import scrambled
 from eyas.render.kernels.scalars import f4, u4
 from eyas.sensors.camera.exposure import ExposureState, gain_of
 from eyas.sensors.camera.imager import ImagerState
 from eyas.sensors.chance import mixed
 
-__all__ = ["Readout", "bell", "read_out", "readout_of", "row_error"]
+__all__ = [
+    "Readout",
+    "bell",
+    "noise_bits",
+    "other_bits",
+    "pattern_bits",
+    "read_out",
+    "readout_of",
+    "row_error",
+]
 
 _DEVIATION_OF_FOUR, _DEVIATION_OF_TWO = 147.8, 104.5
 """Standard deviations of the sums of four and of two random bytes: (k (256^2 - 1) / 12)^(1/2)."""
@@ -38,6 +47,8 @@ class Readout(NamedTuple):
     """Standard deviation of the gain from photosite to photosite, averaged."""
     uneven_dark: float
     """The same of the dark level."""
+    hot: float
+    """Share of photosites that read as full."""
     row: float
     """Standard deviation that a row shares."""
     steps: float
@@ -87,6 +98,7 @@ def readout_of(
         f4(sites),
         f4(imagers.gain_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
         f4(imagers.dark_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
+        f4(imagers.hot_pixels[n]),
         # So many photosites lie in the square root of as many rows.
         f4(imagers.row_noise[n] * math.sqrt(spread) / _DEVIATION_OF_FOUR),
         f4(gain * levels / imagers.full_well[n]),
@@ -105,7 +117,8 @@ def readout_of(
 def bell(word: int) -> float:
     """Return a nearly normal number of mean 0 and deviation 147.8 from 32 random bits."""
     pairs = to_u4((word & u4(0x00FF00FF)) + ((word >> u4(8)) & u4(0x00FF00FF)))
-    return to_f4(to_i4((pairs & u4(0xFFFF)) + (pairs >> u4(16)))) - f4(510.0)
+    total: float = to_f4(to_i4((pairs & u4(0xFFFF)) + (pairs >> u4(16))))
+    return total - f4(510.0)
 
 
 @kernel(inline=True)
@@ -115,24 +128,51 @@ def row_error(readout: Readout, row: int) -> float:
 
 
 @kernel(inline=True)
-def read_out(readout: Readout, electrons: float, index: int, row: float, uneven: bool) -> float:
+def noise_bits(readout: Readout, index: int) -> int:
+    """Return random bits of photosites by their numbers, others in each picture."""
+    return scrambled(to_u4(index ^ readout.noise))
+
+
+@kernel(inline=True)
+def pattern_bits(readout: Readout, index: int) -> int:
+    """Return random bits of photosites by their numbers, the same for an episode."""
+    return scrambled(to_u4(index ^ readout.pattern))
+
+
+@kernel(inline=True)
+def other_bits(word: int) -> int:
+    """Return other random bits made of some: of the next colour of the same pixel.
+
+    One round of `scrambled`, for half its time; the bytes' sums are then unrelated.
+    """
+    bits: int = to_u4((word ^ (word >> u4(13))) * u4(0x9E3779B1))
+    return bits
+
+
+@kernel(inline=True)
+def read_out(
+    readout: Readout, electrons: float, noise: int, pattern: int, row: float, uneven: bool
+) -> float:
     """Return the number that is read of photosites.
 
     Args:
         readout: How they are read.
         electrons: Electrons that light frees in them.
-        index: Their numbers in the picture.
+        noise: Random bits of this picture.
+        pattern: Random bits of the episode.
         row: See `row_error`.
         uneven: Whether they have a fixed pattern.
     """
     light = lesser(greater(electrons, f4(0.0)), f4(_FULLEST) * readout.most)
     deviation = root(light * readout.share + readout.dark) * f4(1.0 / _DEVIATION_OF_FOUR)
-    word = scrambled(to_u4(index ^ readout.noise))
-    held = light + deviation * bell(word) + row
+    held = light + deviation * bell(noise) + row
     if uneven:
-        word = scrambled(to_u4(index ^ readout.pattern))
-        pairs = to_u4((word & u4(0x00FF00FF)) + ((word >> u4(8)) & u4(0x00FF00FF)))
+        pairs = to_u4((pattern & u4(0x00FF00FF)) + ((pattern >> u4(8)) & u4(0x00FF00FF)))
         held += light * (readout.uneven_gain * (to_f4(to_i4(pairs & u4(0xFFFF))) - f4(255.0)))
         held += readout.uneven_dark * (to_f4(to_i4(pairs >> u4(16))) - f4(255.0))
+        if readout.hot > f4(0.0):
+            drawn = to_f4(to_i4(scrambled(pattern) >> u4(8))) * f4(1.0 / (1 << 24))
+            held = select(drawn < readout.hot, held + readout.most, held)
     step = whole(lesser(held, readout.most) * readout.steps + f4(0.5))
-    return lesser(step, readout.levels)
+    number: float = lesser(step, readout.levels)
+    return number

@@ -11,9 +11,21 @@ from eyas.lanes.elementary import sin_cos, tan
 from eyas.sensors.camera.vibration import Shake, shaken_axes
 from eyas.state.snapshot import CameraState
 
-__all__ = ["Exposure", "Moments", "Seen", "motion_in_pixels", "poses_at", "turned"]
+__all__ = [
+    "INSTANTS",
+    "Exposure",
+    "Moments",
+    "Moving",
+    "Seen",
+    "motion_in_pixels",
+    "poses_at",
+    "turned",
+]
 
 Floats = NDArray[np.float64]
+Vector = tuple[float, float, float]
+Lens = tuple[float, float]
+"""Focal length, and half the width of the picture [pixels]."""
 
 
 class Exposure(NamedTuple):
@@ -84,6 +96,22 @@ def poses_at(exposure: Exposure, moments: Moments) -> None:
         _pose(exposure, moments.of[k], moments.later[k], place, axes)
 
 
+class Moving(NamedTuple):
+    """E things that V views may show, with their motion."""
+
+    first: NDArray[np.int64]
+    """Where the things of each view begin, shape (V,)."""
+    end: NDArray[np.int64]
+    """Where they end, shape (V,)."""
+    position: Floats
+    """Reference points, world frame [m], shape (E, 3)."""
+    velocity: Floats
+    """[m/s], shape (E, 3)."""
+    reach: Floats
+    """How far they reach from there, a few metres at most [m], shape (E,). Those that reach into a
+    view must be the same whatever other views there are."""
+
+
 class Seen(NamedTuple):
     """What V cameras see, as far as its motion in the picture is asked."""
 
@@ -94,14 +122,7 @@ class Seen(NamedTuple):
     frame: Floats
     """Width of the picture [pixels]; height over width of what it shows; its rows over those that
     it had if its pixels were square; shape (3,)."""
-    first: NDArray[np.int64]
-    """Where the things of each view begin, shape (V,)."""
-    end: NDArray[np.int64]
-    """Where they end, shape (V,)."""
-    position: Floats
-    """Things that move, world frame [m], shape (E, 3)."""
-    velocity: Floats
-    """[m/s], shape (E, 3)."""
+    things: Moving
     place: Floats
     """Working memory, shape (INSTANTS, 3)."""
     axes: Floats
@@ -115,17 +136,17 @@ INSTANTS = 5
 
 _FARTHEST = 1000.0
 _NEAREST = 1.0
-_MARGIN = 1.2
-"""Things are in the picture up to so many half widths from its middle."""
+_WIDE = 1.0
+"""Roundings must not move the ground at the edge of the picture out of it [m]."""
 
 
 @kernel(inline=True)
-def _way(
-    seen: Seen, focal: float, half: float, window: float, x: float, y: float, z: float,
-    east: float, north: float, up: float,
-) -> float:  # fmt: skip
-    """Return the way of a point with a velocity through the picture [pixels]; 0 if not in it."""
-    way, column, row = 0.0, 0.0, 0.0
+def _way(seen: Seen, v: int, lens: Lens, reach: float, point: Vector, velocity: Vector) -> float:
+    """Return the way of a thing through the picture of view `v` [pixels]; 0 if it is not in it."""
+    focal, half = lens
+    x, y, z = point
+    east, north, up = velocity
+    way, column, row, window = 0.0, 0.0, 0.0, seen.window[v]
     for k in range(INSTANTS):
         later = window * (k / (INSTANTS - 1.0) - 0.5)
         place, axes = seen.place[k], seen.axes[k]
@@ -137,9 +158,10 @@ def _way(
             return 0.0
         right = -focal * (axes[0, 1] * a + axes[1, 1] * b + axes[2, 1] * c) / ahead
         down = -focal * (axes[0, 2] * a + axes[1, 2] * b + axes[2, 2] * c) / ahead
-        off = max(abs(right), abs(down) / seen.frame[1])
-        if k == INSTANTS // 2 and off > _MARGIN * half:
-            return 0.0
+        if k == INSTANTS // 2:
+            edge = focal * reach / ahead
+            if abs(right) > half + edge or abs(down) > half * seen.frame[1] + edge:
+                return 0.0
         if k > 0:
             way += math.sqrt((right - column) ** 2 + (seen.frame[2] * (down - row)) ** 2)
         column, row = right, down
@@ -148,9 +170,10 @@ def _way(
 
 @kernel(inline=True)
 def _way_of_ground(
-    exposure: Exposure, seen: Seen, v: int, focal: float, half: float, across: int, down: int
+    exposure: Exposure, seen: Seen, v: int, lens: Lens, across: int, down: int
 ) -> float:
     """Return the way of what a place of the picture shows of the plane of the ground."""
+    focal, half = lens
     place, axes = exposure.cameras.position[v], exposure.cameras.rotation[v]
     left, up = -across * half / focal, -down * half * seen.frame[1] / focal
     x = axes[0, 0] + left * axes[0, 1] + up * axes[0, 2]
@@ -160,7 +183,7 @@ def _way_of_ground(
     if -z * _FARTHEST > height:
         away = max(-height / z, _NEAREST)
     x, y, z = place[0] + away * x, place[1] + away * y, place[2] + away * z
-    return _way(seen, focal, half, seen.window[v], x, y, z, 0.0, 0.0, 0.0)
+    return _way(seen, v, lens, _WIDE, (x, y, z), (0.0, 0.0, 0.0))
 
 
 @compiled
@@ -170,21 +193,20 @@ def motion_in_pixels(exposure: Exposure, seen: Seen) -> None:
     """
     half = 0.5 * seen.frame[0]
     for v in range(seen.motion.shape[0]):
-        focal = half / tan(0.5 * exposure.cameras.field_of_view[v])
+        lens = half / tan(0.5 * exposure.cameras.field_of_view[v]), half
         for k in range(INSTANTS):
             later = seen.window[v] * (k / (INSTANTS - 1.0) - 0.5)
             _pose(exposure, v, later, seen.place[k], seen.axes[k])
         longest = 0.0
         for across in range(-1, 2):
             for down in range(-1, 2):
-                longest = max(
-                    longest, _way_of_ground(exposure, seen, v, focal, half, across, down)
-                )
-        for e in range(seen.first[v], seen.end[v]):
-            point, speed = seen.position[e], seen.velocity[e]
-            way = _way(
-                seen, focal, half, seen.window[v], point[0], point[1], point[2],
-                speed[0], speed[1], speed[2],
-            )  # fmt: skip
+                way = _way_of_ground(exposure, seen, v, lens, across, down)
+                longest = max(longest, way)
+        things = seen.things
+        for e in range(things.first[v], things.end[v]):
+            point, speed = things.position[e], things.velocity[e]
+            velocity = speed[0], speed[1], speed[2]
+            place = point[0], point[1], point[2]
+            way = _way(seen, v, lens, things.reach[e], place, velocity)
             longest = max(longest, way)
         seen.motion[v] = longest

@@ -6,7 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.variation import sample
 from eyas.render.outputs import picture_size
+from eyas.sensors.camera.defocus import defocused
 from eyas.sensors.camera.development import Development
 from eyas.sensors.camera.dirt import Dirt
 from eyas.sensors.camera.glass import change_light
@@ -51,6 +53,8 @@ class CameraModel:
         self._shutter = shutter if config.shutter.blur else None
         self._dirt: Dirt | None = None
         self._link: Link | None = None
+        self._defocus = config.defocus if config.is_defocused else None
+        self._blur = np.zeros(count)
         self._curve = ToneCurve(lighting.exposure)
         self._infrared = config.spectrum is Spectrum.NEAR_INFRARED
         self.development: Development | None = None
@@ -59,7 +63,7 @@ class CameraModel:
                 sensor, config.exposure, config.spectrum, lighting.luminance, count
             )
         if config.dirt is not None:
-            self._dirt = Dirt(config.dirt, count)
+            self._dirt = Dirt(config.dirt, lighting.flakes, count)
         if config.link is not None:
             self._link = Link(config.link, count)
 
@@ -77,6 +81,8 @@ class CameraModel:
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
+        if self._defocus is not None:
+            self._blur[tracker] = sample(self._defocus, rng)
         # Each part has a stream of its own: one more changes nothing in the others.
         parts = self.development, self._dirt, self._link
         for part, own in zip(parts, rng.spawn(len(parts)), strict=True):
@@ -113,6 +119,8 @@ class CameraModel:
             near_infrared(light, seen.class_id)
         if self._lenses is not None:
             light = change_light(light, trackers, self._lenses)
+        if self._defocus is not None:
+            light = defocused(light, self._blur[trackers] * light.shape[2])
         if self._dirt is not None:
             self._dirt.cover(light, trackers)
         if self.development is None:

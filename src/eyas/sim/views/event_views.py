@@ -72,7 +72,7 @@ class EventViews:
             before[chosen[fresh]] = now[fresh]
         ways = self._ways(chosen, exposure)
         origin = self._origin[chosen] * PHYSICS_STEP
-        self.sensors.forget(chosen, ways.begin - origin)
+        self.sensors.forget(chosen.astype(np.int64), ways.begin - origin)
         self._see(chosen, ways, self._samples(chosen, exposure, ways))
         for before, now in zip(self._before, exposure.cameras, strict=True):
             before[chosen] = now
@@ -80,7 +80,7 @@ class EventViews:
 
     def _ways(self, chosen: Chosen, exposure: Exposure) -> Ways:
         first = CameraState(*(array[chosen] for array in self._before))
-        begin = self._tick[chosen] * PHYSICS_STEP
+        begin = np.multiply(self._tick[chosen], PHYSICS_STEP)
         return Ways(first, exposure.cameras, exposure.shake, begin, exposure.instant)
 
     def _samples(self, chosen: Chosen, exposure: Exposure, ways: Ways) -> Integers:

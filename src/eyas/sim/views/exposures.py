@@ -4,7 +4,6 @@ An exposure is drawn at several instants, and a picture whose rows are exposed o
 in bands. All outputs but colours are those of the middle of the exposure of each band.
 """
 
-from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import NamedTuple, Protocol
 
@@ -14,10 +13,17 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.passes import Pieces, add_passes, pieces_of
-from eyas.sensors.camera.poses import Exposure, Moments, Seen, motion_in_pixels, poses_at
+from eyas.sensors.camera.poses import (
+    INSTANTS,
+    Exposure,
+    Moments,
+    Moving,
+    Seen,
+    motion_in_pixels,
+    poses_at,
+)
 from eyas.sensors.camera.shutter import Shutter
 from eyas.sensors.camera.vibration import Shake, Vibration, no_shake
-from eyas.sim.views.visible_actors import Moving
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 
@@ -59,9 +65,7 @@ class Stage(Protocol):
         ...
 
 
-def exposure_of(
-    chosen: Chosen, steady: Snapshot, vibration: Vibration | None
-) -> Exposure:
+def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -> Exposure:
     """Return the exposures of some trackers.
 
     Args:
@@ -73,7 +77,8 @@ def exposure_of(
     shake = no_shake(len(chosen))
     if vibration is not None:
         shake = Shake(*(array[chosen] for array in vibration.shake))
-    return Exposure(cameras, shake, steady.episodes.tick[chosen] * PHYSICS_STEP)
+    instant = np.multiply(steady.episodes.tick[chosen], PHYSICS_STEP)
+    return Exposure(cameras, shake, instant)
 
 
 def ways_of(
@@ -88,9 +93,8 @@ def ways_of(
         frame: See `Seen.frame`.
         moving: Things that move.
     """
-    seen = Seen(
-        window, floor, frame, *moving, np.zeros((5, 3)), np.zeros((5, 3, 3)), np.zeros(len(window))
-    )
+    place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
+    seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)
     return seen.motion
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.frames import rotate
+from eyas.core.lens import Lens
 from eyas.core.variation import sample
 from eyas.lanes import interpreted
 from eyas.sensors.camera.vibration import Vibration
@@ -113,6 +114,11 @@ class FurtherCamera:
         """
         self.place()
         self._drawer.draw(trackers, picture, DrawStage.SHADING)
+
+    def lens_of(self, tracker: int) -> Lens | None:
+        """Return the lens of a tracker's; None: it is a pinhole."""
+        lenses = self._optics.bent
+        return None if lenses is None else lenses.of_tracker(tracker)
 
     def place(self) -> None:
         """Set the poses to what they are now."""

@@ -1,4 +1,4 @@
-"""What is modelled of the cameras of one name: lenses, shutters, and what becomes of their light."""
+"""What is modelled of cameras: lenses, shutters, and what becomes of their light."""
 
 from collections.abc import Callable
 

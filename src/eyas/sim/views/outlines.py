@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.lens import NO_LENS, Lens, distorted, principal_point
 from eyas.core.pinhole import focal_length
 from eyas.lanes import Held, compiled
 from eyas.render.kernels.bundles import NEAR
@@ -45,8 +46,11 @@ class _Query(NamedTuple):
     """Optical centre [m], shape (3,)."""
     axes: Floats
     """Camera to world; columns forward, left, up, shape (3, 3)."""
-    lens: Floats
-    """Focal length, and the middle of the picture [pixels], shape (3,)."""
+    camera: Floats
+    """Focal length, and the principal point [pixels], shape (3,)."""
+    bent: int
+    """1: `lens` bends the picture."""
+    lens: Lens
     box: Floats
     """Left, top, right, bottom of each wanted actor [pixels], shape (B, 4)."""
 
@@ -78,6 +82,7 @@ class Outlines:
         wanted: NDArray[np.integer],
         cameras: CameraState,
         tracker: int,
+        lens: Lens | None = None,
     ) -> Floats:
         """Return the boxes around all vertices of some actors, in their poses at this moment.
 
@@ -86,6 +91,7 @@ class Outlines:
             wanted: Which of them, shape (B,).
             cameras: The cameras of all trackers.
             tracker: Whose camera it is.
+            lens: Its lens; None: a pinhole.
 
         Returns:
             Left, top, right, bottom [pixels], not clipped to the picture. Vertices nearer to the
@@ -100,7 +106,9 @@ class Outlines:
             pose=posed.pose,
             eye=cameras.position[tracker],
             axes=cameras.rotation[tracker],
-            lens=np.array([focal, 0.5 * self._width, 0.5 * self._height]),
+            camera=np.array([focal, *principal_point(lens or NO_LENS, self._width, self._height)]),
+            bent=int(lens is not None),
+            lens=lens or NO_LENS,
             box=np.zeros((len(wanted), 4)),
         )
         _enclose(_vertices_of(self._kinds), query)
@@ -111,7 +119,7 @@ class Outlines:
 def _enclose(vertices: _Vertices, query: _Query) -> None:
     """Write `_Query.box`."""
     eye, axes = query.eye, query.axes
-    focal, middle, centre = query.lens[0], query.lens[1], query.lens[2]
+    focal, middle, centre = query.camera[0], query.camera[1], query.camera[2]
     for row in range(len(query.wanted)):
         actor = query.wanted[row]
         left, top, right, bottom = np.inf, np.inf, -np.inf, -np.inf
@@ -127,9 +135,14 @@ def _enclose(vertices: _Vertices, query: _Query) -> None:
                 ahead = axes[0, 0] * x + axes[1, 0] * y + axes[2, 0] * z
                 if ahead < NEAR:
                     continue
-                scale = focal / ahead
-                column = middle - scale * (axes[0, 1] * x + axes[1, 1] * y + axes[2, 1] * z)
-                line = centre - scale * (axes[0, 2] * x + axes[1, 2] * y + axes[2, 2] * z)
+                aside = axes[0, 1] * x + axes[1, 1] * y + axes[2, 1] * z
+                above = axes[0, 2] * x + axes[1, 2] * y + axes[2, 2] * z
+                if query.bent == 1:
+                    over, down = distorted(query.lens, -aside, -above, ahead)
+                    column, line = middle + focal * over, centre + focal * down
+                else:
+                    scale = focal / ahead
+                    column, line = middle - scale * aside, centre - scale * above
                 left, right = min(left, column), max(right, column)
                 top, bottom = min(top, line), max(bottom, line)
         if left <= right:

@@ -12,6 +12,7 @@ from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
 from eyas.sensors.camera.lens import Lenses
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
@@ -19,7 +20,6 @@ from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.views.delay import ShownState
 from eyas.sim.views.exposures import Exposures, Moment
 from eyas.sim.views.optics import Optics
-from eyas.sim.views.visible_actors import Moving
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT
@@ -127,8 +127,10 @@ class PictureDrawer:
 
     def moving(self, trackers: Chosen, cameras: CameraState) -> Moving:
         """Return the motion of the actors that trackers' cameras may show."""
-        ticks = self._snapshot.episodes.tick
-        return self._worlds.moving(trackers, ticks, cameras, self.aspect)
+        ticks, seeing = self._snapshot.episodes.tick, cameras
+        if self._lenses is not None:
+            seeing = self._lenses.seeing(trackers, cameras, self.aspect)
+        return self._worlds.moving(trackers, ticks, seeing, self.aspect)
 
     def render(self, views: Views, movers: DrawList, picture: Picture, until: DrawStage) -> None:
         """Draw views of trackers' cameras."""
@@ -216,8 +218,7 @@ class PictureDrawer:
         """
         ticks, seeing = self._snapshot.episodes.tick, cameras
         if lenses is not None:
-            field = lenses.fields_around(chosen, cameras.field_of_view, aspect)
-            seeing = cameras._replace(field_of_view=field)
+            seeing = lenses.seeing(chosen, cameras, aspect)
         world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
         instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
         if instant is not None and later is not None:

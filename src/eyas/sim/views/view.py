@@ -5,6 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.lens import Lens
 from eyas.sensors.camera.event_sensor import EventSensors
 from eyas.sensors.camera.exposure import ExposureState
 from eyas.sensors.lidar import Lidar
@@ -151,7 +152,12 @@ class View:
             actors: The actors around it.
             wanted: Which of them, shape (B,).
         """
-        return self._outlines.of(actors, wanted, self.state.shown.cameras, tracker)
+        cameras, lens = self.state.shown.cameras, self.lens_of(tracker)
+        return self._outlines.of(actors, wanted, cameras, tracker, lens)
+
+    def lens_of(self, tracker: int) -> Lens | None:
+        """Return the lens of a tracker's camera; None: it is a pinhole."""
+        return None if self.lenses is None else self.lenses.of_tracker(tracker)
 
     def parts(self, tracker: int, actors: ActorView) -> MovingParts:
         """Return which moving part each pixel of a tracker's picture shows.
@@ -164,7 +170,8 @@ class View:
 
     def words(self, tracker: int, aspect: float) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
-        return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect)
+        lens = self.lens_of(tracker)
+        return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect, lens)
 
     def in_view(self, tracker: int, later: int = 0) -> InView:
         """Return the moving objects in a tracker's view, for phrases about them.
@@ -175,7 +182,7 @@ class View:
         """
         aspect = self._camera.height / self._camera.width
         actors = self.actors(tracker, later)
-        return in_view(self.state.shown, actors, tracker, aspect)
+        return in_view(self.state.shown, actors, tracker, aspect, self.lens_of(tracker))
 
     @property
     def exposure(self) -> ExposureState | None:

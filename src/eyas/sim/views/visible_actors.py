@@ -15,6 +15,7 @@ from eyas.lanes import Held, compiled, kernel
 from eyas.lanes.elementary import tan
 from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
+from eyas.sensors.camera.poses import Moving
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
@@ -24,10 +25,13 @@ from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before, write_actor
 
-__all__ = ["Moving", "VisibleActors"]
+__all__ = ["VisibleActors"]
 
 _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
+
+_LONGEST = 3.0
+"""Reach of a thing beyond which it is not said to move in a picture: half a long car [m]."""
 
 _CHOICES = 32
 """Groups of actors that are kept: those of one picture are mostly those of the next."""
@@ -217,19 +221,6 @@ def _list_actors(  # the records that it reads
     listed.needed[0] = entries
 
 
-class Moving(NamedTuple):
-    """E actors that matter for V views, with their motion."""
-
-    first: NDArray[np.int64]
-    """Where the actors of each view begin, shape (V,)."""
-    end: NDArray[np.int64]
-    """Where they end, shape (V,)."""
-    position: NDArray[np.float64]
-    """Reference points, world frame [m], shape (E, 3)."""
-    velocity: NDArray[np.float64]
-    """[m/s], shape (E, 3)."""
-
-
 class _Size(NamedTuple):
     """Capacity of the buffers."""
 
@@ -260,6 +251,7 @@ class VisibleActors:
         )
         actor = np.concatenate([np.zeros(0, np.int64), *(group.actor for group in groups)])
         self._rigs = rigs
+        self._reach = np.minimum(kinds.reach, _LONGEST)
         self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
         self._size = _Size(0, 0, 0, 0)
 
@@ -294,15 +286,20 @@ class VisibleActors:
         row: NDArray[np.integer] | None,
         cameras: CameraState,
         aspect: float,
-    ) -> "Moving":
+    ) -> Moving:
         """Return where these actors are, and how fast, without posing them; see `of`."""
         self._list_for(worlds, time, row, cameras, aspect)
-        entries, (state, slots) = int(self._listed.needed[0]), (self._listed.state, self._size.slots)
+        entries, (state, slots) = (
+            int(self._listed.needed[0]),
+            (self._listed.state, self._size.slots),
+        )
         world = self._listed.slot[:entries] // max(slots, 1)
         order = np.argsort(world, kind="stable")
         rows = np.arange(len(worlds)) if row is None else row
         first, end = (np.searchsorted(world[order], rows, side) for side in ("left", "right"))
-        return Moving(first, end, state.position[0, order], state.velocity[0, order])
+        per_kind = np.diff(self._listed.end, prepend=0)
+        reach = np.repeat(self._reach, per_kind)[order]
+        return Moving(first, end, state.position[0, order], state.velocity[0, order], reach)
 
     def _list_for(
         self,

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.core.lens import Lens, places, principal_point, widest
 from eyas.state.motion import ActorState, ActorView
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.catalogue import MODELS, extent_of, kind_of
@@ -18,7 +19,9 @@ __all__ = ["in_view", "target_in_words"]
 Floats = NDArray[np.float64]
 
 
-def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> str:
+def target_in_words(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+) -> str:
     """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
 
     No other actor of which a part is in the camera's view shares it, hidden or not.
@@ -28,13 +31,14 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
         around: The actors around the tracker at that time.
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
+        lens: Its lens; None: a pinhole.
     """
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect)
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
     target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
     actors, _, model, colour = around
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
-    forward, left, _ = corners.mean(axis=1).T
-    column = 0.5 - 0.5 * left / (np.maximum(forward, 1e-3) * wide)
+    middle = corners.mean(axis=1)
+    forward, column = middle[:, 0], _placed(middle, wide, aspect, lens)[:, 0]
 
     def seen(row: int) -> Seen:
         actor = chosen[row]
@@ -52,7 +56,9 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
     return told_apart(seen(own), [seen(row) for row in others])
 
 
-def in_view(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> InView:
+def in_view(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+) -> InView:
     """Return the moving objects of which a part is in a tracker's view, and its target in any case.
 
     Args:
@@ -60,14 +66,13 @@ def in_view(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> 
         around: The actors around the tracker at that time.
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
+        lens: Its lens; None: a pinhole.
     """
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect)
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
     inside |= chosen == shown.targets.actor[tracker]
     actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
     actors, _, model, colour = around
-    forward, left, up = corners[inside].mean(axis=1).T
-    reach = np.maximum(forward, 1e-3) * wide
-    place = np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=1)
+    place = _placed(corners[inside].mean(axis=1), wide, aspect, lens)
     heading, ahead = actors.yaw[0, actor], np.array([kind_of(m).ahead for m in model[actor]])
     along = np.stack([exact.cos(heading), exact.sin(heading)], axis=1)
     return InView(
@@ -83,8 +88,27 @@ def in_view(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> 
     )
 
 
+def _placed(points: Floats, wide: float, aspect: float, lens: Lens | None) -> Floats:
+    """Return where points are in a picture, in shares of its sides, also if they are behind it.
+
+    Args:
+        points: Forward, left and up of the camera [m], shape (..., 3).
+        wide: Tangent of half the horizontal field of view.
+        aspect: Height of the picture over its width.
+        lens: The lens; None: a pinhole.
+    """
+    forward, left, up = np.moveaxis(points, -1, 0)
+    before = np.maximum(forward, 1e-3)
+    if lens is not None:
+        bent = places(lens, np.stack([-left, -up, before], axis=-1)) / (2.0 * wide)
+        column, row = principal_point(lens, 1.0, 1.0)
+        return np.stack([column + bent[..., 0], row + bent[..., 1] / aspect], axis=-1)
+    reach = before * wide
+    return np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=-1)
+
+
 def _surely_near(
-    shown: Snapshot, around: ActorView, tracker: int, aspect: float
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], Floats]:
     """Return actors that are near a tracker's view or its target, shape (K,), of which a part is
     inside, (K,), and the corners of their boxes forward, left and up of the camera [m], (K, 8, 3).
@@ -93,11 +117,16 @@ def _surely_near(
     actors, _, model, _ = around
     wide = _half_width(cameras, tracker)
     middles = _in_camera(actors.position[0], cameras, tracker)
-    near = _may_be_in_view(middles, _reach(len(MODELS))[model], wide, wide * aspect)
+    seen = wide if lens is None else widest(lens, (1.0, aspect), (0.5 / wide, 0.5 / wide))
+    near = _may_be_in_view(
+        middles, _reach(len(MODELS))[model], seen, wide * aspect if lens is None else seen
+    )
     near &= actors.present[0]
     near[target] = True
     chosen = np.flatnonzero(near)
     corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
+    if lens is not None:
+        return chosen, _in_bent_view(corners, wide, aspect, lens), corners
     return chosen, _in_view(corners, wide, wide * aspect), corners
 
 
@@ -168,6 +197,16 @@ def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
     away, axes = points - cameras.position[tracker], cameras.rotation[tracker]
     seen = [sum(away[..., k] * axes[k, axis] for k in range(3)) for axis in range(3)]
     return np.stack(seen, axis=-1)
+
+
+def _in_bent_view(corners: Floats, wide: float, aspect: float, lens: Lens) -> NDArray[np.bool_]:
+    """Return the same through a lens: whether the boxes around their corners reach the picture."""
+    before = corners[..., 0] > 1e-3
+    place = _placed(corners, wide, aspect, lens)
+    low = np.where(before[..., None], place, np.inf).min(axis=1)
+    high = np.where(before[..., None], place, -np.inf).max(axis=1)
+    inside: NDArray[np.bool_] = ((low < 1.0) & (high > 0.0)).all(axis=1)
+    return inside
 
 
 def _in_view(corners: Floats, wide: float, high: float) -> NDArray[np.bool_]:

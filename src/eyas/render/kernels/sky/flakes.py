@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from eyas.lanes import address_of, kernel
-from eyas.render.kernels.bundles import Band, Canvas, Glass, Light, View
+from eyas.render.kernels.bundles import Band, Canvas, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.light.tone import tone_bytes
@@ -196,6 +196,23 @@ def _in_band(
     return bool(up >= low * ahead - ball * math.sqrt(1.0 + low * low))
 
 
+class Streak(NamedTuple):
+    """A flake on the screen."""
+
+    column: float
+    """Column of its end [pixels]."""
+    row: float
+    """Row of its end in the band [pixels]."""
+    to_column: float
+    """Columns from there to its start [pixels]."""
+    to_row: float
+    """Rows from there to its start [pixels]."""
+    radius: float
+    """Half its width [pixels]."""
+    inverse: float
+    """One over its distance [1/m]."""
+
+
 @kernel
 def _draw_flake(
     number: int, middle: tuple[float, float, float], begin: float, end: float, snowfall: Snowfall
@@ -224,22 +241,23 @@ def _draw_flake(
     _, aside, above = _seen_from(
         view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.sinking * exposed
     )
-    half = _radius(falling, size, ahead)
-    if falling.coloured:  # a leaf that tumbles
-        half *= 0.35 + 0.65 * abs(_wave(2.7 * turn))
-    radius = half * view.focal / ahead
+    tumbling = 0.35 + 0.65 * abs(_wave(2.7 * turn)) if falling.coloured else 1.0
+    real = _radius(falling, size, ahead)
+    radius = real * view.focal / ahead
+    if falling.coloured:
+        radius *= tumbling
     if radius < falling.smallest:
         return
+    across = view.focal_x / (ahead * view.samples)
+    down = view.focal_y / (ahead * view.samples)
+    column = 0.5 * view.width / view.samples - left * across
+    row = (0.5 * view.height - view.top) / view.samples - up * down
+    streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
     if snowfall.band.glass.on == 1:
-        streak = _bent(snowfall.band.glass, (ahead, left, up), (aside, above), half)
+        moved = aside, above
+        streak = _bent_streak((ahead, left, up), moved, real * tumbling, snowfall)
         if streak.radius < falling.smallest:
             return
-    else:
-        across = view.focal_x / (ahead * view.samples)
-        down = view.focal_y / (ahead * view.samples)
-        column = 0.5 * view.width / view.samples - left * across
-        row = (0.5 * view.height - view.top) / view.samples - up * down
-        streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
     colour, pale = snowfall.white, snowfall.bytes
     if falling.coloured:
         colour = leaf_colour(colour, tenth(number ^ other, 5))
@@ -251,36 +269,19 @@ def _draw_flake(
     _smear(streak, colour, pale, snowfall)
 
 
-class Streak(NamedTuple):
-    """A flake on the screen."""
-
-    column: float
-    """Column of its end [pixels]."""
-    row: float
-    """Row of its end in the band [pixels]."""
-    to_column: float
-    """Columns from there to its start [pixels]."""
-    to_row: float
-    """Rows from there to its start [pixels]."""
-    radius: float
-    """Half its width [pixels]."""
-    inverse: float
-    """One over its distance [1/m]."""
-
-
-@kernel
-def _bent(
-    glass: Glass, place: tuple[float, float, float], moved: tuple[float, float], radius: float
+@kernel(inline=True)
+def _bent_streak(
+    place: tuple[float, float, float], moved: tuple[float, float], radius: float, snowfall: Snowfall
 ) -> Streak:
-    """Return a flake that is seen through a lens; of radius 0 if it is not.
+    """Return a flake as a lens shows it; of radius 0 where it would lie across the picture's edge.
 
     Args:
-        glass: The lens.
         place: Forward, left and up in its face [m].
         moved: How far it moves left and up while the picture is exposed [m].
         radius: [m]
+        snowfall: Band to draw into.
     """
-    ahead, left, up = place
+    glass, (ahead, left, up) = snowfall.band.glass, place
     column, row = shown_at(glass, ahead, left, up)
     to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
     edge_column, edge_row = shown_at(glass, ahead, left - radius, up)
