@@ -30,9 +30,7 @@ def no_land() -> NDArray[np.uint16]:
     return np.zeros((2, 2), np.uint16)
 
 
-def land_map(
-    scene: Scene, ambient: AmbientMap, folder: Path | None = None
-) -> NDArray[np.uint16]:
+def land_map(scene: Scene, ambient: AmbientMap, folder: Path | None = None) -> NDArray[np.uint16]:
     """Return the map of a scene in the frame of its `AmbientMap`; kept in the cache.
 
     Low byte: how much of a place lies under crowns; high byte: how open to mist it is, 0 to 255
