@@ -138,9 +138,7 @@ class Views:
         return focal
 
 
-def _focal_lengths(
-    size: int, fields: float | NDArray[np.float64]
-) -> float | NDArray[np.float64]:
+def _focal_lengths(size: int, fields: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
     """Return the focal length, or that of each view [pixels]."""
     if isinstance(fields, np.ndarray):
         # One by one, since numpy's own tangents differ between processors; but views of one lens

@@ -93,9 +93,7 @@ def camera_axes(band: Band) -> tuple[Direction, Direction, Direction]:
 
 
 @kernel(inline=True)
-def place_in_face(
-    glass: Glass, row: int, first: int, step: int
-) -> tuple[float, float, float]:
+def place_in_face(glass: Glass, row: int, first: int, step: int) -> tuple[float, float, float]:
     """Return line, column and width, see `LensTables`, of eight samples that are `step` apart."""
     at = row * glass.column.shape[1] + first
     if step == 1:

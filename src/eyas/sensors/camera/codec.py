@@ -230,7 +230,9 @@ def _as_byte(value: float) -> int:
 
 
 @kernel
-def _join(rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[np.float32]) -> None:
+def _join(
+    rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[np.float32]
+) -> None:
     """Write the picture of three planes, of which those of colours are half as wide and high.
 
     Args:

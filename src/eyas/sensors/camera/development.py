@@ -400,8 +400,6 @@ def _develop_mosaic(
         for start in range(0, width, WIDTH):
             column = min(start, width - WIDTH)
             colours = demosaicked(raw, row, row - first, column, malvar)
-            packed = pack(
-                _byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2])
-            )
+            packed = pack(_byte(tone, colours[0]), _byte(tone, colours[1]), _byte(tone, colours[2]))
             at = 3 * ((view * height + row) * width + column)
             store_triples(developed.rgb, at, packed)

@@ -147,9 +147,7 @@ def _set(
 
 
 @kernel
-def _begin(
-    state: ExposureState, imagers: ImagerState, limits: NDArray[np.float64], n: int
-) -> None:
+def _begin(state: ExposureState, imagers: ImagerState, limits: NDArray[np.float64], n: int) -> None:
     """Expose for a grey card."""
     level = GUESS * imagers.white[n] / imagers.full_well[n]
     _set(state, imagers, limits, n, log(state.target[n] / level) / _LN2)

@@ -33,6 +33,9 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Chosen = NDArray[np.int32]
 
+_PLANES = ("rgb", "depth", "object_id", "class_id", "normal")
+"""What says the size of a picture without light."""
+
 _MOST_BANDS = 64
 _LIGHT = 32 << 20
 """Bytes of light that are drawn before they are added: each call of the renderer takes a while."""
@@ -144,6 +147,9 @@ class Exposures:
         others = replace(picture, radiance=None)
         if any(getattr(others, one.name) is not None for one in fields(others)):
             middle = pieces_of(once, bands, open_for, readout, height)
+            if not any(getattr(others, name) is not None for name in _PLANES):
+                # Boxes alone do not say of what size the picture is.
+                others.class_id = np.empty((len(chosen), height, width), np.uint8)
             self._draw(chosen, exposure, middle, others, until)
         passes = pieces_of(samples, bands, open_for, readout, height)
         self._add(chosen, exposure, passes, picture.radiance, until)

@@ -74,8 +74,7 @@ def _coloured(one: Material, colour: Tint, share: float, brightest: float) -> Ma
     light = _brightness(one) / brightest
     if one.surface == Surface.CROWN:  # through a thin crown, twigs are seen
         red, green, blue = (
-            part + (1.0 - share) * (twig - part)
-            for part, twig in zip(colour, _TWIGS, strict=True)
+            part + (1.0 - share) * (twig - part) for part, twig in zip(colour, _TWIGS, strict=True)
         )
         colour = red, green, blue
     return replace(

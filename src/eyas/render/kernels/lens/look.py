@@ -31,9 +31,7 @@ __all__ = ["face_rows", "face_view", "glass_of", "look_through", "shown_at", "to
 
 
 @kernel
-def face_rows(
-    tables: LensTables, slot: int, face: int, top: int, bottom: int
-) -> tuple[int, int]:
+def face_rows(tables: LensTables, slot: int, face: int, top: int, bottom: int) -> tuple[int, int]:
     """Return the first row of a face that rows of the picture need, and after the last [pixels]."""
     first, last = i8(tables.extent[slot, face, 1]), i8(0)
     for row in range(top, bottom):
@@ -54,7 +52,7 @@ def _axis(job: Job, number: int, tables: LensTables, slot: int, face: int, axis:
 
 
 @kernel
-def face_view(  # noqa: PLR0913  # a face, and its rows
+def face_view(
     task: Task, tables: LensTables, number: int, face: int, first: int, last: int
 ) -> View:
     """Return rows of a face of a view as a view of its own."""

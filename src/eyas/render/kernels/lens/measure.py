@@ -72,9 +72,7 @@ def _count_row(
 
 
 @kernel(inline=True)
-def _add(
-    result: NDArray[np.int32], box: int, count: int, row: int, place: int, bits: int
-) -> None:
+def _add(result: NDArray[np.int32], box: int, count: int, row: int, place: int, bits: int) -> None:
     """Extend the box at `result[box]`, and the number of its pixels at `result[count]`."""
     while bits != 0:
         column = place + first_bit(bits)

@@ -59,4 +59,3 @@ def darken(task: Task, tables: LensTables, output: Output, index: int) -> None:
                 output.class_id[into, row, column] = _SKY
             if len(output.normal) > 0:
                 output.normal[into, row, column] = 0
-
