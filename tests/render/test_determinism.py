@@ -52,7 +52,23 @@ def threads(monkeypatch):
 
 # What each weather adds to the day; all of it at once is no weather, but finds all.
 ALL_WEATHERS = dataclasses.replace(
-    DAY, fog_power=2, snow=1.0, lamps=1.0, windows=0.4, clouds=0.5, flakes=1.0
+    DAY,
+    fog_power=2,
+    snow=1.0,
+    lamps=1.0,
+    windows=0.4,
+    clouds=0.5,
+    flakes=1.0,
+    rain=0.8,
+    leaves=1.0,
+    wet=0.8,
+    litter=0.7,
+    mist=0.01,
+    glare=0.6,
+    star_turn=1.0,
+    moon_limb=(0.6, 0.8, 0.0),
+    moon_lit=0.3,
+    daytime_lamps=0.4,
 )
 
 

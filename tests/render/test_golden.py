@@ -31,6 +31,7 @@ VIEWS = {
     "overview": ((0.0, -420.0, 130.0), 1.57, 0.35, 500.0),
 }
 
+NO_SHADOWS = ("overcast", "dust")
 MAPS = ("desert", "downtown", "farmland", "lake", "simpleway-grass", "village")
 
 
@@ -58,9 +59,14 @@ def drawn(map_name: str, weather: str, name: str) -> np.ndarray:
         field_of_view=0.7854,
     )
     picture = Picture.create(1, *SIZE)
+    if weather in FALLING:
+        views.instant = np.array([time])
     world.draw(views, time, picture)
     return picture.rgb[0]
 
+
+FALLING = ("rain", "autumn")
+"""Weathers of which what falls is shown, too."""
 
 PICTURES = {
     **{name: ("citystreet", "day", name) for name in VIEWS},
@@ -70,6 +76,13 @@ PICTURES = {
         for name in ("ahead", "overview")
     },
     **{f"{name}-ahead": (name, "day", "ahead") for name in MAPS},
+    **{
+        f"{weather}-{name}": ("citystreet", weather, name)
+        for weather in ("rain", "dusk", "autumn")
+        for name in ("ahead", "overview")
+    },
+    **{f"{weather}-overview": ("citystreet", weather, "overview") for weather in NO_SHADOWS},
+    **{f"lake-{weather}-overview": ("lake", weather, "overview") for weather in ("autumn", "dusk")},
 }
 
 

@@ -9,13 +9,26 @@ from eyas.render.kernels.draw import band_of, view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import Picture
-from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
+from eyas.world.weather import (
+    AUTUMN,
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DUST,
+    FOG,
+    NIGHT,
+    RAIN,
+    WINTER_DAY,
+)
 
 from .one_pixel import shade_pixel
 from .small_city import car_parts, city_scene, city_traffic, looking, with_line
 
 SIZE = (100, 203)
-WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER_DAY}
+MOON = NIGHT.light(2.5, 0.75)
+WEATHERS = {
+    **{"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER_DAY, "moon": MOON},
+    **{"rain": RAIN.day, "wet night": RAIN.night, "dust": DUST.day, "autumn": AUTUMN.day},
+}
 
 
 @compiled

@@ -14,6 +14,7 @@ from eyas.world.maps.lake.layout import MIXED, lay_out
 from eyas.world.maps.lake.roads import lattice, road_graph
 from eyas.world.plan.build import build_scene
 from eyas.world.plants.forest import FROSTED, SPECIES, STAND, TREES, stand_levels
+from eyas.world.weather import Season
 
 SEEDS = range(4)
 
@@ -110,7 +111,7 @@ def test_there_are_thirteen_and_a_half_thousand_trees(scene):
 
 @pytest.mark.parametrize("kind", SPECIES, ids=lambda kind: kind.name)
 def test_a_stand_keeps_its_size_and_gets_cheaper_from_level_to_level(kind):
-    levels = stand_levels((kind,), np.random.default_rng(1), frosted=False)
+    levels = stand_levels((kind,), np.random.default_rng(1), Season.SUMMER)
     counts = [len(mesh.triangles) for mesh in levels]
     assert 2500 <= counts[0] <= 4500
     assert all(fine > 2.0 * coarse for fine, coarse in pairwise(counts))
@@ -124,8 +125,8 @@ def test_a_stand_keeps_its_size_and_gets_cheaper_from_level_to_level(kind):
 
 def test_winter_frosts_the_leaves():
     summer, winter = (
-        stand_levels(SPECIES[:1], np.random.default_rng(1), frosted=frosted)
-        for frosted in (False, True)
+        stand_levels(SPECIES[:1], np.random.default_rng(1), season)
+        for season in (Season.SUMMER, Season.WINTER)
     )
     for one, other in zip(summer, winter, strict=True):
         assert (one.positions == other.positions).all()

@@ -3,7 +3,7 @@
 import hashlib
 import math
 import sys
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 
 import gymnasium
@@ -14,21 +14,30 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.envs.registration import register_map
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.settings.file import load_settings
+from eyas.state.lighting import Lighting
 from eyas.world.hours import sun_at
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.weather import (
+    AUTUMN,
     CLEAR_DAY,
     CLEAR_NIGHT,
     DAY,
+    DUSK,
+    DUST,
     FOGGY,
     NIGHT,
+    OVERCAST,
+    RAIN,
     SNOW,
     WEATHERS,
     Season,
 )
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
+
+PUBLISHED_WEATHERS = tuple(each.name for each in (DAY, FOGGY, NIGHT, SNOW))
+OWN_WEATHERS = tuple(each.name for each in (RAIN, DUSK, OVERCAST, DUST, AUTUMN))
 
 PUBLISHED = {
     "citystreet": "cd69768e785f",
@@ -49,6 +58,13 @@ PUBLISHED = {
     "simpleway-city": "dde353746ff6",
 }
 """A hash of light and air of all weathers of each map, as results and pictures were published."""
+
+NUMBERS = {
+    *("sun_direction", "sun_colour", "zenith_colour", "horizon_colour", "ambient_up"),
+    *("ambient_down", "fog_colour", "fog_density", "fog_power", "foggy", "exposure", "snow"),
+    *("luminosity", "lamps", "windows", "clouds", "flakes"),
+}
+"""What a light said when they were published; later numbers do nothing there."""
 
 
 def test_the_sun_of_the_street_city_stands_in_the_north_west_51_degrees_high():
@@ -77,9 +93,11 @@ def test_fog_of_the_street_city_is_the_originals():
 @pytest.mark.parametrize("name", MAPS.built_in)
 def test_the_published_weathers_keep_every_number(name):
     recipe, digest = MAPS.get(name), hashlib.sha256()
-    published = [each.name for each in (DAY, FOGGY, NIGHT, SNOW)]
-    for weather in (each for each in recipe.weathers if each in published):
-        numbers = sorted(asdict(recipe.light(weather)).items())
+    for weather in (each for each in recipe.weathers if each in PUBLISHED_WEATHERS):
+        light = asdict(recipe.light(weather))
+        numbers = sorted((name, light[name]) for name in NUMBERS)
+        for field in (each for each in fields(Lighting) if each.name not in NUMBERS):
+            assert field.name == "luminance" or light[field.name] == field.default
         digest.update(f"{weather} {numbers}".encode())
     assert digest.hexdigest()[:12] == PUBLISHED[name]
 
@@ -92,15 +110,15 @@ def test_the_sun_rises_in_the_east_and_stands_in_the_south_at_noon():
     assert 0.3 < morning[2] < 0.5
 
 
-@pytest.mark.parametrize("weather", [DAY, FOGGY, NIGHT, SNOW], ids=lambda weather: weather.name)
+@pytest.mark.parametrize("weather", PUBLISHED_WEATHERS + OWN_WEATHERS)
 def test_every_hour_has_light_from_above(weather):
     for hour in np.linspace(0.0, 24.0, 97).tolist():
-        light = weather.light(hour)
+        light = WEATHERS.get(weather).light(hour)
         assert np.linalg.norm(light.sun_direction) == pytest.approx(1.0, abs=0.01)
         assert light.sun_direction[2] > 0.06
         for name, value in asdict(light).items():
             assert np.isfinite(value).all(), (hour, name)
-            assert name == "sun_direction" or np.min(value) >= 0.0, (hour, name)
+            assert name in ("sun_direction", "moon_limb") or np.min(value) >= 0.0, (hour, name)
 
 
 def test_a_low_sun_is_weaker_and_warmer():
@@ -153,6 +171,67 @@ def test_a_day_on_which_lamps_burn_has_hours():
     assert farmland.light("day", 9.0).lamps == farmland.light("day").lamps
 
 
+@pytest.mark.parametrize("name", MAPS.built_in)
+@pytest.mark.parametrize("weather", OWN_WEATHERS)
+def test_every_map_has_the_weathers_of_eyas_alone(name, weather):
+    recipe = MAPS.get(name)
+    light, day = recipe.light(weather), MAPS.get("citystreet").light("day")
+    assert weather in recipe.weathers
+    assert sum(light.ambient_up) < 1.3 * sum(day.ambient_up)
+    closed = weather in ("rain", "overcast")
+    assert (max(light.sun_colour) == 0.0) == closed
+    assert 1.0 / light.fog_density < (501.0 if weather == "dust" else 20_000.0)
+    assert recipe.season(weather) is (Season.AUTUMN if weather == "autumn" else Season.SUMMER)
+
+
+def test_dusk_has_a_low_sun_and_its_hours_go_on_into_the_night():
+    light = DUSK.light()
+    height = math.degrees(math.asin(light.sun_direction[2]))
+    assert 4.0 < height < 6.0
+    assert light.sun_colour[0] > 3.0 * light.sun_colour[2]  # orange
+    assert light.glare > 0.0 < light.lamps
+    assert 1.0 / light.sun_direction[2] < light.longest_shadow
+    assert light.stars == 0.0
+    assert DUSK.light(0.0) == CLEAR_NIGHT
+    assert DUSK.light(18.9) == light
+
+
+def test_what_falls_and_lies_does_so_at_every_hour():
+    for hour in (0.0, 5.0, 12.0, 19.5, 21.0):
+        assert RAIN.light(hour).wet == pytest.approx(1.0)
+        assert RAIN.light(hour).rain == pytest.approx(RAIN.day.rain)
+        assert AUTUMN.light(hour).litter == pytest.approx(1.0)
+        assert DUST.light(hour).mist == pytest.approx(DUST.day.mist)
+    assert RAIN.light(0.0).daytime_lamps == 0.0 < RAIN.light(0.0).lamps
+
+
+def test_a_full_moon_stands_opposite_the_sun_and_a_new_one_gives_no_light():
+    full = NIGHT.light(23.0, 0.5)
+    toward, sun = np.array(full.sun_direction), np.array(sun_at(23.0))
+    assert toward @ sun == pytest.approx(-1.0, abs=1e-6)
+    assert full.sun_colour == pytest.approx(CLEAR_NIGHT.sun_colour)
+    assert full.ambient_up == pytest.approx(CLEAR_NIGHT.ambient_up)
+    new = NIGHT.light(23.0, 0.0)
+    assert max(new.sun_colour) == 0.0
+    assert sum(new.ambient_up) < 0.5 * sum(full.ambient_up)
+
+
+def test_a_half_moon_gives_a_tenth_of_a_full_one_and_its_limb_faces_the_sun():
+    half = NIGHT.light(2.5, 0.75)  # the last quarter is high before dawn
+    assert half.moon_lit == pytest.approx(0.5)
+    assert 0.05 < half.sun_colour[0] / CLEAR_NIGHT.sun_colour[0] < 0.12
+    assert np.dot(half.moon_limb, half.sun_direction) == pytest.approx(0.0, abs=1e-6)
+    assert np.dot(half.moon_limb, sun_at(2.5)) > 0.9
+
+
+def test_stars_turn_by_a_sidereal_day_and_only_under_a_moon():
+    turns = [NIGHT.light(hour, 0.1).star_turn for hour in (0.0, 1.0, 2.0)]
+    assert np.degrees(np.diff(turns)) == pytest.approx(15.041)
+    assert NIGHT.light(1.0).star_turn == 0.0
+    assert NIGHT.light(None, 0.1) == NIGHT.light(0.0, 0.1)
+    assert DAY.light(None, 0.1) == CLEAR_DAY
+
+
 @pytest.fixture
 def haze(monkeypatch):
     """The weather of the example, which is in one file that Eyas does not know."""
@@ -186,7 +265,7 @@ def test_a_users_weather_flies_by_its_path_at_dusk(haze):
 
 
 def test_a_users_weather_has_a_name_and_environments_on_every_map(registered):
-    assert CITYSTREET.weathers == ("day", "foggy", "night", "snow", "haze")
+    assert CITYSTREET.weathers == (*PUBLISHED_WEATHERS, *OWN_WEATHERS, "haze")
     register_map("lake")
     assert "eyas/lake-haze-v0" in gymnasium.registry
     assert CITYSTREET.light("haze") == registered.day
@@ -214,5 +293,5 @@ def test_what_is_no_weather_is_refused_in_a_line():
         CITYSTREET.light("math:pi")
     with pytest.raises(ConfigError, match=r"Weather\.name: 'a b' is not allowed"):
         replace(DAY, name="a b")
-    with pytest.raises(UnknownNameError, match="known: day, foggy, night, snow"):
+    with pytest.raises(UnknownNameError, match="known: autumn, day, dusk, dust, foggy"):
         CITYSTREET.light("hail")

@@ -211,7 +211,7 @@ def build_renderer(
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)
-    covered = lighting.mist > 0 or lighting.litter > 0
+    covered = max(lighting.mist, lighting.litter, lighting.leaves) > 0
     land = land_map(scene, ambient, cache) if covered else no_land()
     light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
     return CpuRenderer(geometry, light, ready)

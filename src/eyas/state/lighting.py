@@ -82,8 +82,8 @@ class Lighting:
     """Longest shadow of what moves, in heights; with a low sun it would be endless."""
     daytime_lamps: float = 0.0
     """Brightness of lamps that are seen, but light nothing around them: in rain by day."""
-    stars: float | None = None
-    """Brightness of the stars; None: 1 where lamps are on, else 0."""
+    stars: float = 1.0
+    """Brightness of the stars, which are seen where lamps are on."""
     star_turn: float = 0.0
     """How far the stars have turned round the pole [rad]."""
     moon_limb: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -83,7 +83,6 @@ def under_moon(night: Lighting, hour: float, age: float) -> Lighting:
         sun_colour=_scaled(night.sun_colour, share),
         zenith_colour=_scaled(night.zenith_colour, 0.5 + 0.5 * lit),
         star_turn=_SIDEREAL * hour,
-        stars=1.0,
         moon_limb=_limb(moon, sun_at(hour)),
         moon_lit=0.5 * (1.0 - float(exact.cos(lag))),
         **ambient,

@@ -17,6 +17,9 @@ __all__ = ["land_map", "no_land"]
 _BUILT = 1.5
 """Height from which a building keeps mist away [m]."""
 
+_OPEN = 0.72
+"""How open to mist fields are, where water is 1."""
+
 _AROUND, _SHORE, _LITTER = 70.0, 16.0, 5.0
 """Lengths over which buildings, water and crowns are blurred [m]: mist flows from the open into
 streets, over banks, and leaves are blown from under their trees."""
@@ -83,7 +86,7 @@ def _map(
 
     land = np.clip(1.0 - 2.2 * spread(built, _AROUND), 0.0, 1.0)
     shore = np.clip(1.6 * spread(np.array(lakes, np.float32), _SHORE), 0.0, 1.0)
-    open_ = np.maximum(0.72 * land, shore) * (1.0 - built)
+    open_ = np.maximum(_OPEN * land, shore) * (1.0 - built)
     under = np.clip(1.5 * spread(crowns, _LITTER), 0.0, 1.0)
     low, high = np.round(255.0 * under), np.round(255.0 * open_)
     return np.asarray(low.astype(np.uint16) | (high.astype(np.uint16) << 8), np.uint16)

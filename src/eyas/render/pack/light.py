@@ -125,7 +125,7 @@ def _weather(
         glare=_float(lighting.glare),
         veil=_float(1.0),
         daytime_lamps=_float(lighting.daytime_lamps),
-        stars=_float(float(lighting.lamps > 0) if lighting.stars is None else lighting.stars),
+        stars=_float(lighting.stars if lighting.lamps > 0 else 0.0),
         star_cosine=_float(float(exact.cos(lighting.star_turn))),
         star_sine=_float(float(exact.sin(lighting.star_turn))),
         moon_lit=_float(lighting.moon_lit),

@@ -7,12 +7,15 @@ from eyas.render.kernels.scalars import f4, i4, u4
 
 __all__ = ["land_at"]
 
+_OUTSIDE = f4(0.72)
+"""How open to mist land beyond the map is: as fields on it, see `eyas.render.bake.land`."""
+
 
 @kernel(inline=True)
 def land_at(light: Light, x: float, y: float) -> tuple[float, float]:
     """Return how much a place lies under trees, and how open to mist it is, each 0 to 1.
 
-    Beyond the map it is open land.
+    Beyond the map it is open land without trees.
 
     Args:
         light: Its map, see `eyas.render.bake.land.land_map`.
@@ -26,4 +29,4 @@ def land_at(light: Light, x: float, y: float) -> tuple[float, float]:
     i, j = to_i4(select(inside, row, zero)), to_i4(select(inside, column, zero))
     word = gather(light.land, i * i4(columns) + j)
     under, open_ = to_f4(word & u4(255)) * unit, to_f4(word >> u4(8)) * unit
-    return select(inside, under, zero), select(inside, open_, f4(1.0))
+    return select(inside, under, zero), select(inside, open_, _OUTSIDE)
