@@ -61,7 +61,11 @@ def test_a_stack_begins_anew_with_each_episode():
 @pytest.mark.parametrize("layout", ["hwc", "chw"])
 def test_all_parts_come_by_name(layout):
     observation = {**SIZE, "parts": list(ObservationPart), "layout": layout}
-    sensors = {"lidar": {"enabled": True}, "camera": {"events": {"enabled": True}}}
+    sensors = {
+        "lidar": {"enabled": True},
+        "camera": {"events": {"enabled": True}},
+        "cameras": [{"name": "aside"}],
+    }
     env = TrackingEnv(sensors, observation=observation)
     with pytest.warns(UserWarning, match="infinity"):
         check_env(env, skip_render_check=True)

@@ -109,6 +109,15 @@ def test_what_is_outside_of_the_picture_is_truncated(frame, episode):
         assert label_of(seen, episode)["target_truncated"] == share, box
 
 
+def test_only_pictures_of_a_sensor_have_time_and_speed(written, frame):
+    path = written(frame(0), frame(1, exposure=(1 / 480, 800.0)))
+    plain, exposed = read_labels(path)
+    assert "iso" not in plain
+    assert "exposure_time" not in plain
+    assert exposed["exposure_time"] == pytest.approx(1 / 480)
+    assert exposed["iso"] == 800.0
+
+
 def test_only_articulated_vehicles_have_sections(written, frame):
     model = model_index("TruckTrailerSimple")
     bent = replace(frame(0).target.motion, hitch=0.5)

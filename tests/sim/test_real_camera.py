@@ -45,10 +45,22 @@ def test_a_tracker_alone_sees_what_it_sees_among_others():
 
 
 def test_ids_are_those_of_the_clean_picture():
-    plain, real = simulation_of(), simulation_of(model="small-drone", dirt={})
+    plain, real = simulation_of(), simulation_of(imager={}, dirt={}, link={})
     seen, shown = picture_of(plain), picture_of(real)
     np.testing.assert_array_equal(seen.object_id, shown.object_id)
     assert (seen.rgb != shown.rgb).any()
+
+
+def test_boxes_are_measured_beside_blurred_colours():
+    simulation = simulation_of(1, shutter={"blur": True, "exposure": 0.1})
+    for _ in range(3):
+        simulation.advance(np.array([[8.0, 0.0, 0.0, 0.8]]), 50)
+    picture = Picture.create(1, 48, 64, subject=True)
+    simulation.draw(np.zeros(1, np.int32), picture)
+    assert simulation.snapshot.trackers.velocity[0, :2].any()
+    whole = Picture.create(1, 48, 64, rgb=False, subject=True, object_id=True)
+    simulation.draw(np.zeros(1, np.int32), whole)
+    np.testing.assert_array_equal(picture.subject_box, whole.subject_box)
 
 
 def test_night_is_noisy_and_day_is_not():

@@ -74,7 +74,7 @@ class Lens(NamedTuple):
     """Tangent (`BROWN`) or angle (`FISHEYE`) from the optical axis at which the picture ends."""
 
 
-def lens_of(  # noqa: PLR0913  # its numbers, by name
+def lens_of(
     model: int,
     k: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
     p: tuple[float, float] = (0.0, 0.0),
@@ -292,7 +292,7 @@ def places(lens: Lens, directions: Floats) -> Floats:
     return place
 
 
-def project(  # noqa: PLR0913  # a pose and a lens, as they come
+def project(
     points: ArrayLike,
     position: ArrayLike,
     rotation: ArrayLike,

@@ -42,7 +42,7 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
     Raises:
         ConfigError: The agent is to observe a sensor that it does not have, or words alone.
     """
-    lidar, camera, cameras = sim.lidar, sim.camera, len(sim.cameras)
+    lidar, cameras = sim.lidar, len(sim.cameras)
     if _Parts.CAMERAS in config.parts and cameras == 0:
         raise ConfigError(
             "env.observation.parts: 'cameras' needs further cameras: 'cameras' is empty"
@@ -66,7 +66,7 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
 def _space(
     part: ObservationPart, config: ObservationConfig, sim: SimConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
-    lidar, camera, size = sim.lidar, sim.camera, (config.height, config.width)
+    lidar, size = sim.lidar, (config.height, config.width)
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
         case _Parts.IMAGE:

@@ -4,10 +4,10 @@ Kept in the cache, since it depends on the episodes only.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,8 +47,20 @@ def seen_from_above(
         protocol: Their protocol.
         period: Time from the start to the first look, and between two [s].
     """
+    if protocol.reference:  # its variants differ by cameras and air, which hide nothing
+        plain = [episode._replace(variant="") for episode in episodes]
+        alone = list(dict.fromkeys(plain))
+        changes = _without_camera(protocol.changes)
+        one = replace(protocol, variants={}, reference="", changes=changes)
+        seen = seen_from_above(alone, one, period)
+        rows = [alone.index(episode) for episode in plain]
+        return FromAbove(*(array[rows] for array in seen))
     make = partial(_seen, episodes, protocol, period)
     return cached(Kind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
+
+
+def _without_camera(changes: Mapping[str, Any]) -> dict[str, Any]:
+    return {group: values for group, values in changes.items() if group != "camera"}
 
 
 def _seen(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) -> FromAbove:

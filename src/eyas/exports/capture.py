@@ -182,9 +182,7 @@ def _body(trackers: TrackerState, tracker: int) -> RecordedBody:
     )
 
 
-def _camera(
-    cameras: CameraState, tracker: int, picture: Picture, lens: Lens | None
-) -> CameraPose:
+def _camera(cameras: CameraState, tracker: int, picture: Picture, lens: Lens | None) -> CameraPose:
     height, width = picture_size(picture)
     return CameraPose(
         position=cameras.position[tracker].copy(),

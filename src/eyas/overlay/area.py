@@ -48,8 +48,7 @@ def paint_area(canvas: Canvas, area: GroundArea) -> None:
 
 
 def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
-    """Return the rows and columns of the area; all if a part is behind the camera or a lens bends.
-    """
+    """Return the rows and columns of the area; all if a part is behind the camera, or bent."""
     places = canvas.project(corners)
     if (places[:, 2] < NEAR).any() or canvas.lens is not None:  # edges may bend out of their box
         return slice(0, canvas.height), slice(0, canvas.width)

@@ -57,9 +57,7 @@ class Canvas:
         """Return column, row [pixels] and depth [m] of points, shape (..., 3); see `pinhole`."""
         size = self.width, self.height
         if self.lens is not None:
-            bent = lens.project(
-                points, self.position, self.rotation, size, self._fields, self.lens
-            )
+            bent = lens.project(points, self.position, self.rotation, size, self._fields, self.lens)
             return np.stack(bent, -1)
         return np.stack(project(points, self.position, self.rotation, *size, *self._fields), -1)
 

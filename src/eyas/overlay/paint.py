@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,7 +81,7 @@ def paint_line(canvas: Canvas, line: ThinLine) -> None:
         return
     pieces = 1 if canvas.lens is None else BENT_PIECES
     places = canvas.project(np.linspace(ends[0], ends[1], pieces + 1))
-    for start, end in zip(places[:-1], places[1:], strict=True):
+    for start, end in pairwise(places):
         _paint_piece(canvas, line, start, end)
 
 

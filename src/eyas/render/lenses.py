@@ -1,7 +1,8 @@
 """Tables of the lenses in use, see `eyas.render.kernels.bundles.LensTables`."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,14 +139,16 @@ class LensBank:
             return min({*range(lenses)} - {*self._slots.values()})
         old = next((key for key in self._slots if key not in used), None)
         if old is not None and lenses >= max(_KEPT, 2 * len(used)):
-            return self._slots.pop(old)
+            slot: int = self._slots.pop(old)
+            return slot
         self._enlarge(2 * lenses, self.tables.tile.shape[2:4])
         return lenses
 
     def _enlarge(self, lenses: int, tiles: tuple[int, ...]) -> None:
         """Make larger tables."""
         larger = self._shape.tables(lenses, (tiles[0], tiles[1]))
-        for new, old in zip(larger, self.tables, strict=True):
+        arrays: Iterator[tuple[NDArray[Any], NDArray[Any]]] = zip(larger, self.tables, strict=True)
+        for new, old in arrays:
             new[tuple(slice(length) for length in old.shape)] = old
         self.tables = larger
 

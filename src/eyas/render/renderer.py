@@ -133,7 +133,8 @@ class CpuRenderer:
             output = measured_alone(output, jobs)
         rows = height if jobs == size.views else int((band[:, 2] - band[:, 1]).max(initial=0))
         face = None if bank is None else bank.size
-        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted, face)
+        slots = movers.part.shape[1]
+        scratch = self._scratch_for(workers, rows, size, slots, wanted, face)
         # Mostly the same arrays as in the last call.
         tables = NO_TABLES if bank is None else bank.tables
         last = self._last
@@ -150,8 +151,7 @@ class CpuRenderer:
         self,
         workers: int,
         rows: int,
-        width: int,
-        side: int,
+        size: Size,
         slots: int,
         measured: bool,
         face: tuple[int, int] | None,
@@ -160,6 +160,7 @@ class CpuRenderer:
 
         `face` is the largest width and height of a lens' faces [pixels], None without lenses.
         """
+        width, side = size.width, size.side
         key = (workers, rows, width, side, slots, measured, face)
         if key not in self._scratch:
             bent = (workers, 0, 0) if face is None else _plane(workers, rows, width, side)

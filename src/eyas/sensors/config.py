@@ -180,6 +180,12 @@ class FurtherCameraConfig(CameraConfig):
     on: Literal["camera", "body"] = "camera"
     """What carries it: the tracker's camera, with which it turns, or the tracker's body."""
 
+    @model_validator(mode="after")
+    def _no_events(self) -> Self:
+        if self.events.enabled:
+            raise ValueError("events: only the tracker's own camera has a sensor of events")
+        return self
+
 
 class LidarConfig(Config):
     """The lidar, by default an RpLidarA2 as on the original's tracker."""

@@ -59,6 +59,18 @@ def test_coding_costs_what_it_costs_in_libjpeg(size, quality):
     assert np.sqrt(np.square(ours - picture).mean()) == pytest.approx(lost, rel=0.05)
 
 
+@pytest.mark.parametrize("across", [True, False])
+def test_the_table_of_luminance_lies_the_right_way_round(across):
+    line = np.random.default_rng(4).integers(60, 200, 64)
+    grey = np.broadcast_to(line[None] if across else line[:, None], (64, 64))
+    picture = np.repeat(grey[..., None], 3, axis=2).astype(np.uint8)
+    ours = carried(link_of(quality=30), picture[None], 0)[0].astype(float)
+    theirs = as_jpeg(picture, 30).astype(float)
+    # All coefficients but those of one direction are 0.
+    assert np.abs(ours - theirs).max() <= 2.0
+    assert np.abs(ours - picture).max() > 10.0
+
+
 def test_quality_may_vary_from_episode_to_episode():
     picture = scene(40, 40)
     link = link_of(6, quality=Choice(choice=(5.0, 90.0)))

@@ -9,9 +9,9 @@ KITTI's car drives upright: `rotation_y` and `alpha` are angles about the camera
 drone looks down, so here they are about the world's vertical, as seen by a camera that looks in the
 same direction without pitch and roll. What that takes away is in `poses/<episode>.txt`: twelve
 numbers a frame, camera (right, down, forward) to world, as in KITTI's odometry. A camera that zooms
-has a matrix for each frame in `intrinsics/<episode>.txt`; P2 is that of the first. A lens that bends
-has its model and OpenCV's coefficients for each frame in `distortion/<episode>.txt`; boxes are those
-of the bent picture.
+has a matrix for each frame in `intrinsics/<episode>.txt`; P2 is that of the first. A lens that
+bends has its model and OpenCV's coefficients for each frame in `distortion/<episode>.txt`; boxes
+are those of the bent picture.
 
 Pixels are as in the labels of Eyas: the middle of the first one is at (0.5, 0.5).
 """

@@ -36,7 +36,7 @@ def _exposed(seconds: float) -> Settings:
 
 
 def _open_for(seconds: float) -> dict[str, Any]:
-    """Return a sensor whose iris is so small, behind a grey filter, that it is exposed for a given time."""
+    """Return a sensor so dim, by its iris and a grey filter, that it may be exposed for a time."""
     return {
         "imager": {"f_number": 32.0, "transmission": 0.25},
         "exposure": {"time": (seconds, seconds), "iso": (1.0, 1e6)},

@@ -15,7 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel, parallel
-from eyas.lanes.elementary import log
+from eyas.lanes.vector import (
+    WIDTH,
+    any_of,
+    bit_pattern,
+    from_bits,
+    greater,
+    load,
+    select,
+    store,
+    to_f4,
+)
+from eyas.render.kernels.scalars import f4, i4
 from eyas.sensors.chance import mixed, normal, uniform
 
 __all__ = ["EVENT", "EventPixels", "EventSettings", "Look", "see_light"]
@@ -125,11 +136,36 @@ def see_light(
 
 
 @kernel(inline=True)
+def _logarithm(red: float, green: float, blue: float, dark: float) -> float:
+    """Return the natural logarithm of the luminance of pixels (ITU-R BT.709), in float32.
+
+    Of a number m 2^e, with m around 1, it is that of m, by the series of the inverse hyperbolic
+    tangent, plus e log 2. What the series leaves out is less than what float32 rounds off.
+    """
+    one = f4(1.0)
+    light = f4(0.2126) * red + f4(0.7152) * green + f4(0.0722) * blue
+    bits = bit_pattern(greater(light, f4(0.0)) + dark)
+    power = (bits >> i4(23)) - i4(127)
+    part = from_bits((bits & i4(0x7FFFFF)) | i4(0x3F800000))
+    large = part > f4(1.41421356)
+    part = select(large, part * f4(0.5), part)
+    power = select(large, power + i4(1), power)
+    ratio = (part - one) / (part + one)
+    square = ratio * ratio
+    series = f4(1.0 / 7.0) + square * f4(1.0 / 9.0)
+    series = f4(1.0 / 3.0) + square * (f4(0.2) + square * series)
+    return (ratio + ratio) * (one + square * series) + to_f4(power) * f4(0.69314718)
+
+
+@kernel(inline=True)
 def _log_of_light(radiance: Single, dark: float, light: Single) -> None:
-    """Write the natural logarithm of the luminance of each pixel (ITU-R BT.709)."""
-    for at in range(light.shape[0]):
-        red, green, blue = radiance[0, at], radiance[1, at], radiance[2, at]
-        light[at] = log(max(0.2126 * red + 0.7152 * green + 0.0722 * blue, 0.0) + dark)
+    """Write the logarithm of the light of each pixel."""
+    red, green, blue, count = radiance[0], radiance[1], radiance[2], light.shape[0]
+    for at in range(0, count - WIDTH + 1, WIDTH):
+        colour = load(red, at), load(green, at), load(blue, at)
+        store(light, at, _logarithm(colour[0], colour[1], colour[2], f4(dark)))
+    for at in range(count - count % WIDTH, count):
+        light[at] = _logarithm(red[at], green[at], blue[at], f4(dark))
 
 
 @kernel(inline=True)
@@ -149,11 +185,15 @@ def _begin(pixels: EventPixels, settings: EventSettings, n: int, light: Single) 
 @kernel(inline=True)
 def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Single) -> int:
     """Return how many events the next look may tell at most."""
-    most = 0
-    for at in range(light.shape[0]):
-        away = light[at] - pixels.reference[n, at]
-        step = pixels.positive[n, at] if away > 0.0 else pixels.negative[n, at]
-        most += int(abs(away) / step + 0.001)  # more than roundings
+    most, count = 0, light.shape[0]
+    for first in range(0, count, WIDTH):
+        some = min(WIDTH, count - first)
+        if some == WIDTH and _none_changed(pixels, n, light, first):
+            continue
+        for at in range(first, first + some):
+            away = light[at] - pixels.reference[n, at]
+            step = pixels.positive[n, at] if away > 0.0 else pixels.negative[n, at]
+            most += int(abs(away) / step + 0.001)  # more than roundings
     of_noise = 0
     if settings.shot > 0.0:
         of_noise += light.shape[0]
@@ -165,12 +205,29 @@ def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Si
 @kernel(inline=True)
 def _tell(pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float) -> None:
     """Let sensor `n` see the light at a time, and append its events."""
-    base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
-    for at in range(light.shape[0]):
-        if settings.shot > 0.0:
+    if settings.shot > 0.0:
+        base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
+        for at in range(light.shape[0]):
             _shot_noise(pixels, settings, n, at, (light[at], time), base)
-        _contrast(pixels, settings, n, at, light[at], time)
-        pixels.last[n, at] = light[at]
+    last, count = pixels.last[n], light.shape[0]
+    for first in range(0, count, WIDTH):
+        some = min(WIDTH, count - first)
+        if some == WIDTH and settings.leak <= 0.0 and _none_changed(pixels, n, light, first):
+            store(last, first, load(light, first))
+            continue
+        for at in range(first, first + some):
+            _contrast(pixels, settings, n, at, light[at], time)
+            last[at] = light[at]
+
+
+@kernel(inline=True)
+def _none_changed(pixels: EventPixels, n: int, light: Single, first: int) -> bool:
+    """Return whether none of eight pixels has changed by its threshold; most have not."""
+    away = load(light, first) - load(pixels.reference[n], first)
+    near = f4(0.999)  # roundings must not hide an event
+    more = away > near * load(pixels.positive[n], first)
+    less = f4(0.0) - away > near * load(pixels.negative[n], first)
+    return not any_of(more | less)
 
 
 _LEAST = 0.05

@@ -37,7 +37,7 @@ class EventsConfig(Config):
     """Events of more light that a pixel tells each second where nothing changes [Hz]."""
     shot: Annotated[float, Field(ge=0, le=100)] = 0.0
     """Events that a dark pixel tells each second by shot noise; a bright one a quarter [Hz]."""
-    dark: Annotated[float, Field(gt=0, le=1)] = 0.001
+    dark: Annotated[float, Field(ge=1e-9, le=1)] = 0.001
     """Light that a pixel sees in the dark, of the radiance of white paper in the sun: it keeps the
     logarithm finite."""
     most_samples: Annotated[int, Field(ge=1, le=1000)] = 32

@@ -40,8 +40,8 @@ def vignette(strength: float, middle: tuple[float, float], size: tuple[int, int]
         size: Width and height of the picture [pixels].
     """
     width, height = size
-    right = (np.arange(width) + 0.5 - middle[0]) / (0.5 * width)
-    down = (np.arange(height) + 0.5 - middle[1]) / (0.5 * height)
+    right: Floats = (np.arange(width) + 0.5 - middle[0]) / (0.5 * width)
+    down: Floats = (np.arange(height) + 0.5 - middle[1]) / (0.5 * height)
     away = _squares(width, height, right, down)
     return np.asarray(1.0 / np.square(1.0 + away * (1.0 / math.sqrt(1.0 - strength) - 1.0)))
 
@@ -117,8 +117,9 @@ def _between(plane: NDArray[np.float32], width: int, column: float, row: float) 
     above, under = top * i4(width), below * i4(width)
     a, b = gather(plane, above + left), gather(plane, above + right)
     c, d = gather(plane, under + left), gather(plane, under + right)
-    upper = a + across * (b - a)
-    return upper + down * (c + across * (d - c) - upper)
+    upper: float = a + across * (b - a)
+    between: float = upper + down * (c + across * (d - c) - upper)
+    return between
 
 
 @parallel

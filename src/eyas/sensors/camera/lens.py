@@ -73,8 +73,8 @@ class LensConfig(Config):
         allowed = _ALLOWED[self.model]
         for name in ("k1", "k2", "k3", "k4", "p1", "p2"):
             if name not in allowed and getattr(self, name) != 0.0:
-                those = ", ".join(allowed) or "no coefficients"
-                raise ValueError(f"{name} is not one of the model {self.model.value}: {those}")
+                those = ", ".join(allowed) or "none"
+                raise ValueError(f"{name} must be 0; coefficients of {self.model.value}: {those}")
         return self
 
     @property

@@ -26,7 +26,7 @@ class ShutterConfig(Config):
     """Time from the exposure of the first row to that of the last, the height times the line time
     [s]; 0: a global shutter."""
     most_samples: Annotated[int, Field(ge=1, le=64)] = 8
-    """Most instants of an exposure that are drawn: one for each pixel of motion up to this."""
+    """Most instants of an exposure that are drawn: one, and one more for each pixel of motion."""
 
     @property
     def rolls(self) -> bool:

@@ -63,7 +63,8 @@ class CameraModel:
                 sensor, config.exposure, config.spectrum, lighting.luminance, count
             )
         if config.dirt is not None:
-            self._dirt = Dirt(config.dirt, lighting.flakes, count)
+            falling = max(lighting.flakes, lighting.rain)
+            self._dirt = Dirt(config.dirt, falling, count)
         if config.link is not None:
             self._link = Link(config.link, count)
 

@@ -33,9 +33,12 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Chosen = NDArray[np.int32]
 
+_PLANES = ("rgb", "depth", "object_id", "class_id", "normal")
+"""What says the size of a picture without light."""
+
 _MOST_BANDS = 64
-_LIGHT = 8 << 20
-"""Bytes of light that are drawn before they are added: few enough to stay in caches."""
+_LIGHT = 32 << 20
+"""Bytes of light that are drawn before they are added: each call of the renderer takes a while."""
 
 
 class Moment(NamedTuple):
@@ -120,6 +123,7 @@ class Exposures:
     ) -> None:
         self._shutter, self._steady, self._vibration = shutter, steady, vibration
         self._aspect, self._stage = aspect, stage
+        self._light = Picture(None, None, None, None, None)
 
     def draw(self, chosen: Chosen, until: DrawStage, picture: Picture) -> None:
         """Draw the exposures of some trackers.
@@ -143,6 +147,9 @@ class Exposures:
         others = replace(picture, radiance=None)
         if any(getattr(others, one.name) is not None for one in fields(others)):
             middle = pieces_of(once, bands, open_for, readout, height)
+            if not any(getattr(others, name) is not None for name in _PLANES):
+                # Boxes alone do not say of what size the picture is.
+                others.class_id = np.empty((len(chosen), height, width), np.uint8)
             self._draw(chosen, exposure, middle, others, until)
         passes = pieces_of(samples, bands, open_for, readout, height)
         self._add(chosen, exposure, passes, picture.radiance, until)
@@ -150,7 +157,9 @@ class Exposures:
     def _pieces(
         self, chosen: Chosen, exposure: Exposure, frame: Floats, height: int
     ) -> tuple[Integers, Integers]:
-        """Return the numbers of passes and of bands: one for each pixel that anything moves."""
+        """Return the numbers of passes and of bands: neighbours are less than a pixel of motion
+        apart, and what moves less than half a pixel has one.
+        """
         targets, shutter = self._steady.targets, self._shutter
         floor = (targets.position[:, 2] - targets.rise)[chosen]
         moving = self._stage.moving(chosen, exposure.cameras)
@@ -160,7 +169,8 @@ class Exposures:
             count = np.ones(len(chosen), np.int64)
             if window[chosen].any():
                 ways = ways_of(exposure, window[chosen], floor, frame, moving)
-                count = np.clip(np.ceil(np.minimum(ways, most)), 1, most).astype(np.int64)
+                whole = np.floor(np.minimum(ways, most) + 0.5).astype(np.int64)
+                count = np.minimum(1 + whole, most)
             counts.append(count)
         # Of an odd number of bands, the one in the middle sees the instant of the picture.
         return counts[0], np.minimum(counts[1] | 1, height)
@@ -195,10 +205,16 @@ class Exposures:
         """Write the mean light of passes, some at once."""
         mean[:] = 0.0
         some = max(_LIGHT // mean[0].nbytes, 1)
-        light = np.empty((min(some, len(passes.view)), *mean.shape[1:]), np.float32)
-        blank = Picture(None, None, None, None, None)
         for begin in range(0, len(passes.view), some):
             pieces = passes.some(begin, min(begin + some, len(passes.view)))
-            drawn = light[: len(pieces.view)]
-            self._draw(chosen, exposure, pieces, replace(blank, radiance=drawn), until)
-            add_passes(drawn, pieces, mean)
+            drawn = self._room(len(pieces.view), mean.shape[2:])
+            self._draw(chosen, exposure, pieces, drawn, until)
+            assert drawn.radiance is not None
+            add_passes(drawn.radiance, pieces, mean)
+
+    def _room(self, passes: int, size: tuple[int, ...]) -> Picture:
+        """Return pictures of light, the same as last time: new memory costs as much as adding."""
+        light = self._light.radiance
+        if light is None or len(light) < passes or light.shape[2:] != size:
+            self._light = Picture.create(passes, *size, rgb=False, radiance=True)
+        return self._light.first(passes)

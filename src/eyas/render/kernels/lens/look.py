@@ -52,7 +52,7 @@ def _axis(job: Job, number: int, tables: LensTables, slot: int, face: int, axis:
 
 
 @kernel
-def face_view(  # noqa: PLR0913  # a face, and its rows
+def face_view(
     task: Task, tables: LensTables, number: int, face: int, first: int, last: int
 ) -> View:
     """Return rows of a face of a view as a view of its own."""
