@@ -44,7 +44,7 @@ def pairs_of(settings: dict, *, still: bool = False) -> list[tuple[Frame, Frame]
             turn = np.array([[np.cos(0.01), -np.sin(0.01)], [np.sin(0.01), np.cos(0.01)]])
             cameras.rotation[:, :, :2] = cameras.rotation[:, :, :2] @ turn
         simulation.draw(np.arange(COUNT, dtype=np.int32), picture)
-        moments = [moment_of(simulation, n, picture, n, parts=True) for n in range(COUNT)]
+        moments = [moment_of(simulation, n, picture, n, ("parts",)) for n in range(COUNT)]
         action = RecordedAction(-1, None)
         frames.append(
             [frame_of(moment, n, picture, n, number, action) for n, moment in enumerate(moments)]

@@ -105,8 +105,9 @@ def test_a_house_is_drawn_where_the_rays_of_opencv_meet_it(block, name):
         off.append(shown_at - meant_at)
         # Only samples at outlines may differ: those that lie less than one from it.
         edge = cv2.morphologyEx(meant.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((3, 3))) > 0
-        assert not ((shown != meant) & known & ~edge).any()
         assert ((shown != meant) & known).sum() < 0.5 * edge.sum()
+        inside = np.s_[1:-1, 1:-1]  # an outline may be beyond the border
+        assert not ((shown != meant) & known & ~edge)[inside].any()
     # Each edge is at a sample, up to half a pixel aside; that is noise, and no shift of the whole.
     assert np.abs(off).max() < 0.3
     assert np.abs(np.mean(off, axis=0)).max() < 0.1

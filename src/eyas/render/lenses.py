@@ -136,7 +136,7 @@ class LensBank:
         """Return a row for another lens."""
         lenses = len(self.tables.faces)
         if len(self._slots) < lenses:
-            return min({*range(lenses)} - {*self._slots.values()})
+            return int(min({*range(lenses)} - {*self._slots.values()}))
         old = next((key for key in self._slots if key not in used), None)
         if old is not None and lenses >= max(_KEPT, 2 * len(used)):
             slot: int = self._slots.pop(old)

@@ -1,10 +1,14 @@
 """Pictures of trackers through their lenses, and the labels of these."""
 
+import cv2
 import numpy as np
 import pytest
 
-from eyas.core.lens import BROWN, FISHEYE, project
+from eyas.core.lens import BROWN, FISHEYE, project, rays
 from eyas.core.variation import Uniform
+from eyas.exports.capture import frame_of, moment_of
+from eyas.exports.flow import forward_flow
+from eyas.exports.frame import RecordedAction
 from eyas.sensors.camera.lens import LensConfig
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
@@ -103,3 +107,57 @@ def test_drawing_stops_at_stages_through_a_lens(config, assets):
     for stage in DrawStage:
         simulation.view.draw(np.arange(2, dtype=np.int32), picture, until=stage)
     assert picture.rgb.any()
+
+
+def frames_of(simulation, count):
+    """Frames of tracker 0, some steps apart."""
+    chosen, frames = np.zeros(1, np.int32), []
+    for number in range(count):
+        if number:
+            simulation.advance(np.tile([4.0, 0.5, 0.0, 0.3], (simulation.count, 1)), 40)
+        picture = Picture.create(
+            1, *SIZE, depth=True, object_id=True, subject=True, actors=simulation.actors
+        )
+        simulation.view.draw(chosen, picture)
+        moment = moment_of(simulation, 0, picture, 0, ("parts",))
+        frames.append(frame_of(moment, 0, picture, 0, number, RecordedAction(-1, None)))
+    return frames
+
+
+@pytest.mark.parametrize("lens", [BARREL, LensConfig(model="fisheye", k1=0.05)])
+def test_labels_give_opencv_what_it_needs(config, assets, lens):
+    (frame,) = frames_of(simulated(config, assets, lens), 1)
+    camera = frame.camera
+    axes = np.stack([-camera.rotation[:, 1], -camera.rotation[:, 2], camera.rotation[:, 0]])
+    own = (frame.target.centre - camera.position) @ axes.T
+    matrix, zero = camera.intrinsics.copy(), np.zeros(3)
+    matrix[:2, 2] -= 0.5  # OpenCV counts from the middle of the first pixel
+    distortion = np.array(camera.distortion)
+    if camera.distortion_model == "fisheye":
+        place, _ = cv2.fisheye.projectPoints(own[None, None], zero, zero, matrix, distortion)
+    else:
+        assert camera.distortion_model == "brown"
+        place, _ = cv2.projectPoints(own[None], zero, zero, matrix, distortion)
+    column, row = np.rint(place.ravel()).astype(int)
+    assert frame.object_id[row, column] == frame.target.object_id
+    left, top, right, bottom = frame.target.box
+    assert left < column < right
+    assert top < row < bottom
+    assert matrix[0, 2] == pytest.approx((0.5 + lens.right) * SIZE[1] - 0.5)
+
+
+def test_flow_is_that_of_the_bent_pictures(config, assets):
+    first, second = frames_of(simulated(config, assets, BARREL), 2)
+    flow = forward_flow(first, second)
+    own, fields = first.camera.lens, (first.camera.field_of_view, None)
+    ray = rays(first.camera.rotation, SIZE[::-1], fields, own)
+    still = (flow[..., 2] == 1) & (first.parts.row < 0) & np.isfinite(first.depth)
+    assert still.mean() > 0.3
+    point = first.camera.position + first.depth[still][:, None] * ray[still]
+    column, row, _ = project(
+        point, second.camera.position, second.camera.rotation, SIZE[::-1], fields, own
+    )
+    rows, columns = np.nonzero(still)
+    moved = (flow[still][:, :2].astype(float) - 32768.0) / 64.0
+    np.testing.assert_allclose(moved, np.stack([column - columns, row - rows], 1) - 0.5, atol=0.02)
+    assert np.abs(moved).max() > 1.0

@@ -40,8 +40,8 @@ def vignette(strength: float, middle: tuple[float, float], size: tuple[int, int]
         size: Width and height of the picture [pixels].
     """
     width, height = size
-    right: Floats = (np.arange(width) + 0.5 - middle[0]) / (0.5 * width)
-    down: Floats = (np.arange(height) + 0.5 - middle[1]) / (0.5 * height)
+    right = np.asarray((np.arange(width) + 0.5 - middle[0]) / (0.5 * width), np.float64)
+    down = np.asarray((np.arange(height) + 0.5 - middle[1]) / (0.5 * height), np.float64)
     away = _squares(width, height, right, down)
     return np.asarray(1.0 / np.square(1.0 + away * (1.0 / math.sqrt(1.0 - strength) - 1.0)))
 
