@@ -28,7 +28,8 @@ def disc(diameter: float) -> NDArray[np.float32]:
     reach = math.ceil(0.5 * diameter - 0.5) if diameter > 1.0 else 0
     side = 2 * reach + 1
     places = (np.arange(side * _FINE) + 0.5) / _FINE - 0.5 * side
-    inside = places[:, None] ** 2 + places[None, :] ** 2 <= 0.25 * diameter * diameter
+    square = places * places
+    inside = square[:, None] + square[None, :] <= 0.25 * diameter * diameter
     share = inside.reshape(side, _FINE, side, _FINE).sum(axis=(1, 3)).astype(np.float64)
     if not share.any():
         share[reach, reach] = 1.0
