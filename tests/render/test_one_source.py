@@ -32,7 +32,7 @@ WEATHERS = {
 
 
 @compiled
-def one_by_one(geometry, light, scratch, movers, _output, task, places, found):
+def one_by_one(geometry, light, scratch, movers, _output, task, _tables, places, found):
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light, 0))

@@ -27,16 +27,16 @@ class Sensor:
         self.pixels.number[:] = 0
         see_light(1, self.pixels, self.settings, look)
         assert look.next[0] == 1
-        return self.pixels.told[0, : self.pixels.number[0]].copy()
+        return self.pixels.emitted[0, : self.pixels.number[0]].copy()
 
 
 def test_a_change_tells_an_event_for_each_threshold_at_the_times_of_the_crossings():
     sensor = Sensor([0.0, 0.0, 0.0, 0.0], positive=0.25, negative=0.2)
-    told = sensor.see([1.01, -1.01, 0.24, 0.0])
-    np.testing.assert_array_equal(told["x"], [0] * 4 + [1] * 5)
-    np.testing.assert_array_equal(told["p"], [1] * 4 + [0] * 5)
-    np.testing.assert_allclose(told["t"][:4], 0.25 * np.arange(1, 5) / 1.01 * 1e4, atol=1)
-    np.testing.assert_allclose(told["t"][4:], 0.2 * np.arange(1, 6) / 1.01 * 1e4, atol=1)
+    events = sensor.see([1.01, -1.01, 0.24, 0.0])
+    np.testing.assert_array_equal(events["x"], [0] * 4 + [1] * 5)
+    np.testing.assert_array_equal(events["p"], [1] * 4 + [0] * 5)
+    np.testing.assert_allclose(events["t"][:4], 0.25 * np.arange(1, 5) / 1.01 * 1e4, atol=1)
+    np.testing.assert_allclose(events["t"][4:], 0.2 * np.arange(1, 6) / 1.01 * 1e4, atol=1)
 
 
 def test_what_was_left_over_counts_in_the_next_interval_however_it_is_cut():
@@ -66,12 +66,12 @@ def test_a_moving_edge_tells_as_many_events_as_theory_says():
         return dark + (bright - dark) * np.clip(1000.0 * time - place, 0.0, 1.0)
 
     sensor = Sensor(light(0.0))
-    told = np.concatenate([sensor.see(light(k * 1e-4), 1e-4) for k in range(1, 161)])
-    assert (told["p"] == 1).all()
-    np.testing.assert_array_equal(np.bincount(told["x"], minlength=16), 6)
+    events = np.concatenate([sensor.see(light(k * 1e-4), 1e-4) for k in range(1, 161)])
+    assert (events["p"] == 1).all()
+    np.testing.assert_array_equal(np.bincount(events["x"], minlength=16), 6)
     for k in range(6):
         crossing = 1e6 * (1e-3 * place + 1e-3 * 0.2 * (k + 1) / math.log(4.0))
-        times = np.array([told["t"][told["x"] == x][k] for x in range(16)])
+        times = np.array([events["t"][events["x"] == x][k] for x in range(16)])
         np.testing.assert_allclose(times, crossing, atol=1.0)
 
 
@@ -91,18 +91,18 @@ def test_thresholds_differ_between_pixels_as_they_are_asked_to():
 
 def test_leaks_tell_events_of_more_light_at_their_rate():
     sensor = Sensor(np.zeros(50), leak=5.0)
-    told = np.concatenate([sensor.see(np.zeros(50)) for _ in range(250)])
-    assert (told["p"] == 1).all()
-    assert len(told) / (50 * 2.5) == pytest.approx(5.0, rel=0.05)
+    events = np.concatenate([sensor.see(np.zeros(50)) for _ in range(250)])
+    assert (events["p"] == 1).all()
+    assert len(events) / (50 * 2.5) == pytest.approx(5.0, rel=0.05)
 
 
 @pytest.mark.parametrize(("light", "rate"), [(-7.0, 8.0), (0.0, 2.0)])
 def test_shot_noise_comes_more_often_in_the_dark(light, rate):
     sensor = Sensor(np.full(400, light), shot=8.0)
-    told = np.concatenate([sensor.see(np.full(400, light), 0.002) for _ in range(500)])
-    assert len(told) / 400 == pytest.approx(rate, rel=0.08)
-    assert told["p"].mean() == pytest.approx(0.5, abs=0.05)
-    assert len(np.unique(told["t"])) > 0.9 * len(told)
+    events = np.concatenate([sensor.see(np.full(400, light), 0.002) for _ in range(500)])
+    assert len(events) / 400 == pytest.approx(rate, rel=0.08)
+    assert events["p"].mean() == pytest.approx(0.5, abs=0.05)
+    assert len(np.unique(events["t"])) > 0.9 * len(events)
 
 
 def test_the_light_is_the_luminance():
@@ -118,7 +118,7 @@ def test_the_light_is_the_luminance():
 
 def test_what_there_is_no_room_for_is_not_seen():
     sensor = Sensor([0.0])
-    pixels = sensor.pixels._replace(told=sensor.pixels.told[:, :2].copy())
+    pixels = sensor.pixels._replace(emitted=sensor.pixels.emitted[:, :2].copy())
     bright = np.full((2, 3, 1), math.exp(0.31), np.float32) ** np.arange(1, 3)[:, None, None]
     look = Look(
         *np.array([[0], [0], [2]]),
@@ -126,9 +126,9 @@ def test_what_there_is_no_room_for_is_not_seen():
     )  # fmt: skip
     see_light(1, pixels, sensor.settings, look)
     assert (look.next[0], pixels.number[0]) == (1, 1)
-    roomy = pixels._replace(told=np.concatenate([pixels.told, pixels.told], axis=1))
+    roomy = pixels._replace(emitted=np.concatenate([pixels.emitted, pixels.emitted], axis=1))
     see_light(1, roomy, sensor.settings, look)
     assert (look.next[0], roomy.number[0]) == (2, 3)
     whole = Sensor([0.0])
     times = [*whole.see([0.31])["t"], *whole.see([0.62])["t"]]
-    np.testing.assert_array_equal(roomy.told[0, :3]["t"], times)
+    np.testing.assert_array_equal(roomy.emitted[0, :3]["t"], times)

@@ -29,11 +29,14 @@ def bench(
     stages: Annotated[
         bool, typer.Option("--stages", help="Also time each stage of drawing a picture.")
     ] = False,
+    camera: Annotated[
+        bool, typer.Option("--camera", help="Also time the models of cameras.")
+    ] = False,
 ) -> None:
     """Measure the speed of Eyas on this machine, as medians."""
     from eyas.modes.bench import run as bench
 
-    bench.run(out, quick=quick, cold=cold, stages=stages)
+    bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera)
 
 
 def verify(

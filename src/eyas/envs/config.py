@@ -74,8 +74,8 @@ class ObservationPart(StrEnum):
     LIDAR = "lidar"
     """Distance of each point of the lidar [m], its longest range where nothing is, float32."""
     EVENTS = "events"
-    """How many events of less and of more light each pixel of the sensor of events has told since
-    the last observation, in each part of that time (`camera.events.bins`), at most 255, uint8."""
+    """How many events of less and of more light each pixel of the event camera has had since the
+    last observation, in each part of that time (`camera.events.bins`), at most 255, uint8."""
     WORDS = "words"
     """A sentence that tells the target from all else in the first picture, text; only beside other
     parts."""

@@ -55,8 +55,8 @@ def information(simulation: Simulation) -> Info:
       nothing was within range);
     - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
       of its last picture; 0 before the first;
-    - what the sensor of events has told since the last time, if there is one (`events`, for each
-      tracker a row for each event: column, row, time since the reset [us], and 1 for more light or
+    - the events of the event camera since the last time, if there is one (`events`, for each
+      tracker a row for each: column, row, time since the reset [us], and 1 for more light or
       0 for less).
     """
     basic, reward = simulation.packets()

@@ -228,7 +228,7 @@ class Observer:
                 latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
 
     def _count_events(self, chosen: NDArray[np.int32], out: Array) -> None:
-        """Write how many events the pixels of some trackers have told."""
+        """Write how many events the pixels of some trackers' event cameras have had."""
         sensors = self._simulation.view.events(chosen)
         assert sensors is not None  # its space says so
         planes = np.moveaxis(out, -1, 1) if self._last_axis else out

@@ -27,7 +27,7 @@ class EventWriter(Writer):
         run: The recording.
 
     Raises:
-        ConfigError: The trackers have no sensor of events, or it is too large for the format.
+        ConfigError: The trackers have no event camera, or it is too large for the format.
     """
 
     wants = frozenset({"events"})

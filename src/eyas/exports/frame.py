@@ -252,7 +252,7 @@ class Frame:
     exposure: tuple[float, float] | None = None
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
     events: NDArray[np.void] | None = None
-    """What the sensor of events has told since the last frame, in the order of time, of dtype
+    """Events of the event camera since the last frame, in the order of time, of dtype
     `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""
 
     @property

@@ -108,7 +108,7 @@ class CameraConfig(Config):
     vibration: VibrationConfig = VibrationConfig()
     """What a gimbal leaves of the shaking of its body."""
     events: EventsConfig = EventsConfig()
-    """A sensor of events with the same lens."""
+    """An event camera with the same lens."""
 
     @property
     def needs_velocities(self) -> bool:
@@ -183,7 +183,7 @@ class FurtherCameraConfig(CameraConfig):
     @model_validator(mode="after")
     def _no_events(self) -> Self:
         if self.events.enabled:
-            raise ValueError("events: only the tracker's own camera has a sensor of events")
+            raise ValueError("events: only a tracker's own camera has an event camera beside it")
         return self
 
 

@@ -45,7 +45,7 @@ def test_another_model_takes_the_place_of_the_first():
     other = updated(config, {"camera": {"model": "analogue-video"}})
     assert other.camera.imager.f_number == 1.7
     assert other.camera.imager.full_well == 63000.0
-    assert other.camera.link is None
+    assert other.camera.dirt is None
     grey = updated(other, {"camera": {"model": "global-shutter"}})
     assert grey.camera.spectrum is Spectrum.GREY
     drone = updated(SimConfig(), {"camera": {"model": "small-drone"}})

@@ -16,6 +16,7 @@ from rich.console import Console
 
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
+from eyas.modes.bench.camera import camera_table, measure_camera
 from eyas.modes.bench.measurement import Measurement, measurement_table, timed, why_not
 from eyas.modes.bench.pictures import (
     BY_DAY,
@@ -55,7 +56,12 @@ _PHYSICS_STEPS = 4
 
 
 def run(
-    json_path: Path | None = None, *, quick: bool = False, cold: bool = False, stages: bool = False
+    json_path: Path | None = None,
+    *,
+    quick: bool = False,
+    cold: bool = False,
+    stages: bool = False,
+    camera: bool = False,
 ) -> None:
     """Measure, print a table and write the figures.
 
@@ -64,6 +70,7 @@ def run(
         quick: Whether to measure for a tenth of the time.
         cold: Whether to time the first picture with an empty cache too.
         stages: Whether to time the stages of a picture too.
+        camera: Whether to time camera models too.
     """
     seconds = 0.3 if quick else 3.0
     console = Console()
@@ -73,6 +80,7 @@ def run(
             results.append(measurement)
             status.update(f"measured: {measurement.name}")
         spent = measure_stages(seconds) if stages else []
+        costs = measure_camera(seconds) if camera else []
     machine = describe_machine()
     console.print(measurement_table(results, machine))
     missing = why_not()
@@ -80,10 +88,13 @@ def run(
         console.print(f"no instructions and cycles: no access to hardware counters ({missing})")
     if stages:
         console.print(stage_table(spent))
+    if camera:
+        console.print(camera_table(costs))
     if json_path is not None:
         document: dict[str, object] = {"machine": machine}
         document["results"] = [asdict(result) for result in results]
         document["stages"] = [asdict(time_) for time_ in spent]
+        document["camera"] = [asdict(cost) for cost in costs]
         write_atomic(json_path, json.dumps(document, indent=2).encode())
 
 

@@ -65,8 +65,9 @@ class VideoConfig(ActionSpeeds):
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
         *("jpeg", "mp4", "labels", "mark"),
     )
-    """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `masks`, `classes`, `depth`,
-    `normals`, `arrays`, `flow`, `sensors`, `lidar`, or your own as `my_package.module:Class`."""
+    """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `clean`, `cameras`, `masks`,
+    `classes`, `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, or your own as
+    `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
     """Quality of the JPEG pictures; one of 320 x 240 takes some 36 kB at 95, and 93 kB at 100,
     which an `env_config.json` means."""

@@ -1,11 +1,11 @@
 """Pixels that see changes: the contrast model of ESIM, with the noise of real sensors.
 
 A pixel holds a reference of the logarithm of its light. Each time the light has changed by its
-contrast threshold, it tells an event and moves the reference by this; in between two pictures the
+contrast threshold, it emits an event and moves the reference by this; in between two pictures the
 logarithm is taken to change linearly (Rebecq, Gehrig, Scaramuzza: ESIM: an Open Event Camera
 Simulator, CoRL 2018, section 3). Real pixels differ in their thresholds, are blind for a while
-after an event, and leak: their reference drifts, which tells events of more light; in the dark,
-single photons tell events of either kind (Hu, Liu, Delbruck: v2e: From Video Frames to Realistic
+after an event, and leak: their reference drifts, which makes events of more light; in the dark,
+single photons make events of either kind (Hu, Liu, Delbruck: v2e: From Video Frames to Realistic
 DVS Events, CVPRW 2021, section 4).
 """
 
@@ -55,7 +55,7 @@ class EventSettings(NamedTuple):
 
 
 class EventPixels(NamedTuple):
-    """The pixels of N sensors, and what they have told."""
+    """The pixels of N sensors, and the events that they have emitted."""
 
     reference: Single
     """Logarithm of the light at the last event, shape (N, pixels)."""
@@ -66,7 +66,7 @@ class EventPixels(NamedTuple):
     negative: Single
     """Threshold of less light, shape (N, pixels)."""
     blind: Floats
-    """Until when it tells nothing [s], shape (N, pixels)."""
+    """Until when it emits nothing [s], shape (N, pixels)."""
     time: Floats
     """When each sensor has last seen [s], shape (N,)."""
     seen: Integers
@@ -75,7 +75,7 @@ class EventPixels(NamedTuple):
     """Seed of the noise of each in its episode, shape (N,)."""
     number: Integers
     """Number of events of each, shape (N,)."""
-    told: NDArray[np.void]
+    emitted: NDArray[np.void]
     """Its events, of dtype `EVENT`, in the first elements of its row, those of each pixel in the
     order of their times, shape (N, room)."""
 
@@ -93,7 +93,7 @@ class EventPixels(NamedTuple):
             seen=np.zeros(count, np.int64),
             seed=np.zeros(count, np.int64),
             number=np.zeros(count, np.int64),
-            told=np.zeros((count, 4 * pixels), EVENT),
+            emitted=np.zeros((count, 4 * pixels), EVENT),
         )
 
 
@@ -126,10 +126,10 @@ def see_light(
             _log_of_light(look.radiance[p], settings.dark, light)
             if pixels.seen[n] == 0:
                 _begin(pixels, settings, n, light)
-            elif pixels.number[n] + _most_events(pixels, settings, n, light) > pixels.told.shape[1]:
+            elif not _has_room(pixels, settings, n, light):
                 break
             else:
-                _tell(pixels, settings, n, light, look.time[p])
+                _emit(pixels, settings, n, light, look.time[p])
             pixels.time[n] = look.time[p]
             pixels.seen[n] += 1
             look.next[v] = p + 1
@@ -183,8 +183,8 @@ def _begin(pixels: EventPixels, settings: EventSettings, n: int, light: Single) 
 
 
 @kernel(inline=True)
-def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Single) -> int:
-    """Return how many events the next look may tell at most."""
+def _has_room(pixels: EventPixels, settings: EventSettings, n: int, light: Single) -> bool:
+    """Return whether there is room for all events that the next look may make."""
     most, count = 0, light.shape[0]
     for first in range(0, count, WIDTH):
         some = min(WIDTH, count - first)
@@ -199,11 +199,11 @@ def _most_events(pixels: EventPixels, settings: EventSettings, n: int, light: Si
         of_noise += light.shape[0]
     if settings.leak > 0.0:
         of_noise += light.shape[0]
-    return most + of_noise
+    return pixels.number[n] + most + of_noise <= pixels.emitted.shape[1]
 
 
 @kernel(inline=True)
-def _tell(pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float) -> None:
+def _emit(pixels: EventPixels, settings: EventSettings, n: int, light: Single, time: float) -> None:
     """Let sensor `n` see the light at a time, and append its events."""
     if settings.shot > 0.0:
         base = mixed(mixed(pixels.seed[n]) ^ (pixels.seen[n] & 0xFFFFFFFF))
@@ -274,7 +274,7 @@ def _shot_noise(
     now: tuple[float, float],
     base: int,
 ) -> None:
-    """Append the event of a pixel that single photons tell, if one does.
+    """Append the event of a pixel that single photons make, if any.
 
     At most one in a look: at 10 Hz and 2 ms, 1 % of those that would come are left out.
 
@@ -299,7 +299,7 @@ def _shot_noise(
 def _append(
     pixels: EventPixels, settings: EventSettings, n: int, at: int, sign: int, time: float
 ) -> None:
-    event = pixels.told[n, pixels.number[n]]
+    event = pixels.emitted[n, pixels.number[n]]
     event.x, event.y = at % settings.width, at // settings.width
     event.p, event.t = sign, int(time * 1e6 + 0.5)
     pixels.number[n] += 1

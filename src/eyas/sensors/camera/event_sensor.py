@@ -1,4 +1,4 @@
-"""Sensors of events beside the cameras of N trackers: their state, and their events as arrays."""
+"""Event cameras of N trackers: their state, and their events as arrays."""
 
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 
 class EventSensors:
-    """N sensors of events.
+    """N event cameras.
 
     Attributes:
         size: Height and width [pixels].
@@ -31,7 +31,7 @@ class EventSensors:
     def __init__(self, config: EventsConfig, size: tuple[int, int], count: int) -> None:
         self.size = config.height or size[0], config.width or size[1]
         self._pixels = EventPixels.create(count, self.size[0] * self.size[1])
-        self._told, self._since = self._pixels.told, np.zeros(count)
+        self._emitted, self._since = self._pixels.emitted, np.zeros(count)
         self._settings = EventSettings(
             float(config.positive),
             float(config.negative),
@@ -49,17 +49,17 @@ class EventSensors:
         return cls(config, size, count) if config.enabled else None
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
-        """Begin an episode: the first light that is seen tells no events."""
+        """Begin an episode: the first light that is seen makes no events."""
         self._pixels.seed[tracker] = rng.integers(SEEDS)
         self._pixels.seen[tracker] = 0
 
     @property
     def pixels(self) -> EventPixels:
-        """Their pixels, and what these have told."""
-        return self._pixels._replace(told=self._told)  # there may be more room by now
+        """Their pixels, and the events that these have emitted."""
+        return self._pixels._replace(emitted=self._emitted)  # there may be more room by now
 
     def forget(self, chosen: Integers, time: Floats) -> None:
-        """Begin to tell anew.
+        """Begin to collect events anew.
 
         Args:
             chosen: The sensors, shape (V,).
@@ -87,17 +87,17 @@ class EventSensors:
         workers = min(thread_count(), len(chosen))
         see_light(workers, self.pixels, self._settings, look)
         while (look.next < look.end).any():
-            told = self._told
-            self._told = np.zeros((len(told), 2 * told.shape[1]), told.dtype)
-            self._told[:, : told.shape[1]] = told
+            full = self._emitted
+            self._emitted = np.zeros((len(full), 2 * full.shape[1]), full.dtype)
+            self._emitted[:, : full.shape[1]] = full
             see_light(workers, self.pixels, self._settings, look)
 
     def events_of(self, tracker: int) -> NDArray[np.void]:
-        """Return the events of a sensor since it last began to tell, in the order of their times,
+        """Return the events of a sensor since `forget`, in the order of their times,
         of dtype `eyas.sensors.camera.esim.EVENT`; times count from the episode's start.
         """
-        told = self._told[tracker, : self._pixels.number[tracker]]
-        return told[np.argsort(told["t"], kind="stable")]
+        events = self._emitted[tracker, : self._pixels.number[tracker]]
+        return events[np.argsort(events["t"], kind="stable")]
 
     def count(self, chosen: Integers, out: NDArray[np.uint8]) -> None:
         """Write how many events of each pixel there are in equal parts of the time since.
@@ -116,7 +116,7 @@ class _Counting(NamedTuple):
 
     chosen: Integers
     begin: Floats
-    """When each sensor began to tell [s], shape (N,)."""
+    """When each sensor began to collect [s], shape (N,)."""
     width: int
     """Pixels in a row."""
     out: NDArray[np.uint8]
@@ -135,7 +135,7 @@ def _count(worker: int, workers: int, pixels: EventPixels, counting: _Counting) 
         since = begin[n] * 1e6
         length = max(pixels.time[n] * 1e6 - since, 1.0)
         for k in range(pixels.number[n]):
-            event = pixels.told[n, k]
+            event = pixels.emitted[n, k]
             part = min(max(int(bins * (event.t - since) / length), 0), bins - 1)
             at = (2 * part + event.p) * size + event.y * width + event.x
             out[v, at] = min(out[v, at] + 1, 255)

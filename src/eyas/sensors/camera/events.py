@@ -1,4 +1,4 @@
-"""Settings of the sensor of events."""
+"""Settings of the event camera."""
 
 from typing import Annotated
 
@@ -10,7 +10,7 @@ __all__ = ["EventsConfig"]
 
 
 class EventsConfig(Config):
-    """A sensor of events beside the camera, with its lens and size; by default there is none.
+    """An event camera with the lens of the camera; by default there is none.
 
     Thresholds, refractory time and leak are of the order of those of published sensors: 0.15 to
     0.3, 0.1 ms to 1 ms, and 0.1 events a second (v2e, table 1).
@@ -32,11 +32,11 @@ class EventsConfig(Config):
     mismatch: Annotated[float, Field(ge=0, le=0.5)] = 0.0
     """Standard deviation of the thresholds of the pixels, as a share of them."""
     refractory: Annotated[float, Field(ge=0, le=1)] = 0.0
-    """Time after an event in which a pixel tells no other [s]."""
+    """Time after an event in which a pixel has no other [s]."""
     leak: Annotated[float, Field(ge=0, le=100)] = 0.0
-    """Events of more light that a pixel tells each second where nothing changes [Hz]."""
+    """Events of more light of a pixel where nothing changes [Hz]."""
     shot: Annotated[float, Field(ge=0, le=100)] = 0.0
-    """Events that a dark pixel tells each second by shot noise; a bright one a quarter [Hz]."""
+    """Events of a dark pixel by shot noise; a bright one has a quarter [Hz]."""
     dark: Annotated[float, Field(ge=1e-9, le=1)] = 0.001
     """Light that a pixel sees in the dark, of the radiance of white paper in the sun: it keeps the
     logarithm finite."""

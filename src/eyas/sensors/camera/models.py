@@ -1,15 +1,13 @@
 """Cameras by their data sheets: settings that `camera.model` puts in the place of defaults.
 
-A model is what its sheet says of light, sensor and link; size and field of view of the picture stay
-those of the task. The sheets:
+A model is what its sheet says of light and sensor; size and field of view of the picture stay those
+of the task. The sheets:
 
 - `small-drone`: a 1/2.3-inch colour sensor, 12 megapixels of 1.55 micrometres behind f/2.8, as in
   most drones below 250 g. Full well of 8,180 electrons, 12 bits, and noise of 3 to 1.5 electrons by
   gain are those that J. Hogan measured of a Sony IMX477 ("Pi HQ Cam Sensor Performance",
   strollswithmydog.com, 2020). Its 1,080 rows of video are read in 20 ms, 50 pictures a second (the
-  driver of the Raspberry Pi). Pictures of our size skip photosites: no binning. The link carries
-  720 rows at 30 pictures a second in 4 Mbit/s (DJI's sheet of the Mavic Mini), 0.145 bits a pixel;
-  H.264 needs about a fifth of JPEG, of which by day quality 45 takes 0.7 bits a pixel of ours.
+  driver of the Raspberry Pi). Pictures of our size skip photosites: no binning.
 - `global-shutter`: a grey sensor of 3.45 micrometres with a global shutter, as for machine vision:
   signal to noise of 40.3 dB, dynamic range of 71.3 dB, 12 bits (Sony IMX255 in Matrix Vision's
   manual of the mvBlueFOX3, 20.7). So its well holds 10^(40.3 / 10) = 10,700 electrons, and its
@@ -17,7 +15,9 @@ those of the task. The sheets:
 - `analogue-video`: a 1/4-inch camera on a chip for composite video, 656x492 photosites of 6
   micrometres: signal to noise of 48 dB, dynamic range of 49 dB, fixed pattern of 0.22 % of the
   highest signal (OmniVision OV7950, preliminary data sheet, 2006). So: 63,000 electrons, noise of
-  224. Its rows are read in a field of 1/60 s, and its picture is not coded.
+  224. Its rows are read in a field of 1/60 s.
+
+None has a link: a policy aboard sees what the sensor sees. Coding would smooth noise away.
 
 What no sheet tells is of the size that is usual for their kinds: quantum efficiency behind filters,
 unevenness, dark current when warm, f-numbers, how fast exposure is regulated.
@@ -51,7 +51,6 @@ MODELS: dict[ModelName, Values] = {
         "exposure": {"time": (1.0 / 8000.0, 1.0 / 60.0), "iso": (100.0, 3200.0)},
         "shutter": {"blur": True, "readout": 0.02},
         "dirt": {"spots": 0},
-        "link": {"quality": 45},
     },
     "global-shutter": {
         "spectrum": "grey",

@@ -1,4 +1,4 @@
-"""What sensors of events see between two looks: pictures at instants that follow the motion."""
+"""What event cameras see between two looks: pictures at instants that follow the motion."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +58,7 @@ class EventViews:
 
     def look(self, chosen: Chosen) -> None:
         """Let the sensors of some trackers see what has changed since their last look, up to the
-        instant that pictures show; at the same instant again, they have told the same.
+        instant that pictures show; at the same instant again, their events are the same.
         """
         tick, fresh = self._steady.episodes.tick[chosen], self.sensors.pixels.seen[chosen] == 0
         again = fresh | (tick != self._tick[chosen])

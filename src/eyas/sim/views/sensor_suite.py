@@ -42,7 +42,7 @@ class SensorSuite:
         grain: None if the camera has no noise.
         optics: What is modelled of the camera beyond a pinhole.
         further: The cameras that trackers have beside that one.
-        events: None if there are no sensors of events.
+        events: None if there are no event cameras.
         follow: Whether `advance` must be called after each physics step.
 
     Args:

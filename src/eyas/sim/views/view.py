@@ -113,8 +113,8 @@ class View:
         return clean
 
     def events(self, trackers: NDArray[np.int32]) -> EventSensors | None:
-        """Return the sensors of events; those of these trackers have told what has changed between
-        the last two instants at which this was called. None: there are none.
+        """Return the event cameras; the events of those of these trackers are what has changed
+        between the last two instants at which this was called. None: there are none.
         """
         if self._events is None:
             return None
