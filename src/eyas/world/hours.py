@@ -71,7 +71,8 @@ def under_moon(night: Lighting, hour: float, age: float) -> Lighting:
     moon = _seen_at(math.radians(15.0 * (hour - 12.0)) - lag, _DECLINATION * float(exact.cos(lag)))
     height = math.degrees(float(exact.asin(moon[2])))
     angle = abs(180.0 - 360.0 * age)
-    dimmer = 10.0 ** -(0.4 * (0.026 * angle + 4e-9 * angle**4))
+    square = angle * angle
+    dimmer = float(exact.power(10.0, -0.4 * (0.026 * angle + 4e-9 * square * square)))
     share = dimmer * min(max((height - _MOONRISE) / 6.0, 0.0), 1.0)
     lit = _STARLIGHT + (1.0 - _STARLIGHT) * share
     ambient: dict[str, Any] = {
