@@ -21,7 +21,14 @@ ALIKE = ("simpleway-clinker", "simpleway-desert", "simpleway-farm", "simpleway-l
          "simpleway-village", "simpleway-city")  # fmt: skip
 """Maps that differ only in their ground from one that is drawn; each takes long to pack."""
 DRAWN = [name for name in NAMES if name not in ALIKE]
-CONDITIONS = [(name, weather) for name in DRAWN for weather in MAPS.get(name).weathers]
+OTHERS = ("rain", "dusk", "overcast", "dust", "autumn")
+"""Weathers that are drawn on two maps only: packing a map in another season takes long."""
+CONDITIONS = [
+    (name, weather)
+    for name in DRAWN
+    for weather in MAPS.get(name).weathers
+    if weather not in OTHERS or name in ("citystreet", "desert")
+]
 BUILT_AGAIN = ("downtown", "farmland", "simpleway-grass")
 """The others are built again in the tests of their own."""
 SIDE = 96
