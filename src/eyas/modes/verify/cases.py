@@ -16,6 +16,7 @@ __all__ = ["Case", "cases"]
 _QUICK = {
     *("citystreet", "citystreet day", "citystreet snow", "village", "village night"),
     *("citystreet night, 4 samples", "preset noisy", "preset lively", "flown drone", "lidar"),
+    "camera of a small drone",
 }
 
 _ALONE = {"channels": 1}
@@ -23,6 +24,8 @@ _ALONE = {"channels": 1}
 _SHARP: dict[str, Any] = {"camera": {"samples": 4}}
 
 _GUSTS = {"speed": {"uniform": [0.0, 8.0]}, "turbulence": 5.0}
+
+_BARREL = {"model": "brown", "k1": -0.2, "vignetting": 0.3, "red": 0.003}
 
 _SETTINGS: dict[str, dict[str, Any]] = {
     "flown drone": {
@@ -41,6 +44,15 @@ _SETTINGS: dict[str, dict[str, Any]] = {
         "start": {"height": 6.0},
     },
     "late": {"control": {"action_latency_steps": 20, "observation_latency_steps": 15}},
+    "camera of a small drone": {"camera": {"model": "small-drone", "lens": _BARREL}},
+    "other cameras": {
+        "camera": {"imager": {"mosaic": "malvar"}, "link": {}, "vibration": {"angle": 0.002}},
+        "cameras": [{"name": "heat", "spectrum": "thermal"}],
+    },
+    "rain behind a fisheye": {
+        "world": {"weather": "rain"},
+        "camera": {"lens": {"model": "fisheye"}, "field_of_view": 2.0, "dirt": {}},
+    },
     "two drones": {"video": {"channels": 2}},
     "Pedestrian as target": {"target": "Pedestrian"},
     "AiboErs7 as target": {"target": "AiboErs7"},

@@ -69,6 +69,7 @@ def world_of(config: EyasConfig) -> dict[str, str]:
 def flight_of(config: EyasConfig) -> dict[str, str]:
     """Return hashes of what an agent with random actions gets: pictures, rewards, the rest."""
     parts = _PARTS + ((ObservationPart.LIDAR.value,) if config.lidar.enabled else ())
+    parts += (ObservationPart.CAMERAS.value,) if config.cameras else ()
     settings = {"observation": {"parts": parts, **_SIZE}}
     hashes = _Hashes()
     env = TrackingEnv(updated(config, {"env": settings, "camera": _SIZE}))
@@ -95,7 +96,7 @@ def _action(env: TrackingEnv, rng: np.random.Generator) -> object:
 def _note(hashes: _Hashes, observation: object, info: Info) -> None:
     assert isinstance(observation, Mapping)
     for part, values in sorted(observation.items()):
-        picture = part in ("image", "depth", "classes")
+        picture = part in ("image", "depth", "classes", "cameras")
         hashes.add_array("pictures" if picture else "packets", values)
     for name, value in sorted(info.items()):
         hashes.add_array("rewards" if name.startswith("reward") else "packets", value)
