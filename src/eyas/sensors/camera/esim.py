@@ -154,7 +154,8 @@ def _logarithm(red: float, green: float, blue: float, dark: float) -> float:
     square = ratio * ratio
     series = f4(1.0 / 7.0) + square * f4(1.0 / 9.0)
     series = f4(1.0 / 3.0) + square * (f4(0.2) + square * series)
-    return (ratio + ratio) * (one + square * series) + to_f4(power) * f4(0.69314718)
+    logarithm: float = (ratio + ratio) * (one + square * series) + to_f4(power) * f4(0.69314718)
+    return logarithm
 
 
 @kernel(inline=True)
@@ -199,7 +200,7 @@ def _has_room(pixels: EventPixels, settings: EventSettings, n: int, light: Singl
         of_noise += light.shape[0]
     if settings.leak > 0.0:
         of_noise += light.shape[0]
-    return pixels.number[n] + most + of_noise <= pixels.emitted.shape[1]
+    return bool(pixels.number[n] + most + of_noise <= pixels.emitted.shape[1])
 
 
 @kernel(inline=True)
