@@ -5,10 +5,19 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import intrinsics
-from eyas.exports.frame import CameraPose, Frame, RecordedAction, RecordedBody, Subject
+from eyas.exports.frame import (
+    CameraPicture,
+    CameraPose,
+    Frame,
+    RecordedAction,
+    RecordedBody,
+    Subject,
+)
 from eyas.exports.movement import Movement
 from eyas.exports.writer import Episode, Run
-from eyas.sensors.config import LidarConfig
+from eyas.sensors.camera.esim import EVENT
+from eyas.sensors.camera.events import EventsConfig
+from eyas.sensors.config import CameraConfig, FurtherCameraConfig, LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.draw import MovingParts
 from eyas.state.scene import ObjectClass
@@ -33,6 +42,9 @@ TARGET = Subject(
 )
 
 
+POSE = CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8, 64, 48)
+
+
 def made(number: int, **changes: object) -> Frame:
     values: dict[str, object] = {
         "number": number,
@@ -46,7 +58,7 @@ def made(number: int, **changes: object) -> Frame:
             angular_velocity=np.zeros(3),
             gimbal=np.zeros(3),
         ),
-        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8, 64, 48),
+        "camera": POSE,
         "target": TARGET,
         "others": (),
         "action": RecordedAction(-1, None),
@@ -66,6 +78,9 @@ def made(number: int, **changes: object) -> Frame:
         ),
         "lidar": np.array([0.5, np.inf]),
         "sensors": np.arange(19.0),
+        "clean": np.full((48, 64, 3), 41, np.uint8),
+        "cameras": (CameraPicture("right", POSE, np.full((48, 64, 3), 42, np.uint8)),),
+        "events": np.array([(3, 4, 1, 1000 * number + 5)], EVENT),
     }
     return Frame(**{**values, **changes})  # type: ignore[arg-type]
 
@@ -85,7 +100,11 @@ def episode(tmp_path: Path) -> Episode:
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
     """A recording of two trackers with a lidar, in an empty folder."""
-    config = SimConfig(lidar=LidarConfig(enabled=True))
+    config = SimConfig(
+        lidar=LidarConfig(enabled=True),
+        camera=CameraConfig(events=EventsConfig(enabled=True)),
+        cameras=(FurtherCameraConfig(name="right"),),
+    )
     return Run(
         tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False, jpeg_quality=95,
         depth_unit=0.01,

@@ -40,7 +40,7 @@ class CameraWriter(Writer):
         """Return the number of frames; None if a file is missing."""
         try:
             told = json.loads((folder / _POSES).read_text())
-            frames = {len(camera["poses"]) for camera in told["cameras"]}
+            frames = {told["frames"], *(len(camera["poses"]) for camera in told["cameras"])}
         except (OSError, ValueError, RecursionError, KeyError, TypeError):
             return None
         for number in range(self._count):
@@ -55,9 +55,11 @@ class _CameraFiles(EpisodeWriter):
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._told: dict[str, dict[str, Any]] = {}
+        self._frames = 0
 
     def add(self, frame: Frame) -> None:
         """Write the pictures of a frame."""
+        self._frames += 1
         for number, camera in enumerate(frame.cameras):
             name = _PICTURE.format(number, frame.number)
             write_atomic(self._folder / name, png_bytes(camera.rgb))
@@ -66,7 +68,8 @@ class _CameraFiles(EpisodeWriter):
 
     def finish(self) -> None:
         """Write `cameras.json`."""
-        text = json.dumps({"cameras": [*self._told.values()]}, indent=1)
+        told = {"frames": self._frames, "cameras": [*self._told.values()]}
+        text = json.dumps(told, indent=1)
         write_atomic(self._folder / _POSES, text.encode())
 
 
