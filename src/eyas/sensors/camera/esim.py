@@ -200,7 +200,8 @@ def _has_room(pixels: EventPixels, settings: EventSettings, n: int, light: Singl
         of_noise += light.shape[0]
     if settings.leak > 0.0:
         of_noise += light.shape[0]
-    return pixels.number[n] + most + of_noise <= pixels.emitted.shape[1]
+    room: bool = pixels.number[n] + most + of_noise <= pixels.emitted.shape[1]
+    return room
 
 
 @kernel(inline=True)
