@@ -60,13 +60,27 @@ for settings in (
         "done": {"crash": "contact"},
         "target": "Pedestrian",
     },
+    {"camera": {"shutter": {"blur": True, "readout": 0.01}, "vibration": {"angle": 0.001}}},
+    {"camera": {"spectrum": "near-infrared", "link": {"slice_loss": 0.1}, "defocus": 0.05}},
+    {"camera": {"spectrum": "thermal"}},
+    {
+        "camera": {
+            "imager": {"mosaic": "malvar"},
+            "lens": {"model": "brown", "k1": -0.1, "vignetting": 0.2, "red": 0.01},
+            "dirt": {"drops": 2},
+            "events": {"enabled": True, "shot": 1.0},
+        }
+    },
 ):
     simulation = build_simulation(SimConfig(**settings), each_alone(1))
     simulation.reset()
     simulation.advance(np.zeros((1, 4)), 1)
     simulation.carry(1)
     simulation.packets()
-    simulation.draw(np.zeros(1, np.int32), picture)
+    for _ in range(2):
+        simulation.draw(np.zeros(1, np.int32), picture)
+        simulation.view.events(np.zeros(1, np.int32))
+        simulation.advance(np.array([[5.0, 0.0, 0.0, 1.0]]), 10)
 FrameStack(1, (84, 84), Colours.GREY).add(picture.rgb, np.zeros(1, np.int64))
 StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
 recording = load(MAPS.get("citystreet").shipped_traffic()[0])

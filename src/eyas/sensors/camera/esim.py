@@ -154,8 +154,8 @@ def _logarithm(red: float, green: float, blue: float, dark: float) -> float:
     square = ratio * ratio
     series = f4(1.0 / 7.0) + square * f4(1.0 / 9.0)
     series = f4(1.0 / 3.0) + square * (f4(0.2) + square * series)
-    logarithm: float = (ratio + ratio) * (one + square * series) + to_f4(power) * f4(0.69314718)
-    return logarithm
+    log: float = (ratio + ratio) * (one + square * series) + to_f4(power) * f4(0.69314718)
+    return log
 
 
 @kernel(inline=True)
@@ -200,7 +200,8 @@ def _has_room(pixels: EventPixels, settings: EventSettings, n: int, light: Singl
         of_noise += light.shape[0]
     if settings.leak > 0.0:
         of_noise += light.shape[0]
-    return bool(pixels.number[n] + most + of_noise <= pixels.emitted.shape[1])
+    room: bool = pixels.number[n] + most + of_noise <= pixels.emitted.shape[1]
+    return room
 
 
 @kernel(inline=True)
@@ -228,7 +229,8 @@ def _none_changed(pixels: EventPixels, n: int, light: Single, first: int) -> boo
     near = f4(0.999)  # roundings must not hide an event
     more = away > near * load(pixels.positive[n], first)
     less = f4(0.0) - away > near * load(pixels.negative[n], first)
-    return not any_of(more | less)
+    changed: bool = any_of(more | less)
+    return not changed
 
 
 _LEAST = 0.05
