@@ -79,7 +79,8 @@ for settings in (
     simulation.packets()
     for _ in range(2):
         simulation.draw(np.zeros(1, np.int32), picture)
-        simulation.view.events(np.zeros(1, np.int32))
+        if (sensor := simulation.view.events(np.zeros(1, np.int32))) is not None:
+            sensor.count(np.zeros(1, np.int64), np.zeros((1, 240, 320, 2), np.uint8))
         simulation.advance(np.array([[5.0, 0.0, 0.0, 1.0]]), 10)
 FrameStack(1, (84, 84), Colours.GREY).add(picture.rgb, np.zeros(1, np.int64))
 StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
@@ -89,7 +90,8 @@ recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
 with tempfile.TemporaryDirectory() as folder:
     video = {"channels": 1, "total_time": 0.1, "flight": "orbit"}
     video["writers"] = ["png", "labels", "masks", "flow", "normals"]
-    eyas.record({"camera": {"width": 32, "height": 24}, "video": video}, folder)
+    lens = {"model": "brown", "k1": -0.1}
+    eyas.record({"camera": {"width": 32, "height": 24, "lens": lens}, "video": video}, folder)
     eyas.load(folder)[0][0].masks()
 """
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
