@@ -16,7 +16,6 @@ __all__ = ["Case", "cases"]
 _QUICK = {
     *("citystreet", "citystreet day", "citystreet snow", "village", "village night"),
     *("citystreet night, 4 samples", "preset noisy", "preset lively", "flown drone", "lidar"),
-    "camera of a small drone",
 }
 
 _LONG = ("rain", "dusk", "overcast", "dust", "autumn")
