@@ -133,7 +133,7 @@ def test_version_and_maps(monkeypatch, capsys):
     assert run(monkeypatch, capsys, "--version")[:2] == (0, f"eyas {__version__}\n")
     listed = run(monkeypatch, capsys, "maps", "list")[1].splitlines()
     assert listed[0].startswith("citystreet: ")
-    assert listed[0].endswith("(day, foggy, night, snow)")
+    assert listed[0].endswith("(day, foggy, night, snow, rain, dusk, overcast, dust, autumn)")
     assert any(line.startswith("simpleway-clinker: ") for line in listed)
 
 

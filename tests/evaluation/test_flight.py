@@ -128,7 +128,7 @@ def test_actions_that_are_not_allowed_are_errors(fly):
         ({"policy": "hover", "latency": "-1"}, "0 to 10000 ms"),
         ({"policy": "hover", "latency": "no-file"}, "cannot read"),
         ({"policy": "hover", "maps": ["citystret"]}, "did you mean 'citystreet'"),
-        ({"policy": "hover", "weathers": ["rain"]}, "rain"),
+        ({"policy": "hover", "weathers": ["hail"]}, "hail"),
         ({"policy": "own_policies:forward", "env": {"action_repeats": 4}}, "action_repeat"),
     ],
 )
