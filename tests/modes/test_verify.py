@@ -22,6 +22,10 @@ OTHER = {
 }
 
 
+LONG = ("rain", "dusk", "overcast", "dust", "autumn")
+"""Weathers of which each takes minutes to build on a map: they are looked at on one."""
+
+
 def verify(*words, **more):
     command = [sys.executable, "-W", "ignore", "-m", "eyas", "verify", *words]
     return subprocess.run(
@@ -35,6 +39,9 @@ def test_every_map_in_every_weather_and_every_preset_is_in_the_manifest():
     for name in MAPS.names():
         assert {"scene", "traffic", "people"} == known[name].keys()
         for weather in MAPS.get(name).weathers:
+            if weather in LONG and name != "citystreet":
+                assert f"{name} {weather}" not in known
+                continue
             assert {"pictures", "labels", "rewards", "packets"} <= known[f"{name} {weather}"].keys()
     assert all(f"preset {name}" in known for name in PRESETS)
     assert "lidar files" in known["lidar"]

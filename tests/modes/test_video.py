@@ -34,7 +34,7 @@ from eyas.task.direction import TargetDirection
 # Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
 CONFIG = EyasConfig(
     seed=3,
-    camera=CameraConfig(width=64, height=48),
+    camera=CameraConfig(width=96, height=72),
     done=DoneConfig(total_steps=100, grace_steps=20),
     video=VideoConfig(
         channels=2,
@@ -98,7 +98,7 @@ def test_every_description_counts_the_same_frames(recorded):
 def test_pictures_have_the_cameras_size_and_show_something(recorded):
     for episode in episodes_of(recorded):
         with Image.open(episode / "000000.jpeg") as image:
-            assert image.size == (64, 48)
+            assert image.size == (96, 72)
             assert np.asarray(image).std() > 3
 
 
@@ -110,8 +110,8 @@ def test_labels_agree_with_the_marks_and_the_geometry(recorded):
             assert (round(reward, 6), action) == (label["reward"], -1.0)
             left, top, right, bottom = label["target_box"]
             assert label["in_view"]
-            assert 0 <= left < right <= 64
-            assert 0 <= top < bottom <= 48
+            assert 0 <= left < right <= 96
+            assert 0 <= top < bottom <= 72
             assert 0.0 <= label["visible_fraction"] <= 1.0
             assert label["occluded"] == (label["visible_fraction"] < 1.0)
             offset = np.subtract(label["target_centre"], label["tracker_position"])
@@ -180,7 +180,9 @@ def test_a_later_start_does_without_numba(tmp_path):
         update={"overlay": True, "writers": tuple(WRITERS.built_in)}
     )
     lidar = CONFIG.lidar.model_copy(update={"enabled": True})  # for its writer
-    config = CONFIG.model_copy(update={"video": with_overlay, "lidar": lidar})
+    events = CONFIG.camera.events.model_copy(update={"enabled": True})  # for its writer, too
+    camera = CONFIG.camera.model_copy(update={"events": events})
+    config = CONFIG.model_copy(update={"video": with_overlay, "lidar": lidar, "camera": camera})
     program = RUN + 'print("numba" in sys.modules)'
     said = []
     for out in ("first", "later"):

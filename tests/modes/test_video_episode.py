@@ -9,14 +9,18 @@ from eyas.exports.frame import RecordedAction
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Scores, Summary, Writer
 from eyas.modes.video.episode import EpisodeFiles, read_complete
-from eyas.sensors.config import LidarConfig
+from eyas.sensors.camera.esim import EVENT
+from eyas.sensors.camera.events import EventsConfig
+from eyas.sensors.config import CameraConfig, LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.draw import MovingParts, Picture
 from eyas.state.snapshot import Snapshot
 
-LIDAR = LidarConfig(enabled=True)
+SENSORS = SimConfig(
+    lidar=LidarConfig(enabled=True), camera=CameraConfig(events=EventsConfig(enabled=True))
+)
 RUN = Run(
-    Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False, jpeg_quality=95,
+    Path("unused"), ("DRONE0",), SENSORS, target_direction=False, jpeg_quality=95,
     depth_unit=0.01,
 )  # fmt: skip
 
@@ -40,7 +44,8 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     for number in range(frames):
         picture.rgb[:] = 40 * number
         action, now = RecordedAction(-1, None), snapshot.episodes
-        moment = Moment(snapshot, now, lidar=np.ones(400), sensors=np.ones(19), parts=PARTS)
+        told = {"lidar": np.ones(400), "sensors": np.ones(19), "events": np.zeros(0, EVENT)}
+        moment = Moment(snapshot, now, parts=PARTS, clean=picture.rgb[0].copy(), **told)
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 
@@ -53,7 +58,7 @@ PICTURES = sorted(
     f"{place}{number:06d}.{kind}"
     for place, kind in (
         *(("", "jpeg"), ("", "png"), ("masks/", "png"), ("classes/", "png"), ("depth/", "png")),
-        *(("normals/", "png"),),
+        *(("normals/", "png"), ("clean/", "png")),
         *(("arrays/", "npz"),),
     )
     for number in range(2)

@@ -58,9 +58,10 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(renderer_of, tmp_path
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(*(getattr(traffic, name) for name in Movers._fields))
-    task = new_task(Size(1, 24, 32, 1, int(DrawStage.SHADING), False, False, 1))
+    size = Size(1, 24, 32, 1, int(DrawStage.SHADING), False, False, 1)
+    task = new_task(size)
     set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
-    scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
+    scratch = renderer._scratch_for(1, 24, size, movers.part.shape[1], False, None).bundle
     found = np.zeros((24, 32), np.uint32)
     bundles = (*(held.bundle for held in renderer._held), scratch, movers, task, found)
     text = checked(ptx_of(shade_thread, bundles, "kernel"))

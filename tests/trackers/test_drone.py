@@ -29,7 +29,7 @@ def test_a_drone_leaves_the_others_alone(drone):
     drone.aim()
     trackers = drone.trackers  # the field of view is the episode's, what is smoothed the sensors'
     elsewhere = (
-        drone.cameras.field_of_view,
+        *(drone.cameras.field_of_view, drone.cameras.velocity, drone.cameras.angular_velocity),
         *(trackers.smoothed, trackers.smoothed_acceleration, trackers.smoothed_lag),
     )
     for array, old in zip(drone.arrays(), before, strict=True):

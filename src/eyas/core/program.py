@@ -415,7 +415,8 @@ _SILENT = frozenset(("ctx", "type_comment", "type_params", "kind"))
 def _read(node: ast.AST, *, annotation: bool = False) -> Iterator[str]:
     """Yield the names that are read, each with the attributes that are read, and texts of paths."""
     if isinstance(node, ast.Name):
-        yield node.id
+        # What a class or a function binds is its own.
+        yield from (node.id,) if isinstance(node.ctx, ast.Load) else ()
     elif isinstance(node, ast.Attribute):
         names: list[str] = []
         inner: ast.AST = node

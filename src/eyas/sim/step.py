@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import wrap_angle
-from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
+from eyas.lanes import BoundCall, CompiledCall, Held, compiled, interpreted, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.sensors.inertial import feel, rest
@@ -175,8 +175,9 @@ def _step_of(
     velocities: bool,  # a key of the cache
 ) -> StepKernels:
     seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
-    pointed = _point_in_motion if velocities else _point
-    pointing = point if pointed is _point and seen == _USUAL else _inlined(pointed, seen)
+    pointing = point_in_motion if velocities else point
+    if velocities or seen != _USUAL:
+        pointing = kernel(inline=True)(specialised(interpreted(pointing), **seen))
     seen["stand"] = begin_at_rest if velocities else left_unknown
     return StepKernels(
         fly=compiled(specialised(_fly, advance=advance, point=pointing)),
@@ -185,12 +186,8 @@ def _step_of(
     )
 
 
-def _inlined(pointed: Kernel, seen: dict[str, Kernel]) -> Kernel:
-    made: Kernel = kernel(inline=True)(specialised(pointed, **seen))
-    return made
-
-
-def _point(
+@kernel(inline=True)
+def point(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # the record that the tracker's kernels use
     cameras: CameraState,
@@ -202,7 +199,8 @@ def _point(
     carried(trackers, cameras, n, mount)
 
 
-def _point_in_motion(
+@kernel(inline=True)
+def point_in_motion(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # as above
     cameras: CameraState,
@@ -216,7 +214,6 @@ def _point_in_motion(
     moved_from(before, cameras, n)
 
 
-point = kernel(inline=True)(_point)
 stand = left_unknown
 _USUAL: dict[str, Kernel] = {"aim": aim, "carried": carried}
 

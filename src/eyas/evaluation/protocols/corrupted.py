@@ -135,7 +135,7 @@ CORRUPTED = Protocol(
     "3 s: as standard, behind fifteen faults of camera and air at five strengths",
     {**STANDARD.changes, "camera": {"imager": {}}},
     directions=STANDARD.directions,
-    episodes=1,
+    episodes=4,
     columns=("tsr", "fall", "flawless", "seen"),
     rank="tsr",
     gaps=("fall",),
