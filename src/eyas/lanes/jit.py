@@ -117,9 +117,11 @@ def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
     of its name there.
 
     Args:
-        function: A plain function of this package, to be compiled.
+        function: A plain function of this package, to be compiled, or a kernel.
         kernels: The kernels to call, keyed by the names they replace in the function's module.
     """
+    if isinstance(function, Kernel):
+        function = cast("Function", function.py_func)
     if all(function.__globals__[name] is kernel for name, kernel in kernels.items()):
         return function
     names = {**function.__globals__, **kernels}

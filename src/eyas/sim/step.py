@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import wrap_angle
-from eyas.lanes import BoundCall, CompiledCall, Held, compiled, interpreted, kernel, specialised
+from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.sensors.inertial import feel, rest
@@ -177,7 +177,7 @@ def _step_of(
     seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
     pointing = point_in_motion if velocities else point
     if velocities or seen != _USUAL:
-        pointing = kernel(inline=True)(specialised(interpreted(pointing), **seen))
+        pointing = kernel(inline=True)(specialised(pointing, **seen))
     seen["stand"] = begin_at_rest if velocities else left_unknown
     return StepKernels(
         fly=compiled(specialised(_fly, advance=advance, point=pointing)),

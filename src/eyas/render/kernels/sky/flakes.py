@@ -330,14 +330,22 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            _blend(snowfall.canvas, i, j, cover, colour, pale)
+            _blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
 
 
 @kernel(inline=True)
 def _blend(
-    canvas: Canvas, i: int, j: int, cover: float, colour: Colour, pale: tuple[int, int, int]
+    canvas: Canvas,
+    i: int,
+    j: int,
+    cover: float,
+    colour: Colour,
+    pale: tuple[int, int, int],
+    thin: bool,
 ) -> None:
-    """Let a flake cover a share of a pixel."""
+    """Let a flake cover a share of a pixel. What is thin covers little of one: of its light, not of
+    its byte, or it would be lost in the dark. Snow keeps the bytes that it has always had.
+    """
     if len(canvas.red) > 0:
         red, green, blue = colour
         canvas.red[i, j] += f4(cover) * (red - canvas.red[i, j])
@@ -345,6 +353,18 @@ def _blend(
         canvas.blue[i, j] += f4(cover) * (blue - canvas.blue[i, j])
         return
     pixels, (red_byte, green_byte, blue_byte) = canvas.pixels, pale
+    if thin:
+        pixels[i, j, 0] = _mixed_light(pixels[i, j, 0], red_byte, cover)
+        pixels[i, j, 1] = _mixed_light(pixels[i, j, 1], green_byte, cover)
+        pixels[i, j, 2] = _mixed_light(pixels[i, j, 2], blue_byte, cover)
+        return
     pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red_byte - pixels[i, j, 0]) + 0.5)
     pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green_byte - pixels[i, j, 1]) + 0.5)
     pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue_byte - pixels[i, j, 2]) + 0.5)
+
+
+@kernel(inline=True)
+def _mixed_light(before: int, over: int, cover: float) -> int:
+    """Return the byte of a mixture of light, which is about the square of its byte."""
+    below = float(before) * float(before)
+    return i8(math.sqrt(below + cover * (float(over) * float(over) - below)) + 0.5)
