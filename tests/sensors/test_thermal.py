@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
-from eyas.lanes import limit_threads
+from eyas.lanes import interpreted, limit_threads
 from eyas.sensors.camera.temperature import SurfaceTemperatures, direction_of
 from eyas.sensors.camera.thermal import (
     HEAT,
@@ -17,10 +17,11 @@ from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.world.weather import DAY, FOGGY, SNOW
 
+_cell = interpreted(direction_of)
 UP, EAST, WEST = (
-    direction_of(0.0, 0.0, 1.0),
-    direction_of(1.0, 0.0, 0.0),
-    direction_of(-1.0, 0.0, 0.0),
+    _cell(0.0, 0.0, 1.0),
+    _cell(1.0, 0.0, 0.0),
+    _cell(-1.0, 0.0, 0.0),
 )
 SIZE = 24, 32
 

@@ -29,7 +29,7 @@ from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.state.lighting import Horizon, Lighting
 from eyas.state.scene import Lamps, Scene
 
-__all__ = ["Baked", "build_light", "lamp_grid", "tile_starts", "tone_table"]
+__all__ = ["Baked", "build_light", "encoded_tone", "lamp_grid", "tile_starts", "tone_table"]
 
 CELL = 8.0
 """Side of a square of the grid of street lamps [m]."""
@@ -153,8 +153,18 @@ def tone_table() -> NDArray[np.uint8]:
     `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and still with some
     contrast above the brightness of white paper.
     """
-    radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
-    tone = 1.0 - exact.exp(-1.35 * radiance)
+    return encoded_tone(TONE_TOP)
+
+
+def encoded_tone(top: float, white: float = 1.0) -> NDArray[np.uint8]:
+    """Return the byte for each step of exposed radiance by that curve.
+
+    Args:
+        top: Radiance of the last step.
+        white: Value of the curve that is shown as white.
+    """
+    radiance = (np.arange(TONE_STEPS) + 0.5) * (top / TONE_STEPS)
+    tone = (1.0 - exact.exp(-1.35 * radiance)) / white
     encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
     table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
     return table

@@ -27,6 +27,7 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.scalars import f4, i4
+from eyas.render.pack.light import encoded_tone
 from eyas.sensors.camera.exposure import (
     ExposureConfig,
     ExposureState,
@@ -75,14 +76,9 @@ _METERED_ROWS = 128
 def tone_of_sensor() -> NDArray[np.uint8]:
     """Return the byte for each step of what a sensor reads, 0 to saturation.
 
-    The curve is that of pictures without a sensor (`eyas.render.pack.light.tone_table`), stretched
-    so that saturation is white.
+    The curve is that of pictures without a sensor, stretched so that saturation is white.
     """
-    radiance = (np.arange(TONE_STEPS) + 0.5) * (_WHITE / TONE_STEPS)
-    tone = (1.0 - exact.exp(-1.35 * radiance)) / (1.0 - exact.exp(-1.35 * _WHITE))
-    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
-    table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
-    return table
+    return encoded_tone(_WHITE, 1.0 - float(exact.exp(-1.35 * _WHITE)))
 
 
 class Development:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.lanes import kernel
 from eyas.state.lighting import Lighting
 from eyas.state.scene import ObjectClass
 from eyas.world.hours import sun_at
@@ -147,6 +148,7 @@ class SurfaceTemperatures:
                 self.table[kind][lying] = np.minimum(self.table[kind][lying], 0.0)
 
 
+@kernel(inline=True)
 def direction_of(x: float, y: float, z: float) -> tuple[int, int]:
     """Return row and column of a direction in a map: the octahedron, unfolded to a square.
 
@@ -158,8 +160,8 @@ def direction_of(x: float, y: float, z: float) -> tuple[int, int]:
         folded = (1.0 - abs(v)) * (1.0 if u >= 0.0 else -1.0)
         v = (1.0 - abs(u)) * (1.0 if v >= 0.0 else -1.0)
         u = folded
-    row = min(int((v + 1.0) * 0.5 * DIRECTIONS), DIRECTIONS - 1)
-    return row, min(int((u + 1.0) * 0.5 * DIRECTIONS), DIRECTIONS - 1)
+    row = min(max(int((v + 1.0) * 0.5 * DIRECTIONS), 0), DIRECTIONS - 1)
+    return row, min(max(int((u + 1.0) * 0.5 * DIRECTIONS), 0), DIRECTIONS - 1)
 
 
 def _normals() -> NDArray[np.float64]:

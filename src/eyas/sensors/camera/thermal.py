@@ -16,10 +16,10 @@ from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.elementary import exp
 from eyas.sensors.camera.temperature import (
     CLOTHES,
-    DIRECTIONS,
     ENGINE_HEAT,
     SKIN,
     SurfaceTemperatures,
+    direction_of,
 )
 from eyas.sensors.chance import mixed
 from eyas.state.draw import DrawList
@@ -216,19 +216,6 @@ def _random(word: int) -> float:
     return float((word & 255) + ((word >> 8) & 255) + ((word >> 16) & 255) + (word >> 24) - 510)
 
 
-@kernel(inline=True)
-def _cell(x: float, y: float, z: float) -> tuple[int, int]:
-    """See `eyas.sensors.camera.temperature.direction_of`."""
-    size = abs(x) + abs(y) + abs(z) + 1e-9
-    u, v = x / size, y / size
-    if z < 0.0:
-        folded = (1.0 - abs(v)) * (1.0 if u >= 0.0 else -1.0)
-        v = (1.0 - abs(u)) * (1.0 if v >= 0.0 else -1.0)
-        u = folded
-    row = min(max(int((v + 1.0) * 0.5 * DIRECTIONS), 0), DIRECTIONS - 1)
-    return row, min(max(int((u + 1.0) * 0.5 * DIRECTIONS), 0), DIRECTIONS - 1)
-
-
 @kernel
 def _of_mover(
     scene: _Scene, frames: ThermalFrames, view: int, slot: int, facing: tuple[int, int],
@@ -261,7 +248,7 @@ def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, colu
     right = frames.normal[view, row, column, 0] / 127.5 - 1.0
     down = frames.normal[view, row, column, 1] / 127.5 - 1.0
     ahead = frames.normal[view, row, column, 2] / 127.5 - 1.0
-    facing = _cell(
+    facing = direction_of(
         ahead * axes[0, 0] - right * axes[0, 1] - down * axes[0, 2],
         ahead * axes[1, 0] - right * axes[1, 1] - down * axes[1, 2],
         ahead * axes[2, 0] - right * axes[2, 1] - down * axes[2, 2],

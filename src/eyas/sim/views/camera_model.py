@@ -55,6 +55,7 @@ class CameraModel:
         self._link: Link | None = None
         self._defocus = config.defocus if config.is_defocused else None
         self._blur = np.zeros(count)
+        self._memory = np.empty((0, 3, 0, 0), np.float32)
         self._curve = ToneCurve(lighting.exposure)
         self._infrared = config.spectrum is Spectrum.NEAR_INFRARED
         self.development: Development | None = None
@@ -110,7 +111,7 @@ class CameraModel:
             self.development.expose(trackers, step)
             if self._shutter is not None:
                 self._shutter.exposure[trackers] = self.development.exposure.time[trackers]
-        light = np.empty((len(trackers), 3, *picture_size(picture)), np.float32)
+        light = self._memory_for(len(trackers), *picture_size(picture))
         seen = replace(picture, rgb=None, radiance=light)
         if self._infrared and seen.class_id is None:
             seen.class_id = np.empty((len(light), *light.shape[2:]), np.uint8)
@@ -129,6 +130,12 @@ class CameraModel:
         else:
             self.development.develop(light, picture.rgb, trackers, step)
         self.send(trackers, step, picture.rgb)
+
+    def _memory_for(self, views: int, height: int, width: int) -> NDArray[np.float32]:
+        """Return memory for the light of pictures, mostly that of the last call."""
+        if self._memory.shape[2:] != (height, width) or len(self._memory) < views:
+            self._memory = np.empty((views, 3, height, width), np.float32)
+        return self._memory[:views]
 
     def send(
         self, trackers: NDArray[np.int32], step: NDArray[np.int64], rgb: NDArray[np.uint8]
