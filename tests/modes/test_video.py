@@ -125,8 +125,9 @@ def test_a_box_lies_where_the_camera_projects_the_target(recorded):
         label = read_labels(episode / "labels.jsonl")[-1]
         offset = np.subtract(label["target_centre"], label["camera_position"])
         forward, left, up = np.array(label["camera_rotation"]).T @ offset
-        focal = 32 / np.tan(CONFIG.camera.field_of_view / 2)
-        u, v = 32 - focal * left / forward, 24 - focal * up / forward
+        focal = CONFIG.camera.width / 2 / np.tan(CONFIG.camera.field_of_view / 2)
+        u = CONFIG.camera.width / 2 - focal * left / forward
+        v = CONFIG.camera.height / 2 - focal * up / forward
         box = label["target_box"]
         assert box[0] - 2 <= u <= box[2] + 2
         assert box[1] - 2 <= v <= box[3] + 2
