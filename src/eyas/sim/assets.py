@@ -15,7 +15,7 @@ from eyas.sensors.obstacles import Solids
 from eyas.sim.cover import cover_of
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
-from eyas.sim.scenes import load_geometry, load_scene, load_solids
+from eyas.sim.scenes import load_geometry, load_network, load_scene, load_solids
 from eyas.sim.views.additions import SignalLights, lights_of
 from eyas.state.draw import Renderer
 from eyas.state.lighting import Lighting
@@ -24,12 +24,12 @@ from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
-from eyas.traffic.config import Demand, Drivers, Source, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Lamps, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
 from eyas.traffic.net_file import SumoNet
 from eyas.traffic.record import resolved
-from eyas.traffic.recorded import kept_motion
+from eyas.traffic.recorded import kept_lamps, kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
@@ -143,6 +143,7 @@ def _live(
         kind_index,
         STANDARD_DURATION,
         others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
+        lamps=config.lamps is Lamps.WORKING,
         cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )
 
@@ -168,8 +169,13 @@ def _vehicles(
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
     begin_ahead(f"from eyas.sim.scenes import paint; paint({sorted({*kind.tolist()})})")
     motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
+    if config.lamps is Lamps.WORKING:
+        lamps = kept_lamps(file, motion, load_network(map_name, seed))
+        motion = motion._replace(lamps=lamps)
     count = vehicles_of(crowd, len(kind))
-    return motion._replace(table=motion.table[:, :count], kind=kind[:count])
+    return motion._replace(
+        table=motion.table[:, :count], kind=kind[:count], lamps=motion.lamps[:, :count]
+    )
 
 
 @lru_cache(maxsize=8)

@@ -39,6 +39,14 @@ class Surface(IntEnum):
     repeats every 8 m, whatever u and v: asphalt and, in alpha, the brightness of paint. u is 31 at
     the right edge of the line and 33 at the left one, and v has the same scale. Triangles without
     paint reach `MARGIN` farther."""
+    TAIL_LAMP = 10
+    """A `LAMP` of a vehicle that braking brightens, see `eyas.state.draw.DrawList.lamps`."""
+    HIGH_BRAKE_LAMP = 11
+    """One that shines only when it brakes."""
+    INDICATOR_LEFT = 12
+    """One that blinks before it goes left."""
+    INDICATOR_RIGHT = 13
+    """One that blinks before it goes right."""
 
 
 @dataclass(frozen=True, slots=True)

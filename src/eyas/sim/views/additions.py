@@ -66,6 +66,7 @@ class TrackerBodies:
         if later is not None:
             pose[..., 3] += trackers.velocity[others] * later[:, None, None]
         classes = np.full((len(chosen), len(self._others)), ObjectClass.ROBOT, np.uint8)
+        bodies = others.shape[1]
         colour = np.ones((*others.shape, 3))
         object_id = np.where(others < 0, -1, ACTOR_OBJECT + self._actors + others)
         return DrawList(
@@ -74,11 +75,17 @@ class TrackerBodies:
             colour=_beside(movers.colour[rows], colour),
             object_id=_beside(movers.object_id[rows], object_id),
             object_class=_beside(movers.object_class[rows], classes),
+            lamps=_and_dark(movers.lamps[rows] if movers.lamps.size else movers.lamps, bodies),
         )
 
 
 def _beside(movers: NDArray[Any], bodies: NDArray[Any]) -> NDArray[Any]:
     return np.concatenate([movers, bodies.astype(movers.dtype)], axis=1)
+
+
+def _and_dark(lamps: NDArray[np.uint8], more: int) -> NDArray[np.uint8]:
+    """Return `DrawList.lamps` with so many slots more, which have none."""
+    return np.pad(lamps, ((0, 0), (0, more if lamps.size else 0)))
 
 
 def _poses(trackers: TrackerState) -> NDArray[np.float64]:
@@ -119,6 +126,7 @@ class SignalLights:
             colour=np.concatenate([movers.colour, white], axis=1),
             object_id=np.concatenate([movers.object_id, ids], axis=1),
             object_class=movers.object_class,
+            lamps=_and_dark(movers.lamps, part.shape[1]),
         )
 
 
