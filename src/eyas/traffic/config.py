@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
-__all__ = ["Demand", "Drivers", "Lamps", "Mix", "Source", "TrafficConfig", "VehicleType"]
+__all__ = ["Demand", "Drivers", "Lamps", "Mix", "Signals", "Source", "TrafficConfig", "VehicleType"]
 
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
@@ -86,6 +86,15 @@ class Lamps(StrEnum):
     """Brake lamps are lit, indicators blink, by day too."""
 
 
+class Signals(StrEnum):
+    """What the traffic lights of our own maps show; those of imported towns always work."""
+
+    AMBER = "amber"
+    """Amber, and nobody heeds them."""
+    WORKING = "working"
+    """Red, amber and green, which drivers obey."""
+
+
 class TrafficConfig(Config):
     """Settings of the traffic that SUMO simulates; `traffic=live` is short for its `source`."""
 
@@ -123,6 +132,8 @@ class TrafficConfig(Config):
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
     """Body colour of every car, RGB 0 to 1; None: sampled for each car."""
+    signals: Signals = Signals.AMBER
+    """What the traffic lights of our own maps show; those of imported towns always work."""
     lamps: Lamps = Lamps.DARK
     """What vehicles signal with brake lamps and indicators."""
     recording: str | None = None

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
+from eyas.traffic.network import crossings
 
 __all__ = ["LaneMap"]
 
@@ -29,7 +30,7 @@ class LaneMap:
         self.edge: Final = network.lane_edge
         self.index: Final = network.lane_index
         self._network = network
-        self._crossings = _crossings(network)
+        self._crossings = crossings(zip(network.edge_start, network.edge_end, strict=True))
         points = network.lane_points
         self._low = points.min(axis=0) - 10.0
         columns, rows = ((points.max(axis=0) + 10.0 - self._low) / _CELL).astype(int) + 1
@@ -63,15 +64,6 @@ class LaneMap:
             np.floor((y - self._low[1]) / _CELL).astype(np.int64),
             np.floor((x - self._low[0]) / _CELL).astype(np.int64),
         )
-
-
-def _crossings(network: RoadNetwork) -> set[str]:
-    """Return the nodes at which at least three roads meet."""
-    beside: dict[str, set[str]] = {}
-    for start, end in zip(network.edge_start, network.edge_end, strict=True):
-        beside.setdefault(start, set()).add(end)
-        beside.setdefault(end, set()).add(start)
-    return {node for node, others in beside.items() if len(others) >= 3}
 
 
 def _strip(line: NDArray[np.float64], width: float) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from eyas.state.scene import ACTOR_OBJECT, ObjectClass, Scene
 from eyas.state.snapshot import TrackerState
 from eyas.traffic.signals import SignalPlan
 
-__all__ = ["SignalLights", "TrackerBodies", "lights_of"]
+__all__ = ["SignalLights", "TrackerBodies", "lights_of", "signal_poles"]
 
 _SAME = 0.01
 """Poles nearer to each other are one [m]."""
@@ -130,6 +130,23 @@ class SignalLights:
         )
 
 
+def signal_poles(scene: Scene) -> dict[str, int]:
+    """Return the fixture of the traffic light at the end of each edge that has one."""
+    # Shapely takes long to import, and few maps have signals.
+    from eyas.world.roads.areas import streets
+    from eyas.world.street.signals import pole_at
+
+    fixtures, found = scene.fixtures, {}
+    poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
+    feet = fixtures.pose[poles][:, :2, 3]
+    for name, street in zip(scene.network.edges, streets(scene.network), strict=True):
+        if len(street.right) >= 2 and len(poles):
+            away = np.abs(feet - np.array(pole_at(street)[0])).max(axis=1)
+            if away.min() < _SAME:
+                found[name] = int(poles[away.argmin()])
+    return found
+
+
 def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights | None:
     """Return the lights on the poles of a scene; None if there are none.
 
@@ -138,19 +155,8 @@ def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights |
         plan: Programs of the lights.
         first_part: See `SignalLights`.
     """
-    # Shapely takes long to import, and few maps have signals.
-    from eyas.world.roads.areas import streets
-    from eyas.world.street.signals import pole_at
-
-    fixtures, rows = scene.fixtures, {name: row for row, name in enumerate(plan.edges)}
-    poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
-    feet, found = fixtures.pose[poles][:, :2, 3], []
-    for name, street in zip(scene.network.edges, streets(scene.network), strict=True):
-        if name not in rows or len(street.right) < 2 or not len(poles):
-            continue
-        away = np.abs(feet - np.array(pole_at(street)[0])).max(axis=1)
-        if away.min() < _SAME:
-            found.append((rows[name], int(poles[away.argmin()])))
+    rows, fixtures = {name: row for row, name in enumerate(plan.edges)}, scene.fixtures
+    found = [(rows[name], pole) for name, pole in signal_poles(scene).items() if name in rows]
     if not found:
         return None
     row, fixture = np.array(found, np.int64).T
