@@ -39,6 +39,8 @@ class Surface(IntEnum):
     repeats every 8 m, whatever u and v: asphalt and, in alpha, the brightness of paint. u is 31 at
     the right edge of the line and 33 at the left one, and v has the same scale. Triangles without
     paint reach `MARGIN` farther."""
+    HILLSIDE = 10
+    """Grass, with dry patches, and with rock where it is steep."""
 
 
 @dataclass(frozen=True, slots=True)

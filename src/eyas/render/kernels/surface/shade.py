@@ -14,6 +14,7 @@ from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
+from eyas.render.kernels.surface.hillside import grown
 from eyas.render.kernels.surface.litter import littered
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
@@ -29,6 +30,7 @@ FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
 MARKING = i4(int(Surface.MARKING))
+HILLSIDE = i4(int(Surface.HILLSIDE))
 
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
@@ -201,6 +203,13 @@ def shade_point(
         red = select(wet, at.tint[0] * bright, red)
         green = select(wet, at.tint[1] * bright, green)
         blue = select(wet, at.tint[2] * bright, blue)
+    hilly = surface == HILLSIDE
+    if any_of(hilly):
+        footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        hill_r, hill_g, hill_b = grown((red, green, blue), point, normal[2], footprint)
+        red = select(hilly, hill_r, red)
+        green = select(hilly, hill_g, green)
+        blue = select(hilly, hill_b, blue)
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = snowed(
@@ -222,12 +231,13 @@ def shade_point(
     tilt = f4(0.5) * normal[2]
     tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
     open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
-    sky_share *= open_share
-    up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
-    sun, above, below = lit.sun_colour, lit.above, lit.below
-    light_r = direct * sun.x + up * above.x + down * below.x
-    light_g = direct * sun.y + up * above.y + down * below.y
-    light_b = direct * sun.z + up * above.z + down * below.z
+    up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share * open_share
+    # Where walls hide the sky, what they and the ground throw back is not blue.
+    seen, thrown = up * open_share, up * (one - open_share)
+    sun, above, below, tinge = lit.sun_colour, lit.above, lit.below, lit.tinge
+    light_r = direct * sun.x + seen * above.x + thrown * tinge.x + down * below.x
+    light_g = direct * sun.y + seen * above.y + thrown * tinge.y + down * below.y
+    light_b = direct * sun.z + seen * above.z + thrown * tinge.z + down * below.z
     signal = surface == SIGNAL
     if any_of(signal):
         glow = select(signal, at.emission, zero)
