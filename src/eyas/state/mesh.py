@@ -41,6 +41,8 @@ class Surface(IntEnum):
     paint reach `MARGIN` farther."""
     HILLSIDE = 10
     """Grass, with dry patches, and with rock where it is steep."""
+    HEATH = 11
+    """Soil, with patches of dry grass and scrub."""
 
 
 @dataclass(frozen=True, slots=True)

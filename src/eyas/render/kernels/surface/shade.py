@@ -14,11 +14,11 @@ from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
-from eyas.render.kernels.surface.hillside import grown
 from eyas.render.kernels.surface.litter import littered
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
+from eyas.render.kernels.surface.wild_ground import heath, hillside
 from eyas.state.mesh import MARGIN, Surface
 
 __all__ = ["painted_share", "shade_point", "water_slope"]
@@ -31,6 +31,7 @@ WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
 MARKING = i4(int(Surface.MARKING))
 HILLSIDE = i4(int(Surface.HILLSIDE))
+HEATH = i4(int(Surface.HEATH))
 
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
@@ -203,13 +204,20 @@ def shade_point(
         red = select(wet, at.tint[0] * bright, red)
         green = select(wet, at.tint[1] * bright, green)
         blue = select(wet, at.tint[2] * bright, blue)
-    hilly = surface == HILLSIDE
-    if any_of(hilly):
+    hilly, heathy = surface == HILLSIDE, surface == HEATH
+    if any_of(hilly | heathy):
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
-        hill_r, hill_g, hill_b = grown((red, green, blue), point, normal[2], footprint)
-        red = select(hilly, hill_r, red)
-        green = select(hilly, hill_g, green)
-        blue = select(hilly, hill_b, blue)
+        soil = (red, green, blue)
+        if any_of(hilly):
+            wild_r, wild_g, wild_b = hillside(soil, point, normal[2], footprint)
+            red = select(hilly, wild_r, red)
+            green = select(hilly, wild_g, green)
+            blue = select(hilly, wild_b, blue)
+        if any_of(heathy):
+            wild_r, wild_g, wild_b = heath(soil, point, footprint)
+            red = select(heathy, wild_r, red)
+            green = select(heathy, wild_g, green)
+            blue = select(heathy, wild_b, blue)
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = snowed(
