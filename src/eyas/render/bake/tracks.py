@@ -34,9 +34,9 @@ _OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
 _STRAIGHT, _BACK = np.radians(50.0), np.radians(150.0)
 """Angles up to which a path over a junction leads straight on, and from which it turns back."""
 
-_NEAR, _FAR = 0.6, 2.4
-"""Lengths over which the map is blurred, and blurred again for distant views: a track, and slightly
-more than a lane's tracks [m]."""
+_NEAR, _FAR = 0.9, 2.4
+"""Lengths over which the map is blurred, and blurred again for distant views: slightly more than a
+lane's tracks [m]."""
 
 _STREAK = 4.0, 0.6
 """Length and width of the streaks of slush that wheels draw out along a lane [m]."""
@@ -129,7 +129,7 @@ def _profile(aside: Line) -> Line:
     worn = 0.42 * np.clip((_HALF - np.abs(aside)) / 0.7, 0.0, 1.0)
     for other, much in _OTHERS:
         off = np.abs(np.abs(aside + other) - TRACK_ASIDE)
-        worn = np.maximum(worn, much * np.clip((0.5 - off) / 0.26, 0.0, 1.0))
+        worn = np.maximum(worn, much * np.clip((0.56 - off) / 0.4, 0.0, 1.0))
     return worn
 
 
