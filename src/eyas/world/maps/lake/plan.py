@@ -10,7 +10,7 @@ from eyas.core.rng import stream
 from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
-from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.millimetres import rounded
 from eyas.world.build.placed import Placed
@@ -28,6 +28,7 @@ from eyas.world.plan.plan import (
     Layer,
     MapPlan,
     Paint,
+    Paved,
     Roadway,
     ThingKind,
     state_of,
@@ -104,7 +105,13 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
 def _roads(district: LakeLayout) -> list[Layer]:
     """Return the roads with their kerbs, and the car parks."""
     bays = tuple(line for park in district.car_parks for line in park.lines)
-    kerbs = Flat(area=_kerbs(district), z=KERB_HEIGHT, cover=_KERB, sides=_KERB)
+    kerbs = Paved(
+        area=_kerbs(district),
+        beside=shapely.union(district.roads, _lots(district)),
+        slabs=_KERB,
+        kerb=_KERB,
+        kerb_width=_KERB_WIDTH,
+    )
     return [
         Roadway(
             area=district.roads,
@@ -113,7 +120,7 @@ def _roads(district: LakeLayout) -> list[Layer]:
             apart=2.0,
         ),
         GroundCover(kind=ObjectClass.ROAD, pieces=(ground.asphalt(_lots(district), light=True),)),
-        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(kerbs,)),
+        kerbs,
     ]
 
 
