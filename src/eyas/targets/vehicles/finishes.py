@@ -8,6 +8,9 @@ __all__ = [
     "CLOTH",
     "GLASS",
     "HEAD_LAMP",
+    "HIGH_BRAKE_LAMP",
+    "INDICATOR_LEFT",
+    "INDICATOR_RIGHT",
     "PAINT",
     "PLATE",
     "RIM",
@@ -43,6 +46,15 @@ HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5
 
 TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=1.8)
 """Rear lamps; they shine when the weather has lamps on."""
+
+HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.LAMP)
+"""The third brake lamp."""
+
+INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
+"""Indicators, on the left of the vehicle."""
+
+INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
+"""Indicators, on the right of the vehicle."""
 
 TRIM = plain(0.10, 0.10, 0.11)
 """Grilles, bumpers, undersides."""
