@@ -12,6 +12,7 @@ __all__ = [
     "INDICATOR_LEFT",
     "INDICATOR_RIGHT",
     "PAINT",
+    "PANE",
     "PLATE",
     "RIM",
     "ROOF_GLASS",
@@ -37,6 +38,9 @@ BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
 
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 """Tinted windows."""
+
+PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
+"""Tinted windows with their frames, and what is behind them."""
 
 ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
 """A glass roof."""

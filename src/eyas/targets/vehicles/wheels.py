@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.mesh.panels import fan
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
@@ -54,15 +55,15 @@ def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
         rim = _ring(radius * _DISC, y + side * half, sides)[:: -int(side)]
         hub = [0.0, y + side * (half + 0.01), 0.0]
         follow = np.roll(rim, -1, axis=0)
-        fan = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
+        spokes = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
         gap = np.arange(sides) % 3 == 2  # five spokes
-        shell.triangles(fan[~gap], RIM)
-        shell.triangles(fan[gap], TRIM)
+        shell.triangles(spokes[~gap], RIM)
+        shell.triangles(spokes[gap], TRIM)
 
 
 def _coarse(shell: Shell, radius: float, width: float, y: float) -> None:
     sides, half = 8, width / 2
     shell.rings([_ring(radius, y + half, sides), _ring(radius, y - half, sides)], TYRE)
     for side in (1.0, -1.0):
-        disc = _ring(0.62 * radius, y + side * (half + 0.006), sides)[:: -int(side)]
-        shell.triangles([[disc[0], disc[i], disc[i + 1]] for i in range(1, sides - 1)], RIM)
+        disc = _ring(0.62 * radius, y + side * (half + 0.012), sides)[:: -int(side)]
+        shell.triangles(fan(disc), RIM)
