@@ -3,7 +3,7 @@
 Each is painted on a body of the usual size, see `eyas.world.build.bodywork`, in metres.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -17,6 +17,11 @@ from eyas.world.build.bodywork import (
     BAND,
     BASE,
     BEAMS,
+    BOX_DOORS,
+    BOX_ROOF,
+    BOX_SIDE,
+    CAB_SIDE,
+    COOLER,
     FRONT,
     REAR,
     REAR_WINDOW,
@@ -29,7 +34,7 @@ from eyas.world.build.bodywork import (
     Region,
 )
 
-__all__ = ["PAINTERS", "bodywork", "panes"]
+__all__ = ["PAINTERS", "bodywork", "freight", "panes"]
 
 Texture = NDArray[np.uint8]
 Line = Sequence[tuple[float, float]]
@@ -359,7 +364,49 @@ def panes() -> Texture:
     return _texture(tones)
 
 
-PAINTERS = {
+def freight() -> Texture:
+    """Return the sides, roof and doors of a box, the side of a cab, and a cooler on a roof."""
+    tones = np.full((SIZE, SIZE), BASE)
+    long, high, wide = 11.0, 3.0, 2.5
+    side = _sheet(tones, BOX_SIDE, (long, high))
+    side.line([(0.0, 0.06), (long, 0.06)], 0.14, 0.3 * BASE)
+    side.line([(0.0, high - 0.05), (long, high - 0.05)], 0.12, 0.6 * BASE)
+    for x in np.linspace(0.0, long, 10):
+        side.line([(float(x), 0.0), (float(x), high)], 0.05, 0.35 * BASE)
+    _dirt(side, 1.2, 0.35)
+    roof = _sheet(tones, BOX_ROOF, (long, 0.5 * wide))
+    for x in np.linspace(0.0, long, 10):
+        roof.line([(float(x), -0.1), (float(x), 1.3)], 0.06, 0.5 * BASE)
+    roof.line([(0.0, 1.2), (long, 1.2)], 0.07, 0.45 * BASE)
+    roof.scale(1.0 - 0.12 * np.clip(1.0 - roof.y / 0.9, 0.0, 1.0))
+    doors = _sheet(tones, BOX_DOORS, (wide, high))
+    doors.frame((0.0, 0.0), (wide, high), 0.07, 0.3 * BASE)
+    doors.line([(0.5 * wide, 0.0), (0.5 * wide, high)], 0.05, _SEAM)
+    for x in (0.35, 1.0, 1.5, 2.15):  # locking bars
+        doors.line([(x, 0.1), (x, high - 0.1)], 0.05, 0.4 * BASE)
+    for y in (0.4, 1.1, 1.9, 2.6):  # hinges
+        doors.box((0.05, y - 0.05), (0.3, y + 0.05), 0.5 * BASE)
+        doors.box((wide - 0.3, y - 0.05), (wide - 0.05, y + 0.05), 0.5 * BASE)
+    _dirt(doors, 0.9, 0.4)
+    cab = _sheet(tones, CAB_SIDE, (2.5, 2.56))
+    cab.line([(0.9, 0.0), (0.9, 2.1), (2.1, 2.1), (2.3, 1.0), (2.3, 0.0)], 0.04, _SEAM)
+    cab.line([(0.0, 1.98), (2.5, 1.98)], 0.05, 1.0, 0.6)
+    cab.box((0.98, 0.72), (1.22, 0.8), _SEAM)
+    cab.box((0.1, 1.1), (0.7, 1.75), _SEAM)  # a window of the berth
+    for y in (0.15, 0.3):
+        cab.line([(0.1, y), (0.75, y)], 0.05, 0.3 * BASE)
+    _dirt(cab, 0.8, 0.4)
+    unit = _sheet(tones, COOLER, (2.0, 1.6))
+    for x in (0.55, 1.45):  # fans
+        away = np.sqrt(np.square(unit.x - x) + np.square(unit.y - 0.8))
+        unit.tone[:] *= 1.0 - 0.85 * np.clip((0.36 - away) / unit.texel, 0.0, 1.0)
+        unit.box((x - 0.06, 0.74), (x + 0.06, 0.86), 0.5 * BASE)
+    unit.frame((0.0, 0.0), (2.0, 1.6), 0.05, 0.5 * BASE)
+    return _texture(tones)
+
+
+PAINTERS: dict[str, Callable[[], Texture]] = {
     **{f"bodywork_{kind}": partial(bodywork, kind) for kind in _SIDES},
     "panes": panes,
+    "freight": freight,
 }

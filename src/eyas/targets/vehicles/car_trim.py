@@ -3,19 +3,21 @@
 import numpy as np
 
 from eyas.core import exact
+from eyas.mesh.panels import box_panels
 from eyas.mesh.shell import Shell
 from eyas.targets.vehicles.bumpers import AHEAD
 from eyas.targets.vehicles.car_shape import CarShape, arch_radius, height_at, sections
 from eyas.targets.vehicles.finishes import (
     BRIGHT,
+    FREIGHT,
     GLASS,
     HIGH_BRAKE_LAMP,
     PAINT,
     PLATE,
-    SKIN_WHITE,
     TRIM,
 )
 from eyas.targets.vehicles.vehicle import VehicleModel
+from eyas.world.build.bodywork import COOLER, PLAIN
 
 __all__ = ["add_trimmings"]
 
@@ -24,7 +26,10 @@ def add_trimmings(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
     """Add what is fixed to a body of the finest level."""
     _mirrors(shell, model, shape)
     for start, end, top in shape.pods:
-        shell.box((start, -0.8, top - 0.5), (end, 0.8, top), SKIN_WHITE, taper=0.06)
+        under, over, *sides = box_panels((start, -0.8, top - 0.5), (end, 0.8, top), 0.06)
+        corners = COOLER.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
+        shell.quads(over, FREIGHT, uvs=corners)
+        shell.quads([under, *sides], FREIGHT, uvs=[PLAIN] * 5)
     _plates(shell, shape)
     x = shape.rear_window[1]
     z = height_at(shape.top, x)

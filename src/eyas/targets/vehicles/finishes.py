@@ -6,6 +6,7 @@ __all__ = [
     "BLACK_PAINT",
     "BRIGHT",
     "CLOTH",
+    "FREIGHT",
     "GLASS",
     "HEAD_LAMP",
     "HIGH_BRAKE_LAMP",
@@ -83,3 +84,6 @@ SKIN_WHITE = plain(0.86, 0.87, 0.86)
 
 CLOTH = plain(0.16, 0.18, 0.25)
 """A rider's suit."""
+
+FREIGHT = Material(texture="freight", tint=(0.94, 0.95, 0.94))
+"""White panels of boxes on wheels, with seams, doors and bars."""

@@ -18,13 +18,18 @@ __all__ = [
     "BASE",
     "BEAMS",
     "BODYWORK",
+    "BOX_DOORS",
+    "BOX_ROOF",
+    "BOX_SIDE",
+    "CAB_SIDE",
+    "COOLER",
     "FRONT",
+    "PLAIN",
     "REAR",
     "REAR_WINDOW",
     "SIDE",
     "SIDE_PANE",
     "SIDE_SHARES",
-    "SPOT",
     "TOP",
     "TOP_SHARES",
     "WINDSCREEN",
@@ -76,8 +81,20 @@ REAR_WINDOW = Region(4, 132, 252, 196)
 SIDE_PANE = Region(4, 204, 252, 252)
 """A side window; in the panes."""
 
-SPOT = TOP.at(0.4, 0.35)
-"""Where there is plain paint."""
+BOX_SIDE = Region(4, 4, 252, 92)
+"""A side of a box on wheels from its rear end forward, and upwards; this and those that follow are
+in the texture `freight`."""
+BOX_ROOF = Region(4, 98, 180, 150)
+"""Its roof from the rear end forward, and from the middle to the edge."""
+BOX_DOORS = Region(4, 158, 124, 252)
+"""Its doors from left to right, and upwards."""
+CAB_SIDE = Region(132, 158, 252, 252)
+"""A side of a truck's cab forward, and upwards."""
+COOLER = Region(188, 98, 252, 150)
+"""An air conditioner from above."""
+
+PLAIN = CAB_SIDE.at(np.full(4, 0.1), np.full(4, 0.9))
+"""A panel without anything on it, in the texture `freight`."""
 
 SIDE_SHARES = (0.0, 0.126, 0.287, 0.457, 0.66, 0.713, 0.874, 1.0)
 """Tail, both edges of the rear wheel arch, pillar between the doors, front edge of the front door,
@@ -89,7 +106,10 @@ TOP_SHARES = (0.0, 0.13, 0.32, 0.55, 0.74, 1.0)
 BEAMS = (0.03, 0.5, 0.97)
 """Beginning of the side windows, pillar between the doors, end of the side windows."""
 
-BODYWORK = tuple(f"bodywork_{kind}" for kind in ("saloon", "hatch", "sunroof", "van", "bus"))
+BODYWORK = (
+    *(f"bodywork_{kind}" for kind in ("saloon", "hatch", "sunroof", "van", "bus")),
+    "freight",
+)
 """Textures of paint."""
 
 
