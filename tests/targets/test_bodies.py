@@ -142,6 +142,21 @@ def test_roofs_tell_the_range_rover_and_the_tesla_from_the_others():
         assert (ROOF_GLASS in palette) == (name == "TeslaModel3Simple")
 
 
+@pytest.mark.parametrize("vehicle", VEHICLES, ids=lambda vehicle: vehicle.name)
+def test_variants_differ_in_detail_and_have_the_size_and_roof_of_their_model(vehicle):
+    first = vehicle.body(vehicle)[0]
+    seen = [first]
+    for variant in vehicle.variants:
+        mesh = variant(vehicle)[0]
+        span = np.ptp(mesh.positions, axis=0), np.ptp(first.positions, axis=0)
+        assert span[0] == pytest.approx(span[1], abs=0.03)
+        for material in (BLACK_PAINT, ROOF_GLASS):
+            assert (material in mesh.palette) == (material in first.palette)
+        looks = [(other.palette, other.materials.tolist()) for other in seen]
+        assert (mesh.palette, mesh.materials.tolist()) not in looks
+        seen.append(mesh)
+
+
 def test_silhouettes_differ():
     seen = set()
     for name in NAMES:

@@ -28,6 +28,7 @@ from eyas.world.build.bodywork import (
     SIDE,
     SIDE_PANE,
     SIDE_SHARES,
+    STYLES,
     TOP,
     TOP_SHARES,
     WINDSCREEN,
@@ -123,16 +124,33 @@ def _texture(tones: Field) -> Texture:
     return picture
 
 
-def bodywork(kind: str) -> Texture:
-    """Return the paint of a kind of body: `saloon`, `hatch`, `van` or `bus`."""
+def bodywork(style: str) -> Texture:
+    """Return the paint of one of `STYLES`."""
+    kind, _, look = style.partition("_")
     tones = np.full((SIZE, SIZE), BASE)
-    _SIDES[kind](_sheet(tones, SIDE, (_LONG, 0.75)))
-    _TOPS[kind](_sheet(tones, TOP, (_LONG, 0.8)))
+    side, top = _sheet(tones, SIDE, (_LONG, 0.75)), _sheet(tones, TOP, (_LONG, 0.8))
+    _SIDES[kind](side)
+    _TOPS[kind](top)
+    if look == "sunroof":
+        _sunroof(top)
     _band(_sheet(tones, BAND, (2.6, 0.42)))
     _rear(_sheet(tones, REAR, (0.85, 0.75)), kind)
-    _front(_sheet(tones, FRONT, (0.85, 0.75)), kind)
-    rng = source(f"bodywork {kind}")
-    return _texture(tones * (1.0 + 0.012 * fractal(rng, 0.8, longest=50.0)))
+    _front(_sheet(tones, FRONT, (0.85, 0.75)), kind, look)
+    rng = source(f"bodywork {style}")
+    clouds = fractal(rng, 0.8, longest=50.0)
+    if look == "worn":
+        _wear(side, top)
+        tones *= 1.0 - 0.06 * np.clip(fractal(rng, 1.3, longest=40.0) - 0.4, 0.0, 1.0)
+    return _texture(tones * (1.0 + 0.012 * clouds))
+
+
+def _wear(side: _Sheet, top: _Sheet) -> None:
+    """Draw the black mouldings of an older car, and more dirt."""
+    front, ahead = _LONG * SIDE_SHARES[2], _LONG * SIDE_SHARES[5]
+    side.line([(front + 0.08, 0.36), (ahead - 0.06, 0.36)], 0.06, _BLACK)
+    _dirt(side, 0.6, 0.35)
+    nose = _LONG
+    top.box((nose - 0.12, -0.1), (nose + 0.1, 0.9), 0.8 * BASE, 0.6)
 
 
 def _dirt(sheet: _Sheet, height: float, strength: float) -> None:
@@ -252,8 +270,7 @@ def _hatch_top(sheet: _Sheet) -> None:
     sheet.line([(low, -0.1), (low, 0.8)], 0.05, _SEAM)
 
 
-def _sunroof_top(sheet: _Sheet) -> None:
-    _hatch_top(sheet)
+def _sunroof(sheet: _Sheet) -> None:
     front = _LONG * TOP_SHARES[3]
     sheet.box((front - 0.5, -0.1), (front - 0.14, 0.44), _SEAM)
     sheet.box((front - 0.47, -0.1), (front - 0.17, 0.4), 0.05)
@@ -299,17 +316,21 @@ def _rear(sheet: _Sheet, kind: str) -> None:
         sheet.line([(0.0, 0.64), (0.4, 0.64)], 0.03, 1.0)
 
 
-def _front(sheet: _Sheet, kind: str) -> None:
+def _front(sheet: _Sheet, kind: str, look: str) -> None:
     side = 0.85
     _dirt(sheet, 0.25, 0.3)
     if kind == "bus":
         sheet.box((-0.1, -0.1), (side + 0.1, 0.14), _BLACK)
         sheet.line([(0.0, 0.3), (side, 0.3)], 0.03, _SEAM)
         return
-    sheet.box((-0.1, 0.44), (0.48, 0.62), _BLACK)  # the grille and its bars
-    for y in (0.48, 0.53, 0.58):
-        sheet.line([(0.0, y), (0.46, y)], 0.02, 0.3, 0.8)
-    sheet.line([(0.0, 0.63), (0.5, 0.63)], 0.03, 1.0)
+    if look == "sunroof":  # a grille in two halves, or one with bars
+        sheet.box((0.06, 0.45), (0.4, 0.66), 1.0)
+        sheet.box((0.09, 0.47), (0.37, 0.64), _BLACK)
+    else:
+        sheet.box((-0.1, 0.44), (0.48, 0.62), _BLACK)
+        for y in (0.48, 0.53, 0.58):
+            sheet.line([(0.0, y), (0.46, y)], 0.02, 0.3, 0.8)
+        sheet.line([(0.0, 0.63), (0.5, 0.63)], 0.03, 1.0)
     sheet.line([(0.0, 0.43), (side, 0.43)], 0.035, _SEAM)
     sheet.box((-0.1, 0.06), (0.56, 0.2), _BLACK)  # the intakes
     sheet.box((0.62, 0.1), (0.8, 0.24), _BLACK)
@@ -320,14 +341,12 @@ def _front(sheet: _Sheet, kind: str) -> None:
 _SIDES = {
     "saloon": _car_side,
     "hatch": _car_side,
-    "sunroof": _car_side,
     "van": _van_side,
     "bus": _bus_side,
 }
 _TOPS = {
     "saloon": _saloon_top,
     "hatch": _hatch_top,
-    "sunroof": _sunroof_top,
     "van": _van_top,
     "bus": _bus_top,
 }
@@ -406,7 +425,7 @@ def freight() -> Texture:
 
 
 PAINTERS: dict[str, Callable[[], Texture]] = {
-    **{f"bodywork_{kind}": partial(bodywork, kind) for kind in _SIDES},
+    **{f"bodywork_{style}": partial(bodywork, style) for style in STYLES},
     "panes": panes,
     "freight": freight,
 }

@@ -1,6 +1,7 @@
 """Car bodies: surfaces through cross-sections, with windows, lamps and wheel arches."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from eyas.targets.vehicles.car_shape import (
     sections,
 )
 from eyas.targets.vehicles.car_trim import add_trimmings
+from eyas.targets.vehicles.car_variants import variants_of
 from eyas.targets.vehicles.car_wrap import Wrap
 from eyas.targets.vehicles.finishes import (
     GLASS,
@@ -90,13 +92,6 @@ def car(
     track = size[1] - _TRACK
     usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)
 
-    def body(model: VehicleModel) -> tuple[Mesh, ...]:
-        return (
-            _body(model, shape, _FINE, fine_stations(model, shape)),
-            _body(model, shape, _MIDDLE, middle_stations(shape)),
-            _body(model, shape, _COARSE, coarse_stations(shape)),
-        )
-
     return vehicle(
         name,
         kind,
@@ -106,7 +101,16 @@ def car(
         axles=axles or usual,
         mass=mass,
         words=words,
-        body=body,
+        body=partial(_levels, shape),
+        variants=tuple(partial(_levels, variant) for variant in variants_of(shape)),
+    )
+
+
+def _levels(shape: CarShape, model: VehicleModel) -> tuple[Mesh, ...]:
+    return (
+        _body(model, shape, _FINE, fine_stations(model, shape)),
+        _body(model, shape, _MIDDLE, middle_stations(shape)),
+        _body(model, shape, _COARSE, coarse_stations(shape)),
     )
 
 

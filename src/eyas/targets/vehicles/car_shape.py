@@ -70,7 +70,7 @@ class CarShape:
     sill: Material = PAINT
     """Material of the lowest part of the sides."""
     bodywork: str = "hatch"
-    """Its paint: `saloon`, `hatch`, `sunroof`, `van` or `bus`."""
+    """Its paint, see `eyas.world.build.bodywork.BODYWORK`."""
     dark_bumpers: bool = False
     """Whether the bumpers are not painted."""
     rack: bool = False

@@ -204,3 +204,6 @@ def trailer_frame(shell: Shell, model: VehicleModel, z: float, detail: int) -> N
     ahead = model.axles[1].x - 1.6  # clear of the truck when it turns
     shell.box((max(axles) + 0.75, 1.16, 0.5), (ahead, 1.2, 1.0), STEEL, both_sides=True)
     shell.box((ahead - 0.3, 0.7, 0.3), (ahead - 0.15, 0.85, z - 0.1), TRIM, both_sides=True)
+    if detail == 2:  # mud flaps
+        x = min(axles) - 0.66
+        shell.box((x, 0.87, 0.25), (x + 0.03, 1.22, 0.98), TRIM, both_sides=True)

@@ -9,7 +9,10 @@ from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
 
-__all__ = ["wheel_levels"]
+__all__ = ["DESIGNS", "wheel_levels"]
+
+DESIGNS = 4
+"""Number of designs of discs."""
 
 _DISC = 0.66
 """Radius of the disc, as a share of the wheel's radius."""
@@ -18,18 +21,19 @@ _SHOULDER = 0.92
 """Radius where the tread begins to bend into the side, as a share of the wheel's radius."""
 
 
-def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
+def wheel_levels(radius: float, width: float, pair: float, design: int = 0) -> tuple[Mesh, ...]:
     """Return the levels of detail of one wheel, or of two on an axle, centred at the origin.
 
     Args:
         radius: Radius of the wheel [m].
         width: Width of the tyre [m].
         pair: Distance between the middles of two wheels [m]; 0 for one wheel.
+        design: Of the discs, below `DESIGNS`.
     """
     centres = (pair / 2, -pair / 2) if pair else (0.0,)
     fine, coarse = Shell(), Shell()
     for y in centres:
-        _fine(fine, radius, width, y)
+        _fine(fine, (radius, width), y, design)
         _coarse(coarse, radius, width, y)
     return fine.mesh(), coarse.mesh()
 
@@ -42,7 +46,18 @@ def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
     )
 
 
-def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
+def _gaps(design: int, sides: int) -> NDArray[np.bool_]:
+    """Return where a disc is dark: between spokes, or all over."""
+    at = np.arange(sides)
+    if design == 1:
+        return at % 2 == 1  # eight narrow spokes
+    if design == 2:
+        return at < 0  # a cover
+    return at % 3 != 2 if design == 3 else at % 3 == 2  # five narrow or five wide spokes
+
+
+def _fine(shell: Shell, size: tuple[float, float], y: float, design: int) -> None:
+    radius, width = size
     sides, half = 15, width / 2
     # From left to right, because rings must be counter-clockwise as seen from beyond the last.
     sections = [
@@ -56,7 +71,7 @@ def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
         hub = [0.0, y + side * (half + 0.01), 0.0]
         follow = np.roll(rim, -1, axis=0)
         spokes = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
-        gap = np.arange(sides) % 3 == 2  # five spokes
+        gap = _gaps(design, sides)
         shell.triangles(spokes[~gap], RIM)
         shell.triangles(spokes[gap], TRIM)
 

@@ -25,11 +25,13 @@ __all__ = [
     "COOLER",
     "FRONT",
     "PLAIN",
+    "RAISED",
     "REAR",
     "REAR_WINDOW",
     "SIDE",
     "SIDE_PANE",
     "SIDE_SHARES",
+    "STYLES",
     "TOP",
     "TOP_SHARES",
     "WINDSCREEN",
@@ -42,6 +44,10 @@ _SIDE = 256
 
 BASE = 0.8
 """Brightness of plain paint in the textures, linear: edges are brighter."""
+
+
+RAISED = 1.1028
+"""sRGB value of 1 / `BASE`: a tint that makes up for it."""
 
 
 class Region(NamedTuple):
@@ -106,17 +112,16 @@ TOP_SHARES = (0.0, 0.13, 0.32, 0.55, 0.74, 1.0)
 BEAMS = (0.03, 0.5, 0.97)
 """Beginning of the side windows, pillar between the doors, end of the side windows."""
 
-BODYWORK = (
-    *(f"bodywork_{kind}" for kind in ("saloon", "hatch", "sunroof", "van", "bus")),
-    "freight",
+STYLES = (
+    *("saloon", "saloon_sunroof", "saloon_worn", "hatch", "hatch_sunroof", "hatch_worn"),
+    *("van", "van_worn", "bus"),
 )
+"""Kinds of bodywork."""
+
+BODYWORK = (*(f"bodywork_{style}" for style in STYLES), "freight")
 """Textures of paint."""
 
 
 def body_paint(texture: str) -> Material:
     """Return paint with the seams and parts of a texture; its brightness is that of plain paint."""
-    return Material(texture=texture, tint=(_RAISED, _RAISED, _RAISED), surface=Surface.PAINT)
-
-
-_RAISED = 1.1028
-"""sRGB value of 1 / `BASE`."""
+    return Material(texture=texture, tint=(RAISED, RAISED, RAISED), surface=Surface.PAINT)
