@@ -1,6 +1,6 @@
 """Inputs and outputs of the renderer."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from typing import NamedTuple, Protocol
 
@@ -57,16 +57,26 @@ class DrawList:
     (W, I)."""
     object_class: NDArray[np.uint8]
     """`eyas.state.scene.ObjectClass` of each actor, shape (W, A)."""
+    lamps: NDArray[np.uint8] = field(default_factory=lambda: np.zeros((0, 0), np.uint8))
+    """Lamps that shine now, shape (W, I): bit k those of `Surface.TAIL_LAMP` + k; shape (W, 0) or
+    (0, 0) where no thing has any that come and go."""
 
     @classmethod
-    def create(cls, worlds: int, slots: int) -> "DrawList":
-        """Return a list of empty slots, for up to `slots` actors of class car."""
+    def create(cls, worlds: int, slots: int, *, lamps: bool = False) -> "DrawList":
+        """Return a list of empty slots, for up to `slots` actors of class car.
+
+        Args:
+            worlds: Number of worlds.
+            slots: Number of slots.
+            lamps: Whether things have lamps that come and go.
+        """
         return cls(
             part=np.full((worlds, slots), -1, np.int32),
             pose=np.zeros((worlds, slots, 3, 4), np.float32),
             colour=np.ones((worlds, slots, 3), np.float32),
             object_id=np.full((worlds, slots), -1, np.int32),
             object_class=np.full((worlds, slots), ObjectClass.CAR, np.uint8),
+            lamps=np.zeros((worlds, slots if lamps else 0), np.uint8),
         )
 
     def flat(self) -> "DrawList":
@@ -77,6 +87,7 @@ class DrawList:
             colour=self.colour.reshape(1, -1, 3),
             object_id=self.object_id.reshape(1, -1),
             object_class=self.object_class,
+            lamps=self.lamps.reshape(1, -1),
         )
 
     def first(self, worlds: int) -> "DrawList":

@@ -43,6 +43,14 @@ class Surface(IntEnum):
     """Grass, with dry patches, and with rock where it is steep."""
     HEATH = 11
     """Soil, with patches of dry grass and scrub."""
+    TAIL_LAMP = 12
+    """A `LAMP` of a vehicle that braking brightens, see `eyas.state.draw.DrawList.lamps`."""
+    HIGH_BRAKE_LAMP = 13
+    """One that shines only when it brakes."""
+    INDICATOR_LEFT = 14
+    """One that blinks before it goes left."""
+    INDICATOR_RIGHT = 15
+    """One that blinks before it goes right."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,12 +37,14 @@ Colour = tuple[float, float, float]
 
 @kernel(inline=True)
 def instance_frame(band: Band, row: int) -> Frame:
-    """Return pose and colour of an instance, a row of `Band.drawn`; fixtures have no colour."""
+    """Return an instance, a row of `Band.drawn`; fixtures have no colour and no such lamps."""
     geometry, movers, world = band.geometry, band.movers, band.world
     instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
     if instance >= fixtures:
-        return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
-    return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
+        colours, lamps = movers.colour[world], movers.lamps[world]
+        return frame_of(movers.pose[world], colours, lamps, instance - fixtures)
+    colours, lamps = movers.colour[world, :0], movers.lamps[world, :0]
+    return frame_of(geometry.fixture_pose, colours, lamps, instance)
 
 
 @kernel(inline=False)

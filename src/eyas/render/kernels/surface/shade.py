@@ -15,6 +15,7 @@ from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
 from eyas.render.kernels.surface.litter import littered
+from eyas.render.kernels.surface.signalling import signalled
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
@@ -272,6 +273,8 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
+    if frame.lamps != i4(0):
+        red, green, blue = signalled((red, green, blue), surface, frame.lamps)
     mirror = _smoothness(surface, alpha)
     if any_of(mirror > zero):
         facing = lesser(greater(cosine, zero), one)
