@@ -14,7 +14,7 @@ from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.cover import cover_of
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
-from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
+from eyas.sim.crowd_motion import Surroundings, live_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.views.additions import SignalLights, lights_of
 from eyas.state.draw import Renderer
@@ -33,7 +33,7 @@ from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
-from eyas.world.config import WorldConfig
+from eyas.world.config import WorldWindConfig, WorldConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]
@@ -79,6 +79,8 @@ def load_assets(
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
     """
+    if world.wind is not None:  # whatever its speed, drawn for each episode
+        world = world.model_copy(update={"wind": WorldWindConfig()})
     recipe = MAPS.get(world.map)
     lighting, season = _lighting(world), recipe.season(world.weather)
     grouped = traffic.demand is Demand.RESPAWN
@@ -142,7 +144,7 @@ def _live(
         scene.terrain,
         kind_index,
         STANDARD_DURATION,
-        others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
+        others=live_motions(crowd, Surroundings(scene, clock, own_seed)),
         cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )
 
@@ -186,6 +188,9 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 def _lighting(world: WorldConfig) -> Lighting:
     light = MAPS.get(world.map).light(world.weather, world.hour, world.moon)
+    if world.wind is not None:
+        light = replace(light, windy=1.0)
+    light = replace(light, smoke=world.smoke, spray=light.wet if world.spray else 0.0)
     if world.precipitation == 1.0:
         return light
     falls = {name: world.precipitation * getattr(light, name) for name in _FALLING}

@@ -74,6 +74,7 @@ class TrackerBodies:
             colour=_beside(movers.colour[rows], colour),
             object_id=_beside(movers.object_id[rows], object_id),
             object_class=_beside(movers.object_class[rows], classes),
+            spray=movers.spray[rows] if len(movers.spray) else movers.spray,
         )
 
 
@@ -119,6 +120,7 @@ class SignalLights:
             colour=np.concatenate([movers.colour, white], axis=1),
             object_id=np.concatenate([movers.object_id, ids], axis=1),
             object_class=movers.object_class,
+            spray=movers.spray,
         )
 
 
