@@ -14,6 +14,8 @@ from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
 from eyas.render.bake.puddles import hollows, no_hollows
 from eyas.render.bake.shadows import ShadowMap
+from eyas.render.bake.smoke import chimneys
+from eyas.render.bake.sway import calm, sway_of
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.bundles import (
     TILE,
@@ -24,6 +26,7 @@ from eyas.render.kernels.bundles import (
     LampFrame,
     Light,
     MapFrame,
+    Wind,
 )
 from eyas.render.kernels.light.ambient import BOUNCED
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
@@ -93,6 +96,8 @@ def build_light(scene: Scene, lighting: Lighting, baked: Baked, geometry: Geomet
         tone=tone_table(),
         ground=_direction(far_ground(geometry)),
         clouds=clouds,
+        smoke=chimneys(scene, lighting.smoke),
+        sway=sway_of(scene, geometry) if lighting.windy > 0 else calm(),
         hills=hills,
     )
 
@@ -140,6 +145,8 @@ def _weather(
         limb_y=_float(lighting.moon_limb[1]),
         limb_z=_float(lighting.moon_limb[2]),
         longest_shadow=_float(lighting.longest_shadow),
+        windy=_float(lighting.windy),
+        spray=_float(lighting.spray),
     )
     return Illumination(
         sun=_direction(sun),
@@ -152,6 +159,7 @@ def _weather(
         fog=_direction(lighting.fog_colour),
         fog_density=_float(lighting.fog_density),
         air=air,
+        wind=Wind(*_floats(np.zeros(4))),
     )
 
 

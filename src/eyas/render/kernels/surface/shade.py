@@ -20,6 +20,7 @@ from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
 from eyas.render.kernels.surface.wild_ground import heath, hillside
+from eyas.render.kernels.wind import shimmer
 from eyas.state.mesh import MARGIN, Surface
 
 __all__ = ["painted_share", "shade_point", "water_slope"]
@@ -27,6 +28,7 @@ __all__ = ["painted_share", "shade_point", "water_slope"]
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
 FOLIAGE = i4(int(Surface.FOLIAGE))
+CROWN = i4(int(Surface.CROWN))
 FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
@@ -170,6 +172,15 @@ def shade_point(
     shrink = one / stretch
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -_dot(normal, way)
+    if air.windy > zero:
+        leaves = (surface == FOLIAGE) | (surface == CROWN)
+        if any_of(leaves):
+            turned = shimmer(lit.wind, point, normal, distance * pixel)
+            normal = (
+                select(leaves, turned[0], normal[0]),
+                select(leaves, turned[1], normal[1]),
+                select(leaves, turned[2], normal[2]),
+            )
 
     marked, u, v, density = surface == MARKING, at.u, at.v, at.density
     if any_of(marked):
