@@ -17,7 +17,7 @@ from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.cover import cover_of
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
-from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
+from eyas.sim.crowd_motion import Surroundings, live_motions, with_crowd
 from eyas.sim.scenes import Lenses, load_geometry, load_network, load_scene, load_solids
 from eyas.sim.views.additions import SignalLights, lights_of, signal_poles
 from eyas.state.draw import Renderer
@@ -37,7 +37,7 @@ from eyas.traffic.recorded import kept_lamps, kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
-from eyas.world.config import WorldConfig
+from eyas.world.config import WorldConfig, WorldWindConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]
@@ -83,6 +83,8 @@ def load_assets(
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
     """
+    if world.wind is not None:  # whatever its speed, drawn for each episode
+        world = world.model_copy(update={"wind": WorldWindConfig()})
     recipe = MAPS.get(world.map)
     lighting, season = _lighting(world), recipe.season(world.weather)
     town = bool(recipe.roads(world.seed).finished)
@@ -169,7 +171,7 @@ def _live(
         scene.terrain,
         kind_index,
         STANDARD_DURATION,
-        others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
+        others=live_motions(crowd, Surroundings(scene, clock, own_seed)),
         lamps=config.lamps is Lamps.WORKING,
         cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )
@@ -219,6 +221,9 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], lenses: Lenses) -> Ren
 
 def _lighting(world: WorldConfig) -> Lighting:
     light = MAPS.get(world.map).light(world.weather, world.hour, world.moon)
+    if world.wind is not None:
+        light = replace(light, windy=1.0)
+    light = replace(light, smoke=world.smoke, spray=light.wet if world.spray else 0.0)
     if world.precipitation == 1.0:
         return light
     falls = {name: world.precipitation * getattr(light, name) for name in _FALLING}

@@ -86,7 +86,8 @@ class Worlds:
         )
         renderer, rigs = assets.renderer, assets.rigs
         reach = renderer.influence(rigs.reach(renderer.part_reach()))
-        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach)
+        wet = assets.lighting.spray > 0.0
+        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach, spray=wet)
 
     @property
     def models(self) -> NDArray[np.int32]:

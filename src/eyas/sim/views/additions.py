@@ -76,6 +76,7 @@ class TrackerBodies:
             object_id=_beside(movers.object_id[rows], object_id),
             object_class=_beside(movers.object_class[rows], classes),
             lamps=_and_dark(movers.lamps[rows] if movers.lamps.size else movers.lamps, bodies),
+            spray=movers.spray[rows] if len(movers.spray) else movers.spray,
         )
 
 
@@ -127,6 +128,7 @@ class SignalLights:
             object_id=np.concatenate([movers.object_id, ids], axis=1),
             object_class=movers.object_class,
             lamps=_and_dark(movers.lamps, part.shape[1]),
+            spray=movers.spray,
         )
 
 

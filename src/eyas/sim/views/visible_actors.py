@@ -17,6 +17,7 @@ from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
 from eyas.sensors.camera.poses import Moving
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
+from eyas.sim.views.spray import SPRAY_REACH, spray_of, throwing
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
 from eyas.state.scene import ACTOR_OBJECT
@@ -244,16 +245,24 @@ class VisibleActors:
         rigs: Their rigs.
         looks: Models and colours of the actors of all worlds; may change.
         reach: Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,).
+        spray: Whether vehicles throw up water.
     """
 
     def __init__(
-        self, motion: Motion, rigs: Rigs, looks: Looks, reach: NDArray[np.float64]
+        self,
+        motion: Motion,
+        rigs: Rigs,
+        looks: Looks,
+        reach: NDArray[np.float64],
+        *,
+        spray: bool = False,
     ) -> None:
+        self._throws = throwing(rigs.kinds) if spray else None
         groups = [cast.group for cast in rigs.casts]
         kinds = KindTable(
             end=np.cumsum([len(group.actor) for group in groups], dtype=np.int64),
             slots=np.array([cast.rig.slots for cast in rigs.casts], np.int64),
-            reach=np.asarray(reach, np.float64) * 1.001 + _SLACK,
+            reach=np.asarray(reach, np.float64) * 1.001 + _SLACK + SPRAY_REACH * spray,
         )
         actor = np.concatenate([np.zeros(0, np.int64), *(group.actor for group in groups)])
         self._rigs, self._signal = rigs, motion.lamps.size > 0
@@ -283,7 +292,18 @@ class VisibleActors:
         count = len(worlds)
         if count not in self._first:
             self._first[count] = self._movers.first(count)
+        if self._throws is not None:
+            self._first[count].spray = self._spray(count)
         return self._first[count]
+
+    def _spray(self, worlds: int) -> NDArray[np.float32]:
+        """Return `DrawList.spray` of what was listed."""
+        listed, entries = self._listed, int(self._listed.needed[0])
+        throws = np.repeat(self._throws, np.diff(listed.end, prepend=0))
+        slot = listed.slot[:entries]
+        actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
+        world = slot // max(self._size.slots, 1)
+        return spray_of(listed.state, listed.looks.model[0], throws, world, actor, worlds)
 
     def moving(
         self,

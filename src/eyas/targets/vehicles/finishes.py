@@ -6,12 +6,14 @@ __all__ = [
     "BLACK_PAINT",
     "BRIGHT",
     "CLOTH",
+    "FREIGHT",
     "GLASS",
     "HEAD_LAMP",
     "HIGH_BRAKE_LAMP",
     "INDICATOR_LEFT",
     "INDICATOR_RIGHT",
     "PAINT",
+    "PANE",
     "PLATE",
     "RIM",
     "ROOF_GLASS",
@@ -38,6 +40,9 @@ BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 """Tinted windows."""
 
+PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
+"""Tinted windows with their frames, and what is behind them."""
+
 ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
 """A glass roof."""
 
@@ -54,6 +59,15 @@ INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_LEF
 """Indicators, on the left of the vehicle."""
 
 INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_RIGHT)
+"""Indicators, on the right of the vehicle."""
+
+HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.LAMP)
+"""The third brake lamp."""
+
+INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
+"""Indicators, on the left of the vehicle."""
+
+INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
 """Indicators, on the right of the vehicle."""
 
 TRIM = plain(0.10, 0.10, 0.11)
@@ -79,3 +93,6 @@ SKIN_WHITE = plain(0.86, 0.87, 0.86)
 
 CLOTH = plain(0.16, 0.18, 0.25)
 """A rider's suit."""
+
+FREIGHT = Material(texture="freight", tint=(0.94, 0.95, 0.94))
+"""White panels of boxes on wheels, with seams, doors and bars."""

@@ -87,3 +87,4 @@ class Movers(NamedTuple):
     object_id: NDArray[np.int32]
     object_class: NDArray[np.uint8]
     lamps: NDArray[np.uint8]
+    spray: NDArray[np.float32]
