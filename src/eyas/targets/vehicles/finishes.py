@@ -61,15 +61,6 @@ INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_LEF
 INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_RIGHT)
 """Indicators, on the right of the vehicle."""
 
-HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.LAMP)
-"""The third brake lamp."""
-
-INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
-"""Indicators, on the left of the vehicle."""
-
-INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
-"""Indicators, on the right of the vehicle."""
-
 TRIM = plain(0.10, 0.10, 0.11)
 """Grilles, bumpers, undersides."""
 
