@@ -49,8 +49,17 @@ ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
 HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5)
 """Front lamps; they shine when the weather has lamps on."""
 
-TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=1.8)
-"""Rear lamps; they shine when the weather has lamps on."""
+TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.TAIL_LAMP, emission=1.8)
+"""Rear lamps; they shine when the weather has lamps on, and brighter when the vehicle brakes."""
+
+HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.HIGH_BRAKE_LAMP)
+"""The third brake lamp."""
+
+INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_LEFT)
+"""Indicators, on the left of the vehicle."""
+
+INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_RIGHT)
+"""Indicators, on the right of the vehicle."""
 
 HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.LAMP)
 """The third brake lamp."""
