@@ -143,6 +143,16 @@ def test_roofs_tell_the_range_rover_and_the_tesla_from_the_others():
 
 
 @pytest.mark.parametrize("vehicle", VEHICLES, ids=lambda vehicle: vehicle.name)
+def test_the_box_of_a_model_holds_every_level_of_every_variant(vehicle):
+    half = np.array([vehicle.length / 2, vehicle.width / 2, vehicle.height])
+    for body in (vehicle.body, *vehicle.variants):
+        for mesh in body(vehicle):
+            assert (np.abs(mesh.positions) <= half + 0.03).all()
+            assert mesh.uvs.min() >= 0.0
+            assert mesh.uvs.max() <= 1.0
+
+
+@pytest.mark.parametrize("vehicle", VEHICLES, ids=lambda vehicle: vehicle.name)
 def test_variants_differ_in_detail_and_have_the_size_and_roof_of_their_model(vehicle):
     first = vehicle.body(vehicle)[0]
     seen = [first]

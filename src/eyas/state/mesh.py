@@ -60,7 +60,8 @@ class Material:
     texture: str = "plain"
     """Name of a texture in `eyas.world.build.materials.TEXTURES`; `plain` is white."""
     tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
-    """Factor on the texture, sRGB, each 0 to 1."""
+    """Factor on the texture, sRGB, each 0 to 1; slightly more where plain parts of the texture are
+    not white."""
     surface: Surface = Surface.MATT
     """How it reflects or emits light."""
     emission: float = 0.0

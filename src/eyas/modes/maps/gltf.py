@@ -88,7 +88,7 @@ class _File:
         if material not in self.of_material:
             holes = material.surface is Surface.FOLIAGE
             # Tints are factors on sRGB colours, those of glTF on light.
-            factor = [round(channel**2.2, 5) for channel in material.tint]
+            factor = [min(round(channel**2.2, 5), 1.0) for channel in material.tint]
             look: dict[str, Any] = {
                 "baseColorFactor": [*factor, 1.0],
                 "metallicFactor": 0.0,

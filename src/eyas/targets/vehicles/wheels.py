@@ -47,13 +47,11 @@ def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
 
 
 def _gaps(design: int, sides: int) -> NDArray[np.bool_]:
-    """Return where a disc is dark: between spokes, or all over."""
+    """Return which parts of a disc are dark: between spokes, or none of a cover."""
     at = np.arange(sides)
-    if design == 1:
-        return at % 2 == 1  # eight narrow spokes
-    if design == 2:
-        return at < 0  # a cover
-    return at % 3 != 2 if design == 3 else at % 3 == 2  # five narrow or five wide spokes
+    five, seven = at % 3 == 2, at % 2 == 1
+    gaps: NDArray[np.bool_] = np.stack([five, seven, at < 0, ~five])[design]
+    return gaps
 
 
 def _fine(shell: Shell, size: tuple[float, float], y: float, design: int) -> None:
