@@ -33,7 +33,7 @@ from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
-from eyas.world.config import WorldWindConfig, WorldConfig
+from eyas.world.config import WorldConfig, WorldWindConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]

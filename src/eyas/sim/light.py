@@ -10,7 +10,7 @@ from eyas.core.variation import Rule, rule_of, sampled
 from eyas.lanes import kernel
 from eyas.state.lighting import Lighting, LightState
 from eyas.trackers.wind import mean_wind
-from eyas.world.config import WorldWindConfig, LightConfig
+from eyas.world.config import LightConfig, WorldWindConfig
 
 __all__ = ["LightChanges", "LightRules", "change_light"]
 

@@ -8,7 +8,7 @@ from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 
-__all__ = ["WorldWindConfig", "LightConfig", "WorldConfig"]
+__all__ = ["LightConfig", "WorldConfig", "WorldWindConfig"]
 
 Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
 Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
