@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
+from eyas.core.lens import FISHEYE, lens_of, rays
 from eyas.lanes import interpreted, limit_threads
 from eyas.sensors.camera.temperature import SurfaceTemperatures, direction_of
 from eyas.sensors.camera.thermal import (
@@ -61,6 +62,7 @@ def _frames(count: int, object_id: int, heat: np.ndarray | None = None) -> Therm
         eye=np.tile([0.0, 0.0, 10.0], (count, 1)),
         rotation=np.tile(down, (count, 1, 1)),
         ray=np.full((count, 2), 1.0 / 20.0),
+        lens=np.zeros((0, 10)),
         world=np.zeros(count, np.int32),
         heat=np.zeros((1, 1), HEAT) if heat is None else heat,
         fog=np.zeros(count, np.float32),
@@ -83,6 +85,23 @@ def test_noise_is_that_of_the_settings():
     assert degrees.std(axis=0).mean() == pytest.approx(0.06, rel=0.05)
     # The pattern of pixels and that of columns.
     assert degrees.mean(axis=0).std() == pytest.approx(0.2 * 2.0**0.5, rel=0.2)
+
+
+def test_behind_a_fisheye_the_sky_is_as_cold_as_its_elevation_says():
+    fisheye = lens_of(FISHEYE, (0.0, 0.0, 0.0, 0.0), (0.0, 0.0), 0.1, -0.05)
+    frames, imager = _frames(1, -1), _imager(noise=0.0, fixed_pattern=0.0)
+    frames = frames._replace(
+        rotation=np.eye(3)[None], lens=np.array([fisheye]), ray=np.full((1, 2), 1.0 / 9.0)
+    )
+    degrees = imager.measure(frames, np.empty((1, *SIZE, 3), np.uint8))[0]
+    field = 2.0 * np.arctan(SIZE[1] / 2 / 9.0)
+    ray = rays(np.eye(3), SIZE[::-1], (field, None), fisheye)
+    high = ray[..., 2] / np.linalg.norm(ray, axis=-1)
+    warm = SurfaceTemperatures(DAY.light(14.0), 14.0)
+    expected = warm.air + np.clip(high / 0.12, 0.0, 1.0) * (warm.sky - warm.air)
+    dark = np.isnan(expected)
+    assert dark.any()
+    np.testing.assert_allclose(degrees, np.where(dark, warm.air, expected), atol=1e-3)
 
 
 def test_pictures_depend_neither_on_threads_nor_on_other_views():

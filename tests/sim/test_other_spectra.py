@@ -37,6 +37,16 @@ def test_thermal_pictures_do_not_depend_on_the_number_of_drones():
     )
 
 
+def test_a_lens_bends_temperatures():
+    wide = {"field_of_view": 2.2, "lens": {"model": "fisheye"}}
+    exact = {"noise": 0.0, "fixed_pattern": 0.0}
+    seen = _images(_camera(spectrum="thermal", thermal=exact, **wide))[..., 0]
+    outside = _images(_camera(**wide)).max(axis=-1) == 0
+    assert 0.1 < outside.mean() < 0.5
+    assert (seen[:, :4, :4] == seen[:, :1, :1]).all()  # the lens' mount, of one temperature
+    assert seen[~outside].std() > 20
+
+
 def test_near_infrared_is_grey_and_has_noise_by_night():
     night = {"world": {"map": "citystreet", "weather": "night"}}
     seen = _images({"camera": {"spectrum": "near-infrared"}, **night})
@@ -47,3 +57,5 @@ def test_near_infrared_is_grey_and_has_noise_by_night():
 def test_what_a_thermal_camera_has_not_is_refused():
     with pytest.raises(ConfigError, match=r"camera\.imager: .* must be left out where spectrum is"):
         eyas.make_config({"camera": {"spectrum": "thermal", "imager": {}}})
+    with pytest.raises(ConfigError, match=r"lens\.vignetting, .* must be left out"):
+        eyas.make_config({"camera": {"spectrum": "thermal", "lens": {"vignetting": 0.5}}})

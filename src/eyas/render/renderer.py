@@ -238,6 +238,7 @@ _NO_MOVERS = Movers(
     colour=np.empty((0, 0, 3), np.float32),
     object_id=np.empty((0, 0), np.int32),
     object_class=np.empty((0, 0), np.uint8),
+    lamps=np.empty((0, 0), np.uint8),
     spray=NO_SPRAY,
 )
 

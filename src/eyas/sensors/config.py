@@ -149,7 +149,7 @@ class CameraConfig(Config):
             return self
         for name, set_ in (
             ("imager", self.imager is not None),
-            ("lens", self.lens.bends or self.lens.changes_light),
+            ("lens.vignetting, lens.red and lens.blue", self.lens.changes_light),
             ("shutter", self.shutter.blur or self.shutter.rolls),
             ("dirt", self.dirt is not None),
         ):

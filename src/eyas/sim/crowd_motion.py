@@ -130,7 +130,12 @@ def _all_kept(
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
     indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
-    motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
+    table = numbers.view(SAMPLE)[..., 0]
+    lamps = np.zeros((0, 0), np.uint8)
+    if before and before[0].lamps.size:
+        lamps = np.zeros(table.shape, np.uint8)
+        lamps[:, : len(before[0].kind)] = before[0].lamps
+    motion = Motion(table, kind.astype(np.int32), around.clock.rate, 0.0, lamps)
     return motion, [*(len(one.kind) for one in before), *counts]
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy import ndimage
+from scipy import ndimage, stats
 
 from eyas.core.errors import ConfigError
 from eyas.lanes import limit_threads, thread_count
@@ -100,6 +100,24 @@ def test_the_variance_is_that_of_photon_transfer(level, binning):
     else:
         assert seen.mean() > light
         assert seen.var() < expected
+
+
+@pytest.mark.parametrize("mean", [0.1, 0.7, 3.0, 11.5])
+@pytest.mark.parametrize("binning", [1, 4])
+def test_few_electrons_are_counted_as_by_poisson(mean, binning):
+    time = mean / binning / electrons_of(1.0, 1.0, 3.0)
+    gain = 80.0 * binning
+    imager = NOISELESS | {"binning": binning}
+    rgb, made = developed(uniform(1.0, 200), fixed(time, 80.3816 * gain), 3.0, **imager)
+    assert made.exposure.time[0] == pytest.approx(time)
+    seen = np.rint(values_of(rgb[..., 1]) * 5000.0 / gain * binning).astype(int)
+    share = stats.poisson(mean).pmf(np.arange(40))
+    assert np.bincount(seen.ravel(), minlength=40) / seen.size == pytest.approx(share, abs=0.006)
+    assert seen.mean() == pytest.approx(mean, rel=0.015)
+    assert seen.var() == pytest.approx(mean, rel=0.02)
+    assert stats.skew(seen, axis=None) == pytest.approx(mean**-0.5, rel=0.05)
+    others = [(rgb[..., 0], rgb[..., 1]), (rgb[:, 1:], rgb[:, :-1]), (rgb[1:], rgb[:-1])]
+    assert all(abs(np.corrcoef(a.ravel(), b.ravel())[0, 1]) < 0.02 for a, b in others)
 
 
 def test_noise_of_colours_pixels_pictures_and_trackers_is_unrelated():

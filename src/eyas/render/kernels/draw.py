@@ -278,8 +278,8 @@ def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illu
     x, y, z = f4(eye[0]), f4(eye[1]), f4(eye[2])
     air = lit.air
     return Illumination(
-        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.fog,
-        lit.fog_density,
+        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.tinge,
+        lit.fog, lit.fog_density,
         Air(
             air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
             air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
@@ -311,6 +311,7 @@ def view_light(weather: Illumination, changes: LightState, view: int) -> Illumin
         _scaled(sky, weather.horizon),
         _scaled(sky, weather.above),
         _scaled(f4(0.5) * (sky + sun), weather.below),
+        _scaled(f4(0.5) * (sky + sun), weather.tinge),
         _scaled(sky, weather.fog),
         changes.fog_density[view],
         weather.air,

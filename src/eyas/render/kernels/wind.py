@@ -39,8 +39,8 @@ def in_wind(lit: Illumination, x: float, y: float, instant: float) -> Illuminati
     """Return light and air of a view in a wind [m/s] at an instant [s]."""
     speed = f4(math.sqrt(x * x + y * y))
     return Illumination(
-        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.fog,
-        lit.fog_density, lit.air, Wind(f4(x), f4(y), speed, f4(instant)),
+        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.tinge,
+        lit.fog, lit.fog_density, lit.air, Wind(f4(x), f4(y), speed, f4(instant)),
     )  # fmt: skip
 
 

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.errors import ConfigError
-from eyas.lanes import Held, compiled, kernel, parallel, thread_count
+from eyas.lanes import Held, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,
     gather,
     greater,
-    lane,
     lane_numbers,
     lesser,
     load,
-    splat,
     store_triples,
     to_i4,
     to_u4,
@@ -28,15 +26,8 @@ from eyas.lanes.vector import (
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.pack.light import encoded_tone
-from eyas.sensors.camera.exposure import (
-    ExposureConfig,
-    ExposureState,
-    Zones,
-    advance_exposure,
-    answer_meter,
-    follow_meter,
-    gain_of,
-)
+from eyas.sensors.camera.counting import Counts, tables_of_counts
+from eyas.sensors.camera.exposure import ExposureConfig, ExposureState, Zones
 from eyas.sensors.camera.imager import (
     Demosaicking,
     ImagerConfig,
@@ -44,6 +35,7 @@ from eyas.sensors.camera.imager import (
     Spectrum,
     WhiteBalance,
 )
+from eyas.sensors.camera.metering import Exposed, Metered, expose, meter
 from eyas.sensors.camera.mosaic import HALO, MARGIN, demosaicked, read_mosaic
 from eyas.sensors.camera.photosites import (
     Readout,
@@ -65,12 +57,6 @@ _WHITE = 1.0 / 0.71
 
 _BAND = 64
 """Rows that are developed at a time."""
-
-_ROUNDS = 12
-"""Corrections of the exposure before the first picture; each is exact unless light is clipped."""
-
-_METERED_ROWS = 128
-"""At least so many rows are metered; of more, every second, third or so."""
 
 
 def tone_of_sensor() -> NDArray[np.uint8]:
@@ -113,11 +99,12 @@ class Development:
         self._exposing = exposure
         grey = spectrum is not Spectrum.COLOUR
         mosaic = Demosaicking.NONE if grey else imager.mosaic
+        limits = np.array([*exposure.time, *exposure.iso])
+        self._exposed = Held(Exposed(self._imagers, self.exposure, limits))
         self._work = Held(
             _Work(
                 self._imagers,
                 self.exposure,
-                np.array([*exposure.time, *exposure.iso]),
                 tone_of_sensor(),
                 imager.bits,
                 imager.binning,
@@ -125,6 +112,7 @@ class Development:
                 imager.white_balance is WhiteBalance.AUTO and not grey,
                 any(getattr(imager, name) != 0.0 for name in _FIXED_PATTERN),
                 list(Demosaicking).index(mosaic),
+                tables_of_counts(),
             )
         )
         self._sizes: dict[tuple[int, int], Zones] = {}
@@ -144,7 +132,7 @@ class Development:
             trackers: The tracker of each picture, shape (V,).
             step: Physics steps of each tracker since its reset, shape (N,).
         """
-        _expose(self._work, trackers.astype(np.int64), step)
+        expose(self._exposed, trackers.astype(np.int64), step)
 
     def develop(
         self,
@@ -171,7 +159,8 @@ class Development:
             )
         chosen = trackers.astype(np.int64)
         workers = min(thread_count(), views)
-        _meter(workers, self._work, _Metered(radiance, self._zones(height, width), chosen, step))
+        metered = Metered(radiance, self._zones(height, width), chosen, step)
+        meter(workers, self._exposed, metered)
         bands = -(-height // _BAND)
         workers = min(thread_count(), views * bands)
         rows = min(height, _BAND) + 2 * HALO if self._mosaic else 0
@@ -193,8 +182,6 @@ class _Work(NamedTuple):
 
     imagers: ImagerState
     exposure: ExposureState
-    limits: NDArray[np.float64]
-    """Shortest and longest time [s], lowest and highest speed."""
     tone: NDArray[np.uint8]
     bits: int
     binning: int
@@ -204,15 +191,7 @@ class _Work(NamedTuple):
     """Whether there is a fixed pattern."""
     mosaic: int
     """Number of the demosaicking; 0: none."""
-
-
-class _Metered(NamedTuple):
-    """Pictures to meter."""
-
-    radiance: NDArray[np.float32]
-    zones: Zones
-    trackers: NDArray[np.int64]
-    step: NDArray[np.int64]
+    counts: Counts
 
 
 class _Developed(NamedTuple):
@@ -229,74 +208,6 @@ class _Developed(NamedTuple):
     `MARGIN` columns beside it."""
 
 
-@compiled
-def _expose(work: _Work, trackers: NDArray[np.int64], step: NDArray[np.int64]) -> None:
-    for view in range(len(trackers)):
-        n = trackers[view]
-        advance_exposure(work.exposure, work.imagers, work.limits, n, step[n])
-
-
-@parallel
-def _meter(worker: int, workers: int, work: _Work, metered: _Metered) -> None:
-    """Meter the pictures whose turn is this worker's, each tracker's once in an instant."""
-    state, trackers = work.exposure, metered.trackers
-    for view in range(worker, len(trackers), workers):
-        n = trackers[view]
-        now = metered.step[n]
-        if state.metered[n] >= now:
-            continue
-        first = state.metered[n] < 0
-        answer_meter(state, n, _mean_of(work, metered, view, n))
-        rounds = 0
-        while first and rounds < _ROUNDS and abs(state.error[n]) > 0.001:
-            # Without a past: the exposure at which the camera would have arrived.
-            follow_meter(state, work.imagers, work.limits, n, 1.0)
-            answer_meter(state, n, _mean_of(work, metered, view, n))
-            rounds += 1
-        state.metered[n] = now
-
-
-@kernel
-def _mean_of(
-    work: _Work, metered: _Metered, view: int, n: int
-) -> tuple[float, float, float, float]:
-    """Return the weighted mean of a picture, 1 at saturation, and those of its channels."""
-    radiance, zones = metered.radiance, metered.zones
-    height, width = radiance.shape[2], radiance.shape[3]
-    exposed = work.exposure.time[n] * gain_of(work.imagers, work.exposure, n)
-    scale = f4(exposed * work.imagers.white[n] / work.imagers.full_well[n])
-    one, none = f4(1.0), splat(f4(0.0))
-    total, red, green, blue, weights = none, none, none, none, none
-    for row in range(0, height, max(height // _METERED_ROWS, 1)):
-        for eighth in range(len(zones.columns) // WIDTH):
-            at = (3 * view * height + row) * width + min(eighth * WIDTH, width - WIDTH)
-            weight = load(zones.columns, eighth * WIDTH) * zones.rows[row]
-            r = load(radiance, at) * scale
-            g = load(radiance, at + height * width) * scale
-            b = load(radiance, at + 2 * height * width) * scale
-            grey = f4(0.2126) * r + f4(0.7152) * g + f4(0.0722) * b
-            total += weight * lesser(grey, one)
-            red += weight * lesser(r, one)
-            green += weight * lesser(g, one)
-            blue += weight * lesser(b, one)
-            weights += weight
-    whole = _sum_of(weights)
-    return (
-        _sum_of(total) / whole,
-        _sum_of(red) / whole,
-        _sum_of(green) / whole,
-        _sum_of(blue) / whole,
-    )
-
-
-@kernel(inline=True)
-def _sum_of(lanes: float) -> float:
-    total = 0.0
-    for k in range(WIDTH):
-        total += lane(lanes, k)
-    return total
-
-
 @parallel
 def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> None:
     """Develop the bands whose turn is this worker's."""
@@ -304,12 +215,12 @@ def _develop(worker: int, workers: int, work: _Work, developed: _Developed) -> N
     for job in range(worker, len(developed.trackers) * developed.bands, workers):
         view, band = job // developed.bands, job % developed.bands
         n = developed.trackers[view]
-        setup = (work.bits, work.binning, work.grey, work.finds_white)
+        setup = (work.bits, work.binning, work.grey, work.finds_white, work.uneven)
         readout = readout_of(work.imagers, work.exposure, setup, n, developed.step[n])
         first, last = band * _BAND, min((band + 1) * _BAND, height)
         if work.mosaic > 0:
             raw = developed.raw[worker]
-            read_mosaic(readout, developed.radiance, view, (first, last), work.uneven, raw)
+            read_mosaic(readout, developed.radiance, view, (first, last), work.counts, raw)
             _develop_mosaic(work, developed, view, first, last, raw)
         elif work.grey:
             _develop_grey(work, developed, readout, view, first, last)
@@ -344,11 +255,11 @@ def _develop_colours(
             green = load(radiance, at + plane) * readout.electrons[1]
             blue = load(radiance, at + 2 * plane) * readout.electrons[2]
             noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
-            red = read_out(readout, red, noise, pattern, common, work.uneven)
+            red = read_out(readout, red, noise, pattern, common, work.counts)
             noise, pattern = other_bits(noise), other_bits(pattern)
-            green = read_out(readout, green, noise, pattern, common, work.uneven)
+            green = read_out(readout, green, noise, pattern, common, work.counts)
             noise, pattern = other_bits(noise), other_bits(pattern)
-            blue = read_out(readout, blue, noise, pattern, common, work.uneven)
+            blue = read_out(readout, blue, noise, pattern, common, work.counts)
             packed = pack(
                 _byte(tone, red * readout.balance[0]),
                 _byte(tone, green * readout.balance[1]),
@@ -375,7 +286,7 @@ def _develop_grey(
             light += load(radiance, at + 2 * plane) * readout.electrons[2]
             index = to_u4(lane_numbers() + i4(pixel))
             noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
-            value = read_out(readout, light, noise, pattern, common, work.uneven)
+            value = read_out(readout, light, noise, pattern, common, work.counts)
             byte = _byte(tone, value * readout.balance[0])
             store_triples(developed.rgb, 3 * (view * plane + pixel), pack(byte, byte, byte))
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4
 from eyas.render.kernels.scalars import f4, i4
+from eyas.sensors.camera.counting import Counts
 from eyas.sensors.camera.photosites import (
     Readout,
     noise_bits,
@@ -41,7 +42,7 @@ def read_mosaic(
     radiance: NDArray[np.float32],
     view: int,
     rows: tuple[int, int],
-    uneven: bool,
+    counts: Counts,
     raw: NDArray[np.float32],
 ) -> None:
     """Read the photosites of some rows of a picture, with the rows around them.
@@ -51,7 +52,7 @@ def read_mosaic(
         radiance: Shape (V, 3, H, W).
         view: Which picture.
         rows: Its first row, and the row after the last.
-        uneven: Whether there is a fixed pattern.
+        counts: Tables of few electrons.
         raw: Written: values, 1 at saturation, with white balanced; shape (rows + 2 `HALO`,
             W + 2 `MARGIN`).
     """
@@ -73,7 +74,7 @@ def read_mosaic(
             index = to_u4(lane_numbers() + i4(pixel))
             noise, pattern = noise_bits(readout, index), pattern_bits(readout, index)
             light = select(is_odd, right, left)
-            value = read_out(readout, light, noise, pattern, common, uneven)
+            value = read_out(readout, light, noise, pattern, common, counts)
             white = select(is_odd, splat(readout.balance[odd]), splat(readout.balance[even]))
             store(raw, k * line + MARGIN + column, value * white)
         for beside in range(1, HALO + 1):

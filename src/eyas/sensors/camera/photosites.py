@@ -5,9 +5,20 @@ from typing import NamedTuple
 
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
-from eyas.lanes.vector import greater, lesser, root, select, to_f4, to_i4, to_u4, whole
+from eyas.lanes.vector import (
+    any_of,
+    greater,
+    lesser,
+    root,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+    whole,
+)
 from eyas.render.kernels.chance import scrambled
 from eyas.render.kernels.scalars import f4, u4
+from eyas.sensors.camera.counting import FEW, Counts, counted
 from eyas.sensors.camera.exposure import ExposureState, gain_of
 from eyas.sensors.camera.imager import ImagerState
 from eyas.sensors.chance import mixed
@@ -41,8 +52,16 @@ class Readout(NamedTuple):
     """Most electrons of light that a photosite holds beside those of the dark."""
     dark: float
     """Electrons of the dark and variance of a reading, over the number of photosites."""
+    unlit: float
+    """Electrons of the dark in a photosite."""
+    reading: float
+    """Standard deviation of a reading, averaged."""
     share: float
     """One over the number of photosites that are averaged."""
+    sites: float
+    """Their number."""
+    uneven: bool
+    """Whether photosites have a fixed pattern."""
     uneven_gain: float
     """Standard deviation of the gain from photosite to photosite, averaged."""
     uneven_dark: float
@@ -67,7 +86,7 @@ class Readout(NamedTuple):
 def readout_of(
     imagers: ImagerState,
     state: ExposureState,
-    setup: tuple[int, int, bool, bool],
+    setup: tuple[int, int, bool, bool, bool],
     n: int,
     step: int,
 ) -> Readout:
@@ -76,11 +95,12 @@ def readout_of(
     Args:
         imagers: The sensors.
         state: Their exposures.
-        setup: Bits, binning, whether the sensor is grey, and whether it finds white by itself.
+        setup: Bits, binning, whether the sensor is grey, whether it finds white by itself, and
+            whether it has a fixed pattern.
         n: The tracker.
         step: Physics step of the picture, for its noise.
     """
-    bits, binning, grey, finds_white = setup
+    bits, binning, grey, finds_white, uneven = setup
     time, gain, sites = state.time[n], gain_of(imagers, state, n), 1.0 / binning
     red, green, blue = imagers.electrons[n, 0], imagers.electrons[n, 1], imagers.electrons[n, 2]
     dark, spread = imagers.dark_current[n] * time, math.sqrt(sites)
@@ -95,7 +115,11 @@ def readout_of(
         (f4(red * time), f4(green * time), f4(blue * time)),
         f4(max(imagers.full_well[n] - dark, 0.0)),
         f4((dark + imagers.read_noise[n] * imagers.read_noise[n]) * sites),
+        f4(dark),
+        f4(imagers.read_noise[n] * spread / _DEVIATION_OF_FOUR),
         f4(sites),
+        f4(binning),
+        uneven,
         f4(imagers.gain_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
         f4(imagers.dark_nonuniformity[n] * spread / _DEVIATION_OF_TWO),
         f4(imagers.hot_pixels[n]),
@@ -151,7 +175,7 @@ def other_bits(word: int) -> int:
 
 @kernel(inline=True)
 def read_out(
-    readout: Readout, electrons: float, noise: int, pattern: int, row: float, uneven: bool
+    readout: Readout, electrons: float, noise: int, pattern: int, row: float, counts: Counts
 ) -> float:
     """Return the number that is read of photosites.
 
@@ -161,12 +185,19 @@ def read_out(
         noise: Random bits of this picture.
         pattern: Random bits of the episode.
         row: See `row_error`.
-        uneven: Whether they have a fixed pattern.
+        counts: Tables of few electrons.
     """
     light = lesser(greater(electrons, f4(0.0)), f4(_FULLEST) * readout.most)
     deviation = root(light * readout.share + readout.dark) * f4(1.0 / _DEVIATION_OF_FOUR)
-    held = light + deviation * bell(noise) + row
-    if uneven:
+    held = light + deviation * bell(noise)
+    mean = (light + readout.unlit) * readout.sites
+    few = mean <= f4(FEW)
+    if any_of(few):
+        count = counted(counts, lesser(mean, f4(FEW)), scrambled(noise))
+        dim = count * readout.share - readout.unlit + readout.reading * bell(noise)
+        held = select(few, dim, held)
+    held += row
+    if readout.uneven:
         pairs = to_u4((pattern & u4(0x00FF00FF)) + ((pattern >> u4(8)) & u4(0x00FF00FF)))
         held += light * (readout.uneven_gain * (to_f4(to_i4(pairs & u4(0xFFFF))) - f4(255.0)))
         held += readout.uneven_dark * (to_f4(to_i4(pairs >> u4(16))) - f4(255.0))

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from eyas.core.config import Config
-from eyas.lanes import kernel, parallel, thread_count
+from eyas.core.lens import Lens, undistorted
+from eyas.lanes import address_of, kernel, parallel, thread_count
 from eyas.lanes.elementary import exp
 from eyas.sensors.camera.temperature import (
     CLOTHES,
@@ -136,6 +137,8 @@ class ThermalFrames(NamedTuple):
     """Camera to world, shape (V, 3, 3)."""
     ray: NDArray[np.float64]
     """One over the focal length along rows and along columns [1/pixel], shape (V, 2)."""
+    lens: NDArray[np.float64]
+    """The numbers of `Lens`, shape (V, 10), or (0, 10): pinholes."""
     world: NDArray[np.int32]
     """Row of each view in `heat`, shape (V,)."""
     heat: NDArray[np.void]
@@ -232,11 +235,29 @@ def _of_mover(
 
 
 @kernel
+def _direction(
+    frames: ThermalFrames, view: int, row: int, column: int
+) -> tuple[float, float, bool]:
+    """Return how far left and up the ray of a pixel goes, 1 ahead, and whether light comes in."""
+    height, width = frames.depth.shape[1], frames.depth.shape[2]
+    if len(frames.lens) == 0:
+        left = (0.5 * width - (column + 0.5)) * frames.ray[view, 0]
+        return left, (0.5 * height - (row + 0.5)) * frames.ray[view, 1], True
+    n = frames.lens[view]
+    lens = Lens(int(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9])
+    x = (column + 0.5 - (0.5 + lens.right) * width) * frames.ray[view, 0]
+    y = (row + 0.5 - (0.5 + lens.below) * height) * frames.ray[view, 1]
+    right, down, ahead, area = undistorted(address_of(lens), x, y)
+    return -right / ahead, -down / ahead, area > 0.0
+
+
+@kernel
 def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, column: int) -> float:
-    """Return what a pixel shows [Celsius]."""
-    axes, height, width = frames.rotation[view], frames.depth.shape[1], frames.depth.shape[2]
-    left = (0.5 * width - (column + 0.5)) * frames.ray[view, 0]
-    up = (0.5 * height - (row + 0.5)) * frames.ray[view, 1]
+    """Return what a pixel shows [Celsius]; where a lens ends, its mount, as warm as the air."""
+    axes = frames.rotation[view]
+    left, up, lit = _direction(frames, view, row, column)
+    if not lit:
+        return scene.air
     x = axes[0, 0] + left * axes[0, 1] + up * axes[0, 2]
     y = axes[1, 0] + left * axes[1, 1] + up * axes[1, 2]
     z = axes[2, 0] + left * axes[2, 1] + up * axes[2, 2]

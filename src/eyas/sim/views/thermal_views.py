@@ -75,6 +75,7 @@ class ThermalViews:
             eye=views.position,
             rotation=views.rotation,
             ray=1.0 / views.focal(*picture_size(shown)),
+            lens=np.zeros((0, 10)) if views.lens is None else views.lens,
             world=views.world,
             heat=slot_heat(movers, self._reach, self._temperatures.air),
             fog=fog if views.light is None else views.light.fog_density,

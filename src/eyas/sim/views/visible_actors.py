@@ -25,6 +25,7 @@ from eyas.state.snapshot import CameraState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before, write_actor
+from eyas.traffic.lamps import shining
 
 __all__ = ["VisibleActors"]
 
@@ -105,6 +106,8 @@ class Listed(NamedTuple):
     """See `DrawList`; emptied, shape (W, I)."""
     object_id: NDArray[np.int32]
     """See `DrawList`, shape (W, I)."""
+    lamps: NDArray[np.uint8]
+    """See `DrawList`."""
 
 
 @kernel(inline=True)
@@ -213,6 +216,9 @@ def _list_actors(  # the records that it reads
                     fits = listed.used[w] + slots <= listed.part.shape[1]
                     if fits and entries < listed.slot.shape[0]:
                         _write(listed, entries, actor, w, slots, looks, query.world[w])
+                        if listed.lamps.shape[1] > 0:
+                            begun = listed.used[w]
+                            listed.lamps[w, begun : begun + slots] = shining(motion, actor, time)
                         write_actor(pose, listed.state, 0, entries)
                     entries += 1
                     listed.used[w] += slots
@@ -259,7 +265,7 @@ class VisibleActors:
             reach=np.asarray(reach, np.float64) * 1.001 + _SLACK + SPRAY_REACH * spray,
         )
         actor = np.concatenate([np.zeros(0, np.int64), *(group.actor for group in groups)])
-        self._rigs = rigs
+        self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
         self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
         self._size = _Size(0, 0, 0, 0)
@@ -379,7 +385,7 @@ class VisibleActors:
         self._entries = np.arange(size.entries)
         self._first: dict[int, DrawList] = {}
         self._chosen: dict[tuple[int, int, int], Group] = {}
-        self._movers = self._rigs.short_list(size.worlds, size.slots)
+        self._movers = self._rigs.short_list(size.worlds, size.slots, lamps=self._signal)
         self._flat = self._movers.flat()
         self._listed = Listed(
             needed=np.zeros(2, np.int64),
@@ -394,5 +400,6 @@ class VisibleActors:
             ),
             part=self._movers.part,
             object_id=self._movers.object_id,
+            lamps=self._movers.lamps,
         )
         self._list = _list_actors.bind(*self._given, self._query, self._listed)

@@ -84,6 +84,8 @@ class Illumination(NamedTuple):
     """Light of the sky on surfaces that face up."""
     below: Direction
     """Light from the ground on surfaces that face down."""
+    tinge: Direction
+    """What a hidden part of the sky changes in `above`: walls throw light of another colour."""
     fog: Direction
     fog_density: float
     """[1/m]"""

@@ -38,14 +38,16 @@ Colour = tuple[float, float, float]
 
 @kernel(inline=True)
 def instance_frame(band: Band, row: int) -> Frame:
-    """Return pose and colour of an instance, a row of `Band.drawn`; fixtures have no colour."""
+    """Return an instance, a row of `Band.drawn`; fixtures have no colour and no such lamps."""
     geometry, movers, world = band.geometry, band.movers, band.world
     instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
     if instance >= fixtures:
-        return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
+        colours, lamps = movers.colour[world], movers.lamps[world]
+        return frame_of(movers.pose[world], colours, lamps, instance - fixtures)
+    colours, lamps = movers.colour[world, :0], movers.lamps[world, :0]
     if sways(band.light, instance):
-        return frame_of(band.leaning, movers.colour[world, :0], row)
-    return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
+        return frame_of(band.leaning, colours, lamps, row)
+    return frame_of(geometry.fixture_pose, colours, lamps, instance)
 
 
 @kernel(inline=False)
@@ -109,40 +111,75 @@ def _colours_of(
 
 
 @kernel(inline=True)
+def _four_keys(band: Band, line: int, sample: int) -> tuple[int, int, int, int]:
+    """Return the keys of the four samples of eight pixels."""
+    key = band.key
+    return (
+        keys_of(key, line, sample, 2),
+        keys_of(key, line, sample + 1, 2),
+        keys_of(key, line + 1, sample, 2),
+        keys_of(key, line + 1, sample + 1, 2),
+    )
+
+
+@kernel(inline=True)
+def _four_places(band: Band, line: int, sample: int) -> tuple[Colour, Colour, Colour, Colour]:
+    """Return row, column and width in the face of the four samples; without a lens nothing."""
+    zero, glass = splat(f4(0.0)), band.glass
+    if glass.on == 0:
+        none = zero, zero, zero
+        return none, none, none, none
+    return (
+        place_in_face(glass, line, sample, 2),
+        place_in_face(glass, line, sample + 1, 2),
+        place_in_face(glass, line + 1, sample, 2),
+        place_in_face(glass, line + 1, sample + 1, 2),
+    )
+
+
+@kernel(inline=True)
 def _alike(
-    band: Band, line: int, sample: int, k: int
+    bent: bool,
+    four: tuple[int, int, int, int],
+    places: tuple[Colour, Colour, Colour, Colour],
+    k: int,
 ) -> tuple[int, bool, int, float, float, float, float]:
     """Compare sample `k` of four of eight pixels with the others.
+
+    Args:
+        bent: Whether there is a lens.
+        four: Their keys. These and the places are read once, before anything is shaded: each time
+            is a load for each pixel.
+        places: See `_four_places`.
+        k: The number.
 
     Returns:
         Its tag, whether no sample before it shows the same, and of all that show the same: how
         many they are, and the means of 1/distance, row and column from the pixel's corner, and 1;
         through a lens, row, column and width in the face.
     """
-    key, glass = band.key, band.glass
-    tag = tag_of(keys_of(key, line + (k >> 1), sample + (k & 1), 2))
-    zero = f4(0.0)
+    tag, zero = tag_of(four[k]), f4(0.0)
     count, total = splat(zero), splat(zero)
     down, right, wide = splat(zero), splat(zero), splat(f4(1.0))
-    if glass.on == 1:
+    if bent:
         wide = splat(zero)
     is_first = splat(f4(1.0)) > zero
     for other in range(4):
-        keys = keys_of(key, line + (other >> 1), sample + (other & 1), 2)
+        keys = four[other]
         same = (tag_of(keys) == tag) & (keys != i8(0))
         if other < k:
             is_first &= ~same
         share = select(same, splat(f4(1.0)), zero)
         count += share
         total += share * distance_inverse(keys)
-        if glass.on == 1:
-            below, aside, size = place_in_face(glass, line + (other >> 1), sample + (other & 1), 2)
+        if bent:
+            below, aside, size = places[other]
             down, right, wide = down + share * below, right + share * aside, wide + share * size
         else:
             down += share * (f4(other >> 1) + f4(0.5))
             right += share * (f4(other & 1) + f4(0.5))
     part = f4(1.0) / greater(count, f4(1.0))
-    if glass.on == 1:
+    if bent:
         wide = greater(wide * part, f4(1e-6))
     return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part, wide
 
@@ -178,13 +215,15 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
     # Sums of red and blue in the halves of one number, and of green.
     both, green, shown = splat(u4(0)), splat(u4(0)), i8(0)
     even, eight = u4(0x00FF00FF), u4(8)
+    four, places = _four_keys(band, line, sample), _four_places(band, line, sample)
+    bent = band.glass.on == 1
     for k in range(4):
-        keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
+        keys = four[k]
         seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
         sky = _written(pixels, row, first, inside & (keys == i8(0)))
         both, green = both + (sky & even), green + ((sky >> eight) & even)
-        tag, is_first, weight, inverse, down, right, wide = _alike(band, line, sample, k)
+        tag, is_first, weight, inverse, down, right, wide = _alike(bent, four, places, k)
         seen &= is_first
         if not any_of(seen):
             continue
@@ -212,8 +251,10 @@ def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, 
     key, inside = band.key, numbers < f4(width - first)
     red, green, blue, shown = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), i8(0)
     zero, one = f4(0.0), splat(f4(1.0))
+    four, places = _four_keys(band, line, sample), _four_places(band, line, sample)
+    bent = band.glass.on == 1
     for k in range(4):
-        keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
+        keys = four[k]
         seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
         sky = inside & (keys == i8(0))
@@ -222,7 +263,7 @@ def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, 
             red += select(sky, gather(canvas.red, at), zero)
             green += select(sky, gather(canvas.green, at), zero)
             blue += select(sky, gather(canvas.blue, at), zero)
-        tag, is_first, weight, inverse, down, right, wide = _alike(band, line, sample, k)
+        tag, is_first, weight, inverse, down, right, wide = _alike(bent, four, places, k)
         seen &= is_first
         if not any_of(seen):
             continue
