@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from eyas.behaviours.airborne import chases, flocks
+from eyas.behaviours.airborne import Space, chases, flocks
 from eyas.behaviours.groups import SampleClock
 from eyas.core.rng import stream
 from eyas.state.motion import SAMPLE, Motion
@@ -17,7 +17,7 @@ def heights(points):
 
 
 def birds(count=9, seed=4):
-    return flocks(count, 3, EXTENT, heights, CLOCK, stream(seed, "birds"), 11.0)
+    return flocks(count, 3, Space(EXTENT, heights), CLOCK, stream(seed, "birds"), 11.0)
 
 
 def places(motion):

@@ -54,7 +54,7 @@ def test_a_flown_drone_feels_the_wind_that_moves_the_trees():
     assert (wind.speed, wind.direction) == (7.0, 0.5)
     still = SimConfig(world={"wind": {"speed": 7.0}})
     assert in_one_wind(still) == still.tracker
-    with pytest.raises(ConfigError, match="left out with world.wind"):
+    with pytest.raises(ConfigError, match=r"left out with world\.wind"):
         SimConfig(world={"wind": {}}, tracker={**flown, "wind": {"speed": 3.0}})
 
 
@@ -105,9 +105,7 @@ def test_boxes_hold_the_pixels_of_birds_and_drones(crowded):
         first["position"] = state.position[0, actor][None] + [[0.0, 0.0, 6.0]]
         first["rotation"] = down[None]
         picture = Picture.create(1, 60, 84, object_id=True, actors=crowded.traffic.actors)
-        crowded.view.pictures.draw_from(
-            np.zeros(1, np.int32), CameraState(**first), picture, None
-        )
+        crowded.view.pictures.draw_from(np.zeros(1, np.int32), CameraState(**first), picture, None)
         rows, columns = np.nonzero(picture.object_id[0] == ACTOR_OBJECT + actor)
         assert len(rows) > 3, kind[actor]
         box = [columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]

@@ -15,12 +15,9 @@ from eyas.core import exact
 from eyas.core.config import Config
 from eyas.state.motion import SAMPLE, Motion
 
-__all__ = ["AirborneConfig", "Heights", "chases", "flocks"]
+__all__ = ["AirborneConfig", "Space", "chases", "flocks"]
 
 Floats = NDArray[np.float64]
-
-Heights = Callable[[Floats], Floats]
-"""Returns how high something stands around points [m], east and north, shape (..., 2)."""
 
 _FLOCK = 6
 """Most birds in a flock."""
@@ -40,6 +37,15 @@ class AirborneConfig(Config):
     """Number of birds, in flocks of up to six."""
     drones: Annotated[int, Field(ge=0, le=20)] = 0
     """Number of drones, each of which follows a vehicle of its own."""
+
+
+class Space(NamedTuple):
+    """A map, as those see it who fly over it."""
+
+    extent: Floats
+    """Width and depth [m], shape (2,)."""
+    heights: Callable[[Floats], Floats]
+    """Returns how high something stands around points [m], east and north, shape (..., 2)."""
 
 
 class _Way(NamedTuple):
@@ -73,7 +79,7 @@ def _place(way: _Way, time: Floats) -> tuple[Floats, Floats]:
     return place, velocity
 
 
-def _free_way(extent: Floats, heights: Heights, rng: np.random.Generator, speed: float) -> _Way:
+def _free_way(space: Space, rng: np.random.Generator, speed: float) -> _Way:
     """Return a way above all that stands on it; the lowest of those tried if none is low."""
     best: _Way | None = None
     for _ in range(_TRIES):
@@ -82,11 +88,11 @@ def _free_way(extent: Floats, heights: Heights, rng: np.random.Generator, speed:
         size[1] = radius * rng.uniform(0.05, 0.2, 2)
         turn = rng.uniform(0.0, 2.0 * np.pi)
         phase = np.array([[turn, turn - 0.5 * np.pi], rng.uniform(0.0, 2.0 * np.pi, 2)])
-        centre = rng.uniform(-0.32, 0.32, 2) * extent
+        centre = rng.uniform(-0.32, 0.32, 2) * space.extent
         wanted = rng.uniform(_LOWEST, 0.6 * _HIGHEST)
         way = _Way(centre, size, phase, speed / radius, wanted)
         points, _ = _place(way, np.linspace(0.0, 2.0 * np.pi / way.rate, 96))
-        least = (float(heights(points[:, :2]).max()) + _ROOM) / 0.86
+        least = (float(space.heights(points[:, :2]).max()) + _ROOM) / 0.86
         way = way._replace(height=max(wanted, least))
         if best is None or way.height < best.height:
             best = way
@@ -97,27 +103,25 @@ def _free_way(extent: Floats, heights: Heights, rng: np.random.Generator, speed:
 
 
 def flocks(
-    count: int, kind: int, extent: Floats, heights: Heights, clock: SampleClock,
-    rng: np.random.Generator, speed: float,
-) -> Motion:  # fmt: skip
+    count: int, kind: int, space: Space, clock: SampleClock, rng: np.random.Generator, speed: float
+) -> Motion:
     """Return the motion of birds, or of drones that follow nobody, on closed ways.
 
     Args:
         count: Number of them.
         kind: Their kind.
-        extent: Width and depth of the map [m], shape (2,).
-        heights: What stands on it.
+        space: The map.
         clock: The instants.
         rng: Random numbers.
         speed: [m/s]
     """
     time = np.arange(clock.samples) / clock.rate
     table = np.zeros((clock.samples, count), SAMPLE)
-    way = _free_way(extent, heights, rng, speed)
+    way = _free_way(space, rng, speed)
     size = 0
     for k in range(count):
         if size == _FLOCK or (k > 0 and rng.random() < 0.2):
-            way, size = _free_way(extent, heights, rng, speed), 0
+            way, size = _free_way(space, rng, speed), 0
         size += 1
         place, velocity = _place(way, time - rng.uniform(0.0, 1.8))
         # Each sways about its place in the flock.
@@ -129,9 +133,7 @@ def flocks(
     return Motion(table, np.full(count, kind, np.int32), clock.rate, 0.0)
 
 
-def chases(
-    count: int, kind: int, vehicles: Motion, rng: np.random.Generator
-) -> Motion:
+def chases(count: int, kind: int, vehicles: Motion, rng: np.random.Generator) -> Motion:
     """Return the motion of drones that follow vehicles, each another one, from above.
 
     Args:

@@ -1,6 +1,7 @@
 """Division of the work: views, or bands of views if there are few."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -82,7 +83,9 @@ def set_views(task: Task, views: Views, density: float, workers: int) -> None:
     job.axes[:] = views.rotation.swapaxes(1, 2)
     job.world[:] = views.world
     job.subject[:] = views.subject
-    for array, values in zip(job.light, views.light or (1.0, 1.0, density, 0.0, 0.0), strict=True):
+    calm = (1.0, 1.0, density, 0.0, 0.0)
+    given: Sequence[NDArray[np.float32] | float] = calm if views.light is None else views.light
+    for array, values in zip(job.light, given, strict=True):
         array[:] = values
     if views.instant is not None:
         job.instant[:] = views.instant

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.airborne import AirborneConfig, Heights, chases, flocks
+from eyas.behaviours.airborne import AirborneConfig, Space, chases, flocks
 from eyas.behaviours.groups import SampleClock
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
@@ -75,13 +75,13 @@ def _numbers(
     count: int, kind: int, scene: Scene, clock: SampleClock, seed: int, speed: float
 ) -> NDArray[np.float32]:
     """Return the numbers of the samples of `flocks`."""
-    rng, extent = stream(seed, "airborne", kind), np.array(scene.size)
-    table = flocks(count, kind, extent, _heights_of(scene), clock, rng, speed).table
+    rng = stream(seed, "airborne", kind)
+    table = flocks(count, kind, _space_of(scene), clock, rng, speed).table
     return table.view(np.float32).reshape(*table.shape, -1)
 
 
-def _heights_of(scene: Scene) -> Heights:
-    """Return what tells how high something stands around points."""
+def _space_of(scene: Scene) -> Space:
+    """Return a map as birds see it."""
     extent = np.array(scene.size)
     columns, rows = np.ceil(extent / _TEXEL).astype(int)
     frame = np.array([*(-0.5 * extent), 1.0 / _TEXEL, scene.terrain.floor])
@@ -100,7 +100,8 @@ def _heights_of(scene: Scene) -> Heights:
         place = np.floor((points - frame[:2]) * frame[2]).astype(int)
         column = np.clip(place[..., 0], 0, shape[1] - 1)
         row = np.clip(place[..., 1], 0, shape[0] - 1)
-        found: NDArray[np.float64] = scene.terrain.floor + reliefs(scene.terrain, points)
-        return found + highest[row, column]
+        found: NDArray[np.float64] = reliefs(scene.terrain, points) + highest[row, column]
+        found += scene.terrain.floor
+        return found
 
-    return heights
+    return Space(extent, heights)

@@ -12,7 +12,16 @@ from eyas.state.lighting import LightState
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
-__all__ = ["NO_SPRAY", "DrawList", "DrawStage", "MovingParts", "PartLibrary", "Picture", "Renderer", "Views"]
+__all__ = [
+    "NO_SPRAY",
+    "DrawList",
+    "DrawStage",
+    "MovingParts",
+    "PartLibrary",
+    "Picture",
+    "Renderer",
+    "Views",
+]
 
 
 class DrawStage(IntEnum):

@@ -1,6 +1,7 @@
 """A bird, which flies between camera and street: a body and two wings that beat."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ def _section(x: float, half: float, low: float, high: float) -> list[tuple[float
 def _wing(side: float) -> Mesh:
     """Return the left wing (side 1) or the right one (-1), from its shoulder."""
     shell = Shell()
-    for inner, outer in zip(_WING, _WING[1:], strict=False):
+    for inner, outer in pairwise(_WING):
         (y, front, back), (over, front_over, back_over) = inner, outer
         colour = _TIPS if outer is _WING[-1] else _FEATHERS
         for up in (1.0, -1.0):

@@ -19,7 +19,7 @@ from eyas.render.kernels.bundles import Canvas, Light
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import i4, i8, u4
 
-__all__ = ["keys_of", "pack", "write_colours", "write_pixels"]
+__all__ = ["keys_of", "pack", "write_colours", "write_pixels", "write_plane"]
 
 _ALL = (1 << WIDTH) - 1
 
@@ -47,7 +47,7 @@ def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, p
 
 
 @kernel(inline=True)
-def _write_plane(
+def write_plane(
     plane: NDArray[np.float32], row: int, first: int, chosen: int, value: float
 ) -> None:
     """Write those of eight numbers, from column `first` on, whose bit is set."""
@@ -82,9 +82,9 @@ def write_colours(
         colour: Linear radiance.
     """
     if len(canvas.red) > 0:
-        _write_plane(canvas.red, row, first, chosen, colour[0])
-        _write_plane(canvas.green, row, first, chosen, colour[1])
-        _write_plane(canvas.blue, row, first, chosen, colour[2])
+        write_plane(canvas.red, row, first, chosen, colour[0])
+        write_plane(canvas.green, row, first, chosen, colour[1])
+        write_plane(canvas.blue, row, first, chosen, colour[2])
         return
     red, green, blue = tone_bytes(light, exposure, colour)
     write_pixels(canvas.pixels, row, first, chosen, pack(red, green, blue))

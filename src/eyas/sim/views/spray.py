@@ -1,19 +1,22 @@
 """Which vehicles throw up water, and from where."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.state.motion import ActorState
-from eyas.state.scene import ObjectClass
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.targets.catalogue import MODELS
 from eyas.targets.kind import Kind
 
+if TYPE_CHECKING:
+    from eyas.sim.views.visible_actors import Listed
+
 __all__ = ["SPRAY_REACH", "spray_of", "throwing"]
 
-SPRAY_REACH = 21.0
+SPRAY_REACH = 14.0
 """Distance from a vehicle beyond which its spray is not seen [m], see `sky.plumes`."""
 
 _SLOWEST = 8.0
@@ -30,24 +33,19 @@ def throwing(kinds: Sequence[Kind]) -> NDArray[np.bool_]:
     return np.array([kind.object_class in _VEHICLES for kind in kinds], np.bool_)
 
 
-def spray_of(
-    actors: ActorState,
-    model: NDArray[np.int32],
-    throws: NDArray[np.bool_],
-    world: NDArray[np.int64],
-    actor: NDArray[np.integer],
-    worlds: int,
-) -> NDArray[np.float32]:
-    """Return `DrawList.spray` of E actors.
+def spray_of(listed: "Listed", kinds: NDArray[np.bool_], worlds: int) -> NDArray[np.float32]:
+    """Return `DrawList.spray` of listed actors.
 
     Args:
-        actors: Their state, as of one world.
-        model: Their models.
-        throws: Whether each is of a kind that throws up water, shape (E,).
-        world: World of each, shape (E,).
-        actor: Their numbers in their worlds, shape (E,).
+        listed: The actors.
+        kinds: Which kinds throw up water, see `throwing`.
         worlds: Number of worlds.
     """
+    actors, model = listed.state, listed.looks.model[0]
+    throws = np.repeat(kinds, np.diff(listed.end, prepend=0))
+    slot = listed.slot[: len(throws)]
+    actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
+    world = slot // max(listed.part.shape[1], 1)
     velocity = actors.velocity[0, : len(throws), :2]
     chosen = np.flatnonzero(throws & (np.square(velocity).sum(axis=1) > _SLOWEST**2))
     chosen = chosen[np.argsort(world[chosen], kind="stable")]

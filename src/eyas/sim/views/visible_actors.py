@@ -293,17 +293,8 @@ class VisibleActors:
         if count not in self._first:
             self._first[count] = self._movers.first(count)
         if self._throws is not None:
-            self._first[count].spray = self._spray(count)
+            self._first[count].spray = spray_of(self._listed, self._throws, count)
         return self._first[count]
-
-    def _spray(self, worlds: int) -> NDArray[np.float32]:
-        """Return `DrawList.spray` of what was listed."""
-        listed, entries = self._listed, int(self._listed.needed[0])
-        throws = np.repeat(self._throws, np.diff(listed.end, prepend=0))
-        slot = listed.slot[:entries]
-        actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
-        world = slot // max(self._size.slots, 1)
-        return spray_of(listed.state, listed.looks.model[0], throws, world, actor, worlds)
 
     def moving(
         self,
@@ -315,10 +306,7 @@ class VisibleActors:
     ) -> Moving:
         """Return where these actors are, and how fast, without posing them; see `of`."""
         self._list_for(worlds, time, row, cameras, aspect)
-        entries, (state, slots) = (
-            int(self._listed.needed[0]),
-            (self._listed.state, self._size.slots),
-        )
+        entries, state, slots = int(self._listed.needed[0]), self._listed.state, self._size.slots
         world = self._listed.slot[:entries] // max(slots, 1)
         order = np.argsort(world, kind="stable")
         rows = np.arange(len(worlds)) if row is None else row

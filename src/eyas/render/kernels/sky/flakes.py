@@ -29,7 +29,7 @@ from eyas.render.kernels.sky.falling import (
 from eyas.render.kernels.visibility.key import distance_inverse
 from eyas.render.kernels.wind import wave
 
-__all__ = ["blend", "bytes_of", "let_flakes_fall", "seen_from"]
+__all__ = ["bytes_of", "let_flakes_fall", "seen_from"]
 
 Colour = tuple[float, float, float]
 
@@ -61,6 +61,7 @@ class Snowfall(NamedTuple):
 def bytes_of(
     light: Light, exposure: float, colour: tuple[float, float, float]
 ) -> tuple[int, int, int]:
+    """Return the bytes of a radiance."""
     red, green, blue = tone_bytes(light, exposure, colour)
     return i8(red), i8(green), i8(blue)
 
@@ -324,11 +325,11 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
+            _blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
 
 
 @kernel(inline=True)
-def blend(
+def _blend(
     canvas: Canvas,
     i: int,
     j: int,

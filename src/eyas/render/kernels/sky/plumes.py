@@ -7,13 +7,31 @@ its age only, so an instant always looks the same.
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.lanes import kernel
+from eyas.lanes.vector import (
+    WIDTH,
+    any_of,
+    bits_of,
+    gather,
+    greater,
+    lane_numbers,
+    lesser,
+    root,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+)
 from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.lens.look import shown_at
-from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
+from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.falling import drift, lit_by_lamps, sky_lit
-from eyas.render.kernels.sky.flakes import blend, bytes_of, seen_from
+from eyas.render.kernels.sky.flakes import bytes_of, seen_from
 from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.visibility.key import distance_inverse
 from eyas.render.kernels.wind import wave
@@ -34,6 +52,8 @@ _SPRAY_FROM, _SPRAY_FULL = 8.0, 20.0
 """Speed from which water is thrown up, and at which there is most: it grows with the square of the
 speed (Weir, Strange and Heffley, Reduction of adverse aerodynamic effects of large trucks,
 FHWA-RD-79-84, 1978) [m/s]."""
+_SPRAY_TRAIL = 12.0
+"""Speed from which its trail grows no longer [m/s]."""
 _SPRAY_FARTHEST = 90.0
 """Distance beyond which spray is not drawn [m]."""
 
@@ -115,7 +135,7 @@ def _draw_spray(band: Band, source: int, instant: float, canvas: Canvas) -> None
     strength = min(strength, 1.0) * min(4.0 * (1.0 - away / _SPRAY_FARTHEST), 1.0)
     strength *= float(band.lit.air.spray)
     part = 1.0 / math.sqrt(square)
-    slowed = min(part * _SPRAY_FULL, 1.0)
+    slowed = min(part * _SPRAY_TRAIL, 1.0)
     left_x, left_y = -over_y * part, over_x * part
     wind_x, wind_y = drift(band.lit, 0.0, 0.0)
     colour = _scaled(0.9, sky_lit(band.lit))
@@ -155,12 +175,14 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
     if thickness < 0.01:
         return
     row, column, tall, wide = _on_screen(band, ahead, left, up, reach)
-    first, last = max(i8(math.floor(row - tall)), 0), min(i8(math.ceil(row + tall)), band.lines)
+    top = i8(view.top // view.samples) if band.glass.on == 0 else i8(band.glass.top)
+    first = max(i8(math.floor(row - tall)) - top, 0)
+    last = min(i8(math.ceil(row + tall)) - top, band.lines)
     start = max(i8(math.floor(column - wide)), 0)
     stop = min(i8(math.ceil(column + wide)), band.columns)
     if first >= last or start >= stop:
         return
-    lit, key, step = band.lit, band.key, view.samples
+    lit = band.lit
     if lit.air.lamps > f4(0.0):
         colour = lit_by_lamps(colour, band, puff.place)
     fog, hidden = lit.fog, fog_share(lit, f4(ahead))
@@ -170,39 +192,99 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
         colour[2] + hidden * (fog.z - colour[2]),
     )
     pale = bytes_of(band.light, lit.air.exposure, colour)
-    per_tall, per_wide, soft = 1.0 / tall, 1.0 / wide, 0.5 / puff.width
+    soft = f4(0.5 / puff.width)
     for i in range(first, last):
-        y = (i + 0.5 - row) * per_tall
+        # Counted from the top of the picture, so that bands agree to the last bit.
+        y = (i + top + 0.5 - row) / tall
         half = wide * math.sqrt(max(1.0 - y * y, 0.0))
-        begin = max(start, i8(math.floor(column - half)))
-        for j in range(begin, min(stop, i8(math.ceil(column + half)))):
-            x = (j + 0.5 - column) * per_wide
-            round_ = 1.0 - x * x - y * y
-            shown = key[i * step, j * step]
-            if round_ <= 0.0 or shown < i8(0):
-                continue
-            deep, inverse = 1.0, float(distance_inverse(shown))
-            if inverse > 0.0:
-                deep = min(max(0.5 + (1.0 / inverse - ahead) * soft, 0.0), 1.0)
-            thick = thickness * round_ * round_ * deep
-            # 1 - exp(-t), nearly.
-            cover = thick * (1.0 + 0.5 * thick) / (1.0 + thick * (1.0 + 0.5 * thick))
-            if cover > 0.006:
-                blend(canvas, i, j, cover, colour, pale, True)
+        begin = max(i8(math.floor(column - half)), start) // WIDTH * WIDTH
+        end = min(i8(math.ceil(column + half)), stop)
+        for j in range(begin, end, WIDTH):
+            x = (to_f4(lane_numbers()) + f4(j + 0.5 - column)) * f4(1.0 / wide)
+            round_ = f4(1.0 - y * y) - x * x
+            cover = _cover(band, i, j, round_, f4(thickness), f4(ahead), soft)
+            if any_of(cover > f4(0.0)):
+                _mix(canvas, i, j, cover, colour, pale)
+
+
+@kernel(inline=True)
+def _cover(
+    band: Band, i: int, j: int, round_: float, thickness: float, ahead: float, soft: float
+) -> float:
+    """Return how much of eight pixels a puff covers, 0 to 1.
+
+    Args:
+        band: The band.
+        i: Row of the pixels.
+        j: Column of the first.
+        round_: 1 in the middle of the puff, 0 at its edge.
+        thickness: Optical, through its middle.
+        ahead: Its distance [m].
+        soft: What lies by more than half of one over this behind it is behind all of it [1/m].
+    """
+    zero, one, step = f4(0.0), f4(1.0), band.camera.samples
+    keys = keys_of(band.key, i * step, j * step, step)
+    inside = (round_ > zero) & (keys >= i8(0))
+    away = one / greater(distance_inverse(keys), f4(1e-6))
+    deep = lesser(greater(f4(0.5) + (away - ahead) * soft, zero), one)
+    thick = select(inside, thickness * round_ * round_ * deep, zero)
+    # 1 - exp(-t), nearly.
+    thick *= one + f4(0.5) * thick
+    return thick / (one + thick)
+
+
+@kernel(inline=True)
+def _mix(
+    canvas: Canvas, i: int, j: int, cover: float, colour: Colour, pale: tuple[int, int, int]
+) -> None:
+    """Let a puff cover shares of eight pixels: of their light, which is about their bytes'
+    squares.
+    """
+    if len(canvas.red) > 0:
+        _mix_plane(canvas.red, i, j, cover, colour[0])
+        _mix_plane(canvas.green, i, j, cover, colour[1])
+        _mix_plane(canvas.blue, i, j, cover, colour[2])
+        return
+    pixels = canvas.pixels
+    width = pixels.shape[1]
+    inside = to_f4(lane_numbers()) < f4(width - j)
+    at = (lane_numbers() + i4(i * width + j)) * i4(3)
+    at = select(inside, at, i4(0))
+    red = _mixed(gather(pixels, at), pale[0], cover)
+    green = _mixed(gather(pixels, at + i4(1)), pale[1], cover)
+    blue = _mixed(gather(pixels, at + i4(2)), pale[2], cover)
+    write_pixels(pixels, i, j, bits_of(inside), pack(red, green, blue))
+
+
+@kernel(inline=True)
+def _mixed(before: int, over: int, cover: float) -> int:
+    """Return the bytes of mixtures of light."""
+    below, above = to_f4(before), f4(over)
+    below *= below
+    return to_u4(to_i4(root(below + cover * (above * above - below)) + f4(0.5)))
+
+
+@kernel(inline=True)
+def _mix_plane(plane: NDArray[np.float32], i: int, j: int, cover: float, colour: float) -> None:
+    """Mix radiance."""
+    width = plane.shape[1]
+    numbers = lane_numbers()
+    inside = to_f4(numbers) < f4(width - j)
+    at = select(inside, numbers + i4(i * width + j), i4(0))
+    before = gather(plane, at)
+    write_plane(plane, i, j, bits_of(inside), before + cover * (colour - before))
 
 
 @kernel(inline=True)
 def _on_screen(
     band: Band, ahead: float, left: float, up: float, reach: float
 ) -> tuple[float, float, float, float]:
-    """Return row and column of a ball's middle in the band, half its height and half its width
-    [pixels].
-    """
+    """Return row and column of a ball's middle, half its height and half its width [pixels]."""
     view = band.camera
     across = view.focal_x / (ahead * view.samples)
     down = view.focal_y / (ahead * view.samples)
     column = 0.5 * view.width / view.samples - left * across
-    row = (0.5 * view.height - view.top) / view.samples - up * down
+    row = 0.5 * view.height / view.samples - up * down
     tall, wide = max(reach * down, 0.5), max(reach * across, 0.5)
     if band.glass.on == 1:
         column, row = shown_at(band.glass, ahead, left, up)
@@ -210,5 +292,5 @@ def _on_screen(
         wide = math.sqrt((aside - column) ** 2 + (beside - row) ** 2)
         aside, beside = shown_at(band.glass, ahead, left, up - reach)
         tall = math.sqrt((aside - column) ** 2 + (beside - row) ** 2)
-        wide, tall = max(wide, 0.5), max(tall, 0.5)
+        wide, tall, row = max(wide, 0.5), max(tall, 0.5), row + band.glass.top
     return row, column, tall, wide
