@@ -100,13 +100,13 @@ def write_settings(folder: Path) -> None:
 def flights(folder: Path, protocol: str, kind: str, chosen: Collection[str]) -> Flights:
     """Return the flights of a kind behind some faults, or in some weathers."""
     found: Flights = {}
-    for run in sorted(folder.glob(f"{protocol}-{kind}-*")):
-        for line in (run / "episodes.jsonl").read_text().splitlines():
+    for file in sorted(folder.glob(f"{protocol}-{kind}-*/episodes.jsonl")):
+        seed = int(file.parent.name.rpartition("-")[2])
+        for line in file.read_text().splitlines():
             flown = json.loads(line)
             fault = flown["variant"].rpartition("-")[0] or "clean"
             if (fault if protocol == "corrupted" else flown["weather"]) in chosen:
-                key = int(run.name.rpartition("-")[2]), flown["seed"]
-                found.setdefault(key, []).append(flown["tsr"])
+                found.setdefault((seed, flown["seed"]), []).append(flown["tsr"])
     return found
 
 
