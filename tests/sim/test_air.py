@@ -112,3 +112,13 @@ def test_boxes_hold_the_pixels_of_birds_and_drones(crowded):
         np.testing.assert_array_equal(picture.actor_visible_box[0, actor], box)
         seen += 1
     assert seen > 6
+
+
+def test_phrases_do_not_speak_of_what_flies(crowded):
+    kind = [KINDS[k].name for k in crowded.traffic.motion.kind.tolist()]
+    bird, cameras = kind.index("bird"), crowded.snapshot.cameras
+    state = crowded.view.actors(0).state
+    cameras.position[0] = state.position[0, bird] + [0.0, 0.0, 6.0]
+    cameras.rotation[0] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]
+    said = {kind[actor] for actor in crowded.view.in_view(0).actor.tolist()}
+    assert not said & {"bird", "quadrotor"}

@@ -42,7 +42,7 @@ class VideoConfig(ActionSpeeds):
     target: `follow`, `orbit`, `fly-by`, `rise`, `zoom`, `hover-and-pan`, `search`, or your own as
     `my_package.module:Class`. None: `follow`, or `exact` where no camera path can be flown, with
     live traffic and trackers that are not drones."""
-    policy: Annotated[str | None, NAMES_CODE] = None
+    policy: Annotated[Annotated[str, Field(min_length=1)] | None, NAMES_CODE] = None
     """A policy that flies instead, as in `eyas evaluate --policy`; excludes `flight`."""
     in_view: ShareAsked = None
     """Camera paths: asked share of frames with the target in the picture, hidden or not; None: all,
