@@ -177,3 +177,19 @@ def test_the_map_is_kept_and_follows_what_stands(tmp_path):
     scene.fixtures = trees_at([(30.0, 30.0)])
     bake_ambient(scene, tmp_path)
     assert len(list(tmp_path.rglob("*.npy"))) == 2
+
+
+def test_shade_is_blue_in_the_open_and_less_so_between_walls(drawn, renderer_of):
+    # Seen from above, in the shade of everything; the light of walls is that of a lit street.
+    shade = dataclasses.replace(DAY, fog_density=0.0, ambient_down=(0.0, 0.0, 0.0))
+    court = [tower(x, y, 8.0, 30.0) for x, y in ((-9, 0), (9, 0), (0, -9), (0, 9))]
+    views = looking([(0.0, 0.0, 60.0)], pitch=1.5707, fov=0.02)
+
+    def blue(meshes, light):
+        scene = scene_of([floor(), *meshes], [GROUND, *[TOWER] * len(meshes)])
+        picture = drawn(renderer_of(scene, lighting=light), views).rgb.astype(float)
+        return (picture[..., 2] / picture[..., 0]).mean()
+
+    low_sun = dataclasses.replace(shade, sun_direction=(0.995, 0.0, 0.1))
+    open_shade = blue([], dataclasses.replace(shade, sun_colour=(0.0, 0.0, 0.0)))
+    assert blue(court, low_sun) < open_shade - 0.05

@@ -25,7 +25,7 @@ def sixteen_views() -> Views:
     places[7], pitch[7] = (-34.0, -2.0, 12.0), 1.4  # above the subject
     views = looking(places, list(rng.uniform(-3, 3, 16)), pitch, fov=1.1, subject=SUBJECT)
     changes = rng.uniform((0.5, 0.5, 0.0), (1.5, 1.5, 0.005), (16, 3)).astype(np.float32)
-    views.light = LightState(*np.ascontiguousarray(changes.T))
+    views.light = LightState(*np.ascontiguousarray(changes.T), *rng.uniform(-9.0, 9.0, (2, 16)).astype(np.float32))
     views.instant = rng.uniform(0.0, 100.0, 16)
     views.world[:] = np.arange(16) % 2
     return views
@@ -69,6 +69,8 @@ ALL_WEATHERS = dataclasses.replace(
     moon_limb=(0.6, 0.8, 0.0),
     moon_lit=0.3,
     daytime_lamps=0.4,
+    windy=1.0,
+    smoke=3,
 )
 
 

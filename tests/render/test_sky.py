@@ -89,7 +89,7 @@ def test_clouds_cover_the_picture_and_darken_with_the_sky(sky_of, renderer_of, d
     renderer = renderer_of(scene_of([], []), lighting=replace(DAY, clouds=0.4))
     night = replace(
         looking([(0.0, 0.0, 30.0)], pitch=-0.5, fov=1.2),
-        light=LightState(*np.zeros((3, 1), np.float32)),
+        light=LightState(*np.zeros((5, 1), np.float32)),
     )
     assert drawn(renderer, night).rgb.max() <= 1
 

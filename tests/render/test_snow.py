@@ -111,6 +111,23 @@ def test_tracks_lead_over_junctions():
     assert worn(-20, 15) == 0
 
 
+@pytest.mark.parametrize("turn", [0.2, 0.35, 0.65])
+def test_tracks_have_no_rungs_from_the_lattice_of_the_map(turn):
+    along = np.array([np.cos(turn), np.sin(turn)])
+    scene = scene_with(plate("asphalt"), ObjectClass.ROAD)
+    found = track_map(with_lanes(scene, [-38 * along, 38 * along]))
+    at = np.linspace(-30, 30, 400)
+    points = at[:, None] * along + TRACK_ASIDE * np.array([-along[1], along[0]])
+    column, row = ((points - found.frame[:2]) * found.frame[2] - 0.5).T
+    i, j = row.astype(int), column.astype(int)
+    v, u, worn = row - i, column - j, found.worn[..., 0].astype(float)
+    upper = (1 - u) * worn[i, j] + u * worn[i, j + 1]
+    seen = (1 - v) * upper + v * ((1 - u) * worn[i + 1, j] + u * worn[i + 1, j + 1])
+    # Streaks of slush are metres long; rungs would repeat within one.
+    smooth = np.convolve(seen, np.ones(9) / 9, "same")[10:-10]
+    assert np.abs(seen[10:-10] - smooth).mean() < 2.5
+
+
 def test_far_pixels_see_the_mean_of_the_tracks(seen):
     scene = with_lanes(scene_with(plate("asphalt"), ObjectClass.ROAD), [(-38, 0), (38, 0)])
     views = looking([(0, 0, 120.0)], pitch=1.5707, fov=0.5)

@@ -51,5 +51,5 @@ def test_an_actor_of_this_kind_stands_at_its_heading():
     looks = Looks(np.full((1, 2), models_of(KIND)[0], np.int32), np.ones((1, 2, 3), np.float32))
     rigs.pose(actors, looks, out)
     assert out.part.tolist() == [[0, -1]]
-    expected = [[0, -1, 0, 3], [1, 0, 0, 4], [0, 0, 1, 5]]
+    expected = [[0, -1, 0, 3], [1, 0, 0, 4], [0, 0, 1, 5.055]]
     assert out.pose[0, 0] == pytest.approx(np.array(expected, float), abs=1e-6)

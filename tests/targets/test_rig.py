@@ -238,6 +238,7 @@ def test_a_mixed_world_is_posed_as_its_kinds_are_alone(walker):
     for a, name in enumerate(names):
         single = Rigs(kind[a : a + 1])
         alone = single.draw_list(2)
+        alone.object_id[:] = ACTOR_OBJECT + a
         part_of = ActorState._make(array[:, a : a + 1].copy() for array in actors)
         single.pose(part_of, Looks(*(array[:, a : a + 1].copy() for array in looks)), alone)
         window = slice(*rigs.first_slot[a : a + 2])
@@ -286,3 +287,17 @@ def test_order_of_worlds_changes_no_byte():
     again, _ = posed(VehicleType.PASSENGER, shuffled)
     assert np.array_equal(out.part[order], again.part)
     assert np.array_equal(out.pose[order], again.pose)
+
+
+def test_a_vehicle_keeps_its_variant_wherever_a_list_has_it():
+    kind = np.full(8, kind_index("passenger"), np.int32)
+    actors = random_actors(1, 8)
+    model = np.full((1, 8), models_of(kind[0]).start, np.int32)
+    rigs = Rigs(kind)
+    out, turned = rigs.draw_list(1), rigs.draw_list(1)
+    rigs.pose(actors, Looks(model, colours(1, 8)), out)
+    turned.object_id[:] = out.object_id.reshape(8, -1)[::-1].reshape(1, -1)
+    rigs.pose(actors, Looks(model, colours(1, 8)), turned)
+    bodies = out.part.reshape(8, -1)[:, 0]
+    assert len({*bodies.tolist()}) == 4
+    assert np.array_equal(turned.part.reshape(8, -1)[::-1, 0], bodies)

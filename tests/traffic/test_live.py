@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
-from eyas.state.motion import ActorState, Motion
+from eyas.state.motion import ActorState, Lamp, Motion
 from eyas.state.roads import RoadGraph
 from eyas.state.terrain import Terrain
 from eyas.traffic.config import Demand, Mix, Source, TrafficConfig, VehicleType
@@ -67,6 +67,20 @@ def test_live_tracks_are_those_of_a_recording(grid: RoadGraph, config: TrafficCo
             difference = np.angle(np.exp(1j * difference))
         # Exact where vehicles stay; those that leave are placed along a path of finite length.
         assert np.abs(difference).max() <= (0.0 if config is KEPT else 1e-3), name
+
+
+def test_drivers_signal_as_sumo_has_it(grid: RoadGraph):
+    source = LiveSumo(grid, resolved(KEPT, 1), FLAT, kind, DURATION, lamps=True)
+    try:
+        source.prepare(30.0)
+    finally:
+        source.close()
+    lamps, table = source.motion.lamps[:300], source.motion.table[:300]
+    speed = np.hypot(table["velocity_x"], table["velocity_y"])
+    slows = (speed[6:] - speed[:-6]) / 0.6 < -3.0
+    assert (lamps[3:-3][slows] & Lamp.BRAKE > 0).mean() > 0.7
+    left = lamps[table["yaw_rate"] > 0.4]
+    assert (left & Lamp.LEFT > 0).mean() > (left & Lamp.RIGHT > 0).mean() + 0.3
 
 
 def test_only_what_lies_ahead_can_be_changed(live: LiveSumo):

@@ -10,7 +10,8 @@ from eyas.traffic.config import TrafficConfig
 from eyas.traffic.fleet import fleet_of
 from eyas.traffic.net_file import SumoNet
 from eyas.traffic.network import network_xml
-from eyas.traffic.record import WARM_UP, resolved
+from eyas.traffic.record import WARM_UP, record, resolved
+from eyas.traffic.recording_file import from_bytes, to_bytes
 from eyas.traffic.signals import Aspect, signal_plan, walk_plan
 from eyas.traffic.sumo import RATE, SumoRun
 
@@ -127,3 +128,52 @@ def test_what_is_shown_is_what_sumo_shows_and_nobody_passes_red(lit):
         run.close()
     assert len(passed) > 30
     assert "r" not in passed
+
+
+@pytest.mark.sumo
+def test_working_signals_change_neither_lanes_nor_corners(grid):
+    plain, lit = (SumoNet(network_xml(grid, signals=on)) for on in (False, True))
+    streets = [[e for e in net.edges if e.function is None] for net in (plain, lit)]
+    assert streets[0] == streets[1]
+    for node in grid.nodes:
+        assert plain.junctions[node.name] == lit.junctions[node.name]
+    assert not plain.programs
+    assert len(lit.programs) == 12  # not at the four corners of the grid, which are bends
+
+
+@pytest.mark.sumo
+def test_all_of_a_street_stop_at_its_one_light(grid):
+    net = SumoNet(network_xml(grid, signals=True))
+    states = {one.name: np.array([list(phase.state) for phase in one.phases]).T
+              for one in net.programs}  # fmt: skip
+    links: dict[tuple[str, str], list[int]] = {}
+    for one in net.connections:
+        if one.light:
+            links.setdefault((one.light, one.start), []).append(one.link)
+    for (light, _), own in links.items():
+        red = states[light][own] == "r"
+        assert (red == red[0]).all()
+        assert red.any()
+
+
+@pytest.mark.sumo
+def test_nobody_passes_a_red_light_in_a_recording(grid):
+    config = TrafficConfig(max_vehicles=20, signals="working")
+    recording = record("grid", 0, grid, config, 120.0, 1)
+    assert recording.provenance.config.signals == "working"
+    assert from_bytes(to_bytes(recording), "memory").provenance == recording.provenance
+    net = SumoNet(network_xml(grid, signals=True))
+    plan, ends = signal_plan(net), {one.name: one.lanes[0].points[-2:] for one in net.edges}
+    shown = plan.at(np.arange(len(recording.present)) / recording.rate)
+    ahead = np.stack([np.cos(recording.yaw), np.sin(recording.yaw)], axis=-1)
+    front, passed = recording.position + 2.5 * ahead, []
+    for row, edge in enumerate(plan.edges):
+        start, end = ends[edge]
+        onwards = (end - start) / np.linalg.norm(end - start)
+        over = (front - end) @ onwards
+        near = np.linalg.norm(front - end, axis=-1) < 6.0
+        along = ahead @ onwards > 0.95
+        crosses = (over[:-1] < 0.0) & (over[1:] >= 0.0) & near[1:] & along[1:]
+        passed += shown[1:, row][np.nonzero(crosses)[0]].tolist()
+    assert len(passed) > 60
+    assert Aspect.RED not in passed

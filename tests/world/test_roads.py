@@ -5,7 +5,17 @@ import pytest
 import shapely
 
 from eyas.state.mesh import Material
-from eyas.world.roads.areas import blocks, joints, road_area, skirt, split_on_grid, streets, surface
+from eyas.world.build.materials import material
+from eyas.world.roads.areas import (
+    blocks,
+    joints,
+    kerbstones,
+    road_area,
+    skirt,
+    split_on_grid,
+    streets,
+    surface,
+)
 
 
 def test_a_street_is_two_lanes_wide_and_shares_its_middle_with_the_other_direction(network):
@@ -69,3 +79,17 @@ def test_a_skirt_faces_outwards_on_outlines_and_into_holes():
     middle = corners.mean(1)[:, :2] + 1e-3 * np.sign(normal[:, :2])
     assert not shapely.contains_xy(shape, *middle.T).any()
     assert np.linalg.norm(normal, axis=1).sum() / 2 == pytest.approx(40 + 8)
+
+
+def test_joints_of_kerb_stones_run_across_the_kerb():
+    road = shapely.Point(3.0, -2.0).buffer(10.0, quad_segs=32)
+    kerb = shapely.difference(shapely.buffer(road, 0.35, quad_segs=32), road)
+    mesh = kerbstones(kerb, 0.15, road, material("stone"), 4.0)
+    corners = mesh.positions[mesh.triangles][..., :2].astype(float) - (3.0, -2.0)
+    u, v = np.moveaxis(4.0 * mesh.uvs[mesh.triangles].astype(float), -1, 0)
+    assert np.abs(v - (np.hypot(*np.moveaxis(corners, -1, 0)) - 10.0)).max() < 0.02
+    # From corner to corner u grows by the way along the road, whatever the distance from it.
+    angle = np.unwrap(np.arctan2(corners[..., 1], corners[..., 0]), axis=1)
+    way = np.abs(angle[:, 1:] - angle[:, :1]) * 10.0
+    assert np.abs(np.abs(u[:, 1:] - u[:, :1]) - way).max() < 0.15
+    assert np.ptp(u) > 60.0

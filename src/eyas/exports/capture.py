@@ -70,6 +70,8 @@ class Moment(NamedTuple):
     """See `Frame.events`; nothing changes it later."""
     lens: Lens | None = None
     """The lens of its camera; None: it is a pinhole."""
+    lamps: NDArray[np.uint8] | None = None
+    """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
 
 
 def moment_of(
@@ -109,7 +111,7 @@ def moment_of(
     now = simulation.snapshot.episodes
     lens = seen.lens_of(tracker)
     known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
-    return Moment(shown, now, *known)
+    return Moment(shown, now, *known, seen.lamps(tracker))
 
 
 def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
@@ -230,7 +232,12 @@ def _target(moment: Moment, tracker: int, picture: Picture, view: int, words: st
         covered_pixels=covered,
         words=words,
         sections=sections_of(model),
+        lamps=_lamps(moment, actor),
     )
+
+
+def _lamps(moment: Moment, actor: int) -> int:
+    return 0 if moment.lamps is None else int(moment.lamps[actor])
 
 
 def _whole_box(moment: Moment, actor: int) -> Floats:
@@ -281,6 +288,7 @@ def _other(moment: Moment, actor: int, picture: Picture, view: int) -> Subject:
         covered_pixels=covered,
         words=words_of(model, around.colour[actor].tolist()),
         sections=sections_of(model),
+        lamps=_lamps(moment, actor),
     )
 
 

@@ -163,6 +163,8 @@ class Subject:
     if no writer wants `others`."""
     sections: tuple[Section, ...] = ()
     """The sections of an articulated vehicle; empty for all others."""
+    lamps: int = 0
+    """What it signals, a `Lamp`; 0: nothing, or lamps do not work."""
 
     @property
     def visible_fraction(self) -> float:

@@ -22,6 +22,7 @@ from eyas.exports.frame import Frame, Subject
 from eyas.exports.label_reading import labels_in, reader_of
 from eyas.exports.writer import Episode, Files, Gather, Scores, Summary, Writer
 from eyas.lanes import interpreted
+from eyas.state.motion import Lamp
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.task.done import DoneReason
 
@@ -164,6 +165,12 @@ def _distance(frame: Frame, subject: Subject) -> float | None:
     return rounded(math.sqrt(x * x + y * y + z * z))
 
 
+def _indicator(frame: Frame, subject: Subject) -> str:
+    if subject.lamps & Lamp.LEFT:
+        return "left"
+    return "right" if subject.lamps & Lamp.RIGHT else ""
+
+
 def _command(frame: Frame, episode: Episode) -> list[float | None] | None:
     command = frame.action.command
     return None if command is None else rounded_list(command * _PER_SECOND)
@@ -247,6 +254,10 @@ FIELDS = (
                left_out=True),
     LabelField("target_class_id", CLASS, "Its class, as in the class pictures.", None,
                lambda f, s: int(s.object_class), "class_id"),
+    LabelField("target_brake", TRUTH, "Its brake lamps are lit; only of vehicles whose are.", None,
+               lambda f, s: bool(s.lamps & Lamp.BRAKE), "brake", left_out=True),
+    LabelField("target_indicator", TEXT, "Side on which its indicators blink, `left` or `right`; "
+               "only of vehicles whose do.", None, _indicator, "indicator", left_out=True),
     LabelField("width", SIDE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
     LabelField("height", SIDE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
     LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "

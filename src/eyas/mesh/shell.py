@@ -20,30 +20,48 @@ class Shell:
 
     def __init__(self) -> None:
         self._corners: list[NDArray[np.float64]] = []
+        self._uvs: list[NDArray[np.float64]] = []
         self._materials: list[Material] = []
 
-    def quads(self, corners: ArrayLike, material: Material, *, both_sides: bool = False) -> None:
+    def quads(
+        self,
+        corners: ArrayLike,
+        material: Material,
+        *,
+        uvs: ArrayLike | None = None,
+        both_sides: bool = False,
+    ) -> None:
         """Add quadrilaterals, shape (Q, 4, 3) or (4, 3).
 
         Args:
             corners: In the model's frame [m].
             material: Material of all of them.
-            both_sides: Also add them mirrored left to right.
+            uvs: Texture coordinates [tiles], shape (Q, 4, 2) or (4, 2); None: 0.
+            both_sides: Also add them mirrored left to right, with the same texture coordinates.
         """
         triangles = halves(np.asarray(corners, np.float64).reshape(-1, 4, 3))
-        self.triangles(triangles, material, both_sides=both_sides)
+        if uvs is not None:
+            uvs = halves(np.asarray(uvs, np.float64).reshape(-1, 4, 2))
+        self.triangles(triangles, material, uvs=uvs, both_sides=both_sides)
 
     def triangles(
-        self, corners: ArrayLike, material: Material, *, both_sides: bool = False
+        self,
+        corners: ArrayLike,
+        material: Material,
+        *,
+        uvs: ArrayLike | None = None,
+        both_sides: bool = False,
     ) -> None:
-        """Add triangles, shape (T, 3, 3) [m]; triangles without area are skipped."""
+        """Add triangles, shape (T, 3, 3) [m], see `quads`; those without area are skipped."""
         points = np.asarray(corners, np.float64).reshape(-1, 3, 3)
-        area = np.linalg.norm(_cross(points), axis=1)
-        points = points[area > 1e-7]
+        flat = np.zeros((len(points), 3, 2)) if uvs is None else np.asarray(uvs, np.float64)
+        solid = np.linalg.norm(_cross(points), axis=1) > 1e-7
+        points, flat = points[solid], flat.reshape(-1, 3, 2)[solid]
         self._corners.append(points)
+        self._uvs.append(flat)
         self._materials += [material] * len(points)
         if both_sides:
-            self.triangles(mirrored(points), material)
+            self.triangles(mirrored(points), material, uvs=flat[:, ::-1])
 
     def box(
         self,
@@ -142,7 +160,12 @@ class Shell:
         palette = {m: i for i, m in enumerate(dict.fromkeys(self._materials))}
         material = np.array([palette[m] for m in self._materials], np.int32)
         vertices = np.concatenate(
-            [corners.reshape(-1, 3), _normals(corners, material).reshape(-1, 3)], axis=1
+            [
+                corners.reshape(-1, 3),
+                _normals(corners, material).reshape(-1, 3),
+                np.concatenate(self._uvs).reshape(-1, 2),
+            ],
+            axis=1,
         )
         _, first, index = np.unique(
             np.round(vertices, 5), axis=0, return_index=True, return_inverse=True
@@ -150,8 +173,8 @@ class Shell:
         kept = vertices[first]
         return Mesh(
             positions=np.ascontiguousarray(kept[:, :3], np.float32),
-            normals=np.ascontiguousarray(kept[:, 3:], np.float32),
-            uvs=np.zeros((len(kept), 2), np.float32),
+            normals=np.ascontiguousarray(kept[:, 3:6], np.float32),
+            uvs=np.ascontiguousarray(kept[:, 6:], np.float32),
             triangles=np.ascontiguousarray(index.reshape(-1, 3), np.int32),
             materials=material,
             palette=tuple(palette),

@@ -33,13 +33,15 @@ class Size(NamedTuple):
     until: int
     """See `Task`."""
     falls: bool
-    """Whether snow falls."""
+    """Whether flakes, drops and leaves are drawn."""
     parts: bool
     """Whether each view draws some rows only, which are then one band."""
     threads: int
     """Number of threads that share the work."""
     bent: bool = False
     """Whether lenses bend the pictures."""
+    timed: bool = False
+    """Whether the views have instants."""
 
 
 def new_task(size: Size) -> Task:
@@ -55,11 +57,11 @@ def new_task(size: Size) -> Task:
         world=np.empty(views, np.int32),
         subject=np.empty(views, np.int32),
         light=LightState.create(views),
-        instant=np.empty(views if size.falls else 0),
+        instant=np.empty(views if size.timed else 0),
         focal=np.empty((views, 2)),
         lens=np.zeros(views if size.bent else 0, np.int32),
     )
-    return Task(size.side, size.width, size.height, size.until, job)
+    return Task(size.side, size.width, size.height, int(size.falls), size.until, job)
 
 
 def set_views(task: Task, views: Views, density: float, workers: int) -> None:
@@ -80,11 +82,8 @@ def set_views(task: Task, views: Views, density: float, workers: int) -> None:
     job.axes[:] = views.rotation.swapaxes(1, 2)
     job.world[:] = views.world
     job.subject[:] = views.subject
-    job.light.sky[:], job.light.sun[:], job.light.fog_density[:] = views.light or (
-        1.0,
-        1.0,
-        density,
-    )
+    for array, values in zip(job.light, views.light or (1.0, 1.0, density, 0.0, 0.0), strict=True):
+        array[:] = values
     if views.instant is not None:
         job.instant[:] = views.instant
     job.focal[:] = views.focal(task.height, task.width)

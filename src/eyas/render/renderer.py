@@ -13,6 +13,7 @@ from eyas.lanes.vector import WIDTH
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.land import land_map, no_land
 from eyas.render.bake.shadows import bake_shadows
+from eyas.render.bake.sway import with_room
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
@@ -32,7 +33,7 @@ from eyas.render.outputs import (
     write_measured,
 )
 from eyas.render.pack.light import Baked, build_light
-from eyas.state.draw import DrawList, DrawStage, Picture, Views
+from eyas.state.draw import NO_SPRAY, DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 
@@ -113,12 +114,14 @@ class CpuRenderer:
     ) -> None:
         """Draw with `side` x `side` samples per pixel."""
         height, width = picture_size(picture)
-        falls, threads = views.instant is not None, thread_count()
+        timed, threads = views.instant is not None, thread_count()
+        falls = timed and views.falling
         parts = views.rows is not None
         bent = views.lens is not None
         size = Size(
-            len(views.position), height, width, side, int(until), falls, parts, threads, bent
-        )
+            len(views.position), height, width, side, int(until), falls, parts, threads,
+            bent, timed,
+        )  # fmt: skip
         # Taken away while it is in use, so that another thread that draws gets another one.
         task = self._tasks.pop(size, None) or Held(new_task(size))
         band = task.bundle.job.band
@@ -171,6 +174,7 @@ class CpuRenderer:
             chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
             # What is measured alone takes rows after those of the whole picture.
             instances = min(fixtures + slots * (2 if measured else 1), MOST_INSTANCES)
+            swaying = instances if len(self._light.sway) else 0
             scratch = Scratch(
                 key=np.zeros(plane, np.int64),
                 alone=np.zeros(plane if measured else (workers, 0, 0), np.int64),
@@ -185,6 +189,7 @@ class CpuRenderer:
                 word=shade.view(np.uint32)[..., 0],
                 bent_key=np.zeros(bent, np.int64),
                 bent_shade=np.zeros((*bent, 4), np.uint8),
+                leaning=np.empty((workers, swaying, 3, 4), np.float32),
                 bent_tile=np.zeros((0, 0, 4), np.int32),
             )
             _keep(self._scratch, key, Held(scratch))
@@ -214,6 +219,8 @@ def build_renderer(
     covered = max(lighting.mist, lighting.litter, lighting.leaves) > 0
     land = land_map(scene, ambient, cache) if covered else no_land()
     light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
+    if len(light.sway):
+        geometry = with_room(geometry, light.sway)
     return CpuRenderer(geometry, light, ready)
 
 
@@ -231,6 +238,8 @@ _NO_MOVERS = Movers(
     colour=np.empty((0, 0, 3), np.float32),
     object_id=np.empty((0, 0), np.int32),
     object_class=np.empty((0, 0), np.uint8),
+    lamps=np.empty((0, 0), np.uint8),
+    spray=NO_SPRAY,
 )
 
 

@@ -5,35 +5,39 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.behaviours.groups import SampleClock
 from eyas.core.cache.array_file import let_go
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.cover import cover_of
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
-from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
-from eyas.sim.scenes import load_geometry, load_scene, load_solids
-from eyas.sim.views.additions import SignalLights, lights_of
+from eyas.sim.crowd_motion import Surroundings, live_motions, with_crowd
+from eyas.sim.scenes import Lenses, load_geometry, load_network, load_scene, load_solids
+from eyas.sim.views.additions import SignalLights, lights_of, signal_poles
 from eyas.state.draw import Renderer
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
+from eyas.state.roads import RoadGraph
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
-from eyas.traffic.config import Demand, Drivers, Source, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Lamps, Signals, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
 from eyas.traffic.net_file import SumoNet
-from eyas.traffic.record import resolved
-from eyas.traffic.recorded import kept_motion
+from eyas.traffic.record import resolved, roads_for
+from eyas.traffic.recorded import kept_lamps, kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
-from eyas.world.config import WorldConfig
+from eyas.world.config import WorldConfig, WorldWindConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]
@@ -79,8 +83,17 @@ def load_assets(
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
     """
+    if world.wind is not None:  # whatever its speed, drawn for each episode
+        world = world.model_copy(update={"wind": WorldWindConfig()})
     recipe = MAPS.get(world.map)
     lighting, season = _lighting(world), recipe.season(world.weather)
+    town = bool(recipe.roads(world.seed).finished)
+    scene = load_scene(world.map, world.seed, season)
+    if not town and traffic.signals is Signals.WORKING and not signal_poles(scene):
+        raise ConfigError(
+            f"traffic.signals: 'working' is not allowed on '{world.map}', which has no traffic "
+            "lights; allowed there: amber"
+        )
     grouped = traffic.demand is Demand.RESPAWN
     find = _live if traffic.source is Source.LIVE else _traffic
     source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
@@ -89,22 +102,36 @@ def load_assets(
     if trackers > 1:
         body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
-    scene = load_scene(world.map, world.seed, season)
-    plans = _signal_plans(world.map, world.seed)
+    plans = _signal_plans(world.map, world.seed, traffic.drivers, traffic.signals)
     signals = None if plans is None else lights_of(scene, plans[0], parts)
-    renderer = _renderer(world, tuple(kinds), signals=signals is not None)
+    lenses = Lenses.NONE if signals is None else Lenses.PLAIN if town else Lenses.COVERING
+    renderer = _renderer(world, tuple(kinds), lenses)
     solids = partial(load_solids, world.map, world.seed, season)
     return Assets(scene, source, lighting, renderer, rigs, solids, body_part, signals)
 
 
 @lru_cache(maxsize=4)
-def _signal_plans(map_name: str, seed: int) -> tuple[SignalPlan, SignalPlan] | None:
-    """Return what signals and crossings with lights show; None if recipes drew the roads."""
-    network = MAPS.get(map_name).roads(seed).finished
-    if not network:
+def _signal_plans(
+    map_name: str, seed: int, drivers: Drivers, signals: Signals
+) -> tuple[SignalPlan, SignalPlan] | None:
+    """Return what signals and crossings with lights show; None if there are none that work."""
+    graph = MAPS.get(map_name).roads(seed)
+    if signals is Signals.AMBER and not graph.finished:
         return None
-    net = SumoNet(network)
+    net = SumoNet(graph.finished or _signalled(graph, drivers))
     return signal_plan(net), walk_plan(net)
+
+
+def _signalled(graph: RoadGraph, drivers: Drivers) -> bytes:
+    """Return SUMO's network file of roads with working signals, kept in the cache."""
+    driven = TrafficConfig(drivers=drivers, signals=Signals.WORKING)
+    network = cached(
+        Kind.PLAN,
+        lambda: np.frombuffer(roads_for(driven, graph), np.uint8),
+        (roads_for, graph, drivers.value),
+        of=NDArray[np.uint8],
+    )
+    return network.tobytes()
 
 
 @lru_cache(maxsize=4)
@@ -117,7 +144,9 @@ def _traffic(
         clock = SampleClock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    plans = _signal_plans(map_name, seed) if scene.footways.told else None
+    plans = None
+    if scene.footways.told:
+        plans = _signal_plans(map_name, seed, config.drivers, config.signals)
     lights = None if plans is None else plans[1]
     around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(vehicles, crowd, around)
@@ -142,7 +171,8 @@ def _live(
         scene.terrain,
         kind_index,
         STANDARD_DURATION,
-        others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
+        others=live_motions(crowd, Surroundings(scene, clock, own_seed)),
+        lamps=config.lamps is Lamps.WORKING,
         cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )
 
@@ -168,17 +198,22 @@ def _vehicles(
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
     begin_ahead(f"from eyas.sim.scenes import paint; paint({sorted({*kind.tolist()})})")
     motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
+    if config.lamps is Lamps.WORKING:
+        lamps = kept_lamps(file, motion, load_network(map_name, seed))
+        motion = motion._replace(lamps=lamps)
     count = vehicles_of(crowd, len(kind))
-    return motion._replace(table=motion.table[:, :count], kind=kind[:count])
+    return motion._replace(
+        table=motion.table[:, :count], kind=kind[:count], lamps=motion.lamps[:, :count]
+    )
 
 
 @lru_cache(maxsize=8)
-def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> Renderer:
+def _renderer(world: WorldConfig, kinds: tuple[int, ...], lenses: Lenses) -> Renderer:
     recipe = MAPS.get(world.map)
     season = recipe.season(world.weather)
     return build_renderer(
         load_scene(world.map, world.seed, season),
-        load_geometry(world.map, world.seed, season, kinds, signals=signals),
+        load_geometry(world.map, world.seed, season, kinds, lenses=lenses),
         _lighting(world),
         ready=drawing_is_ready,
     )
@@ -186,6 +221,9 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 def _lighting(world: WorldConfig) -> Lighting:
     light = MAPS.get(world.map).light(world.weather, world.hour, world.moon)
+    if world.wind is not None:
+        light = replace(light, windy=1.0)
+    light = replace(light, smoke=world.smoke, spray=light.wet if world.spray else 0.0)
     if world.precipitation == 1.0:
         return light
     falls = {name: world.precipitation * getattr(light, name) for name in _FALLING}

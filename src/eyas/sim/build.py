@@ -10,6 +10,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import ALONE, largest_world
+from eyas.trackers.config import TrackerConfig
 from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
 
@@ -42,5 +43,14 @@ def build_simulation(
             "which has no fog",
             config.world.weather,
         )
-    chosen = tracker_of(config.tracker) if tracker is None else tracker
+    chosen = tracker_of(in_one_wind(config)) if tracker is None else tracker
     return Simulation(config, assets, chosen, world_of)
+
+
+def in_one_wind(config: SimConfig) -> TrackerConfig:
+    """Return the settings of the tracker, in the wind of the world if it is one that feels it."""
+    wind, tracker = config.world.wind, config.tracker
+    if wind is None or tracker.drag_area == 0.0:
+        return tracker
+    update = {"speed": wind.speed, "direction": wind.direction}
+    return tracker.model_copy(update={"wind": tracker.wind.model_copy(update=update)})

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
+from eyas.behaviours.airborne import AirborneConfig
 from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
@@ -62,12 +63,20 @@ class SimConfig(Config):
     """A target of one's own, in the place of `target`."""
     extras: tuple[ExtraConfig, ...] | None = None
     """Groups that share the world with the targets as distractors; None: the map's pedestrians."""
+    airborne: AirborneConfig = AirborneConfig()
 
     @model_validator(mode="after")
     def _cameras_by_name(self) -> "SimConfig":
         names = [camera.name for camera in self.cameras]
         if len(names) != len({*names}):
             raise ValueError("cameras must have names of their own")
+        return self
+
+    @model_validator(mode="after")
+    def _one_wind(self) -> "SimConfig":
+        own = self.tracker.wind
+        if self.world.wind is not None and (own.speed, own.direction) != (0.0, 0.0):
+            raise ValueError("tracker.wind: speed and direction must be left out with world.wind")
         return self
 
     @property

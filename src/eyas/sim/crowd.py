@@ -1,5 +1,6 @@
 """Who is in a world besides, or instead of, SUMO's vehicles: the settings that tell."""
 
+from eyas.behaviours.airborne import AirborneConfig
 from eyas.behaviours.config import ExtraConfig
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.config import Config
@@ -30,6 +31,7 @@ class Crowd(Config):
     such world."""
     custom: CustomConfig | None = None
     """A target of one's own, in the place of `target`."""
+    airborne: AirborneConfig = AirborneConfig()
 
     @property
     def follows_vehicles(self) -> bool:
@@ -56,7 +58,7 @@ def crowd_of(config: SimConfig, trackers: int = 0) -> Crowd:
     """
     extras = extras_of(config)
     if config.custom is None and config.target is TargetName.SUMO_VEHICLE:
-        return Crowd(extras=extras)
+        return Crowd(extras=extras, airborne=config.airborne)
     seconds = config.done.total_steps * PHYSICS_STEP
     return Crowd(
         target=config.target,
@@ -65,6 +67,7 @@ def crowd_of(config: SimConfig, trackers: int = 0) -> Crowd:
         episode=seconds,
         followers=min(trackers, 1) if config.same_target else trackers,
         custom=config.custom,
+        airborne=config.airborne,
     )
 
 

@@ -17,6 +17,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.rng import stream
 from eyas.core.variation import Mirrored, Variation
 from eyas.custom.config import CustomConfig
+from eyas.sim.air_motion import air_motions
 from eyas.sim.crowd import Crowd
 from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import Scene
@@ -27,7 +28,7 @@ from eyas.traffic.signals import SignalPlan
 if TYPE_CHECKING:
     from eyas.behaviours.ground import Ground
 
-__all__ = ["Surroundings", "crowd_motions", "with_crowd"]
+__all__ = ["Surroundings", "crowd_motions", "live_motions", "with_crowd"]
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
@@ -71,6 +72,11 @@ def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
     return motions
 
 
+def live_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of all but vehicles that SUMO drives now, see `crowd_motions`."""
+    return [*crowd_motions(crowd, around), *_above(crowd, around)]
+
+
 def with_crowd(
     vehicles: Motion | None, crowd: Crowd, around: Surroundings
 ) -> tuple[Motion, NDArray[np.bool_]]:
@@ -90,8 +96,16 @@ def with_crowd(
     else:
         every = [*before, *crowd_motions(crowd, around)]
         motion, counts = joined(every), [len(one.kind) for one in every]
+    above = _above(crowd, around)
+    motion, counts = joined([motion, *above]), [*counts, *(len(one.kind) for one in above)]
     followed = 0 if crowd.follows_vehicles else len(before)
     return motion, np.repeat(np.arange(len(counts)) == followed, counts)
+
+
+def _above(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of what flies."""
+    scene, clock, seed = around.scene, around.clock, around.seed
+    return air_motions(crowd.airborne, scene, clock, seed, around.vehicles)
 
 
 def _all_kept(
@@ -116,7 +130,12 @@ def _all_kept(
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
     indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
-    motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
+    table = numbers.view(SAMPLE)[..., 0]
+    lamps = np.zeros((0, 0), np.uint8)
+    if before and before[0].lamps.size:
+        lamps = np.zeros(table.shape, np.uint8)
+        lamps[:, : len(before[0].kind)] = before[0].lamps
+    motion = Motion(table, kind.astype(np.int32), around.clock.rate, 0.0, lamps)
     return motion, [*(len(one.kind) for one in before), *counts]
 
 

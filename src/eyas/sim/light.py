@@ -5,10 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Rule, rule_of, sampled
 from eyas.lanes import kernel
 from eyas.state.lighting import Lighting, LightState
-from eyas.world.config import LightConfig
+from eyas.trackers.wind import mean_wind
+from eyas.world.config import LightConfig, WorldWindConfig
 
 __all__ = ["LightChanges", "LightRules", "change_light"]
 
@@ -68,9 +70,17 @@ class LightChanges:
         config: The settings.
         weather: The weather's own light.
         changes: `Snapshot.light`; set here.
+        wind: The wind; None: there is none.
     """
 
-    def __init__(self, config: LightConfig, weather: Lighting, changes: LightState) -> None:
+    def __init__(
+        self,
+        config: LightConfig,
+        weather: Lighting,
+        changes: LightState,
+        wind: WorldWindConfig | None = None,
+    ) -> None:
+        self._wind = wind
         self._changes = changes
         changes.sky[:] = changes.sun[:] = 1.0
         changes.fog_density[:] = weather.fog_density
@@ -90,6 +100,13 @@ class LightChanges:
 
     def of(self, trackers: NDArray[np.integer]) -> LightState | None:
         """Return `Views.light` of trackers; None if the light of the weather is unchanged."""
-        if not self.rules.changes:
+        if not self.rules.changes and self._wind is None:
             return None
         return LightState(*(array.take(trackers) for array in self._changes))
+
+    def blow(self, tracker: int, key: EpisodeKey) -> None:
+        """Draw the wind of a tracker's episode."""
+        if self._wind is not None:
+            speed, along = mean_wind(self._wind.speed, self._wind.direction, key.stream("wind"))
+            self._changes.wind_x[tracker] = speed * along[0]
+            self._changes.wind_y[tracker] = speed * along[1]

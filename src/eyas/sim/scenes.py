@@ -4,6 +4,7 @@ of a season.
 
 import logging
 from collections.abc import Callable, Sequence
+from enum import Enum
 from functools import lru_cache, partial
 
 import numpy as np
@@ -29,6 +30,7 @@ from eyas.world.street.signals import lens_levels
 from eyas.world.weather import Season
 
 __all__ = [
+    "Lenses",
     "load_geometry",
     "load_network",
     "load_parts",
@@ -37,6 +39,17 @@ __all__ = [
     "load_textures",
     "paint",
 ]
+
+
+class Lenses(Enum):
+    """What is drawn of signals that change."""
+
+    NONE = 0
+    PLAIN = 1
+    """The lenses that shine."""
+    COVERING = 2
+    """These, and what hides an amber that does not, see `lens_levels`."""
+
 
 _LOG = logging.getLogger("eyas")
 
@@ -117,7 +130,12 @@ def load_solids(map_name: str, seed: int, season: Season) -> Solids:
 
 @lru_cache(maxsize=4)
 def load_geometry(
-    map_name: str, seed: int, season: Season, kinds: tuple[int, ...], *, signals: bool = False
+    map_name: str,
+    seed: int,
+    season: Season,
+    kinds: tuple[int, ...],
+    *,
+    lenses: Lenses = Lenses.NONE,
 ) -> Geometry:
     """Return the geometry of a scene and of the parts of moving objects, for the kernels.
 
@@ -126,14 +144,14 @@ def load_geometry(
         seed: Seed of the map.
         season: Season of the weather.
         kinds: Kinds of the moving objects, indices into `KINDS`.
-        signals: Whether the lights of signals are parts, too, the last ones.
+        lenses: Which lights of signals are parts, too, the last ones.
     """
     scene = load_scene(map_name, seed, season)
-    make = partial(_packed, scene, partial(load_parts, kinds), load_textures, signals=signals)
+    make = partial(_packed, scene, partial(load_parts, kinds), load_textures, lenses=lenses)
     origin = _origin(map_name, seed, season)
     if origin is None:
         return make()
-    inputs = (*origin, part_library, _chosen(kinds), build_textures, signals)
+    inputs = (*origin, part_library, _chosen(kinds), build_textures, lenses.value)
     return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
 
 
@@ -142,10 +160,10 @@ def _packed(
     parts: Callable[[], PartLibrary],
     textures: Callable[[], dict[str, NDArray[np.uint8]]],
     *,
-    signals: bool,
+    lenses: Lenses,
 ) -> Geometry:
     other_is_ready()  # which may be to `paint`
-    return build_geometry(scene, _with_lights(parts()) if signals else parts(), textures())
+    return build_geometry(scene, _with_lights(parts(), lenses), textures())
 
 
 def paint(kinds: Sequence[int]) -> None:
@@ -168,9 +186,11 @@ def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     return cached(Kind.PARTS, partial(part_library, chosen), chosen, of=PartLibrary)
 
 
-def _with_lights(parts: PartLibrary) -> PartLibrary:
+def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
     """Return a library with the lights of signals after its other parts."""
-    lenses = lens_levels()
+    if wanted is Lenses.NONE:
+        return parts
+    lenses = lens_levels(covers=wanted is Lenses.COVERING)
     lamps = parts.lamps or (False,) * len(parts.parts)
     return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
 

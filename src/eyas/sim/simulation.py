@@ -71,10 +71,13 @@ class Simulation:
         self.count = len(worlds.of)
         self.traffic = assets.traffic
         self.snapshot = Snapshot.create(self.count)
-        light = LightChanges(config.light, assets.lighting, self.snapshot.light)
+        wind = config.world.wind
+        light = LightChanges(config.light, assets.lighting, self.snapshot.light, wind)
         self._assets, self._worlds = assets, worlds
         self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
         sensors, seen, samplers = self._stepper.sensors, self._stepper.seen, self._stepper.samplers
+        if wind is not None:
+            samplers = [*samplers, light.blow]
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, samplers)
         view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
         self._present = self.view = view(seen)

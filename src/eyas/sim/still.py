@@ -2,13 +2,17 @@
 
 import numpy as np
 
+from eyas.lanes import interpreted
 from eyas.sim.assets import Assets
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Looks
 from eyas.targets.looks import LookSampler
+from eyas.traffic.lamps import shining
 
 __all__ = ["StillWorld"]
+
+_shining = interpreted(shining)
 
 
 class StillWorld:
@@ -34,6 +38,10 @@ class StillWorld:
         """Return the drawn parts of the actors at a time [s], one world."""
         movers = self.assets.rigs.draw_list(1)
         self.assets.rigs.pose(self.actors(time), self._looks, movers)
+        motion = self.assets.traffic.motion
+        if motion.lamps.size:
+            lit = [_shining(motion, actor, time) for actor in range(len(motion.kind))]
+            movers.lamps = np.array(lit, np.uint8)[None, self.assets.rigs.owner]
         signals = self.assets.signals
         return movers if signals is None else signals.added(movers, np.array([time]))
 

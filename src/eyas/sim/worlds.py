@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.lanes import interpreted
 from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
@@ -15,10 +16,13 @@ from eyas.state.snapshot import CameraState
 from eyas.targets.catalogue import KINDS
 from eyas.targets.kind import Colour, Looks
 from eyas.targets.looks import LookSampler
+from eyas.traffic.interpolation import sample_before
 
 __all__ = ["ALONE", "Worlds", "each_alone", "largest_world", "together"]
 
 Integers = NDArray[np.int64]
+
+_sample_before = interpreted(sample_before)
 
 
 ALONE = -1
@@ -82,7 +86,8 @@ class Worlds:
         )
         renderer, rigs = assets.renderer, assets.rigs
         reach = renderer.influence(rigs.reach(renderer.part_reach()))
-        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach)
+        wet = assets.lighting.spray > 0.0
+        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach, spray=wet)
 
     @property
     def models(self) -> NDArray[np.int32]:
@@ -161,6 +166,18 @@ class Worlds:
         actors = ActorState.create(1, self._assets.traffic.actors)
         self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
         return actors, self.looks.model[self.of[tracker]]
+
+    def lamps_around(self, tick: int) -> NDArray[np.uint8] | None:
+        """Return what the actors signal at a time, a `Lamp` each, shape (A,); None: nobody does.
+
+        Args:
+            tick: Time of a world in physics steps.
+        """
+        motion = self._assets.traffic.motion
+        if not motion.lamps.size:
+            return None
+        lamps: NDArray[np.uint8] = motion.lamps[_sample_before(motion, tick * PHYSICS_STEP)]
+        return lamps
 
     def draw_list(
         self,

@@ -1,6 +1,6 @@
 """Inputs and outputs of the renderer."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import IntEnum
 from typing import NamedTuple, Protocol
 
@@ -12,7 +12,7 @@ from eyas.state.lighting import LightState
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
-__all__ = ["DrawList", "DrawStage", "MovingParts", "PartLibrary", "Picture", "Renderer", "Views"]
+__all__ = ["NO_SPRAY", "DrawList", "DrawStage", "MovingParts", "PartLibrary", "Picture", "Renderer", "Views"]
 
 
 class DrawStage(IntEnum):
@@ -42,6 +42,10 @@ class PartLibrary:
     is the body of its trailer."""
 
 
+NO_SPRAY = np.zeros((0, 0, 8), np.float32)
+"""`DrawList.spray` where roads are dry."""
+
+
 @dataclass(slots=True)
 class DrawList:
     """Moving parts in W worlds, I slots per world."""
@@ -57,16 +61,30 @@ class DrawList:
     (W, I)."""
     object_class: NDArray[np.uint8]
     """`eyas.state.scene.ObjectClass` of each actor, shape (W, A)."""
+    lamps: NDArray[np.uint8] = field(default_factory=lambda: np.zeros((0, 0), np.uint8))
+    """Lamps that shine now, shape (W, I): bit k those of `Surface.TAIL_LAMP` + k; shape (W, 0) or
+    (0, 0) where no thing has any that come and go."""
+    spray: NDArray[np.float32] = field(default_factory=lambda: NO_SPRAY)
+    """Vehicles that throw up water: place on the road between the rear wheels [m], velocity to east
+    and north [m/s], half their width [m], a number of their own and 0, shape (W, ., 8); those that
+    stand, or rows of 0, throw up none. Shape (0, 0, 8) where roads are dry."""
 
     @classmethod
-    def create(cls, worlds: int, slots: int) -> "DrawList":
-        """Return a list of empty slots, for up to `slots` actors of class car."""
+    def create(cls, worlds: int, slots: int, *, lamps: bool = False) -> "DrawList":
+        """Return a list of empty slots, for up to `slots` actors of class car.
+
+        Args:
+            worlds: Number of worlds.
+            slots: Number of slots.
+            lamps: Whether things have lamps that come and go.
+        """
         return cls(
             part=np.full((worlds, slots), -1, np.int32),
             pose=np.zeros((worlds, slots, 3, 4), np.float32),
             colour=np.ones((worlds, slots, 3), np.float32),
             object_id=np.full((worlds, slots), -1, np.int32),
             object_class=np.full((worlds, slots), ObjectClass.CAR, np.uint8),
+            lamps=np.zeros((worlds, slots if lamps else 0), np.uint8),
         )
 
     def flat(self) -> "DrawList":
@@ -77,6 +95,7 @@ class DrawList:
             colour=self.colour.reshape(1, -1, 3),
             object_id=self.object_id.reshape(1, -1),
             object_class=self.object_class,
+            lamps=self.lamps.reshape(1, -1),
         )
 
     def first(self, worlds: int) -> "DrawList":
@@ -104,7 +123,10 @@ class Views:
     light: LightState | None = None
     """Changes of the light for each view; None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
-    """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
+    """Time at which what falls and what the wind moves is shown [s], shape (V,); None: nothing
+    falls, and the air is calm."""
+    falling: bool = True
+    """Whether flakes, drops and leaves are drawn at that time."""
     lens: NDArray[np.float64] | None = None
     """The numbers of the lens of each view, see `eyas.core.lens.Lens`, shape (V, 10); None: all
     are pinholes. Fields of view are then those of pinholes with the same focal lengths."""

@@ -90,6 +90,13 @@ class Lighting:
     """Unit vector from the middle of the moon's disc to its bright limb; 0: it is full."""
     moon_lit: float = 1.0
     """Share of its disc that is lit."""
+    windy: float = 0.0
+    """1: the wind around each tracker moves crowns and what falls (`world.wind`); 0: crowns are
+    still, and what falls drifts by itself."""
+    smoke: int = 0
+    """Number of plumes of smoke over buildings."""
+    spray: float = 0.0
+    """Water that fast vehicles throw up: 0 none, 1 as from a road under a film of water."""
 
 
 class LightState(NamedTuple):
@@ -101,8 +108,12 @@ class LightState(NamedTuple):
     """Factor on the sun, shape (N,)."""
     fog_density: NDArray[np.float32]
     """One over the visibility range [1/m], shape (N,)."""
+    wind_x: NDArray[np.float32]
+    """Velocity of the wind eastwards [m/s], shape (N,); used where `Lighting.windy` is 1."""
+    wind_y: NDArray[np.float32]
+    """The same northwards."""
 
     @classmethod
     def create(cls, count: int) -> "LightState":
-        """Return factors of 1, and a visibility range of 1 m."""
-        return cls(*np.ones((3, count), np.float32))
+        """Return factors of 1, a visibility range of 1 m, and calm air."""
+        return cls(*np.ones((3, count), np.float32), *np.zeros((2, count), np.float32))

@@ -39,6 +39,18 @@ class Surface(IntEnum):
     repeats every 8 m, whatever u and v: asphalt and, in alpha, the brightness of paint. u is 31 at
     the right edge of the line and 33 at the left one, and v has the same scale. Triangles without
     paint reach `MARGIN` farther."""
+    HILLSIDE = 10
+    """Grass, with dry patches, and with rock where it is steep."""
+    HEATH = 11
+    """Soil, with patches of dry grass and scrub."""
+    TAIL_LAMP = 12
+    """A `LAMP` of a vehicle that braking brightens, see `eyas.state.draw.DrawList.lamps`."""
+    HIGH_BRAKE_LAMP = 13
+    """One that shines only when it brakes."""
+    INDICATOR_LEFT = 14
+    """One that blinks before it goes left."""
+    INDICATOR_RIGHT = 15
+    """One that blinks before it goes right."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,13 @@
 """The motion of all actors: one table, independent of its source."""
 
 from collections.abc import Sequence
+from enum import IntFlag
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SAMPLE", "ActorState", "ActorView", "Motion", "joined"]
+__all__ = ["SAMPLE", "ActorState", "ActorView", "Lamp", "Motion", "joined"]
 
 SAMPLE: Final = np.dtype(
     [
@@ -37,6 +38,20 @@ sample [m]; present: 1 while the actor is in the world, else 0.
 """
 
 
+class Lamp(IntFlag):
+    """What a vehicle signals."""
+
+    BRAKE = 1
+    """Its brake lamps are lit."""
+    LEFT = 2
+    """It is going to go left: its indicators on the left blink."""
+    RIGHT = 4
+    """The same on the right."""
+
+
+_DARK: Final = np.zeros((0, 0), np.uint8)
+
+
 class Motion(NamedTuple):
     """Sampled motion of A actors, interpolated by kernels (`eyas.traffic.interpolation`)."""
 
@@ -48,6 +63,8 @@ class Motion(NamedTuple):
     """Samples per second [Hz]."""
     first_time: float
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
+    lamps: NDArray[np.uint8] = _DARK
+    """`Lamp` of each actor at each sample, shape (S, A), or (0, 0) where nobody signals."""
 
 
 class ActorState(NamedTuple):
@@ -126,9 +143,17 @@ def joined(motions: Sequence[Motion]) -> Motion:
                 "motions: samples, rate [Hz] and first time [s] are {} and {}; "
                 "allowed: the same in all".format(*times)
             )
+    lamps = _DARK
+    if any(motion.lamps.size for motion in motions):
+        own = [
+            motion.lamps if motion.lamps.size else np.zeros(motion.table.shape, np.uint8)
+            for motion in motions
+        ]
+        lamps = np.concatenate(own, axis=1)
     return Motion(
         table=np.concatenate([motion.table for motion in motions], axis=1),
         kind=np.concatenate([motion.kind for motion in motions]),
         rate=first.rate,
         first_time=first.first_time,
+        lamps=lamps,
     )

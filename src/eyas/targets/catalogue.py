@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.lanes.elementary.arrays import cos
 from eyas.state.scene import ObjectClass
+from eyas.targets.bird import BIRD
 from eyas.targets.habit import Habit
 from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section
@@ -114,5 +115,5 @@ def sections_of(model: int) -> tuple[Section, ...]:
     return kind.sections[kind.models.index(MODELS[model])] if kind.sections else ()
 
 
-for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS):
+for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS, BIRD):
     register(_kind)

@@ -18,11 +18,12 @@ _MANY = 4096
 
 
 class Slots(NamedTuple):
-    """The arrays of a `DrawList` that a kernel writes."""
+    """The arrays of a `DrawList` that a kernel writes; ids it reads."""
 
     part: NDArray[np.int32]
     pose: NDArray[np.float32]
     colour: NDArray[np.float32]
+    object_id: NDArray[np.int32]
 
 
 class ActorFrame(NamedTuple):
@@ -58,7 +59,7 @@ class PoseCall:
 
     def __call__(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig.pose`."""
-        given = (group, actors, looks, Slots(out.part, out.pose, out.colour))
+        given = (group, actors, looks, Slots(out.part, out.pose, out.colour, out.object_id))
         before = self._held
         held = tuple(map(Held.again, before, given)) if before else tuple(map(Held, given))
         if self._bound is None or not all(map(operator.is_, held, before)):

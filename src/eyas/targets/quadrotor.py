@@ -33,6 +33,9 @@ _TIP = 0.11
 _ACROSS, _LIFT = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([0.0, -0.004, 0.001, 0.005])
 """Corners of a section of a blade: aside, in half chords, and up [m]; it is pitched."""
 
+_MIDDLE = 0.055
+"""Height of its middle over its lowest point, where it is as an actor [m]."""
+
 _HULL = (
     (-0.105, 0.026, -0.030, 0.012),
     (-0.085, 0.042, -0.040, 0.030),
@@ -117,6 +120,7 @@ class QuadrotorRig:
         pose[..., 0, 0], pose[..., 1, 1], pose[..., 2, 2] = cosine, cosine, 1.0
         pose[..., 0, 1], pose[..., 1, 0] = -sine, sine
         pose[..., 3] = actors.position[:, actor]
+        pose[..., 2, 3] += _MIDDLE
         out.part[:, slot] = np.where(present, group.first_part, -1)
         out.pose[:, slot], out.colour[:, slot] = pose, looks.colour[:, actor]
 
@@ -129,7 +133,7 @@ QUADROTOR = Kind(
             typename="Quadrotor",
             kind="quadrotor",
             size=(0.405, 0.445, 0.11),  # with its rotors, as a DJI Mavic 2
-            rise=0.0,  # its reference point is its middle
+            rise=_MIDDLE,
             words=("a grey drone", "a grey drone (Quadrotor)"),
             motion="flies",
             speed=0.0,

@@ -29,6 +29,7 @@ class Rigs:
         kinds: The kinds of the actors, in the order of their parts in the library.
         first_slot: First slot of each actor, and the number of all slots, shape (A + 1,).
         casts: The actors of each of these kinds.
+        owner: Actor of each of all slots, shape (I,).
 
     Args:
         kind: Kind of each actor, index into `KINDS`, shape (A,).
@@ -40,7 +41,7 @@ class Rigs:
         self.kinds: tuple[Kind, ...] = tuple(KINDS[k] for k in present)
         slots = np.array([rigs[k].slots for k in kind.tolist()], np.int64)
         self.first_slot: NDArray[np.int64] = np.concatenate([[0], np.cumsum(slots)])
-        self._owner = np.repeat(np.arange(len(kind)), slots)
+        self.owner: NDArray[np.int64] = np.repeat(np.arange(len(kind)), slots)
         classes = [KINDS[k].object_class for k in kind.tolist()]
         self._object_class = np.array(classes, np.uint8)
         self.casts: list[Cast] = []
@@ -53,14 +54,14 @@ class Rigs:
 
     def draw_list(self, worlds: int) -> DrawList:
         """Return an empty draw list for all actors of some worlds."""
-        empty = DrawList.create(worlds, len(self._owner))
-        empty.object_id[:] = ACTOR_OBJECT + self._owner
+        empty = DrawList.create(worlds, len(self.owner))
+        empty.object_id[:] = ACTOR_OBJECT + self.owner
         empty.object_class = np.tile(self._object_class, (worlds, 1))
         return empty
 
-    def short_list(self, worlds: int, slots: int) -> DrawList:
-        """Return an empty draw list for some of the actors of some worlds."""
-        empty = DrawList.create(worlds, slots)
+    def short_list(self, worlds: int, slots: int, *, lamps: bool = False) -> DrawList:
+        """Return an empty list for some of the actors of some worlds, see `DrawList.create`."""
+        empty = DrawList.create(worlds, slots, lamps=lamps)
         empty.object_class = np.tile(self._object_class, (worlds, 1))
         return empty
 

@@ -19,7 +19,7 @@ from eyas.core.variation import Variation, sample
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp, power
 
-__all__ = ["WindMemory", "begin_wind", "blow"]
+__all__ = ["WindMemory", "begin_wind", "blow", "mean_wind"]
 
 _FOOT = 0.3048
 """[m]"""
@@ -56,6 +56,20 @@ class WindMemory(NamedTuple):
         return cls(np.zeros(pair), np.zeros(pair), filters, np.ones(count, np.uint64))
 
 
+def mean_wind(
+    speed: Variation, direction: Variation, rng: np.random.Generator
+) -> tuple[float, tuple[float, float]]:
+    """Return speed [m/s] and direction, cosine and sine from east, of an episode's wind.
+
+    Args:
+        speed: Of the mean wind [m/s].
+        direction: Towards which it blows, counter-clockwise from east [rad].
+        rng: The episode's random numbers for the wind: its first ones.
+    """
+    angle = sample(direction, rng)
+    return sample(speed, rng), (float(exact.cos(angle)), float(exact.sin(angle)))
+
+
 def begin_wind(
     memory: WindMemory, n: int, speed: Variation, direction: Variation, key: EpisodeKey
 ) -> None:
@@ -69,9 +83,8 @@ def begin_wind(
         key: The episode.
     """
     rng = key.stream("wind")
-    angle = sample(direction, rng)
-    memory.along[n] = exact.cos(angle), exact.sin(angle)
-    memory.mean[n] = sample(speed, rng) * memory.along[n]
+    mean, memory.along[n] = mean_wind(speed, direction, rng)
+    memory.mean[n] = mean * memory.along[n]
     memory.random[n] = rng.integers(1, 2**63)
     first = exact.normal(rng, size=5)
     # Stationary: the first filter of a pair has the variance 1/2, the second 1/4, both together

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
-__all__ = ["Demand", "Drivers", "Mix", "Source", "TrafficConfig", "VehicleType"]
+__all__ = ["Demand", "Drivers", "Lamps", "Mix", "Signals", "Source", "TrafficConfig", "VehicleType"]
 
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
@@ -77,6 +77,24 @@ class Drivers(StrEnum):
     """Drivers of cars want to be lost: they brake, dash, weave, turn back, and hide."""
 
 
+class Lamps(StrEnum):
+    """What vehicles signal with their lamps."""
+
+    DARK = "dark"
+    """Nothing; head and tail lamps shine when it is dark."""
+    WORKING = "working"
+    """Brake lamps are lit, indicators blink, by day too."""
+
+
+class Signals(StrEnum):
+    """What the traffic lights of our own maps show; those of imported towns always work."""
+
+    AMBER = "amber"
+    """Amber, and nobody heeds them."""
+    WORKING = "working"
+    """Red, amber and green, which drivers obey."""
+
+
 class TrafficConfig(Config):
     """Settings of the traffic that SUMO simulates; `traffic=live` is short for its `source`."""
 
@@ -114,6 +132,10 @@ class TrafficConfig(Config):
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
     """Body colour of every car, RGB 0 to 1; None: sampled for each car."""
+    signals: Signals = Signals.AMBER
+    """What the traffic lights of our own maps show; those of imported towns always work."""
+    lamps: Lamps = Lamps.DARK
+    """What vehicles signal with brake lamps and indicators."""
     recording: str | None = None
     """Path of a recording to replay; None: a shipped or cached recording that fits."""
 

@@ -17,7 +17,7 @@ from eyas.core.program import code_of
 from eyas.core.rng import TEST_SEEDS
 from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Mix, Signals, TrafficConfig
 from eyas.traffic.cover import Cover, cover_hash
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
@@ -105,11 +105,9 @@ def find_file(
         MissingExtraError: No recording fits, and SUMO is not installed.
     """
     if config.recording is not None:
-        path = user_path(config.recording)
-        named = RecordingFile.read(path)
-        origin = named.outline().provenance
-        check_map(origin, graph.map_name, graph.seed, graph_hash(graph), str(path))
-        return named
+        return _named(user_path(config.recording), graph, config)
+    if graph.finished:  # has its own signals, which always work
+        config = config.model_copy(update={"signals": Signals.AMBER})
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(_lasting(config, trackers), seed, trackers)
     if duration is None:
@@ -139,6 +137,20 @@ def find_file(
     if not config.update_routes:
         reason = f"although traffic.update_routes (Sumo_Params.rou_update) is false, {reason}"
     return _new(graph, wanted, duration, known, reason)
+
+
+def _named(path: Path, graph: RoadGraph, config: TrafficConfig) -> RecordingFile:
+    """Return the file of a recording that the user has named."""
+    named = RecordingFile.read(path)
+    origin = named.outline().provenance
+    check_map(origin, graph.map_name, graph.seed, graph_hash(graph), str(path))
+    obeyed = graph.finished or origin.config.signals is Signals.WORKING
+    if config.signals is Signals.WORKING and not obeyed:
+        raise DataFileError(
+            f"{path}: its drivers knew no traffic lights; allowed with traffic.signals='working': "
+            "a recording made with it (eyas traffic record)"
+        )
+    return named
 
 
 def find_recording(

@@ -56,6 +56,7 @@ class LiveSumo:
         duration: Last time [s].
         others: Motions of those who are in the world besides; only vehicles are targets.
         cover: The stretches of lanes in which drivers hide.
+        lamps: Whether they signal, as SUMO has it.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -74,6 +75,7 @@ class LiveSumo:
         *,
         others: Sequence[Motion] = (),
         cover: Cover = (),
+        lamps: bool = False,
     ) -> None:
         _check_alone()
         fleet = fleet_of(config, WARM_UP + duration)
@@ -85,6 +87,8 @@ class LiveSumo:
         kinds = np.array([kind(name) for name in self._run.actors], np.int32)
         # The system gives memory only to what is written.
         empty = Motion(np.zeros((samples, len(kinds)), SAMPLE), kinds, float(RATE), 0.0)
+        if lamps:
+            empty = empty._replace(lamps=np.zeros(empty.table.shape, np.uint8))
         self.motion: Final = joined([empty, *others]) if others else empty
         self._vehicles = len(kinds)
         self.reactions: Final[list[Reaction]] = []
@@ -160,6 +164,8 @@ class LiveSumo:
             for react in self.reactions:
                 react(self._run, tracks.driven / RATE)
             self._run.advance()
+            if self.motion.lamps.size:
+                self._run.read_lamps(self.motion.lamps[tracks.driven])
             tracks.append()
         rows = tracks.smooth()
         self.motion.table[rows, : self._vehicles] = table_of(tracks.rows(rows), self._terrain)

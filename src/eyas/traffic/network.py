@@ -3,6 +3,7 @@
 import hashlib
 import subprocess
 from collections import Counter
+from collections.abc import Collection, Iterable
 from xml.etree import ElementTree
 
 import numpy as np
@@ -13,7 +14,15 @@ from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
 from eyas.traffic.net_file import SumoNet, joined, points_of, road_network
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
-__all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml", "without_comments"]
+__all__ = [
+    "OPTIONS",
+    "STRAIGHT_FIRST",
+    "build_network",
+    "crossings",
+    "graph_hash",
+    "network_xml",
+    "without_comments",
+]
 
 OPTIONS = (
     # Keep the world coordinates of the map.
@@ -30,6 +39,17 @@ OPTIONS = (
     *("--precision", "3"),
 )
 """netconvert's options, except its files."""
+
+STRAIGHT_FIRST = "slrtLR"
+"""What a light shows is for those who drive on in the first of these directions that there is."""
+
+_SIGNALS = (
+    # All who come along a street have green together, so that one light tells all of them.
+    *("--tls.left-green.time", "0"),
+    *("--tls.cycle.time", "60"),
+    *("--tls.allred.time", "2"),
+)
+"""The same for signals at junctions, if they are to work."""
 
 
 def graph_hash(graph: RoadGraph) -> str:
@@ -77,12 +97,15 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
     )
 
 
-def network_xml(graph: RoadGraph, *, turnarounds: bool = False) -> bytes:
+def network_xml(graph: RoadGraph, *, turnarounds: bool = False, signals: bool = False) -> bytes:
     """Return SUMO's network file of a graph; equal graphs give equal bytes.
+
+    Lanes and junctions do not depend on the options.
 
     Args:
         graph: The roads.
-        turnarounds: Whether one can turn round at junctions. Lanes and junctions are the same.
+        turnarounds: Whether one can turn round at junctions.
+        signals: Whether there are traffic lights where at least three roads meet.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -100,11 +123,13 @@ def network_xml(graph: RoadGraph, *, turnarounds: bool = False) -> bytes:
     netconvert = sumo_binary("netconvert")
     with scratch() as folder:
         nodes, edges, out = (folder / name for name in ("nod.xml", "edg.xml", "net.xml"))
-        nodes.write_text(_node_xml(graph.nodes), encoding="utf-8")
+        lit = crossings((edge.start, edge.end) for edge in graph.edges) if signals else set()
+        nodes.write_text(_node_xml(graph.nodes, lit), encoding="utf-8")
         edges.write_text(_edge_xml(graph.edges), encoding="utf-8")
         files = ("-n", str(nodes), "-e", str(edges), "-o", str(out))
         banned = OPTIONS.index("--no-turnarounds")
         options = OPTIONS[:banned] + OPTIONS[banned + 2 :] if turnarounds else OPTIONS
+        options = (*options, *_SIGNALS) if signals else options
         done = subprocess.run(
             [str(netconvert), *files, *options],
             env=sumo_environment(),
@@ -115,13 +140,40 @@ def network_xml(graph: RoadGraph, *, turnarounds: bool = False) -> bytes:
         if done.returncode != 0:
             reason = (done.stderr.strip().splitlines() or ["no message"])[0]
             raise ConfigError(f"roads of '{graph.map_name}': netconvert refuses them: {reason}")
-        return without_comments(out.read_bytes())
+        return without_comments(out.read_bytes(), agreed=signals)
 
 
-def without_comments(xml: bytes) -> bytes:
-    """Remove the comment with the time and temporary folder; the parser skips comments."""
+def without_comments(xml: bytes, *, agreed: bool = False) -> bytes:
+    """Remove the comment with the time and temporary folder; the parser skips comments.
+
+    Args:
+        xml: SUMO's network file.
+        agreed: Whether all who come along a street stand at red together. Else netconvert gives
+            those green who cross nobody's way, as with an arrow to the right.
+    """
     root = ElementTree.fromstring(xml)
+    if agreed:
+        _agree(root)
     return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"
+
+
+def _agree(root: ElementTree.Element) -> None:
+    """Let programs show all links of a street red or amber when they do so straight on."""
+    links: dict[tuple[str, str], list[tuple[int, int]]] = {}
+    for one in root.iter("connection"):
+        if light := one.get("tl"):
+            place = STRAIGHT_FIRST.find(one.attrib["dir"]) % (len(STRAIGHT_FIRST) + 1)
+            own = links.setdefault((light, one.attrib["from"]), [])
+            own.append((place, int(one.attrib["linkIndex"])))
+    for logic in root.iter("tlLogic"):
+        streets = [sorted(own) for (light, _), own in links.items() if light == logic.get("id")]
+        for phase in logic.iter("phase"):
+            state = list(phase.attrib["state"])
+            for (_, first), *others in streets:
+                if state[first] not in "Gg":
+                    for _, link in others:
+                        state[link] = state[first]
+            phase.set("state", "".join(state))
 
 
 _ESCAPED = str.maketrans(
@@ -142,10 +194,20 @@ def _quoted(name: str) -> str:
     return f'"{name.translate(_ESCAPED)}"'
 
 
-def _node_xml(nodes: tuple[RoadNode, ...]) -> str:
+def crossings(roads: Iterable[tuple[str, str]]) -> set[str]:
+    """Return the nodes at which at least three roads meet, of the ends of all edges."""
+    beside: dict[str, set[str]] = {}
+    for start, end in roads:
+        beside.setdefault(start, set()).add(end)
+        beside.setdefault(end, set()).add(start)
+    return {node for node, others in beside.items() if len(others) >= 3}
+
+
+def _node_xml(nodes: tuple[RoadNode, ...], lit: Collection[str] = ()) -> str:
+    kinds = ["traffic_light" if node.name in lit else "priority" for node in nodes]
     lines = [
-        f'<node id={_quoted(node.name)} x="{node.x:.3f}" y="{node.y:.3f}" type="priority"/>'
-        for node in nodes
+        f'<node id={_quoted(node.name)} x="{node.x:.3f}" y="{node.y:.3f}" type="{kind}"/>'
+        for node, kind in zip(nodes, kinds, strict=True)
     ]
     return "\n".join(["<nodes>", *lines, "</nodes>"])
 

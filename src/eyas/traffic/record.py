@@ -6,7 +6,7 @@ from importlib.metadata import version
 import numpy as np
 
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Demand, Drivers, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Signals, TrafficConfig
 from eyas.traffic.cover import Cover, cover_hash
 from eyas.traffic.fleet import fleet_of, simplest
 from eyas.traffic.network import graph_hash, network_xml
@@ -68,12 +68,17 @@ def record(  # noqa: PLR0913  # everything a recording depends on
 
 
 def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
-    """Return SUMO's network file of a map's roads; who evades may turn round at junctions.
+    """Return SUMO's network file of a map's roads; who evades may turn round at junctions, and
+    there are traffic lights if they are to work.
 
     Raises:
         MissingExtraError: SUMO is not installed.
     """
-    return network_xml(graph, turnarounds=config.drivers is Drivers.EVADING)
+    return network_xml(
+        graph,
+        turnarounds=config.drivers is Drivers.EVADING,
+        signals=config.signals is Signals.WORKING,
+    )
 
 
 def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConfig:
@@ -85,7 +90,8 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
         trackers: Number of trackers in a world, which determines the least size of a group.
     """
     seen: dict[str, object] = {
-        name: getattr(config, name) for name in ("demand", "drivers", "max_vehicles", "max_speed")
+        name: getattr(config, name)
+        for name in ("demand", "drivers", "signals", "max_vehicles", "max_speed")
     }
     seen |= {
         "vehicle_type": simplest(config.vehicle_type),

@@ -10,12 +10,14 @@ from eyas.core.cache.folder import Kind
 from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 from eyas.state.motion import SAMPLE, Motion
+from eyas.state.roads import RoadNetwork
 from eyas.state.terrain import Terrain, relief_at, slope_at
+from eyas.traffic.lamps import lamps_of
 from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import RecordingFile
 from eyas.traffic.smoothing import Tracks, smooth
 
-__all__ = ["kept_motion", "recorded_motion", "table_of"]
+__all__ = ["kept_lamps", "kept_motion", "recorded_motion", "table_of"]
 
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
@@ -31,6 +33,22 @@ def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) 
         of=NDArray[np.float32],
     )
     return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
+
+
+def kept_lamps(file: RecordingFile, motion: Motion, network: RoadNetwork) -> NDArray[np.uint8]:
+    """Return `Motion.lamps` of the motion of a file, kept in the cache.
+
+    Args:
+        file: The file of the recording.
+        motion: Its motion.
+        network: The roads of its map.
+    """
+    return cached(
+        Kind.MOTION,
+        partial(lamps_of, motion.table, motion.rate, network),
+        (np.frombuffer(file.data, np.uint8), network),
+        of=NDArray[np.uint8],
+    )
 
 
 def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:

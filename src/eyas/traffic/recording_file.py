@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from eyas.core.config import shown, validated
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited, write_atomic
-from eyas.traffic.config import Mix, TrafficConfig, VehicleType
+from eyas.traffic.config import Mix, Signals, TrafficConfig, VehicleType
 from eyas.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
@@ -125,7 +125,7 @@ def to_bytes(recording: Recording) -> bytes:
         "shape": recording.present.shape,
         "provenance": {
             **asdict(recording.provenance),
-            "config": recording.provenance.config.model_dump(mode="json"),
+            "config": _told(recording.provenance.config),
         },
     }
     position = quantised(recording.position, POSITION_UNIT).transpose(1, 2, 0)
@@ -140,6 +140,12 @@ def to_bytes(recording: Recording) -> bytes:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **arrays)
     return buffer.getvalue()
+
+
+def _told(config: TrafficConfig) -> dict[str, Any]:
+    """Return settings for the header; those that came later only where they are not as usual."""
+    usual = {"lamps", *(("signals",) if config.signals is Signals.AMBER else ())}
+    return config.model_dump(mode="json", exclude=usual)
 
 
 def from_bytes(data: bytes, source: str) -> Recording:

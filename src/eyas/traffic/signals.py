@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.traffic.net_file import NetConnection, NetProgram, SumoNet
+from eyas.traffic.network import STRAIGHT_FIRST
 from eyas.traffic.record import WARM_UP
 
 __all__ = ["Aspect", "SignalPlan", "signal_plan", "walk_plan"]
@@ -34,9 +35,6 @@ _ASPECTS: Final = {
     "O": Aspect.DARK,
 }
 """By the letters of SUMO's phases."""
-
-_DIRECTIONS: Final = "slrtLR"
-"""What a light shows is for those who drive on in the first of these directions that there is."""
 
 
 class SignalPlan(NamedTuple):
@@ -127,7 +125,7 @@ def _plan(
 
 
 def _rank(one: NetConnection) -> tuple[int, int]:
-    return _DIRECTIONS.find(one.direction) % (len(_DIRECTIONS) + 1), one.link
+    return STRAIGHT_FIRST.find(one.direction) % (len(STRAIGHT_FIRST) + 1), one.link
 
 
 def _phases(logic: NetProgram, index: int) -> list[tuple[float, Aspect]]:

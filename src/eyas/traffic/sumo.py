@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.core.scratch import scratch
+from eyas.state.motion import Lamp
 from eyas.traffic.config import Demand, Drivers, TrafficConfig, VehicleType
 from eyas.traffic.cover import Cover
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
@@ -40,6 +41,9 @@ _OPTIONS = (
     *("--no-step-log", "true"),
     *("--duration-log.disable", "true"),
 )
+
+_SIGNALS = {1: Lamp.RIGHT, 2: Lamp.LEFT, 8: Lamp.BRAKE}
+"""By the bits of SUMO's `vehicle.getSignals`."""
 
 _IMPATIENCE = {
     Demand.KEEP_ALIVE: "",
@@ -190,6 +194,13 @@ class SumoRun:
             result.position[sample, actor] = place
             result.yaw[sample, actor] = yaw
             result.present[sample, actor] = True
+
+    def read_lamps(self, lamps: NDArray[np.uint8]) -> None:
+        """Write what the vehicles signal now, a `Lamp` for each actor, shape (A,)."""
+        for vehicle, actor in self._slots.taken.items():
+            told = self.sumo.vehicle.getSignals(str(vehicle))
+            lit = [lamp for bit, lamp in _SIGNALS.items() if told & bit]
+            lamps[actor] = sum(lit)
 
     def vehicle_of(self, actor: int) -> str | None:
         """Return SUMO's name of the vehicle that an actor represents now; None if absent."""

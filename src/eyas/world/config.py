@@ -8,10 +8,19 @@ from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 
-__all__ = ["LightConfig", "WorldConfig"]
+__all__ = ["LightConfig", "WorldConfig", "WorldWindConfig"]
 
 Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
 Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
+
+
+class WorldWindConfig(Config):
+    """The wind, the same everywhere but for its gusts."""
+
+    speed: Annotated[Variation, AfterValidator(within(0.0, 30.0))] = 6.0
+    """Mean speed [m/s]; drawn for each episode."""
+    direction: Annotated[Variation, AfterValidator(within(-6.3, 6.3))] = 0.0
+    """Direction towards which it blows, counter-clockwise from east [rad]; drawn likewise."""
 
 
 class WorldConfig(Config):
@@ -28,6 +37,13 @@ class WorldConfig(Config):
     """Time of day, which moves the sun and its shadows; None: the weather's own sun or moon."""
     precipitation: Annotated[float, Field(ge=0.0, le=4.0)] = 1.0
     """How much snow, rain or leaves fall, times as much as the weather's own."""
+    wind: WorldWindConfig | None = None
+    """Wind that sways plants and carries what falls; a flown drone with a `drag_area` feels it,
+    too. None: plants are still, and what falls drifts by itself."""
+    smoke: Annotated[int, Field(ge=0, le=16)] = 0
+    """Number of plumes of smoke, which rise over buildings chosen by `seed`."""
+    spray: bool = False
+    """Whether fast vehicles throw up water where roads are wet."""
     moon: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     """Age of the moon as a share of a month, 0 new, 0.25 half, 0.5 full: then moon and stars stand
     where the hour has them, and a night is as dark as its moon. None: always full and high."""

@@ -96,7 +96,7 @@ CLEAR_DAY = Lighting(
     sun_colour=(1.02, 0.96, 0.84),
     zenith_colour=(0.042, 0.130, 0.42),
     horizon_colour=(0.45, 0.64, 0.94),
-    ambient_up=(0.31, 0.35, 0.43),
+    ambient_up=(0.325, 0.35, 0.395),
     ambient_down=(0.16, 0.155, 0.13),
     fog_colour=(0.47, 0.61, 0.82),
     # Clear air that tints the far edge of the map slightly blue.

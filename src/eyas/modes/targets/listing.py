@@ -9,6 +9,7 @@ from rich.table import Table
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
+from eyas.targets.bird import BIRD
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
 from eyas.targets.kind import Kind, Looks
 from eyas.targets.quadrotor import QUADROTOR
@@ -39,7 +40,7 @@ def entries() -> list[ModelRow]:
     """Return a line for each model that can be a target, in the order of `MODELS`."""
     lines = []
     for kind in KINDS:
-        if kind is QUADROTOR:  # how trackers see each other; none can be followed
+        if kind in (QUADROTOR, BIRD):  # which fly about; none can be followed
             continue
         levels = kind.rig().part_levels()
         for model in models_of(kind_index(kind.name)):

@@ -32,6 +32,8 @@ class TargetPose:
     """[m/s]"""
     yaw_rate: float = 0.0
     """[rad/s]"""
+    individual: int = 0
+    """Which of the vehicles of its model: they differ in details."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,10 +97,12 @@ class TargetStage:
             actors.position[v] = self._spot + pose.travelled * self._ahead
             actors.travelled[v], actors.speed[v] = pose.travelled, pose.speed
             actors.yaw_rate[v] = pose.yaw_rate
+            movers.object_id[v] += pose.individual
         models = np.array([MODELS.index(KINDS[kind].models[0]) for kind in self._kinds], np.int32)
         models[actor] = model
         colours = np.tile(np.array(colour, np.float32), (count, kinds, 1))
         self._rigs.pose(actors, Looks(np.tile(models, (count, 1)), colours), movers)
+        movers.object_id[:] = self._rigs.draw_list(1).object_id
         picture = Picture.create(count, *size)
         middles = actors.position[:, actor] + kind_of(model).ahead * self._ahead
         middles[:, 2] += MODELS[model].size[2] / 2

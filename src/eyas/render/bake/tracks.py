@@ -38,6 +38,9 @@ _NEAR, _FAR = 0.9, 2.4
 """Lengths over which the map is blurred, and blurred again for distant views: slightly more than a
 lane's tracks [m]."""
 
+_STREAK = 4.0, 0.6
+"""Length and width of the streaks of slush that wheels draw out along a lane [m]."""
+
 _ROOF = (3.0, 12.0)
 """Least and largest height of what keeps the snow off the road below it [m]."""
 
@@ -83,10 +86,17 @@ def track_map(scene: Scene) -> TrackMap:
     strength = np.repeat([much for _, much in ways], [len(points) for points, _ in stations])
     # Paths sway a little and their wear varies; neighbouring points agree.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
-    for aside in np.arange(-_HALF, _HALF + _STEP, _STEP):
-        cell = ((middle + aside * left - low) / texel).astype(int)
+    along = np.concatenate([_STEP * np.arange(len(points)) for points, _ in stations])
+    way = np.repeat(np.arange(len(ways)), [len(points) for points, _ in stations])
+    for across in np.arange(-_HALF, _HALF + _STEP, _STEP):
+        cell = ((middle + across * left - low) / texel).astype(int)
         inside = ((cell >= 0) & (cell < size)).all(axis=1)
-        much = strength * (0.86 + 0.16 * uneven) * _profile(aside + 0.1 * sway)
+        # Of the texel's own centre: the lattice would show as rungs across the tracks.
+        away = low + (cell + 0.5) * texel - middle
+        aside = (away * left).sum(axis=1)
+        onward = along + away[:, 0] * left[:, 1] - away[:, 1] * left[:, 0]
+        much = strength * (0.86 + 0.16 * uneven + 0.3 * _streaks(way, onward, aside))
+        much *= _profile(aside + 0.1 * sway)
         np.maximum.at(worn, (cell[inside, 1], cell[inside, 0]), much[inside].astype(np.float32))
     worn = _sheltered(scene, worn, low, texel)
     near = blurred(worn, max(round(_NEAR / texel), 1))
@@ -119,7 +129,7 @@ def _profile(aside: Line) -> Line:
     worn = 0.42 * np.clip((_HALF - np.abs(aside)) / 0.7, 0.0, 1.0)
     for other, much in _OTHERS:
         off = np.abs(np.abs(aside + other) - TRACK_ASIDE)
-        worn = np.maximum(worn, much * np.clip((0.5 - off) / 0.26, 0.0, 1.0))
+        worn = np.maximum(worn, much * np.clip((0.56 - off) / 0.4, 0.0, 1.0))
     return worn
 
 
@@ -188,6 +198,27 @@ def _waves(points: Line, length: float, seed: int) -> Line:
     number = 2 * np.pi / (length * rng.uniform(0.7, 1.6, 6))
     way = np.stack([exact.cos(angle), exact.sin(angle)]) * number
     return np.asarray(exact.sin(exact.product(points, way) + phase).sum(axis=1) / 2.5)
+
+
+def _streaks(way: NDArray[np.int64], along: Line, aside: Line) -> Line:
+    """Return noise that is drawn out along lanes, -1 to 1: value noise of lanes' own coordinates.
+
+    Args:
+        way: Number of each point's lane or path, shape (K,).
+        along: Its place along it [m], shape (K,).
+        aside: Its distance from the middle [m], shape (K,).
+    """
+    length, width = _STREAK
+    table = np.random.default_rng(3).uniform(-1.0, 1.0, (256, 256))
+    row, column = along / length, aside / width
+    i, j = np.floor(row).astype(np.int64), np.floor(column).astype(np.int64)
+    u, v = row - i, column - j
+    near, far = (
+        (1.0 - v) * table[each % 256, (7 * way + j) % 256]
+        + v * table[each % 256, (7 * way + j + 1) % 256]
+        for each in (i, i + 1)
+    )
+    return np.asarray((1.0 - u) * near + u * far)
 
 
 def blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:

@@ -28,6 +28,7 @@ from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.sunlight import sunlit
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.flakes import let_flakes_fall
+from eyas.render.kernels.sky.plumes import draw_plumes
 from eyas.render.kernels.sky.radiance import draw_backdrop
 from eyas.render.kernels.surface.band import shade_band
 from eyas.render.kernels.surface.normals import write_normals
@@ -35,6 +36,7 @@ from eyas.render.kernels.visibility.measure import measure_actors, measure_subje
 from eyas.render.kernels.visibility.outputs import write_classes, write_depth, write_objects
 from eyas.render.kernels.visibility.passes import draw_scene
 from eyas.render.kernels.visibility.transform import view_of
+from eyas.render.kernels.wind import in_wind
 from eyas.state.draw import DrawStage
 from eyas.state.lighting import LightState
 
@@ -136,6 +138,9 @@ def _draw_through_lens(
 def _light_at(light: Light, job: Job, number: int) -> Illumination:
     """Return light and air of a view, where it is."""
     here = view_light(light.weather, job.light, number)
+    if light.weather.air.windy > f4(0.0) and len(job.instant) > 0:
+        wind_x, wind_y = job.light.wind_x[number], job.light.wind_y[number]
+        here = in_wind(here, wind_x, wind_y, job.instant[number])
     if light.weather.air.glare > f4(0.0):
         here = with_veil(light, here, job.eye[number])
     return here
@@ -192,6 +197,8 @@ def _write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     draw_backdrop(shown, canvas)
     shade_band(shown, canvas)
     if len(job.instant) > 0:
+        draw_plumes(shown, job.instant[number], canvas)
+    if task.falls == 1:
         let_flakes_fall(shown, job.instant[number], canvas)
 
 
@@ -226,6 +233,7 @@ def band_of(
         scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
         scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
         scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
+        scratch.leaning[worker],
     )  # fmt: skip
 
 
@@ -260,7 +268,7 @@ def bent_band(
         face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,
         i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,
         scratch.bent_shade[worker, :rows], face.drawn, face.mesh, face.tiles, face.order,
-        face.triangle, face.polygon, face.span,
+        face.triangle, face.polygon, face.span, face.leaning,
     )  # fmt: skip
 
 
@@ -270,14 +278,16 @@ def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illu
     x, y, z = f4(eye[0]), f4(eye[1]), f4(eye[2])
     air = lit.air
     return Illumination(
-        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.fog,
-        lit.fog_density,
+        lit.sun, lit.sun_colour, lit.zenith, lit.horizon, lit.above, lit.below, lit.tinge,
+        lit.fog, lit.fog_density,
         Air(
             air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows, air.clouds,
             air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
             air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.stars, air.star_cosine,
             air.star_sine, air.moon_lit, air.limb_x, air.limb_y, air.limb_z, air.longest_shadow,
+            air.windy, air.spray,
         ),
+        lit.wind,
     )  # fmt: skip
 
 
@@ -301,7 +311,9 @@ def view_light(weather: Illumination, changes: LightState, view: int) -> Illumin
         _scaled(sky, weather.horizon),
         _scaled(sky, weather.above),
         _scaled(f4(0.5) * (sky + sun), weather.below),
+        _scaled(f4(0.5) * (sky + sun), weather.tinge),
         _scaled(sky, weather.fog),
         changes.fog_density[view],
         weather.air,
+        weather.wind,
     )

@@ -14,6 +14,8 @@ from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
 from eyas.render.bake.puddles import hollows, no_hollows
 from eyas.render.bake.shadows import ShadowMap
+from eyas.render.bake.smoke import chimneys
+from eyas.render.bake.sway import calm, sway_of
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.bundles import (
     TILE,
@@ -24,7 +26,9 @@ from eyas.render.kernels.bundles import (
     LampFrame,
     Light,
     MapFrame,
+    Wind,
 )
+from eyas.render.kernels.light.ambient import BOUNCED
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.state.lighting import Horizon, Lighting
 from eyas.state.scene import Lamps, Scene
@@ -33,6 +37,12 @@ __all__ = ["Baked", "build_light", "encoded_tone", "lamp_grid", "tile_starts", "
 
 CELL = 8.0
 """Side of a square of the grid of street lamps [m]."""
+
+_WALLS = np.array((1.03, 1.0, 0.95))
+"""Colour of walls and pavements on average, whose brightness does not matter here."""
+
+_LUMA = np.array((0.2126, 0.7152, 0.0722))
+"""Weights of linear red, green and blue in luminance (ITU-R BT.709)."""
 
 REACH = 32.0
 """Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it."""
@@ -86,6 +96,8 @@ def build_light(scene: Scene, lighting: Lighting, baked: Baked, geometry: Geomet
         tone=tone_table(),
         ground=_direction(far_ground(geometry)),
         clouds=clouds,
+        smoke=chimneys(scene, lighting.smoke),
+        sway=sway_of(scene, geometry) if lighting.windy > 0 else calm(),
         hills=hills,
     )
 
@@ -133,6 +145,8 @@ def _weather(
         limb_y=_float(lighting.moon_limb[1]),
         limb_z=_float(lighting.moon_limb[2]),
         longest_shadow=_float(lighting.longest_shadow),
+        windy=_float(lighting.windy),
+        spray=_float(lighting.spray),
     )
     return Illumination(
         sun=_direction(sun),
@@ -141,10 +155,24 @@ def _weather(
         horizon=_direction(lighting.horizon_colour),
         above=_direction(lighting.ambient_up),
         below=_direction(lighting.ambient_down),
+        tinge=_direction(_tinge(lighting)),
         fog=_direction(lighting.fog_colour),
         fog_density=_float(lighting.fog_density),
         air=air,
+        wind=Wind(*_floats(np.zeros(4))),
     )
+
+
+def _tinge(lighting: Lighting) -> NDArray[np.float64]:
+    """Return `Illumination.tinge`: as bright as the sky's light in its place, of the walls' colour.
+
+    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden.
+    """
+    sky = np.asarray(lighting.ambient_up)
+    thrown = (0.5 * np.asarray(lighting.sun_colour) + sky) * _WALLS
+    bright = exact.product(sky, _LUMA) / max(exact.product(thrown, _LUMA), 1e-9)
+    tinge: NDArray[np.float64] = (thrown * bright - sky) * (BOUNCED / (1.0 - BOUNCED))
+    return tinge
 
 
 def tone_table() -> NDArray[np.uint8]:

@@ -17,6 +17,9 @@ __all__ = ["MaterialTable", "crown_middles", "material_table", "snow_beds"]
 _POROUS = {"lawn", "lawn_mown", "soil", "sand", "dry_leaves"}
 """Textures of ground into which rain soaks; crops let none be seen."""
 
+_BARE = {Surface.WATER, Surface.LAMP, Surface.SIGNAL, *range(Surface.TAIL_LAMP, len(Surface))}
+"""Surfaces on which snow melts."""
+
 _MIDDLE = 0.3
 """Height of a crown's middle between its lower end and its top: crowns are flat below."""
 
@@ -60,7 +63,7 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
     def bed(material: Material) -> Bed:
         if material in moving:
             return Bed.VEHICLE if material.surface == Surface.PAINT else Bed.BARE
-        if material.surface in (Surface.WATER, Surface.LAMP, Surface.SIGNAL):
+        if material.surface in _BARE:
             return Bed.BARE
         if material.surface in (Surface.FOLIAGE, Surface.CROWN):
             return Bed.LEAVES

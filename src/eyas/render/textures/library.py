@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.textures import facades, ground, land, plants, roofs, wear
+from eyas.render.textures import bodywork, facades, ground, land, plants, roofs, wear
 from eyas.world.build.materials import TEXTURES
 
 __all__ = ["PAINTERS", "build_textures"]
@@ -73,6 +73,7 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "facade_red_white": facades.facade_red_white,
     "ground_shop": facades.ground_shop,
     "ground_lobby": facades.ground_lobby,
+    **bodywork.PAINTERS,
 }
 """The function that paints each texture of `eyas.world.build.materials.TEXTURES`."""
 

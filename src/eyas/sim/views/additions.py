@@ -14,7 +14,7 @@ from eyas.state.scene import ACTOR_OBJECT, ObjectClass, Scene
 from eyas.state.snapshot import TrackerState
 from eyas.traffic.signals import SignalPlan
 
-__all__ = ["SignalLights", "TrackerBodies", "lights_of"]
+__all__ = ["SignalLights", "TrackerBodies", "lights_of", "signal_poles"]
 
 _SAME = 0.01
 """Poles nearer to each other are one [m]."""
@@ -66,6 +66,7 @@ class TrackerBodies:
         if later is not None:
             pose[..., 3] += trackers.velocity[others] * later[:, None, None]
         classes = np.full((len(chosen), len(self._others)), ObjectClass.ROBOT, np.uint8)
+        bodies = others.shape[1]
         colour = np.ones((*others.shape, 3))
         object_id = np.where(others < 0, -1, ACTOR_OBJECT + self._actors + others)
         return DrawList(
@@ -74,11 +75,18 @@ class TrackerBodies:
             colour=_beside(movers.colour[rows], colour),
             object_id=_beside(movers.object_id[rows], object_id),
             object_class=_beside(movers.object_class[rows], classes),
+            lamps=_and_dark(movers.lamps[rows] if movers.lamps.size else movers.lamps, bodies),
+            spray=movers.spray[rows] if len(movers.spray) else movers.spray,
         )
 
 
 def _beside(movers: NDArray[Any], bodies: NDArray[Any]) -> NDArray[Any]:
     return np.concatenate([movers, bodies.astype(movers.dtype)], axis=1)
+
+
+def _and_dark(lamps: NDArray[np.uint8], more: int) -> NDArray[np.uint8]:
+    """Return `DrawList.lamps` with so many slots more, which have none."""
+    return np.pad(lamps, ((0, 0), (0, more if lamps.size else 0)))
 
 
 def _poses(trackers: TrackerState) -> NDArray[np.float64]:
@@ -119,7 +127,26 @@ class SignalLights:
             colour=np.concatenate([movers.colour, white], axis=1),
             object_id=np.concatenate([movers.object_id, ids], axis=1),
             object_class=movers.object_class,
+            lamps=_and_dark(movers.lamps, part.shape[1]),
+            spray=movers.spray,
         )
+
+
+def signal_poles(scene: Scene) -> dict[str, int]:
+    """Return the fixture of the traffic light at the end of each edge that has one."""
+    # Shapely takes long to import, and few maps have signals.
+    from eyas.world.roads.areas import streets
+    from eyas.world.street.signals import pole_at
+
+    fixtures, found = scene.fixtures, {}
+    poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
+    feet = fixtures.pose[poles][:, :2, 3]
+    for name, street in zip(scene.network.edges, streets(scene.network), strict=True):
+        if len(street.right) >= 2 and len(poles):
+            away = np.abs(feet - np.array(pole_at(street)[0])).max(axis=1)
+            if away.min() < _SAME:
+                found[name] = int(poles[away.argmin()])
+    return found
 
 
 def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights | None:
@@ -130,19 +157,8 @@ def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights |
         plan: Programs of the lights.
         first_part: See `SignalLights`.
     """
-    # Shapely takes long to import, and few maps have signals.
-    from eyas.world.roads.areas import streets
-    from eyas.world.street.signals import pole_at
-
-    fixtures, rows = scene.fixtures, {name: row for row, name in enumerate(plan.edges)}
-    poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
-    feet, found = fixtures.pose[poles][:, :2, 3], []
-    for name, street in zip(scene.network.edges, streets(scene.network), strict=True):
-        if name not in rows or len(street.right) < 2 or not len(poles):
-            continue
-        away = np.abs(feet - np.array(pole_at(street)[0])).max(axis=1)
-        if away.min() < _SAME:
-            found.append((rows[name], int(poles[away.argmin()])))
+    rows, fixtures = {name: row for row, name in enumerate(plan.edges)}, scene.fixtures
+    found = [(rows[name], pole) for name, pole in signal_poles(scene).items() if name in rows]
     if not found:
         return None
     row, fixture = np.array(found, np.int64).T

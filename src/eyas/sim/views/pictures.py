@@ -70,6 +70,8 @@ class PictureDrawer:
         self._thermal = None if optics is None else optics.thermal
         self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
+        world = config.world
+        self._timed = self._flakes or world.wind is not None or world.smoke > 0 or world.spray
         self._samples = config.camera.samples
         self._renderer = assets.renderer
         self._size = config.camera.height, config.camera.width
@@ -220,7 +222,7 @@ class PictureDrawer:
         if lenses is not None:
             seeing = lenses.seeing(chosen, cameras, aspect)
         world, movers = self._worlds.draw_list(chosen, ticks, seeing, aspect, later)
-        instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None
+        instant = np.multiply(ticks[chosen], PHYSICS_STEP) if self._timed else None
         if instant is not None and later is not None:
             instant += later
         views = Views(
@@ -231,6 +233,7 @@ class PictureDrawer:
             field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
             instant=instant,
+            falling=self._flakes,
             lens=None if lenses is None else lenses.numbers[chosen],
         )
         return views, movers

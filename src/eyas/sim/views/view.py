@@ -140,6 +140,12 @@ class View:
         before, _ = self._worlds.actors_around(tracker, tick - 1)
         return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
 
+    def lamps(self, tracker: int) -> NDArray[np.uint8] | None:
+        """Return what the actors around a tracker signal at the instant that its pictures show, a
+        `Lamp` each, shape (A,); None: nobody does.
+        """
+        return self._worlds.lamps_around(int(self.state.shown.episodes.tick[tracker]))
+
     @cached_property
     def _outlines(self) -> Outlines:
         return Outlines(self._kind, self._camera.width, self._camera.height)

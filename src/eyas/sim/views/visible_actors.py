@@ -17,6 +17,7 @@ from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
 from eyas.sensors.camera.poses import Moving
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
+from eyas.sim.views.spray import SPRAY_REACH, spray_of, throwing
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
 from eyas.state.scene import ACTOR_OBJECT
@@ -24,6 +25,7 @@ from eyas.state.snapshot import CameraState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before, write_actor
+from eyas.traffic.lamps import shining
 
 __all__ = ["VisibleActors"]
 
@@ -104,6 +106,8 @@ class Listed(NamedTuple):
     """See `DrawList`; emptied, shape (W, I)."""
     object_id: NDArray[np.int32]
     """See `DrawList`, shape (W, I)."""
+    lamps: NDArray[np.uint8]
+    """See `DrawList`."""
 
 
 @kernel(inline=True)
@@ -212,6 +216,9 @@ def _list_actors(  # the records that it reads
                     fits = listed.used[w] + slots <= listed.part.shape[1]
                     if fits and entries < listed.slot.shape[0]:
                         _write(listed, entries, actor, w, slots, looks, query.world[w])
+                        if listed.lamps.shape[1] > 0:
+                            begun = listed.used[w]
+                            listed.lamps[w, begun : begun + slots] = shining(motion, actor, time)
                         write_actor(pose, listed.state, 0, entries)
                     entries += 1
                     listed.used[w] += slots
@@ -238,19 +245,27 @@ class VisibleActors:
         rigs: Their rigs.
         looks: Models and colours of the actors of all worlds; may change.
         reach: Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,).
+        spray: Whether vehicles throw up water.
     """
 
     def __init__(
-        self, motion: Motion, rigs: Rigs, looks: Looks, reach: NDArray[np.float64]
+        self,
+        motion: Motion,
+        rigs: Rigs,
+        looks: Looks,
+        reach: NDArray[np.float64],
+        *,
+        spray: bool = False,
     ) -> None:
+        self._throws = throwing(rigs.kinds) if spray else None
         groups = [cast.group for cast in rigs.casts]
         kinds = KindTable(
             end=np.cumsum([len(group.actor) for group in groups], dtype=np.int64),
             slots=np.array([cast.rig.slots for cast in rigs.casts], np.int64),
-            reach=np.asarray(reach, np.float64) * 1.001 + _SLACK,
+            reach=np.asarray(reach, np.float64) * 1.001 + _SLACK + SPRAY_REACH * spray,
         )
         actor = np.concatenate([np.zeros(0, np.int64), *(group.actor for group in groups)])
-        self._rigs = rigs
+        self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
         self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
         self._size = _Size(0, 0, 0, 0)
@@ -277,7 +292,18 @@ class VisibleActors:
         count = len(worlds)
         if count not in self._first:
             self._first[count] = self._movers.first(count)
+        if self._throws is not None:
+            self._first[count].spray = self._spray(count)
         return self._first[count]
+
+    def _spray(self, worlds: int) -> NDArray[np.float32]:
+        """Return `DrawList.spray` of what was listed."""
+        listed, entries = self._listed, int(self._listed.needed[0])
+        throws = np.repeat(self._throws, np.diff(listed.end, prepend=0))
+        slot = listed.slot[:entries]
+        actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
+        world = slot // max(self._size.slots, 1)
+        return spray_of(listed.state, listed.looks.model[0], throws, world, actor, worlds)
 
     def moving(
         self,
@@ -371,7 +397,7 @@ class VisibleActors:
         self._entries = np.arange(size.entries)
         self._first: dict[int, DrawList] = {}
         self._chosen: dict[tuple[int, int, int], Group] = {}
-        self._movers = self._rigs.short_list(size.worlds, size.slots)
+        self._movers = self._rigs.short_list(size.worlds, size.slots, lamps=self._signal)
         self._flat = self._movers.flat()
         self._listed = Listed(
             needed=np.zeros(2, np.int64),
@@ -386,5 +412,6 @@ class VisibleActors:
             ),
             part=self._movers.part,
             object_id=self._movers.object_id,
+            lamps=self._movers.lamps,
         )
         self._list = _list_actors.bind(*self._given, self._query, self._listed)

@@ -121,7 +121,7 @@ def _surely_near(
     near = _may_be_in_view(
         middles, _reach(len(MODELS))[model], seen, wide * aspect if lens is None else seen
     )
-    near &= actors.present[0]
+    near &= actors.present[0] & ~_flying(len(MODELS))[model]
     near[target] = True
     chosen = np.flatnonzero(near)
     corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
@@ -138,6 +138,12 @@ def _half_width(cameras: CameraState, tracker: int) -> float:
 _LIMBS = 2.0
 """Limbs reach less than this out of the box of a model's size, and so do trailers that swing [m].
 """
+
+
+@cache
+def _flying(models: int) -> NDArray[np.bool_]:
+    """Return which of so many models fly: phrases speak of what is on the ground."""
+    return np.array([model.motion == "flies" for model in MODELS[:models]])
 
 
 @cache

@@ -1,33 +1,38 @@
 """Car bodies: surfaces through cross-sections, with windows, lamps and wheel arches."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
+from eyas.targets.vehicles.bumpers import AHEAD, add_bumpers
 from eyas.targets.vehicles.car_shape import (
     CarShape,
-    arch_radius,
     coarse_stations,
     fine_stations,
     height_at,
     middle_stations,
     sections,
 )
+from eyas.targets.vehicles.car_trim import add_trimmings
+from eyas.targets.vehicles.car_variants import variants_of
+from eyas.targets.vehicles.car_wrap import Wrap
 from eyas.targets.vehicles.finishes import (
     GLASS,
     HEAD_LAMP,
+    INDICATOR_LEFT,
+    INDICATOR_RIGHT,
     PAINT,
-    PLATE,
-    SKIN_WHITE,
+    PANE,
     TAIL_LAMP,
     TRIM,
 )
 from eyas.targets.vehicles.vehicle import Axle, VehicleModel, vehicle
 from eyas.traffic.config import VehicleType
+from eyas.world.build.bodywork import body_paint
 
 __all__ = ["car"]
 
@@ -40,12 +45,24 @@ class _Detail:
     """Points of the sections that are used."""
     columns: tuple[float, ...]
     """Limits of the columns of panels at the ends, as shares of the half width."""
+    lamps: tuple[float, ...]
+    """Limits of those at the height of the lamps."""
     arches: bool
 
 
-_FINE = _Detail((0, 1, 2, 3, 4, 5, 6, 7), (-1.0, -0.62, 0.62, 1.0), arches=True)
-_MIDDLE = _Detail((0, 1, 2, 3, 4, 6, 7), (-1.0, -0.62, 0.62, 1.0), arches=False)
-_COARSE = _Detail((1, 4, 6), (-1.0, 1.0), arches=False)
+_TRACK = 0.285
+"""Distance between the middles of two wheels less the width with mirrors [m]: their sides stand out
+from the body by half a centimetre, so that tyres are seen from above."""
+
+_LAMPS, _INDICATORS = 0.62, 0.74
+"""Inner limits of the lamps at the ends, and of those beside the indicators, as shares of the half
+width."""
+
+_ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
+_LIT = (-1.0, -_INDICATORS, -_LAMPS, _LAMPS, _INDICATORS, 1.0)
+_FINE = _Detail((0, 1, 2, 3, 4, 5, 6, 7), _ENDS, _LIT, arches=True)
+_MIDDLE = _Detail((0, 1, 2, 3, 4, 6, 7), _ENDS, _LIT, arches=False)
+_COARSE = _Detail((1, 4, 6), (-1.0, 1.0), (-1.0, 1.0), arches=False)
 
 
 def car(
@@ -72,15 +89,8 @@ def car(
         axles: None: two with the wheels of a car.
     """
     wheelbase, radius, front = wheels
-    track = size[1] - 0.36
+    track = size[1] - _TRACK
     usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)
-
-    def body(model: VehicleModel) -> tuple[Mesh, ...]:
-        return (
-            _body(model, shape, _FINE, fine_stations(model, shape)),
-            _body(model, shape, _MIDDLE, middle_stations(shape)),
-            _body(model, shape, _COARSE, coarse_stations(shape)),
-        )
 
     return vehicle(
         name,
@@ -91,37 +101,97 @@ def car(
         axles=axles or usual,
         mass=mass,
         words=words,
-        body=body,
+        body=partial(_levels, shape),
+        variants=tuple(partial(_levels, variant) for variant in variants_of(shape)),
+    )
+
+
+def _levels(shape: CarShape, model: VehicleModel) -> tuple[Mesh, ...]:
+    return (
+        _body(model, shape, _FINE, fine_stations(model, shape)),
+        _body(model, shape, _MIDDLE, middle_stations(shape)),
+        _body(model, shape, _COARSE, coarse_stations(shape)),
     )
 
 
 def _body(
     model: VehicleModel, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]
 ) -> Mesh:
-    shell = Shell()
+    shell, wrap = Shell(), Wrap(model, shape)
+    paint = body_paint(f"bodywork_{shape.bodywork}")
     every = sections(model, shape, stations, arches=detail.arches)
+    if detail.arches:  # the bumpers are the ends
+        every[0, :, 0] += AHEAD
+        every[-1, :, 0] -= AHEAD
     halves = every[:, detail.points]
     for i in range(len(stations) - 1):
         middle = (stations[i] + stations[i + 1]) / 2
         rise = halves[i : i + 2, -1, 2].mean() - height_at(shape.belt, middle)
-        back, front = halves[i], halves[i + 1]
-        for k, (low, high) in enumerate(zip(detail.points, detail.points[1:], strict=False)):
-            quad = [back[k], back[k + 1], front[k + 1], front[k]]
-            shell.quads(
-                quad, _skin(model, shape, detail, middle, rise, (low, high)), both_sides=True
-            )
+        pair = every[i : i + 2]
+        for low, high in zip(detail.points, detail.points[1:], strict=False):
+            skin = _skin(model, shape, detail, middle, rise, (low, high))
+            _panel(shell, wrap, pair, (low, high), skin, paint)
         if detail.points[-1] != 7:
             mirror = [1.0, -1.0, 1.0]
-            quad = [back[-1], back[-1] * mirror, front[-1] * mirror, front[-1]]
-            shell.quads(quad, _skin(model, shape, detail, middle, rise, (6, 7)))
-    _end(shell, shape, detail, halves[0], front=False)
-    _end(shell, shape, detail, halves[-1], front=True)
+            back, front = halves[i, -1], halves[i + 1, -1]
+            quad = np.array([back, back * mirror, front * mirror, front])
+            skin = _skin(model, shape, detail, middle, rise, (6, 7))
+            edge = pair[[0, 0, 1, 1], 5, 1]
+            if skin is PAINT:
+                # The middle of the roof has no points here, nor have its seams.
+                shell.quads(quad, paint, uvs=wrap.top(quad, edge))
+            else:
+                shell.quads(quad, skin)
+    half = float(every[0, 3, 1]), float(every[-1, 3, 1])
+    for front in (False, True):
+        _end(shell, shape, detail, wrap, halves[-front], (half[front], front, paint))
     if 3 not in detail.points:
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
     if detail.arches:
-        _trimmings(shell, model, shape)
+        add_trimmings(shell, model, shape)
+        add_bumpers(shell, model, shape, wrap, paint)
     return shell.mesh()
+
+
+def _panel(
+    shell: Shell,
+    wrap: Wrap,
+    pair: NDArray[np.float64],
+    strip: tuple[int, int],
+    skin: Material,
+    paint: Material,
+) -> None:
+    """Add a panel between two sections, on both sides, with the texture that belongs there.
+
+    Args:
+        shell: Shell to add it to.
+        wrap: Texture coordinates of the car.
+        pair: All points of both sections [m], shape (2, 8, 3).
+        strip: Lower and upper point of the sections that it lies between.
+        skin: `PAINT`, `GLASS`, `PANE` or another material.
+        paint: The car's own paint.
+    """
+    low, high = strip
+    quad = np.array([pair[0, low], pair[0, high], pair[1, high], pair[1, low]])
+    edge, up = pair[[0, 0, 1, 1], 5, 1], np.array([0.0, 1.0, 1.0, 0.0])
+    middle = quad[:, 0].mean()
+    if skin is GLASS:  # side windows
+        pane = wrap.pane(quad, up) if high == 5 else None
+        if pane is None:
+            shell.quads(quad, paint, uvs=wrap.band(quad, up), both_sides=True)
+        else:
+            shell.quads(quad, PANE, uvs=pane, both_sides=True)
+    elif skin is PANE:
+        right = quad[::-1] * [1.0, -1.0, 1.0]
+        front = middle > 0.0
+        shell.quads(quad, PANE, uvs=wrap.screen(quad, edge, front=front))
+        shell.quads(right, PANE, uvs=wrap.screen(right, edge[::-1], front=front))
+    elif skin is PAINT:
+        uvs = wrap.side(quad) if high <= 4 else wrap.top(quad, edge)
+        shell.quads(quad, paint, uvs=uvs, both_sides=True)
+    else:
+        shell.quads(quad, skin, both_sides=True)
 
 
 def _skin(
@@ -164,7 +234,7 @@ def _roof(shape: CarShape, x: float, *, edge: bool) -> Material:
         return PAINT
     if edge:
         return shape.rails
-    return shape.roof if shape.rear_window[1] < x < shape.windscreen[0] else GLASS
+    return shape.roof if shape.rear_window[1] < x < shape.windscreen[0] else PANE
 
 
 def _glazed(shape: CarShape, detail: _Detail, x: float) -> bool:
@@ -175,43 +245,69 @@ def _glazed(shape: CarShape, detail: _Detail, x: float) -> bool:
 
 
 def _end(
-    shell: Shell, shape: CarShape, detail: _Detail, half: NDArray[np.float64], *, front: bool
+    shell: Shell,
+    shape: CarShape,
+    detail: _Detail,
+    wrap: Wrap,
+    half: NDArray[np.float64],
+    look: tuple[float, bool, Material],
 ) -> None:
-    """Close one end with rows of panels between the points of its section."""
-    columns = np.array(detail.columns)[:, None]
+    """Close one end with rows of panels between the points of its section.
+
+    Args:
+        shell: Shell to add them to.
+        shape: Shape of the car.
+        detail: Resolution of the body.
+        wrap: Texture coordinates of the car.
+        half: Points of the section that are used [m].
+        look: Half the width of the end [m], whether it is the front, and the car's paint.
+    """
+    wide, front, paint = look
     for k in range(len(half) - 1):
+        strip = detail.points[k : k + 2]
+        lamps = strip == (3, 4)
+        limits = detail.lamps if lamps else detail.columns
+        columns = np.array(limits)[:, None]
         low, high = (half[j] * np.ones((len(columns), 1)) for j in (k, k + 1))
         low[:, 1:2] *= columns
         high[:, 1:2] *= columns
         for c in range(len(columns) - 1):
             quad = np.array([low[c], low[c + 1], high[c + 1], high[c]])
-            outer = len(columns) > 2 and c in (0, len(columns) - 2)
-            strip = detail.points[k : k + 2]
-            material = _end_skin(shape, strip, outer=outer, front=front)
-            if strip == (1, 2) and not detail.arches:
-                material = PAINT  # at these levels the sills reach far up
-            shell.quads(quad if front else quad[::-1], material)
+            quad = quad if front else quad[::-1]
+            middle = 0.5 * (limits[c] + limits[c + 1])
+            material = _end_skin(shape, strip, middle if len(columns) > 2 else 0.0, front=front)
+            if material is PAINT:
+                shell.quads(quad, paint, uvs=wrap.end(quad, wide, front=front))
+            elif material is PANE:
+                shell.quads(quad, PANE, uvs=wrap.upright(quad, wide))
+            else:
+                shell.quads(quad, material)
 
 
-def _end_skin(shape: CarShape, strip: tuple[int, ...], *, outer: bool, front: bool) -> Material:
-    """Return the material of a piece of an end between two points of the section."""
+def _end_skin(shape: CarShape, strip: tuple[int, ...], across: float, *, front: bool) -> Material:
+    """Return the material of a piece of an end between two points of the section.
+
+    Args:
+        shape: Shape of the car.
+        strip: Lower and upper point of the section.
+        across: Its place from right to left, -1 to 1.
+        front: Whether it is the front.
+    """
     window = shape.nose_window if front else shape.tail_window
-    low = strip[0]
-    if strip == (1, 2):
-        return TRIM
+    low, outer = strip[0], abs(across) > _LAMPS
     if low == 3 and outer:
+        if abs(across) < _INDICATORS:
+            return INDICATOR_LEFT if across > 0.0 else INDICATOR_RIGHT
         return HEAD_LAMP if front else TAIL_LAMP
     if low == 4 and shape.tall_tail_lamps and outer and not front:
         return TAIL_LAMP
-    if low == 4 and window:
-        return GLASS
-    return TRIM if low == 2 and front and not outer else PAINT
+    return PANE if low == 4 and window else PAINT
 
 
 def _lamp_panels(
     shell: Shell, shape: CarShape, before: NDArray[np.float64], end: NDArray[np.float64]
 ) -> None:
-    """Add panels for the lamps, 1 cm off the body and around its corner, to a coarse end.
+    """Add panels for the lamps, 1.5 cm off the body and around its corner, to a coarse end.
 
     The coarsest sections have no points for lamps.
 
@@ -223,34 +319,10 @@ def _lamp_panels(
     """
     front = end[0, 0] > before[0, 0]
     material, reach = (HEAD_LAMP, shape.head_lamps) if front else (TAIL_LAMP, shape.tail_lamps)
-    low, high = end[3:5] + np.array([0.01 if front else -0.01, 0.0, 0.0])
-    inwards = [1.0, _FINE.columns[2], 1.0]
+    low, high = end[3:5] + np.array([0.015 if front else -0.015, 0.0, 0.0])
+    inwards = [1.0, _LAMPS, 1.0]
     panels = [[low * inwards, low, high, high * inwards]]
     if abs(end[0, 0] - before[0, 0]) < 2 * reach:
         panels.append([low, before[3], before[4], high])
     quads = np.array(panels)
     shell.quads(quads if front else quads[:, ::-1], material, both_sides=True)
-
-
-def _trimmings(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
-    """Add mirrors, boxes on the roof, number plates and the walls inside the wheel arches."""
-    half = model.width / 2
-    x = shape.windscreen[1] - 0.42
-    z = height_at(shape.belt, x)
-    low, high = (x - 0.06, half - 0.2, z + 0.02), (x + 0.08, half, z + 0.15)
-    shell.box(low, high, PAINT, taper=0.015, both_sides=True)
-    for start, end, top in shape.pods:
-        shell.box((start, -0.8, top - 0.5), (end, 0.8, top), SKIN_WHITE, taper=0.06)
-    tail, nose = shape.top[0][0], shape.top[-1][0]
-    z = shape.clearance + 0.22
-    shell.box((nose - 0.02, -0.26, z), (nose + 0.01, 0.26, z + 0.11), PLATE)
-    shell.box((tail - 0.01, -0.26, z + 0.12), (tail + 0.02, 0.26, z + 0.23), PLATE)
-    for axle in model.axles:
-        y = (axle.track - axle.width) / 2 - 0.02
-        reach = 1.1 * arch_radius(model.wheel_radius)
-        angle = np.linspace(-0.3, np.pi + 0.3, 7)
-        rise = np.maximum(model.wheel_radius + reach * exact.sin(angle), shape.clearance)
-        wall = np.column_stack([axle.x - reach * exact.cos(angle), np.full(7, y), rise])
-        fan = [[wall[0], wall[i], wall[i + 1]] for i in range(1, 6)]
-        shell.triangles(fan, TRIM)
-        shell.triangles(np.array(fan)[:, ::-1] * [1.0, -1.0, 1.0], TRIM)

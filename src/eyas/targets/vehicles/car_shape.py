@@ -20,6 +20,7 @@ __all__ = [
     "arch_radius",
     "coarse_stations",
     "fine_stations",
+    "half_widths",
     "height_at",
     "middle_stations",
     "sections",
@@ -68,6 +69,12 @@ class CarShape:
     """Material of the edges of the roof and the pillars at its corners."""
     sill: Material = PAINT
     """Material of the lowest part of the sides."""
+    bodywork: str = "hatch"
+    """Its paint, see `eyas.world.build.bodywork.BODYWORK`."""
+    dark_bumpers: bool = False
+    """Whether the bumpers are not painted."""
+    rack: bool = False
+    """Whether it has rails on the roof."""
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 
@@ -137,21 +144,28 @@ def _floor(vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]) -> ND
     return z
 
 
+def half_widths(
+    vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return half the widths of the body at its widest points [m]."""
+    return (vehicle.width / 2 - _WIDE_OF_BODY) * _line(shape.plan, x)
+
+
 def sections(
     vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64], *, arches: bool
 ) -> NDArray[np.float64]:
     """Return the left halves of the sections, all eight points, shape (S, 8, 3)."""
-    wide = (vehicle.width / 2 - _WIDE_OF_BODY) * _line(shape.plan, x)
+    wide = half_widths(vehicle, shape, x)
     top = _line(shape.top, x)
     belt = np.minimum(_line(shape.belt, x), top - 0.012)
     rise = top - belt
     floor = _floor(vehicle, shape, x) if arches else np.full(len(x), shape.clearance)
+    floor = np.minimum(floor, belt - 0.07)
     tucked = 0.06 if arches else 0.055  # without arches the wheels protrude from the sides
     sill = wide - np.where(floor > shape.clearance, 0.0, tucked)
     sill_top = np.maximum(floor, shape.clearance + 0.12) if arches else 0.65 * belt
-    floor = np.minimum(floor, belt - 0.06)
     # Mostly above the arches, so that its line runs straight above them.
-    waist = np.maximum(0.84 * belt, floor + 0.005)
+    waist = np.maximum(0.84 * belt, floor + 0.02)
     belt_y = wide - 0.045
     window_y = belt_y - 0.06 * np.minimum(rise / 0.3, 1.0) - shape.lean * 0.86 * rise
     window_y = np.minimum(window_y, 0.94 * belt_y)

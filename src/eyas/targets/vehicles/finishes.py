@@ -6,9 +6,14 @@ __all__ = [
     "BLACK_PAINT",
     "BRIGHT",
     "CLOTH",
+    "FREIGHT",
     "GLASS",
     "HEAD_LAMP",
+    "HIGH_BRAKE_LAMP",
+    "INDICATOR_LEFT",
+    "INDICATOR_RIGHT",
     "PAINT",
+    "PANE",
     "PLATE",
     "RIM",
     "ROOF_GLASS",
@@ -35,14 +40,35 @@ BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 """Tinted windows."""
 
+PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
+"""Tinted windows with their frames, and what is behind them."""
+
 ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
 """A glass roof."""
 
 HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5)
 """Front lamps; they shine when the weather has lamps on."""
 
-TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=1.8)
-"""Rear lamps; they shine when the weather has lamps on."""
+TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.TAIL_LAMP, emission=1.8)
+"""Rear lamps; they shine when the weather has lamps on, and brighter when the vehicle brakes."""
+
+HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.HIGH_BRAKE_LAMP)
+"""The third brake lamp."""
+
+INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_LEFT)
+"""Indicators, on the left of the vehicle."""
+
+INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_RIGHT)
+"""Indicators, on the right of the vehicle."""
+
+HIGH_BRAKE_LAMP = Material(tint=(0.30, 0.03, 0.03), surface=Surface.LAMP)
+"""The third brake lamp."""
+
+INDICATOR_LEFT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
+"""Indicators, on the left of the vehicle."""
+
+INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.LAMP)
+"""Indicators, on the right of the vehicle."""
 
 TRIM = plain(0.10, 0.10, 0.11)
 """Grilles, bumpers, undersides."""
@@ -67,3 +93,6 @@ SKIN_WHITE = plain(0.86, 0.87, 0.86)
 
 CLOTH = plain(0.16, 0.18, 0.25)
 """A rider's suit."""
+
+FREIGHT = Material(texture="freight", tint=(0.94, 0.95, 0.94))
+"""White panels of boxes on wheels, with seams, doors and bars."""

@@ -1,18 +1,21 @@
 """Trucks: a cab on a bare chassis, and the frame of a trailer."""
 
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.core import exact
+from eyas.mesh.panels import fan
 from eyas.mesh.shell import Shell, levels_of
-from eyas.state.mesh import Material
 from eyas.targets.vehicles.finishes import (
     BRIGHT,
-    GLASS,
     HEAD_LAMP,
+    INDICATOR_LEFT,
+    INDICATOR_RIGHT,
     PAINT,
+    PANE,
     PLATE,
     STEEL,
     TAIL_LAMP,
@@ -28,6 +31,7 @@ from eyas.targets.vehicles.vehicle import (
 )
 from eyas.traffic.config import VehicleType
 from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
+from eyas.world.build.bodywork import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
 
 __all__ = ["HALF", "TRACTOR_BASE", "facing", "trailer_frame", "truck"]
 
@@ -84,14 +88,30 @@ def _slice(back: float, front: float, half: float, z: float) -> NDArray[np.float
 
 
 def _pane(
-    shell: Shell, corners: ArrayLike, material: Material, *, margin: float, both_sides: bool = False
+    shell: Shell, corners: ArrayLike, uvs: ArrayLike, *, margin: float, both_sides: bool = False
 ) -> None:
-    """Add a panel 1.5 cm above a face, inset by `margin` as a share of its size."""
+    """Add a pane 1.5 cm above a face, inset by `margin` as a share of its size."""
     face = np.asarray(corners, np.float64)
     normal = np.cross(face[2] - face[0], face[3] - face[1])
     lift = 0.015 * normal / exact.length(normal)
     middle = face.mean(axis=0)
-    shell.quads(middle + (1.0 - margin) * (face - middle) + lift, material, both_sides=both_sides)
+    pane = middle + (1.0 - margin) * (face - middle) + lift
+    shell.quads(pane, PANE, uvs=uvs, both_sides=both_sides)
+
+
+def _cab_walls(shell: Shell, rings: list[NDArray[np.float64]], back: float) -> None:
+    """Add the walls of a cab through its sections, and its roof and floor."""
+    paint = body_paint("freight")
+    for low, high in pairwise(rings):
+        for i in range(6):
+            k = (i + 1) % 6
+            quad = np.array([low[i], low[k], high[k], high[i]])
+            up = (quad[:, 2] - rings[0][0, 2]) / (rings[-1][0, 2] - rings[0][0, 2])
+            side = i in (0, 4)
+            uvs = CAB_SIDE.at((quad[:, 0] - back) / CAB, up) if side else PLAIN
+            shell.quads(quad, paint, uvs=uvs)
+    for ring in (rings[0][::-1], rings[-1]):
+        shell.triangles(fan(ring), paint, uvs=np.broadcast_to(PLAIN[0], (4, 3, 2)))
 
 
 def _cab(shell: Shell, front: float, detail: int) -> None:
@@ -100,7 +120,7 @@ def _cab(shell: Shell, front: float, detail: int) -> None:
     waist = _slice(back, front, HALF, 2.02)
     brow = _slice(back, front - 0.16, 1.2, 3.02)
     top = _slice(back, front - 0.36, 1.12, 3.62)
-    shell.rings([low, waist, brow, top], PAINT)
+    _cab_walls(shell, [low, waist, brow, top], back)
     # The deflector on the roof, up to the height of the trailer.
     profile = [
         (back, 3.6),
@@ -111,7 +131,9 @@ def _cab(shell: Shell, front: float, detail: int) -> None:
     ]
     shell.prism(profile, (-1.08, 1.08), PAINT)
     for i, j in ((1, 2), (2, 3), (3, 4)):
-        _pane(shell, [waist[i], waist[j], brow[j], brow[i]], GLASS, margin=0.0)
+        face = np.array([waist[i], waist[j], brow[j], brow[i]])
+        uvs = WINDSCREEN.at(0.5 + 0.5 * face[:, 1] / HALF, [0.0, 0.0, 1.0, 1.0])
+        _pane(shell, face, uvs, margin=0.0)
     door = [waist[5], waist[4], brow[4], brow[5]]
     door = [
         door[1] + 0.42 * (door[0] - door[1]),
@@ -119,10 +141,13 @@ def _cab(shell: Shell, front: float, detail: int) -> None:
         door[2],
         door[2] + 0.42 * (door[3] - door[2]),
     ]
-    _pane(shell, door[::-1], GLASS, margin=0.06, both_sides=True)
+    uvs = SIDE_PANE.at([0.0, 1.0, 1.0, 0.0], [1.0, 1.0, 0.0, 0.0])
+    _pane(shell, door[::-1], uvs, margin=0.06, both_sides=True)
     shell.box((front - 0.78, -HALF, 0.32), (front, HALF, 1.06), TRIM)
     shell.box((back, -HALF, 0.36), (front - 1.92, HALF, 1.06), PAINT)
     shell.quads(facing(front + 0.012, (0.74, 1.16), (0.62, 0.88)), HEAD_LAMP, both_sides=True)
+    for lamp, y in ((INDICATOR_LEFT, (1.17, 1.24)), (INDICATOR_RIGHT, (-1.24, -1.17))):
+        shell.quads(facing(front + 0.012, y, (0.62, 0.88)), lamp)
     if detail == 0:
         return
     shell.quads(facing(front + 0.012, (-0.8, 0.8), (1.16, 1.86)), TRIM)
@@ -161,6 +186,8 @@ def _tail_lamps(shell: Shell, x: float, z: float) -> None:
     """Add the rear lamps and a plate to a beam."""
     lamp = facing(x - 0.012, (0.72, 1.12), (z - 0.09, z + 0.09))
     shell.quads(lamp[::-1], TAIL_LAMP, both_sides=True)
+    for side, y in ((INDICATOR_LEFT, (0.59, 0.71)), (INDICATOR_RIGHT, (-0.71, -0.59))):
+        shell.quads(facing(x - 0.012, y, (z - 0.09, z + 0.09))[::-1], side)
     shell.quads(facing(x - 0.012, (-0.26, 0.26), (z - 0.06, z + 0.06))[::-1], PLATE)
 
 
@@ -177,3 +204,6 @@ def trailer_frame(shell: Shell, model: VehicleModel, z: float, detail: int) -> N
     ahead = model.axles[1].x - 1.6  # clear of the truck when it turns
     shell.box((max(axles) + 0.75, 1.16, 0.5), (ahead, 1.2, 1.0), STEEL, both_sides=True)
     shell.box((ahead - 0.3, 0.7, 0.3), (ahead - 0.15, 0.85, z - 0.1), TRIM, both_sides=True)
+    if detail == 2:  # mud flaps
+        x = min(axles) - 0.66
+        shell.box((x, 0.87, 0.25), (x + 0.03, 1.22, 0.98), TRIM, both_sides=True)

@@ -46,10 +46,10 @@ AXLES: Final = np.dtype(
 
 
 class RigTable(NamedTuple):
-    """Data of M models with S slots each, for the kernel; slot 0 is the body."""
+    """Data of M models with V variants of S slots each, for the kernel; slot 0 is the body."""
 
     slot: NDArray[np.void]
-    """Parts of dtype `SLOT`, shape (M, S)."""
+    """Parts of dtype `SLOT`, shape (M, V, S)."""
     axles: NDArray[np.void]
     """Dimensions of dtype `AXLES`, shape (M,)."""
 
@@ -150,8 +150,10 @@ def _pose_actor(
     if hitch != 0.0:
         truck, trailer = _carried(truck, hitch, 0), _carried(truck, hitch, 1)
     steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
-    for k in range(table.slot.shape[1]):
-        slot, part = first + k, table.slot[model, k]
+    # Lists may hold some actors only: the id, not the place in a list, keeps a vehicle's variant.
+    variant = int(out.object_id[w, first]) % table.slot.shape[1]
+    for k in range(table.slot.shape[2]):
+        slot, part = first + k, table.slot[model, variant, k]
         if part.part < 0:
             out.part[w, slot] = -1
             continue
@@ -182,5 +184,5 @@ def pose_vehicles(
         if actors.present[w, group.actor[g]]:
             _pose_actor(table, group, actors, looks, out, w, g)
         else:
-            for k in range(table.slot.shape[1]):
+            for k in range(table.slot.shape[2]):
                 out.part[w, group.slot[g] + k] = -1

@@ -11,7 +11,7 @@ from eyas.state.mesh import Mesh
 from eyas.targets.posing import PoseCall
 from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicles
 from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Axle, Trailer, VehicleModel
-from eyas.targets.vehicles.wheels import wheel_levels
+from eyas.targets.vehicles.wheels import DESIGNS, wheel_levels
 
 __all__ = ["VehicleRig", "trailers_of"]
 
@@ -31,9 +31,9 @@ class VehicleRig:
 
     def __init__(self, models: Sequence[VehicleModel]) -> None:
         self._parts: list[_Part] = []
-        layouts = [_layout(model, self._parts) for model in models]
+        layouts = [_layouts(model, self._parts) for model in models]
         self._models, self._layouts = models, layouts
-        self.slots = max(len(layout) for layout in layouts)
+        self.slots = max(len(layout) for variants in layouts for layout in variants)
         table = _tabulate(models, layouts, self.slots)
         self._slots = table.slot
         self.pose = PoseCall(pose_vehicles, table)
@@ -50,9 +50,10 @@ class VehicleRig:
             ValueError: A model is not of the size that it says.
         """
         levels = [_levels(part) for part in self._parts]
-        for model, slots in zip(self._models, self._layouts, strict=True):
-            placed = [levels[slot.part][0].positions + slot.offset for slot in slots]
-            model.check_meshes(np.concatenate(placed), 0.05)
+        for model, variants in zip(self._models, self._layouts, strict=True):
+            for slots in variants:
+                placed = [levels[slot.part][0].positions + slot.offset for slot in slots]
+                model.check_meshes(np.concatenate(placed), 0.05)
         return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
@@ -66,7 +67,7 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
     """Return the parts of a rig of models that are trailers, without their wheels."""
     parts: list[_Part] = []
     for model in models:
-        _layout(model, parts)
+        _layouts(model, parts)
     return tuple(k for k, part in enumerate(parts) if isinstance(part, _Towed))
 
 
@@ -75,6 +76,14 @@ class _Wheels(NamedTuple):
     width: float
     track: float
     """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
+    design: int
+    """Of the discs."""
+
+
+class _Body(NamedTuple):
+    vehicle: VehicleModel
+    variant: int
+    """0 for `VehicleModel.body`, from 1 on for one of `VehicleModel.variants`."""
 
 
 class _Towed(NamedTuple):
@@ -82,15 +91,16 @@ class _Towed(NamedTuple):
     vehicle: VehicleModel
 
 
-_Part = VehicleModel | _Wheels | _Towed
-"""The body of a model, or wheels, which several models may share, or its trailer."""
+_Part = _Body | _Wheels | _Towed
+"""A body of a model, or wheels, which several models may share, or its trailer."""
 
 
 def _levels(part: _Part) -> tuple[Mesh, ...]:
     if isinstance(part, _Wheels):
         return wheel_levels(*part)
-    if isinstance(part, VehicleModel):
-        return part.body(part)
+    if isinstance(part, _Body):
+        vehicle, variant = part
+        return (vehicle.body, *vehicle.variants)[variant](vehicle)
     shape, vehicle = part.trailer.shape, part.vehicle
     return levels_of(lambda shell, detail: shape(shell, vehicle, detail))
 
@@ -102,11 +112,17 @@ class _Slot(NamedTuple):
     towed: bool = False
 
 
-def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
-    """Return the slots of a model: its body and wheels, then its trailer and the wheels of that;
-    add new parts to `parts`.
+def _layouts(vehicle: VehicleModel, parts: list[_Part]) -> list[list[_Slot]]:
+    """Return the slots of each variant of a model; add new parts to `parts`."""
+    return [_layout(vehicle, variant, parts) for variant in range(1 + len(vehicle.variants))]
+
+
+def _layout(vehicle: VehicleModel, variant: int, parts: list[_Part]) -> list[_Slot]:
+    """Return the slots of a variant of a model: its body and wheels, then its trailer and the
+    wheels of that; add new parts to `parts`.
     """
-    slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0))]
+    slots = [_Slot(_index(_Body(vehicle, variant), parts), (0.0, 0.0, 0.0))]
+    design = variant % DESIGNS
     for axle in sorted(vehicle.axles, key=lambda axle: axle.towed):
         if axle.towed and not slots[-1].towed:
             assert vehicle.trailer is not None
@@ -114,7 +130,7 @@ def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
             slots.append(_Slot(behind, (0.0, 0.0, 0.0), towed=True))
         # Steered wheels turn about their own middles, so each is a part; others are one per axle.
         pair = 0.0 if axle.steered else axle.track
-        part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)
+        part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair, design), parts)
         slots += [
             _Slot(part, (axle.x, y, vehicle.wheel_radius), axle.steered, axle.towed)
             for y in _places(axle)
@@ -134,14 +150,17 @@ def _places(axle: Axle) -> tuple[float, ...]:
 
 
 def _tabulate(
-    models: Sequence[VehicleModel], layouts: Sequence[list[_Slot]], slots: int
+    models: Sequence[VehicleModel], layouts: Sequence[list[list[_Slot]]], slots: int
 ) -> RigTable:
+    most = max(len(variants) for variants in layouts)
     table = RigTable(
-        slot=np.zeros((len(models), slots), SLOT),
+        slot=np.zeros((len(models), most, slots), SLOT),
         axles=np.array([(m.wheel_radius, m.wheelbase, m.lean) for m in models], AXLES),
     )
     table.slot["part"] = -1
-    for model, layout in enumerate(layouts):
-        for s, slot in enumerate(layout):
-            table.slot[model, s] = (slot.part, *slot.offset, slot.steered, slot.towed)
+    for model, variants in enumerate(layouts):
+        for variant in range(most):
+            for s, slot in enumerate(variants[variant % len(variants)]):
+                row = (slot.part, *slot.offset, slot.steered, slot.towed)
+                table.slot[model, variant, s] = row
     return table

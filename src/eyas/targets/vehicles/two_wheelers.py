@@ -95,7 +95,7 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     if detail == 2:
         x, y, z = posture.foot
         shell.box(
-            (x - 0.07, y - 0.05, z - 0.09), (x + 0.2, y + 0.05, z + 0.02), TRIM, both_sides=True
+            (x - 0.07, y - 0.038, z - 0.09), (x + 0.2, y + 0.038, z + 0.02), TRIM, both_sides=True
         )
 
 

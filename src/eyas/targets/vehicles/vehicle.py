@@ -103,6 +103,8 @@ class VehicleModel(Model):
     """Axles, the front one first."""
     body: "Callable[[VehicleModel], tuple[Mesh, ...]]"
     """Returns the meshes of a model without its wheels, the finest first, in the model frame."""
+    variants: "tuple[Callable[[VehicleModel], tuple[Mesh, ...]], ...]" = ()
+    """Return further bodies of the model, of the same size, as `body` does."""
     lean: float = 0.0
     """Largest lean in a curve [rad]."""
     trailer: Trailer | None = None

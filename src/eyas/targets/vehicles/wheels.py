@@ -4,11 +4,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.mesh.panels import fan
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
 
-__all__ = ["wheel_levels"]
+__all__ = ["DESIGNS", "wheel_levels"]
+
+DESIGNS = 4
+"""Number of designs of discs."""
 
 _DISC = 0.66
 """Radius of the disc, as a share of the wheel's radius."""
@@ -17,18 +21,19 @@ _SHOULDER = 0.92
 """Radius where the tread begins to bend into the side, as a share of the wheel's radius."""
 
 
-def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
+def wheel_levels(radius: float, width: float, pair: float, design: int = 0) -> tuple[Mesh, ...]:
     """Return the levels of detail of one wheel, or of two on an axle, centred at the origin.
 
     Args:
         radius: Radius of the wheel [m].
         width: Width of the tyre [m].
         pair: Distance between the middles of two wheels [m]; 0 for one wheel.
+        design: Of the discs, below `DESIGNS`.
     """
     centres = (pair / 2, -pair / 2) if pair else (0.0,)
     fine, coarse = Shell(), Shell()
     for y in centres:
-        _fine(fine, radius, width, y)
+        _fine(fine, (radius, width), y, design)
         _coarse(coarse, radius, width, y)
     return fine.mesh(), coarse.mesh()
 
@@ -41,7 +46,18 @@ def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
     )
 
 
-def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
+def _gaps(design: int, sides: int) -> NDArray[np.bool_]:
+    """Return where a disc is dark: between spokes, or all over."""
+    at = np.arange(sides)
+    if design == 1:
+        return at % 2 == 1  # eight narrow spokes
+    if design == 2:
+        return at < 0  # a cover
+    return at % 3 != 2 if design == 3 else at % 3 == 2  # five narrow or five wide spokes
+
+
+def _fine(shell: Shell, size: tuple[float, float], y: float, design: int) -> None:
+    radius, width = size
     sides, half = 15, width / 2
     # From left to right, because rings must be counter-clockwise as seen from beyond the last.
     sections = [
@@ -54,15 +70,15 @@ def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
         rim = _ring(radius * _DISC, y + side * half, sides)[:: -int(side)]
         hub = [0.0, y + side * (half + 0.01), 0.0]
         follow = np.roll(rim, -1, axis=0)
-        fan = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
-        gap = np.arange(sides) % 3 == 2  # five spokes
-        shell.triangles(fan[~gap], RIM)
-        shell.triangles(fan[gap], TRIM)
+        spokes = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
+        gap = _gaps(design, sides)
+        shell.triangles(spokes[~gap], RIM)
+        shell.triangles(spokes[gap], TRIM)
 
 
 def _coarse(shell: Shell, radius: float, width: float, y: float) -> None:
     sides, half = 8, width / 2
     shell.rings([_ring(radius, y + half, sides), _ring(radius, y - half, sides)], TYRE)
     for side in (1.0, -1.0):
-        disc = _ring(0.62 * radius, y + side * (half + 0.006), sides)[:: -int(side)]
-        shell.triangles([[disc[0], disc[i], disc[i + 1]] for i in range(1, sides - 1)], RIM)
+        disc = _ring(0.62 * radius, y + side * (half + 0.012), sides)[:: -int(side)]
+        shell.triangles(fan(disc), RIM)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from eyas.state.mesh import Material, Surface
+from eyas.world.build.bodywork import BODYWORK
 
 __all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material", "without_snow"]
 
@@ -63,6 +64,7 @@ TEXTURES: dict[str, float] = {
     "brick": 4.0,
     "stone": 4.0,
     **dict.fromkeys(FACADES + GROUND_FLOORS, 12.0),
+    **dict.fromkeys((*BODYWORK, "panes"), 4.6),
 }
 """Size of one repeat of each texture [m]."""
 

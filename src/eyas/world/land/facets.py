@@ -13,7 +13,7 @@ from eyas.state.terrain import Terrain
 from eyas.world.build.materials import TEXTURES
 from eyas.world.build.millimetres import rounded
 
-__all__ = ["Relief", "relief", "surface_of", "terrain_of"]
+__all__ = ["Relief", "heights_of", "relief", "surface_of", "terrain_of"]
 
 _JITTER = 0.36
 """Most by which a point is moved from its place in the lattice, as a share of the spacing."""
@@ -90,18 +90,29 @@ def terrain_of(ground: Relief, floor: float, half: float, spacing: float = 4.0) 
     count = int(np.ceil(2 * half / spacing)) + 1
     axis = -half + spacing * np.arange(count)
     x, y = (a.ravel() for a in np.meshgrid(axis, axis))
+    raster = heights_of(ground, np.column_stack([x, y]))
+    rows = np.maximum(rounded(raster), 0.0).reshape(count, count).astype(np.float32)
+    return Terrain(floor, rows, -half, -half, spacing)
+
+
+def heights_of(ground: Relief, points: Points) -> Points:
+    """Return the height of a relief above the floor at points, 0 beside it [m].
+
+    Args:
+        ground: The relief.
+        points: East and north [m], shape (P, 2).
+    """
     corners = ground.corners
     tree = shapely.STRtree(shapely.polygons(corners[..., :2]))
-    point, cell = tree.query(shapely.points(x, y), predicate="intersects")
+    point, cell = tree.query(shapely.points(points), predicate="intersects")
     a, b, c = np.moveaxis(corners[cell], 1, 0)
-    across, up, way = b - a, c - a, np.column_stack([x[point], y[point]]) - a[:, :2]
+    across, up, way = b - a, c - a, points[point] - a[:, :2]
     double = across[:, 0] * up[:, 1] - across[:, 1] * up[:, 0]
     one = (way[:, 0] * up[:, 1] - way[:, 1] * up[:, 0]) / double
     other = (across[:, 0] * way[:, 1] - across[:, 1] * way[:, 0]) / double
-    raster = np.zeros(count * count)
-    raster[point] = a[:, 2] + one * across[:, 2] + other * up[:, 2]
-    rows = np.maximum(rounded(raster), 0.0).reshape(count, count).astype(np.float32)
-    return Terrain(floor, rows, -half, -half, spacing)
+    height = np.zeros(len(points))
+    height[point] = a[:, 2] + one * across[:, 2] + other * up[:, 2]
+    return height
 
 
 def surface_of(

@@ -29,7 +29,7 @@ from eyas.world.land.ground import asphalt
 from eyas.world.land.rising import kinds_of, relief_of, snowed
 from eyas.world.plan import plan as p
 from eyas.world.roads import markings, overpass, painting, pillars, tunnels
-from eyas.world.roads.areas import polygons_of, skirt, surface
+from eyas.world.roads.areas import kerbstones, polygons_of, skirt, surface
 from eyas.world.roads.wear import road_wear, worn_lanes
 from eyas.world.things import fronts, railway, skyways
 from eyas.world.things.fields import field_mesh
@@ -233,7 +233,7 @@ def _paved(work: _Work, layer: p.Paved) -> None:
     tile, stone = TEXTURES[layer.slabs.texture], TEXTURES[layer.kerb.texture]
     work.builder.add(
         ObjectClass.PAVEMENT,
-        surface(kerb, layer.z, layer.kerb, stone, layer.kerb_turn),
+        kerbstones(kerb, layer.z, layer.beside, layer.kerb, stone),
         surface(slabs, layer.z, layer.slabs, tile, layer.turn),
         skirt(layer.area, FLOOR_HEIGHT, layer.z, layer.kerb, stone),
     )

@@ -300,8 +300,6 @@ class Paved:
     """Cover of the kerb stones and of all sides."""
     kerb_width: Positive = 0.35
     """[m]"""
-    kerb_turn: float = 0.0
-    """Direction of the kerbs' texture [rad]."""
     turn: float = 0.0
     """Direction in which the slabs are laid [rad]."""
     z: float = KERB_HEIGHT

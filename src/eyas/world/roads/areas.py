@@ -9,11 +9,11 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.mesh.assembly import concatenate
+from eyas.mesh.assembly import concatenate, of_one_material
 from eyas.mesh.flat import flat_polygons, wall_along
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.millimetres import dot, snapped
+from eyas.world.build.millimetres import dot, rounded, snapped
 from eyas.world.roads.curves import rounded_kerbs
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "corners",
     "corridors",
     "joints",
+    "kerbstones",
     "polygons_of",
     "road_area",
     "skirt",
@@ -194,6 +195,38 @@ def surface(
         turn: Angle of the texture, counter-clockwise [rad].
     """
     return flat_polygons(split_on_grid(shape), z, material, tile, turn)
+
+
+def kerbstones(
+    shape: shapely.Geometry, z: float, road: shapely.Geometry, material: Material, tile: float
+) -> Mesh:
+    """Return the tops of kerbs: their stones follow the edge of the road, joints across it.
+
+    Args:
+        shape: Polygons beside the road [m].
+        z: Height [m].
+        road: Asphalt [m].
+        material: Material of the stones, whose rows run along the edge.
+        tile: Size of one repeat of the texture [m].
+    """
+    flat = surface(shape, z, material, tile)
+    corners = flat.positions[flat.triangles].astype(np.float64)
+    if len(corners) == 0:
+        return flat
+    edges = shapely.get_parts(shapely.get_parts(shapely.boundary(road)))
+    middles = shapely.points(rounded(corners[..., :2].mean(axis=1)))
+    (_, nearest) = shapely.STRtree(edges).query_nearest(middles, all_matches=False)
+    edge, points = edges[nearest][:, None], shapely.points(corners[..., :2])
+    along = rounded(shapely.line_locate_point(edge, points))
+    # Of a triangle over the point where a ring begins, all corners lie beyond it.
+    around = rounded(shapely.length(edge))
+    far = along.max(axis=1, keepdims=True) - along > 0.5 * around
+    along = np.where(far, along + around, along)
+    away = rounded(shapely.distance(edge, points))
+    uvs = np.stack([along, away], axis=-1).reshape(-1, 2) / tile
+    triangles = np.arange(3 * len(corners)).reshape(-1, 3)
+    up = np.tile([0.0, 0.0, 1.0], (3 * len(corners), 1))
+    return of_one_material(corners.reshape(-1, 3), up, uvs, triangles, material)
 
 
 def skirt(

@@ -1,5 +1,8 @@
 """Cars that never leave their car parks: simple shapes, part of the scene, not of the traffic."""
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,6 +11,19 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Material, Mesh, Surface
+from eyas.world.build.bodywork import (
+    BAND,
+    FRONT,
+    RAISED,
+    REAR,
+    REAR_WINDOW,
+    SIDE,
+    SIDE_SHARES,
+    TOP,
+    TOP_SHARES,
+    WINDSCREEN,
+    body_paint,
+)
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
 
@@ -33,10 +49,25 @@ CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
 LONG, WIDE, HIGH = 2.28, 0.9, 1.5
 """Half the length, half the width and the height of their solid shape [m]."""
 
-_GLASS = Material(tint=(0.105, 0.11, 0.115), surface=Surface.GLASS)
+_GLASS = Material(texture="panes", tint=(0.5, 0.51, 0.53), surface=Surface.GLASS)
+"""Not that of cars in traffic: snow lies on it."""
 _RUBBER = material("plain", (0.09, 0.09, 0.09))
 _LIGHT = material("plain", (0.86, 0.86, 0.82))
-_REAR = material("plain", (0.55, 0.06, 0.05))
+_LENS = material("plain", (0.55, 0.06, 0.05))
+_RIM = material("plain", (0.62, 0.63, 0.65))
+_PLATE = material("plain", (0.88, 0.88, 0.84))
+
+_STYLES = tuple(
+    f"bodywork_{style}"
+    for style in (
+        *("saloon", "hatch", "saloon_worn", "hatch_sunroof", "saloon_sunroof", "hatch_worn"),
+        *("saloon", "hatch"),
+    )
+)
+"""Bodywork of each kind; it fits the shape."""
+
+_AXLE, _ARCH = 1.38, 0.37
+"""Distance of the axles from the middle, and half the length of an arch [m]."""
 
 # Outlines of the lower body and of the cabin from the side: x, half width, z [m].
 _SALOON = (
@@ -59,62 +90,100 @@ def parked_car(variant: int) -> Levels:
     Args:
         variant: Index of the shape and colour, below `VARIANTS`.
     """
-    paint = Material(tint=_COLOURS[variant], surface=Surface.PAINT)
+    paint = replace(body_paint(_STYLES[variant]), tint=_raised(_COLOURS[variant]))
     body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[variant % 2])
-    fine = concatenate([_hull(body, paint), _cabin(cabin, paint), _lamps(body), *_wheels()])
-    coarse = concatenate([_hull(body[[0, 2, 5, 7]], paint), _cabin(cabin, paint)])
+    hull, top = partial(_hull, paint=paint, cabin=cabin), _cabin(cabin, paint)
+    fine = concatenate([hull(body), top, _lamps(body), *_wheels()])
+    coarse = concatenate([hull(body[[0, 2, 5, 7]]), top])
     return fine, coarse
 
 
-def _hull(outline: Points, paint: Material) -> Mesh:
+def _raised(colour: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return a tint that gives plain paint a colour, see `body_paint`."""
+    red, green, blue = (RAISED * part for part in colour)
+    return red, green, blue
+
+
+def _hull(outline: Points, *, paint: Material, cabin: Points) -> Mesh:
     """Return the body over an outline from tail to nose, with its two sides down to the sills."""
     x, half, z = outline.T
-    left, right = np.stack([x, half, z], axis=1), np.stack([x, -half, z], axis=1)
-    top = np.stack([left[:-1], right[:-1], right[1:], left[1:]], axis=1)
+    left, middle = outline, outline * [1.0, 0.0, 1.0]
+    over = np.stack([left[:-1], middle[:-1], middle[1:], left[1:]], axis=1)
     sill = float(z.min())
-    low_left, low_right = (np.column_stack([side[:, :2], np.full(len(x), sill)])
-                           for side in (left, right))  # fmt: skip
-    sides = [
-        np.stack([side[:-1], side[1:], low[1:], low[:-1]], axis=1)
-        for side, low in ((left, low_left), (right, low_right))
-    ]
-    faces = np.concatenate([_outwards(side) for side in (top, *sides)])
-    return quads(faces, np.zeros((len(faces), 4, 2)), paint)
+    low = np.column_stack([x, half, np.full(len(x), sill)])
+    side = np.stack([left[:-1], left[1:], low[1:], low[:-1]], axis=1)
+    uvs = TOP.at(
+        np.interp(over[..., 0], [x.min(), *cabin[:, 0], x.max()], TOP_SHARES),
+        over[..., 1] / half.max(),
+    )
+    count = len(outline) // 4  # panels of each end
+    for rows, region, high in (
+        (slice(0, count), REAR, z[count]),
+        (slice(-count, None), FRONT, z[-count - 1]),
+    ):
+        end = over[rows]
+        uvs[rows] = region.at(end[..., 1] / half.max(), (end[..., 2] - sill) / (high - sill))
+    arches = [-_AXLE - _ARCH, -_AXLE + _ARCH, -0.2, 0.9, _AXLE - _ARCH, _AXLE + _ARCH]
+    along = np.interp(side[..., 0], [x.min(), *arches, x.max()], SIDE_SHARES)
+    belt = np.interp(side[..., 0], x[count:-count], z[count:-count])
+    side_uvs = SIDE.at(along, (side[..., 2] - sill) / np.maximum(belt - sill, 0.05))
+    faces, all_uvs = np.concatenate([over, side]), np.concatenate([uvs, side_uvs])
+    return _both_sides(faces, all_uvs, paint)
+
+
+def _both_sides(faces: Points, uvs: Points, skin: Material) -> Mesh:
+    """Return faces of the left half, and the same mirrored."""
+    out = _inwards(faces)
+    faces = np.where(out[:, None, None], faces[:, ::-1], faces)
+    uvs = np.where(out[:, None, None], uvs[:, ::-1], uvs)
+    mirror = faces[:, ::-1] * [1.0, -1.0, 1.0]
+    return quads(np.concatenate([faces, mirror]), np.concatenate([uvs, uvs[:, ::-1]]), skin)
 
 
 def _cabin(outline: Points, paint: Material) -> Mesh:
     """Return windows all round and a painted roof."""
-    x, half, z = outline.T
-    left, right = np.stack([x, half, z], axis=1), np.stack([x, -half, z], axis=1)
-    over = np.stack([left[:-1], right[:-1], right[1:], left[1:]], axis=1)
-    sides = np.stack([left, right[::-1]])
-    glass = _outwards(np.concatenate([over[[0, 2]], sides]))
-    roof = _outwards(over[1:2])
-    flat = np.zeros((1, 4, 2))
-    return concatenate([quads(glass, np.repeat(flat, 4, 0), _GLASS), quads(roof, flat, paint)])
+    x, _, z = outline.T
+    across = np.array([1.0, 0.0, 0.0, 1.0])
+    left, middle = outline, outline * [1.0, 0.0, 1.0]
+    roof = np.array([left[1], middle[1], middle[2], left[2]])[None]
+    roof_uvs = TOP.at(np.take(TOP_SHARES, [2, 2, 3, 3]), across)[None]
+    up = (z - z.min()) / np.ptp(z)
+    side_uvs = BAND.at((x - x[0]) / (x[3] - x[0]), up)[None]
+    painted = _both_sides(
+        np.concatenate([roof, outline[None]]), np.concatenate([roof_uvs, side_uvs]), paint
+    )
+    right = outline * [1.0, -1.0, 1.0]
+    rear = np.array([left[0], right[0], right[1], left[1]])
+    screen = np.array([right[3], left[3], left[2], right[2]])
+    corners = [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]
+    panes = quads([rear, screen], [REAR_WINDOW.at(*corners), WINDSCREEN.at(*corners)], _GLASS)
+    return concatenate([painted, panes])
 
 
-def _outwards(faces: Points) -> Points:
-    """Return quadrilaterals turned so that they face away from the middle of the car."""
+def _inwards(faces: Points) -> NDArray[np.bool_]:
+    """Return which quadrilaterals face the middle of the car."""
     middle = np.array([0.0, 0.0, 0.7])
     normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    inwards = exact.dot(normal, faces.mean(axis=1) - middle) < 0
-    return np.where(inwards[:, None, None], faces[:, ::-1], faces)
+    inwards: NDArray[np.bool_] = exact.dot(normal, faces.mean(axis=1) - middle) < 0
+    return inwards
 
 
 def _lamps(body: Points) -> Mesh:
     nose, tail = body[-2], body[1]
     front = [box((0.06, 0.36, 0.12), (nose[0] - 0.01, y, nose[2] + 0.02), _LIGHT, 1.0)
              for y in (-0.52, 0.52)]  # fmt: skip
-    rear = [box((0.06, 0.3, 0.16), (tail[0] + 0.01, y, tail[2] + 0.1), _REAR, 1.0)
+    rear = [box((0.06, 0.3, 0.16), (tail[0] + 0.01, y, tail[2] + 0.1), _LENS, 1.0)
             for y in (-0.58, 0.58)]  # fmt: skip
-    return concatenate([*front, *rear])
+    plate = box((0.03, 0.5, 0.11), (tail[0] + 0.0, 0.0, tail[2] + 0.13), _PLATE, 1.0)
+    return concatenate([*front, *rear, plate])
 
 
 def _wheels() -> list[Mesh]:
-    upright = cylinder((0.32, 0.32), (-0.1, 0.1), 9, _RUBBER, cap=True)
+    tyre = cylinder((0.32, 0.32), (-0.1, 0.1), 9, _RUBBER, cap=True)
+    disc = cylinder((0.2, 0.0), (0.1, 0.115), 9, _RIM)
+    wheel = concatenate([tyre, disc])
     return [
-        transformed(upright, np.array([[1.0, 0, 0, x], [0, 0, -1.0, y], [0, 1.0, 0, 0.32]]))
-        for x in (-1.38, 1.38)
-        for y in (-0.78, 0.78)
+        transformed(wheel, np.array([[-side, 0, 0, x], [0, 0, side, 0.81 * side], [0, 1, 0, 0.32]]))
+        for x in (-_AXLE, _AXLE)
+        for side in (1.0, -1.0)
     ]

@@ -3,7 +3,8 @@
 Where a network has programs for them (imported towns), their lenses are dark here, and
 `eyas.sim.views.additions` draws the one that shines. Elsewhere they are decoration and shine amber,
 as signals do that leave drivers to give way to each other: so cars drive there, and a fixed red or
-green would show cars running red lights in every film.
+green would show cars running red lights in every film. If they are to work there
+(`traffic.signals`), what is drawn over them hides the amber.
 """
 
 from typing import TYPE_CHECKING
@@ -112,11 +113,20 @@ def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     return concatenate([_steel(8), *heads]), concatenate([_steel(3), *heads[:-1]])
 
 
-def lens_levels() -> tuple[tuple[Mesh, ...], ...]:
-    """Return the lenses that shine, over those of `signal_levels`, for each aspect."""
+def lens_levels(*, covers: bool = False) -> tuple[tuple[Mesh, ...], ...]:
+    """Return the lenses that shine, over those of `signal_levels`, for each aspect.
+
+    Args:
+        covers: Whether they hide amber that shines there and should not.
+    """
     levels = []
     for shining in _ASPECTS:
-        heads = [concatenate([_lit(centre, lens) for lens in shining]) for centre in _CENTRES]
+        stuffs = {lens: _SHINING[lens] for lens in shining}
+        if covers:
+            stuffs.setdefault(_AMBER, _DARK[_AMBER])
+        heads = [
+            concatenate([_lens(centre, *one) for one in stuffs.items()]) for centre in _CENTRES
+        ]
         levels.append((concatenate(heads), concatenate(heads[:-1])))
     return tuple(levels)
 
@@ -141,7 +151,7 @@ def _head(centre: tuple[float, float, float], lenses: tuple[Material, ...]) -> M
     return concatenate(parts)
 
 
-def _lit(centre: tuple[float, float, float], lens: int) -> Mesh:
-    """Return a shining lens, which bulges so that it is seen from above, too."""
+def _lens(centre: tuple[float, float, float], lens: int, stuff: Material) -> Mesh:
+    """Return a lens over another, which bulges so that it is seen from above, too."""
     x, y, z = centre
-    return box((0.27, 0.16, 0.27), (x, y + 0.19, z + _RISES[lens]), _SHINING[lens], 1.0)
+    return box((0.27, 0.16, 0.27), (x, y + 0.19, z + _RISES[lens]), stuff, 1.0)

@@ -27,6 +27,7 @@ from eyas.render.kernels.bundles.light import (
     LampFrame,
     Light,
     MapFrame,
+    Wind,
 )
 from eyas.render.kernels.bundles.view import NEAR, Plane, Planes, Point, Projection, Row, View
 from eyas.render.kernels.bundles.work import Canvas, Job, Output, Scratch, Task
@@ -61,4 +62,5 @@ __all__ = [
     "Scratch",
     "Task",
     "View",
+    "Wind",
 ]

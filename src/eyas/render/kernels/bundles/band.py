@@ -48,3 +48,4 @@ class Band(NamedTuple):
     triangle: NDArray[np.float64]
     polygon: NDArray[np.float64]
     span: NDArray[np.int32]
+    leaning: NDArray[np.float32]

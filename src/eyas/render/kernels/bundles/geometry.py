@@ -86,3 +86,5 @@ class Movers(NamedTuple):
     colour: NDArray[np.float32]
     object_id: NDArray[np.int32]
     object_class: NDArray[np.uint8]
+    lamps: NDArray[np.uint8]
+    spray: NDArray[np.float32]

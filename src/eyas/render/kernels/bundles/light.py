@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TILE", "Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame"]
+__all__ = ["TILE", "Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame", "Wind"]
 
 TILE = 32
 """Texels of the shadow map from one tile to the next."""
@@ -55,6 +55,21 @@ class Air(NamedTuple):
     limb_y: float
     limb_z: float
     longest_shadow: float
+    windy: float
+    """1: the wind of each view moves plants and what falls, 0: what falls has its own."""
+    spray: float
+    """See `eyas.state.lighting.Lighting`."""
+
+
+class Wind(NamedTuple):
+    """The wind of a view, of float32."""
+
+    x: float
+    """Velocity eastwards [m/s]."""
+    y: float
+    speed: float
+    instant: float
+    """Time [s]."""
 
 
 class Illumination(NamedTuple):
@@ -69,10 +84,13 @@ class Illumination(NamedTuple):
     """Light of the sky on surfaces that face up."""
     below: Direction
     """Light from the ground on surfaces that face down."""
+    tinge: Direction
+    """What a hidden part of the sky changes in `above`: walls throw light of another colour."""
     fog: Direction
     fog_density: float
     """[1/m]"""
     air: Air
+    wind: Wind
 
 
 class MapFrame(NamedTuple):
@@ -135,6 +153,12 @@ class Light(NamedTuple):
     clouds: NDArray[np.uint8]
     """Opacity, and brightness times opacity, see `eyas.render.bake.clouds`,
     shape (rows, columns, 2)."""
+    sway: NDArray[np.float32]
+    """Frequency [1/s] and relative strength with which each fixture sways, see
+    `eyas.render.bake.sway`, shape (F, 2), or (0, 2) in calm air."""
+    smoke: NDArray[np.float32]
+    """Places from which smoke rises [m], and its brightness, see `eyas.render.bake.smoke`,
+    shape (S, 4)."""
     hills: NDArray[np.uint8]
     """Cover, sunlight, woods and farness, see `eyas.render.bake.hills`,
     shape (rows, columns, 4)."""

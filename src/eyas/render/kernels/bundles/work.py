@@ -30,7 +30,7 @@ class Job(NamedTuple):
     """Shape (V,)."""
     light: LightState
     instant: NDArray[np.float64]
-    """Time for falling snow [s], shape (V,), or (0,) if none falls."""
+    """Time for what falls and for the wind [s], shape (V,), or (0,) if neither is shown."""
     focal: NDArray[np.float64]
     """Focal length along rows and along columns [pixels], shape (V, 2)."""
     lens: NDArray[np.int32]
@@ -77,6 +77,9 @@ class Scratch(NamedTuple):
     shape (K, rows, columns), or (K, 0, 0)."""
     bent_shade: NDArray[np.uint8]
     """`shade` in the same way, shape (K, rows, columns, 4), or (K, 0, 0, 4)."""
+    leaning: NDArray[np.float32]
+    """Poses of the visible fixtures in the wind, the rows of `drawn`, shape (K, I, 3, 4), or
+    (K, 0, 3, 4) in calm air."""
     bent_tile: NDArray[np.int32]
     """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 
@@ -116,6 +119,8 @@ class Task(NamedTuple):
     width: int
     """Size of the pictures [pixels]."""
     height: int
+    falls: int
+    """1: flakes, drops and leaves are drawn at the views' instants."""
     until: int
     """The last `eyas.state.draw.DrawStage`."""
     job: Job

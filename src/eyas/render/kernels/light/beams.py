@@ -35,6 +35,9 @@ _REACH = 34.0
 _BEHIND = 5.0
 """The same for its tail lamps, behind it [m]."""
 
+_BRAKING = 2.0
+"""How much more brake lamps light there; near the vehicle, no more than can be told."""
+
 _CUT_OFF = 1.2
 """Height above the bottom of a vehicle up to which its lamps light things [m]."""
 
@@ -89,11 +92,17 @@ def _screen_box(caster: Caster, view: View) -> ScreenBox:
 
 
 @kernel
-def cast_beam(caster: Caster, band: Band) -> None:
+def cast_beam(caster: Caster, band: Band, brakes: bool) -> None:
     """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Band.shade`.
 
     Its own body lies neither ahead of its front nor behind its back.
+
+    Args:
+        caster: The vehicle.
+        band: The band.
+        brakes: Whether its brake lamps are lit.
     """
+    steps = f4(255.0 * _BRAKING) if brakes else f4(255.0)
     view, key, shade = band.camera, band.key, band.shade
     half = 0.5 * (_REACH - _BEHIND)
     x, y = caster.x + half * caster.along_x, caster.y + half * caster.along_y
@@ -127,6 +136,6 @@ def cast_beam(caster: Caster, band: Band) -> None:
             head, tail = _head(x - length, y, z), _tail(-x - length, y, z)
             words = load_words(shade, 4 * at)
             white = ((words >> u4(16)) & u4(255)) + to_u4(head * f4(255.0))
-            red = (words >> u4(24)) + to_u4(tail * f4(255.0))
+            red = (words >> u4(24)) + to_u4(tail * steps)
             lit = (lesser(white, u4(255)) << u4(16)) | (lesser(red, u4(255)) << u4(24))
             store_words(shade, 4 * at, select(seen, (words & u4(0xFFFF)) | lit, words))

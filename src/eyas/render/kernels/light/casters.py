@@ -34,6 +34,7 @@ from eyas.render.kernels.light.caster import (
 from eyas.render.kernels.light.shadow_boxes import darken, may_darken
 from eyas.render.kernels.samples import ScreenBox, around, empty_box, point_of, ray_of_row
 from eyas.render.kernels.scalars import f4, i4, u4
+from eyas.render.kernels.surface.signalling import BRAKING
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse, tag_of
 from eyas.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
@@ -182,6 +183,13 @@ def _longer(caster: Caster, more: float) -> Caster:
     )  # fmt: skip
 
 
+@kernel(inline=True)
+def _brakes(band: Band, slot: int) -> bool:
+    """Return whether the thing in a slot has brake lamps on."""
+    lamps = band.movers.lamps
+    return lamps.shape[1] > 0 and (lamps[band.world, slot] & BRAKING) == BRAKING
+
+
 @kernel
 def cast_light(band: Band) -> None:
     """Write the share of light that moving things let through to each sample, and their own light.
@@ -211,6 +219,6 @@ def cast_light(band: Band) -> None:
                     reach = 0.0
                     if end < last:
                         reach = _stretch(caster, caster_of(band, end, last))
-                    cast_beam(address_of(_longer(caster, reach)), band)
+                    cast_beam(address_of(_longer(caster, reach)), band, _brakes(band, first))
                 begin = end
         first = next_thing(band, last)

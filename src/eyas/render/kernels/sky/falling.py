@@ -11,6 +11,7 @@ from eyas.render.kernels.scalars import f4
 
 __all__ = [
     "Falling",
+    "drift",
     "drop_lit",
     "leaf_colour",
     "leaves",
@@ -61,15 +62,25 @@ class Falling(NamedTuple):
 
 
 @kernel(inline=True)
-def snow(density: float) -> Falling:
+def drift(lit: Illumination, own_x: float, own_y: float) -> tuple[float, float]:
+    """Return the horizontal velocity of what falls [m/s]: the wind's, or its own in calm air."""
+    x, y = own_x, own_y
+    if lit.air.windy > f4(0.0):
+        x, y = float(lit.wind.x), float(lit.wind.y)
+    return x, y
+
+
+@kernel(inline=True)
+def snow(density: float, lit: Illumination) -> Falling:
     """Return how snow of a density, 0 to 1, falls."""
     most = math.ceil(10.0 * density)
+    wind_x, wind_y = drift(lit, 0.55, 0.3)
     return Falling(
         shells=3,
         cells=6.0,
         most=most,
-        wind_x=0.55,
-        wind_y=0.3,
+        wind_x=wind_x,
+        wind_y=wind_y,
         sinking=1.25,
         sway=0.06,
         exposed=1.0 / 110.0,
@@ -84,18 +95,19 @@ def snow(density: float) -> Falling:
 
 
 @kernel(inline=True)
-def rain(density: float) -> Falling:
+def rain(density: float, lit: Illumination) -> Falling:
     """Return how rain of a density, 0 to 1, falls.
 
     Drops of 2 to 3 mm fall at 6.5 to 8 m/s (Gunn and Kinzer, Journal of Meteorology 6, 1949).
     """
     most = math.ceil(13.0 * density)
+    wind_x, wind_y = drift(lit, 1.3, 0.7)
     return Falling(
         shells=3,
         cells=4.0,
         most=most,
-        wind_x=1.3,
-        wind_y=0.7,
+        wind_x=wind_x,
+        wind_y=wind_y,
         sinking=7.5,
         sway=0.0,
         exposed=1.0 / 60.0,
@@ -110,15 +122,16 @@ def rain(density: float) -> Falling:
 
 
 @kernel(inline=True)
-def leaves(density: float) -> Falling:
+def leaves(density: float, lit: Illumination) -> Falling:
     """Return how leaves of a density, 0 to 1, fall."""
     most = math.ceil(3.0 * density)
+    wind_x, wind_y = drift(lit, 1.5, 0.8)
     return Falling(
         shells=3,
         cells=4.0,
         most=most,
-        wind_x=1.5,
-        wind_y=0.8,
+        wind_x=wind_x,
+        wind_y=wind_y,
         sinking=0.85,
         sway=0.22,
         exposed=1.0 / 110.0,

@@ -27,8 +27,9 @@ from eyas.render.kernels.sky.falling import (
     under_trees,
 )
 from eyas.render.kernels.visibility.key import distance_inverse
+from eyas.render.kernels.wind import wave
 
-__all__ = ["let_flakes_fall"]
+__all__ = ["blend", "bytes_of", "let_flakes_fall", "seen_from"]
 
 Colour = tuple[float, float, float]
 
@@ -57,14 +58,7 @@ class Snowfall(NamedTuple):
 
 
 @kernel(inline=True)
-def _wave(turn: float) -> float:
-    """Return approximately the sine of an angle given in turns, made of parabolas."""
-    part = turn - math.floor(turn) - 0.5
-    return float(16.0 * part * (abs(part) - 0.5))
-
-
-@kernel(inline=True)
-def _bytes(
+def bytes_of(
     light: Light, exposure: float, colour: tuple[float, float, float]
 ) -> tuple[int, int, int]:
     red, green, blue = tone_bytes(light, exposure, colour)
@@ -82,11 +76,11 @@ def let_flakes_fall(band: Band, instant: float, canvas: Canvas) -> None:
     """
     lit, none = band.lit, f4(0.0)
     if lit.air.flakes > none:
-        _let_fall(band, instant, snow(lit.air.flakes), sky_lit(lit), canvas)
+        _let_fall(band, instant, snow(lit.air.flakes, lit), sky_lit(lit), canvas)
     if lit.air.rain > none:
-        _let_fall(band, instant, rain(lit.air.rain), drop_lit(lit), canvas)
+        _let_fall(band, instant, rain(lit.air.rain, lit), drop_lit(lit), canvas)
     if lit.air.leaves > none:
-        _let_fall(band, instant, leaves(lit.air.leaves), sky_lit(lit), canvas)
+        _let_fall(band, instant, leaves(lit.air.leaves, lit), sky_lit(lit), canvas)
 
 
 @kernel
@@ -98,7 +92,7 @@ def _let_fall(
     canvas: Canvas,
 ) -> None:
     """Draw one thing that falls; `white` is the radiance of a white flake."""
-    pale = _bytes(band.light, band.lit.air.exposure, white)
+    pale = bytes_of(band.light, band.lit.air.exposure, white)
     snowfall = Snowfall(band, instant, falling, white, pale, canvas)
     begin, focal = NEAREST, band.camera.focal
     for shell in range(falling.shells):
@@ -164,7 +158,7 @@ def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> Non
 
 
 @kernel(inline=True)
-def _seen_from(view: View, x: float, y: float, z: float) -> tuple[float, float, float]:
+def seen_from(view: View, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return how far a direction goes forward, left and up."""
     ahead, left, up = view.ahead, view.left, view.up
     return (
@@ -186,7 +180,7 @@ def _in_band(
 ) -> bool:
     """Return whether a ball round a cell and the sway of its flakes, of a radius, may be seen."""
     wide = 0.5 * view.width / view.focal_x
-    ahead, left, up = _seen_from(view, middle[0], middle[1], middle[2])
+    ahead, left, up = seen_from(view, middle[0], middle[1], middle[2])
     if ahead < begin - ball or ahead > end + ball:
         return False
     if abs(left) > wide * ahead + ball * math.sqrt(1.0 + wide * wide):
@@ -230,18 +224,18 @@ def _draw_flake(
         tenth(other, 5),
     ):  # fmt: skip
         return
-    x = middle[0] + (tenth(number, 0) - 0.5) * side + falling.sway * _wave(turn)
-    y = middle[1] + (tenth(number, 10) - 0.5) * side + falling.sway * _wave(turn + 0.25)
+    x = middle[0] + (tenth(number, 0) - 0.5) * side + falling.sway * wave(turn)
+    y = middle[1] + (tenth(number, 10) - 0.5) * side + falling.sway * wave(turn + 0.25)
     z = middle[2] + (tenth(number, 20) - 0.5) * side
-    ahead, left, up = _seen_from(view, x, y, z)
+    ahead, left, up = seen_from(view, x, y, z)
     if ahead < begin or ahead > end:
         return
     # From its position at the start of the exposure.
     exposed = falling.exposed
-    _, aside, above = _seen_from(
+    _, aside, above = seen_from(
         view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.sinking * exposed
     )
-    tumbling = 0.35 + 0.65 * abs(_wave(2.7 * turn)) if falling.coloured else 1.0
+    tumbling = 0.35 + 0.65 * abs(wave(2.7 * turn)) if falling.coloured else 1.0
     real = _radius(falling, size, ahead)
     radius = real * view.focal / ahead
     if falling.coloured:
@@ -265,7 +259,7 @@ def _draw_flake(
         place = eye.x + x, eye.y + y, eye.z + z
         colour = lit_by_lamps(colour, snowfall.band, place)
     if falling.coloured or falling.lit:
-        pale = _bytes(snowfall.band.light, snowfall.band.lit.air.exposure, colour)
+        pale = bytes_of(snowfall.band.light, snowfall.band.lit.air.exposure, colour)
     _smear(streak, colour, pale, snowfall)
 
 
@@ -330,11 +324,11 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            _blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
+            blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
 
 
 @kernel(inline=True)
-def _blend(
+def blend(
     canvas: Canvas,
     i: int,
     j: int,

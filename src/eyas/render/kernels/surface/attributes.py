@@ -18,7 +18,7 @@ _COLUMNS = 32
 
 
 class Frame(NamedTuple):
-    """Pose and colour of an instance, of float32: `world = (xx xy xz; yx ...) own + (x, y, z)`."""
+    """Pose, of float32, `world = (xx xy xz; yx ...) own + (x, y, z)`, and looks of an instance."""
 
     xx: float
     xy: float
@@ -38,6 +38,8 @@ class Frame(NamedTuple):
     blue: float
     shrink: float
     """One over its scale squared."""
+    lamps: int
+    """Its lamps that shine, see `eyas.state.draw.DrawList.lamps`."""
 
 
 class Attributes(NamedTuple):
@@ -77,18 +79,28 @@ def _linear(value: float) -> float:
 
 
 @kernel(inline=True)
-def frame_of(poses: NDArray[np.float32], colours: NDArray[np.float32], index: int) -> Frame:
-    """Return row `index` of poses, shape (., 3, 4), and of colours if there are any, (., 3)."""
+def frame_of(
+    poses: NDArray[np.float32],
+    colours: NDArray[np.float32],
+    lamps: NDArray[np.uint8],
+    index: int,
+) -> Frame:
+    """Return row `index` of poses, shape (., 3, 4), and if there are any of colours, (., 3), and of
+    lamps, (.,).
+    """
     p, one = poses[index], f4(1.0)
     red, green, blue = one, one, one
     if len(colours) > 0:
         red, green, blue = (
             _linear(colours[index, 0]), _linear(colours[index, 1]), _linear(colours[index, 2])
         )  # fmt: skip
+    shining = i4(0)
+    if len(lamps) > 0:
+        shining = i4(lamps[index])
     square = p[0, 0] * p[0, 0] + p[1, 0] * p[1, 0] + p[2, 0] * p[2, 0]
     return Frame(
         p[0, 0], p[0, 1], p[0, 2], p[0, 3], p[1, 0], p[1, 1], p[1, 2], p[1, 3],
-        p[2, 0], p[2, 1], p[2, 2], p[2, 3], red, green, blue, one / square,
+        p[2, 0], p[2, 1], p[2, 2], p[2, 3], red, green, blue, one / square, shining,
     )  # fmt: skip
 
 
@@ -96,7 +108,7 @@ def frame_of(poses: NDArray[np.float32], colours: NDArray[np.float32], index: in
 def no_frame() -> Frame:
     """Return what stands for the pose of the static mesh, and is not read."""
     o, i = f4(0.0), f4(1.0)
-    return Frame(i, o, o, o, o, i, o, o, o, o, i, o, i, i, i, i)
+    return Frame(i, o, o, o, o, i, o, o, o, o, i, o, i, i, i, i, i4(0))
 
 
 @kernel(inline=True)

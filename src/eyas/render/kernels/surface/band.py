@@ -28,6 +28,7 @@ from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
+from eyas.render.kernels.wind import sways
 
 __all__ = ["instance_frame", "shade_band"]
 
@@ -37,12 +38,16 @@ Colour = tuple[float, float, float]
 
 @kernel(inline=True)
 def instance_frame(band: Band, row: int) -> Frame:
-    """Return pose and colour of an instance, a row of `Band.drawn`; fixtures have no colour."""
+    """Return an instance, a row of `Band.drawn`; fixtures have no colour and no such lamps."""
     geometry, movers, world = band.geometry, band.movers, band.world
     instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
     if instance >= fixtures:
-        return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
-    return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
+        colours, lamps = movers.colour[world], movers.lamps[world]
+        return frame_of(movers.pose[world], colours, lamps, instance - fixtures)
+    colours, lamps = movers.colour[world, :0], movers.lamps[world, :0]
+    if sways(band.light, instance):
+        return frame_of(band.leaning, colours, lamps, row)
+    return frame_of(geometry.fixture_pose, colours, lamps, instance)
 
 
 @kernel(inline=False)

@@ -15,9 +15,12 @@ from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
 from eyas.render.kernels.surface.litter import littered
+from eyas.render.kernels.surface.signalling import signalled
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
+from eyas.render.kernels.surface.wild_ground import heath, hillside
+from eyas.render.kernels.wind import shimmer
 from eyas.state.mesh import MARGIN, Surface
 
 __all__ = ["painted_share", "shade_point", "water_slope"]
@@ -25,10 +28,13 @@ __all__ = ["painted_share", "shade_point", "water_slope"]
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
 FOLIAGE = i4(int(Surface.FOLIAGE))
+CROWN = i4(int(Surface.CROWN))
 FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
 MARKING = i4(int(Surface.MARKING))
+HILLSIDE = i4(int(Surface.HILLSIDE))
+HEATH = i4(int(Surface.HEATH))
 
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
@@ -166,6 +172,15 @@ def shade_point(
     shrink = one / stretch
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -_dot(normal, way)
+    if air.windy > zero:
+        leaves = (surface == FOLIAGE) | (surface == CROWN)
+        if any_of(leaves):
+            turned = shimmer(lit.wind, point, normal, distance * pixel)
+            normal = (
+                select(leaves, turned[0], normal[0]),
+                select(leaves, turned[1], normal[1]),
+                select(leaves, turned[2], normal[2]),
+            )
 
     marked, u, v, density = surface == MARKING, at.u, at.v, at.density
     if any_of(marked):
@@ -201,6 +216,20 @@ def shade_point(
         red = select(wet, at.tint[0] * bright, red)
         green = select(wet, at.tint[1] * bright, green)
         blue = select(wet, at.tint[2] * bright, blue)
+    hilly, heathy = surface == HILLSIDE, surface == HEATH
+    if any_of(hilly | heathy):
+        footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        soil = (red, green, blue)
+        if any_of(hilly):
+            wild_r, wild_g, wild_b = hillside(soil, point, normal[2], footprint)
+            red = select(hilly, wild_r, red)
+            green = select(hilly, wild_g, green)
+            blue = select(hilly, wild_b, blue)
+        if any_of(heathy):
+            wild_r, wild_g, wild_b = heath(soil, point, footprint)
+            red = select(heathy, wild_r, red)
+            green = select(heathy, wild_g, green)
+            blue = select(heathy, wild_b, blue)
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = snowed(
@@ -222,12 +251,13 @@ def shade_point(
     tilt = f4(0.5) * normal[2]
     tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
     open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
-    sky_share *= open_share
-    up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
-    sun, above, below = lit.sun_colour, lit.above, lit.below
-    light_r = direct * sun.x + up * above.x + down * below.x
-    light_g = direct * sun.y + up * above.y + down * below.y
-    light_b = direct * sun.z + up * above.z + down * below.z
+    up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share * open_share
+    # Where walls hide the sky, what they and the ground throw back is not blue.
+    seen, thrown = up * open_share, up * (one - open_share)
+    sun, above, below, tinge = lit.sun_colour, lit.above, lit.below, lit.tinge
+    light_r = direct * sun.x + seen * above.x + thrown * tinge.x + down * below.x
+    light_g = direct * sun.y + seen * above.y + thrown * tinge.y + down * below.y
+    light_b = direct * sun.z + seen * above.z + thrown * tinge.z + down * below.z
     signal = surface == SIGNAL
     if any_of(signal):
         glow = select(signal, at.emission, zero)
@@ -254,6 +284,8 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
+    if frame.lamps != i4(0):
+        red, green, blue = signalled((red, green, blue), surface, frame.lamps)
     mirror = _smoothness(surface, alpha)
     if any_of(mirror > zero):
         facing = lesser(greater(cosine, zero), one)

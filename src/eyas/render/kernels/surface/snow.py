@@ -118,10 +118,13 @@ def _on_road(colour: Colour, worn: float, grain: float, fine: float) -> Colour:
         grain: Noise of a third of a metre, 0 to 1.
         fine: Noise of a tenth of a metre, 0 to 1.
     """
-    ragged = worn * (f4(0.56) + f4(0.56) * grain + f4(0.36) * fine)
+    ragged = worn * (f4(0.74) + f4(0.24) * grain + f4(0.32) * fine)
     share = f4(0.9) * greater(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
     # Wheels compress and soil the snow that they do not push away.
     light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
+    # Beside them lies what the plough has thrown up: lumps, grey with grit.
+    lumps = f4(0.6) * grain + f4(0.4) * fine
+    light -= f4(0.34) * _clip(f4(1.0) - f4(2.5) * worn) * _clip(f4(1.3) - f4(1.9) * lumps)
     wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
     return _mixed((wet * colour[0], wet * colour[1], wet * colour[2]), share, light)
 

@@ -22,6 +22,7 @@ from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.cull import boxes_seen, sphere_is_visible, spheres_seen
 from eyas.render.kernels.visibility.meshes import level_of_detail
 from eyas.render.kernels.visibility.transform import scale_of
+from eyas.render.kernels.wind import leaned, sways
 
 __all__ = ["list_chunks", "list_fixtures", "list_slots"]
 
@@ -102,7 +103,7 @@ def _list_instance(
 @kernel(inline=True)
 def list_fixtures(band: Band, chunks: int) -> int:
     """List the visible fixtures; return how many there are."""
-    geometry, view, count = band.geometry, band.camera, i8(0)
+    geometry, view, light, count = band.geometry, band.camera, band.light, i8(0)
     for eight in range(0, geometry.fixture_group_box.shape[1], EIGHT):
         groups = boxes_seen(view.planes, geometry.fixture_group_box, eight)
         while groups != 0:
@@ -114,7 +115,13 @@ def list_fixtures(band: Band, chunks: int) -> int:
                     i = start + first_bit(seen)
                     seen &= seen - 1
                     prototype, poses = geometry.fixture_prototype[i], geometry.fixture_pose
-                    count = _list_instance(band, prototype, poses, i, i, chunks, count)
+                    if sways(light, i) and count < len(band.leaning):
+                        leaned(light, band.lit.wind, i, poses[i], band.leaning[count])
+                        count = _list_instance(
+                            band, prototype, band.leaning, count, i, chunks, count
+                        )
+                    else:
+                        count = _list_instance(band, prototype, poses, i, i, chunks, count)
     return count
 
 

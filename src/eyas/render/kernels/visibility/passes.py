@@ -11,6 +11,7 @@ from eyas.render.kernels.visibility.key import instance_tag
 from eyas.render.kernels.visibility.listing import list_chunks, list_fixtures, list_slots
 from eyas.render.kernels.visibility.meshes import draw_mesh
 from eyas.render.kernels.visibility.transform import in_frame, object_projection, scale_of
+from eyas.render.kernels.wind import sways
 from eyas.state.draw import DrawStage
 
 __all__ = ["draw_scene", "draw_slots"]
@@ -77,7 +78,9 @@ def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
         else:
             row = item - chunks
             mesh, instance = geometry.mesh_range[meshes[row]], i8(drawn[row, 1])
-            if instance < fixtures:
+            if instance < fixtures and sways(band.light, instance):
+                screen, eye, focal = _in_frame(view, band.leaning, row)
+            elif instance < fixtures:
                 screen, eye, focal = _in_frame(view, geometry.fixture_pose, instance)
             else:
                 screen, eye, focal = _in_frame(view, movers.pose[world], instance - fixtures)

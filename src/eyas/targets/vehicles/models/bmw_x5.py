@@ -17,6 +17,7 @@ _SHAPE = CarShape(
     clearance=0.27,
     sill=TRIM,
     lean=0.30,
+    rack=True,
 )  # fmt: skip
 
 MODEL = car(

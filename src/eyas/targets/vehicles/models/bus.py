@@ -25,6 +25,7 @@ _SHAPE = CarShape(
     head_lamps=0.09,
     sill=TRIM,
     pods=((-3.6, -1.2, 3.36), (1.4, 3.0, 3.30)),
+    bodywork="bus",
 )  # fmt: skip
 
 MODEL = car(

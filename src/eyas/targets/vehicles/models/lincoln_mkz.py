@@ -18,6 +18,7 @@ _SHAPE = CarShape(
     lean=0.34,
     tail_lamps=0.3,
     head_lamps=0.40,
+    bodywork="saloon",
 )  # fmt: skip
 
 MODEL = car(

@@ -20,6 +20,8 @@ _SHAPE = CarShape(
     tail_lamps=0.07,
     head_lamps=0.42,
     sill=TRIM,
+    bodywork="van",
+    dark_bumpers=True,
 )  # fmt: skip
 
 MODEL = car(

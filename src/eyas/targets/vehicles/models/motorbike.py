@@ -30,7 +30,7 @@ def _motorbike(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     tail = [(-1.1, 0.84), (-0.6, 0.66), (-0.12, 0.66), (-0.12, 0.74), (-0.7, 0.84), (-1.14, 0.94)]
     shell.prism(tail, (-0.13, 0.13), PAINT)
     seat = [(-0.85, 0.85), (-0.12, 0.72), (-0.1, 0.82), (-0.5, 0.86), (-0.85, 0.92)]
-    shell.prism(seat, (-0.14, 0.14), SEAT)
+    shell.prism(seat, (-0.158, 0.158), SEAT)
     lamp(shell, (0.82, 0.0, 0.82), (0.12, 0.26, 0.12), front=True)
     lamp(shell, (-1.13, 0.0, 0.89), (0.06, 0.22, 0.08), front=False)
     fender = [(front - 0.2, 0.46), (front + 0.3, 0.42), (front + 0.16, 0.52), (front - 0.02, 0.55)]
@@ -50,7 +50,7 @@ def _motorbike(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     shell.box((-1.24, -0.1, 0.55), (-1.2, 0.1, 0.75), PLATE)
     shell.prism([(-1.24, 0.55), (-1.08, 0.84), (-1.12, 0.88), (-1.26, 0.62)], (-0.06, 0.06), TRIM)
     if detail == 2:
-        exhaust = [(0.1, -0.2, 0.26), (-0.5, -0.22, 0.3), (-0.95, -0.22, 0.5)]
+        exhaust = [(0.1, -0.185, 0.26), (-0.5, -0.205, 0.3), (-0.95, -0.21, 0.5)]
         shell.tube(exhaust, (0.04, 0.06, 0.075), BRIGHT)
         shell.tube(
             [(0.48, 0.36, 0.98), (0.54, 0.47, 1.08)], (0.012, 0.012), TRIM, sides=3, both_sides=True

@@ -19,6 +19,7 @@ _SHAPE = CarShape(
     lean=0.36,
     roof=ROOF_GLASS,
     head_lamps=0.40,
+    bodywork="saloon",
 )  # fmt: skip
 
 MODEL = car(

@@ -1,43 +1,39 @@
 """A truck with a box trailer."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from eyas.mesh.shell import Shell
-from eyas.targets.vehicles.finishes import SKIN_WHITE, plain
+from eyas.targets.vehicles.finishes import FREIGHT, SKIN_WHITE, TRIM
 from eyas.targets.vehicles.heavy import HALF, TRACTOR_BASE, facing, trailer_frame, truck
 from eyas.targets.vehicles.vehicle import Trailer, VehicleModel
+from eyas.world.build.bodywork import BOX_DOORS, BOX_ROOF, BOX_SIDE, PLAIN
 
 __all__ = ["MODEL"]
 
-_ROOF_WHITE = plain(0.74, 0.75, 0.76)
-_STRIPE = plain(0.62, 0.08, 0.08)
-_SEAM = plain(0.52, 0.53, 0.54)
+_STRIPE = replace(FREIGHT, tint=(0.68, 0.09, 0.09))
 
 
 def _box_trailer(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     end, front = -vehicle.length / 2, vehicle.length / 2 - 3.15
     floor, roof = 1.22, 4.2
     trailer_frame(shell, vehicle, floor, detail)
-    shell.box((end, -HALF, floor), (front, HALF, roof), SKIN_WHITE)
-    lid = [(end + 0.06, -1.19), (front - 0.06, -1.19), (front - 0.06, 1.19), (end + 0.06, 1.19)]
-    shell.quads([(x, y, roof + 0.006) for x, y in lid], _ROOF_WHITE)
-    side = HALF + 0.008
-    band = [(front, side, 1.7), (end, side, 1.7), (end, side, 2.2), (front, side, 2.2)]
-    shell.quads(band, _STRIPE, both_sides=True)
+    rows = ((floor, 1.7, FREIGHT), (1.7, 2.2, _STRIPE), (2.2, roof, FREIGHT))
+    for low, high, material in rows:
+        side = [(front, HALF, low), (end, HALF, low), (end, HALF, high), (front, HALF, high)]
+        up = (np.array([low, low, high, high]) - floor) / (roof - floor)
+        shell.quads(side, material, uvs=BOX_SIDE.at([1.0, 0.0, 0.0, 1.0], up), both_sides=True)
+    lid = [(end, 0.0, roof), (front, 0.0, roof), (front, HALF, roof), (end, HALF, roof)]
+    over = BOX_ROOF.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
+    shell.quads(lid, FREIGHT, uvs=over, both_sides=True)
+    doors = facing(end, (-HALF, HALF), (floor, roof))
+    shell.quads(doors[::-1], FREIGHT, uvs=BOX_DOORS.at([0.0, 1.0, 1.0, 0.0], [1.0, 1.0, 0.0, 0.0]))
+    shell.quads(facing(front, (-HALF, HALF), (floor, roof)), FREIGHT, uvs=PLAIN)
+    below = [(end, HALF, floor), (front, HALF, floor), (front, -HALF, floor), (end, -HALF, floor)]
+    shell.quads(below, TRIM)
     if detail == 0:
         return
-    door = facing(end - 0.01, (-0.03, 0.03), (floor + 0.1, roof - 0.1))
-    shell.quads(door[::-1], _SEAM)
-    for x in np.arange(end + 1.6, front - 0.5, 1.6) if detail == 2 else ():
-        rib = [(x - 0.03, 1.19), (x - 0.03, -1.19), (x + 0.03, -1.19), (x + 0.03, 1.19)]
-        shell.quads([(u, v, roof + 0.012) for u, v in rib], _SEAM)
-        seam = [
-            (x + 0.02, side, 2.2),
-            (x - 0.02, side, 2.2),
-            (x - 0.02, side, roof),
-            (x + 0.02, side, roof),
-        ]
-        shell.quads(seam, _SEAM, both_sides=True)
     shell.box((front, -0.85, 2.9), (front + 0.32, 0.85, 4.0), SKIN_WHITE, taper=0.03)
 
 

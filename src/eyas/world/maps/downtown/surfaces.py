@@ -100,7 +100,6 @@ def _paved(area: shapely.Geometry, road: shapely.Geometry, turn: float, slabs: M
         slabs=slabs,
         kerb=_KERB,
         kerb_width=_KERB_WIDTH,
-        kerb_turn=turn,
         turn=turn,
     )
 

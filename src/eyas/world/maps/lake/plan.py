@@ -10,13 +10,14 @@ from eyas.core.rng import stream
 from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
-from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
+from eyas.world.build.millimetres import rounded
 from eyas.world.build.placed import Placed
 from eyas.world.land import ground
 from eyas.world.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_out
 from eyas.world.maps.lake.roads import NAME
-from eyas.world.plan.library import CAR_KINDS, STREET_KINDS
+from eyas.world.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
     Building,
     Buildings,
@@ -27,18 +28,20 @@ from eyas.world.plan.plan import (
     Layer,
     MapPlan,
     Paint,
+    Paved,
     Roadway,
     ThingKind,
     state_of,
     things,
 )
+from eyas.world.plants import gardens
 from eyas.world.plants.forest import SPECIES, STAND
 from eyas.world.street.lamps import lamps_along
 from eyas.world.street.parked_cars import CARS
 
 __all__ = ["make_plan"]
 
-_SOIL = material("soil", (0.97, 0.95, 0.95))
+_SOIL = Material("soil", (0.97, 0.95, 0.95), Surface.HEATH)
 _DAMP = material("soil", (0.74, 0.70, 0.66))
 _SHORE = material("sand", (0.86, 0.84, 0.80))
 _WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)
@@ -48,6 +51,11 @@ _APRON = material("concrete", (0.92, 0.90, 0.88))
 _KERB_WIDTH = 0.8
 _BANK, _BEACH = 1.4, 7.0
 """Width of the damp ground around ponds and of the shores of lakes [m]."""
+_SHRUBS, _BESIDE = (16.0, 0.004), 7.0
+"""Least distance between two shrubs [m], and number of attempts on a square metre; their least
+distance from a road [m]."""
+_SHORE_SHRUBS = (3.5, 0.03)
+"""The same of those along shores, which stand closer."""
 _NEAR = 90.0
 """Reach of the ground that is cut into small squares beside a road [m]."""
 _LAMPS = 48
@@ -68,6 +76,8 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     district = lay_out(network, seed)
     rng = stream(seed, "lake forests")
     forests = [stand for strip in district.strips for stand in _stands(strip, rng)]
+    plants = stream(seed, "lake plants")
+    shrubs = _shrubs(district, plants)
     kinds = [kind for strip in district.strips for kind in _kinds(strip)]
     water = shapely.union_all([*district.ponds, *(strip.area for strip in district.strips)])
     built = shapely.union_all([house.outline for house in district.houses])
@@ -77,13 +87,14 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         name=NAME,
         seed=seed,
         size=FLOOR,
-        library=(*kinds, *CAR_KINDS, *STREET_KINDS),
-        chances={"forests": state_of(rng)},
+        library=(*kinds, *CAR_KINDS, *STREET_KINDS, *plant_kinds("plants")),
+        chances={"forests": state_of(rng), "plants": state_of(plants)},
         layers=(
             Buildings(items=tuple(Building(parts=(house,)) for house in district.houses)),
             *_roads(district),
             *_ground(district),
             things(forests, [kind.name for kind in kinds]),
+            things(shrubs, gardens.BORDERS),
             things(_parked(district, stream(seed, "lake parked cars")), CARS),
             things(lamps_along(network, _LAMPS, taken, stream(seed, "lake lamps"))),
         ),
@@ -94,7 +105,13 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
 def _roads(district: LakeLayout) -> list[Layer]:
     """Return the roads with their kerbs, and the car parks."""
     bays = tuple(line for park in district.car_parks for line in park.lines)
-    kerbs = Flat(area=_kerbs(district), z=KERB_HEIGHT, cover=_KERB, sides=_KERB)
+    kerbs = Paved(
+        area=_kerbs(district),
+        beside=shapely.union(district.roads, _lots(district)),
+        slabs=_KERB,
+        kerb=_KERB,
+        kerb_width=_KERB_WIDTH,
+    )
     return [
         Roadway(
             area=district.roads,
@@ -103,7 +120,7 @@ def _roads(district: LakeLayout) -> list[Layer]:
             apart=2.0,
         ),
         GroundCover(kind=ObjectClass.ROAD, pieces=(ground.asphalt(_lots(district), light=True),)),
-        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(kerbs,)),
+        kerbs,
     ]
 
 
@@ -165,6 +182,34 @@ def _stands(strip: Strip, rng: np.random.Generator) -> list[Placed]:
             turn = np.pi / 2 * float(rng.integers(4))
             made.append(Placed(stand, x, y, FLOOR_HEIGHT, turn, rng.uniform(0.94, 1.06)))
     return made
+
+
+def _shrubs(district: LakeLayout, rng: np.random.Generator) -> list[Placed]:
+    """Return shrubs on the heath beside roads, and more of them along the shores."""
+    water = shapely.union_all([*district.ponds, *district.lakes])
+    shore = shapely.difference(
+        shapely.buffer(water, _BANK + 3.0, quad_segs=3), shapely.buffer(water, _BANK, quad_segs=3)
+    )
+    parks = [park.area for park in district.car_parks]
+    houses = [house.outline for house in district.houses]
+    forests = [strip.area for strip in district.strips]
+    built = shapely.buffer(shapely.union_all([*parks, *houses, *forests]), 3.0)
+    taken = shapely.union_all([shapely.buffer(district.roads, _BESIDE), built])
+    around = shapely.difference(shapely.buffer(district.roads, _NEAR, quad_segs=2), taken)
+    heath = shapely.difference(around, shapely.buffer(water, _BEACH, quad_segs=3))
+    spots = np.concatenate(
+        [
+            gardens.scattered(heath, *_SHRUBS, rng),
+            gardens.scattered(shapely.intersection(shore, around), *_SHORE_SHRUBS, rng),
+        ]
+    )
+    return [
+        Placed(
+            gardens.BORDERS[int(rng.integers(len(gardens.BORDERS)))],
+            *(x, y, FLOOR_HEIGHT, rng.uniform(0, 2 * np.pi), rng.uniform(0.6, 1.2)),
+        )
+        for x, y in rounded(spots).tolist()
+    ]
 
 
 def _parked(district: LakeLayout, rng: np.random.Generator) -> Sequence[Placed]:

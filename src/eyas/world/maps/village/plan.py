@@ -1,5 +1,6 @@
 """The plan of the village."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,8 +14,9 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import facade, material, without_snow
+from eyas.world.build.millimetres import rounded
 from eyas.world.build.placed import Placed
-from eyas.world.land.outlines import blob
+from eyas.world.land.facets import Relief, heights_of
 from eyas.world.land.rising import relief_of
 from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.world.maps.village.roads import NAME
@@ -42,19 +44,8 @@ from eyas.world.street.signals import signal_places, signals_along
 
 __all__ = ["GRASS", "VALLEY", "make_plan"]
 
-GRASS = material("lawn", (0.61, 0.74, 0.74))
-"""The valley."""
-
-_MEADOWS = (material("lawn", (0.70, 0.76, 0.66)), material("lawn", (0.54, 0.68, 0.69)))
-"""Patches of drier and of lusher grass."""
-
-_HILLS = (
-    material("lawn", (0.62, 0.77, 0.77)),
-    material("lawn", (0.66, 0.82, 0.84)),
-    material("lawn", (0.70, 0.87, 0.91)),
-    material("lawn", (0.75, 0.91, 0.96)),
-)
-"""Greens of the hills, from the foot up."""
+GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
+"""The valley and its hills."""
 
 _VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
 _SHORE = material("sand", (0.80, 0.78, 0.70))
@@ -80,11 +71,16 @@ _FACETS = (6.5, 12.5)
 """Distance between the corners of facets in the middle and outside of it [m]."""
 _ROUGH = 0.045
 """Most by which a corner lies above or below the smooth shape, as a share of its height."""
-_PATCHES = 60
-"""Number of patches of each kind of grass."""
+_WOODS, _WOOD_TREES, _WOOD_RADIUS = 40, (5, 14), 24.0
+"""Number of groups of trees on the hills, of trees in each, and radius of a group [m]."""
+_BESIDE_WOODS, _FARTHEST_WOODS = 30.0, 240.0
+"""Least and largest distance of these trees from a road [m]."""
+_ROOTS = 0.5
+"""How deep a tree stands in a slope [m]."""
 _BUSHES = (26.0, 0.004)
 """Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)
+_WOOD_HEIGHTS = (5.0, 11.0)
 _CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
 
 
@@ -97,15 +93,17 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     """
     valley = lay_out(network, seed)
     hills = _hills(valley)
-    rising = relief_of(hills, seed).area
+    relief = relief_of(hills, seed)
+    rising = relief.area
     kinds, placed = houses(valley.cottages, _HOUSES)
     rng = stream(seed, "village plants")
     plants = _plants(valley, rising, rng)
+    woods = _woods(valley, relief, stream(seed, "village woods"))
     signs = _signs(valley, stream(seed, "village signs"))
     lamps, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
     tunnels = Tunnels(
         items=tuple(valley.tunnels),
-        outside=_HILLS[1],
+        outside=GRASS,
         inside=_ROCK,
         chance=Chance(stream="village mounds"),
     )
@@ -127,7 +125,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             tunnels,
             things(placed),
             *_ground(valley, rising, seed),
-            things(plants, (*_CONES, *(kind.name for kind in plant_kinds("plants")))),
+            things([*plants, *woods], (*_CONES, *(kind.name for kind in plant_kinds("plants")))),
             things(signals_along(network)),
             things(signs),
             things(lamps_along(network, lamps, taken, stream(seed, "village lamps"))),
@@ -137,7 +135,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
 
 
 def _hills(valley: VillageLayout) -> Hills:
-    """Return the hills as facets; each has one of a few greens, lighter and drier higher up."""
+    """Return the hills."""
     passages = [shapely.buffer(tunnel.passage, 0.5) for tunnel in valley.tunnels]
     trunks = shapely.buffer(shapely.union_all(shapely.points(valley.trees)), 1.5)
     flat = [shapely.buffer(valley.roads, 6.0), shapely.buffer(valley.walls, 4.0)]
@@ -148,8 +146,8 @@ def _hills(valley: VillageLayout) -> Hills:
         spacing=_FACETS,
         rough=_ROUGH,
         chance=Chance(stream="village facets"),
-        covers=_HILLS,
-        shades=Chance(stream="village grass"),
+        covers=(GRASS,),
+        smooth=True,
     )
 
 
@@ -164,7 +162,7 @@ def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[L
     rest = shapely.buffer(hills, -0.4, join_style="mitre")
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
     pieces: tuple[Flat | Far, ...] = (
-        *_meadow(lawn, stream(seed, "village meadow")),
+        Flat(area=lawn, cover=GRASS),
         Flat(area=shapely.intersection(verge, passages), cover=without_snow(_VERGE)),
         Flat(area=shapely.difference(verge, passages), cover=_VERGE),
         Flat(area=shore, cover=_SHORE, sides=_SHORE, foot=FLOOR_HEIGHT - 0.3),
@@ -182,21 +180,6 @@ def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[L
         GroundCover(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
         GroundCover(kind=ObjectClass.WATER, pieces=(water,)),
     ]
-
-
-def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
-    """Return the grass of the valley, with drier and lusher patches."""
-    made = []
-    for cover in _MEADOWS:
-        spots = rng.uniform(-_CORE, _CORE, (_PATCHES, 2))
-        shapes = [
-            blob(spot, (rng.uniform(8.0, 34.0), rng.uniform(6.0, 16.0)), rng.uniform(0, 3.1), rng)
-            for spot in spots
-        ]
-        patch = shapely.intersection(lawn, shapely.union_all(shapes))
-        lawn = shapely.difference(lawn, patch)
-        made.append(Flat(area=patch, cover=cover))
-    return [Flat(area=lawn, cover=GRASS), *made]
 
 
 def _paving(valley: VillageLayout) -> shapely.Geometry:
@@ -240,6 +223,31 @@ def _plants(
     for x, y in gardens.scattered(open_land, *_BUSHES, rng).tolist():
         kind, turn = gardens.BORDERS[int(rng.integers(3))], rng.uniform(0, 2 * np.pi)
         made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, rng.uniform(0.7, 1.3)))
+    return made
+
+
+def _woods(valley: VillageLayout, ground: Relief, rng: np.random.Generator) -> list[Placed]:
+    """Return groups of trees on the hills, far enough from roads to hide none."""
+    ways = shapely.union_all([valley.roads, valley.covered, valley.walls])
+    room = shapely.intersection(
+        shapely.difference(
+            shapely.buffer(ways, _FARTHEST_WOODS), shapely.buffer(ways, _BESIDE_WOODS)
+        ),
+        ground.area,
+    )
+    middles = gardens.scattered(room, 2.0 * _WOOD_RADIUS, 0.002, rng)
+    middles = middles[rng.permutation(len(middles))[:_WOODS]]
+    made = []
+    for middle in middles:
+        count = int(rng.integers(*_WOOD_TREES, endpoint=True))
+        away = _WOOD_RADIUS * np.sqrt(rng.uniform(0.0, 1.0, count))
+        turn = rng.uniform(0.0, 2 * np.pi, count)
+        spots = middle + away[:, None] * np.column_stack([exact.cos(turn), exact.sin(turn)])
+        spots = rounded(spots[shapely.contains_xy(room, spots)])
+        feet = rounded(heights_of(ground, spots) + FLOOR_HEIGHT - _ROOTS)
+        for (x, y), z in zip(spots.tolist(), feet.tolist(), strict=True):
+            kind, height = _CONES[int(rng.integers(len(_CONES)))], rng.uniform(*_WOOD_HEIGHTS)
+            made.append(Placed(kind, x, y, z, rng.uniform(0, 2 * np.pi), height))
     return made
 
 

@@ -1,0 +1,214 @@
+"""Smoke over chimneys and spray behind vehicles: soft puffs over a finished band.
+
+A puff leaves its source at a multiple of a short time. What it does then depends on its number and
+its age only, so an instant always looks the same.
+"""
+
+import math
+from typing import NamedTuple
+
+from eyas.lanes import kernel
+from eyas.render.kernels.bundles import Band, Canvas
+from eyas.render.kernels.chance import scrambled, tenth
+from eyas.render.kernels.lens.look import shown_at
+from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.sky.falling import drift, lit_by_lamps, sky_lit
+from eyas.render.kernels.sky.flakes import blend, bytes_of, seen_from
+from eyas.render.kernels.sky.fog import fog_share
+from eyas.render.kernels.visibility.key import distance_inverse
+from eyas.render.kernels.wind import wave
+
+__all__ = ["draw_plumes"]
+
+Colour = tuple[float, float, float]
+Vector = tuple[float, float, float]
+
+_REACH = 2.0
+"""Radius of a puff, in its widths."""
+
+_SMOKE_EVERY, _SMOKE_PUFFS = 0.45, 32
+"""Time from a puff to the next [s], and how many there are."""
+
+_SPRAY_EVERY, _SPRAY_PUFFS = 0.19, 5
+_SPRAY_FROM, _SPRAY_FULL = 8.0, 20.0
+"""Speed from which water is thrown up, and at which there is most: it grows with the square of the
+speed (Weir, Strange and Heffley, Reduction of adverse aerodynamic effects of large trucks,
+FHWA-RD-79-84, 1978) [m/s]."""
+_SPRAY_FARTHEST = 90.0
+"""Distance beyond which spray is not drawn [m]."""
+
+
+class Puff(NamedTuple):
+    """A soft ball."""
+
+    place: Vector
+    """Its middle, world frame [m]."""
+    width: float
+    """[m]"""
+    thickness: float
+    """Optical, through its middle."""
+
+
+@kernel
+def draw_plumes(band: Band, instant: float, canvas: Canvas) -> None:
+    """Draw smoke and spray into a band.
+
+    Args:
+        band: The band.
+        instant: Time [s].
+        canvas: Its colours.
+    """
+    for source in range(len(band.light.smoke)):
+        _draw_smoke(band, source, instant, canvas)
+    spray = band.movers.spray
+    if len(spray) > 0 and band.lit.air.spray > f4(0.0):
+        for source in range(spray.shape[1]):
+            _draw_spray(band, source, instant, canvas)
+
+
+@kernel(inline=True)
+def _scaled(share: float, colour: Colour) -> Colour:
+    return f4(share) * colour[0], f4(share) * colour[1], f4(share) * colour[2]
+
+
+@kernel
+def _draw_smoke(band: Band, source: int, instant: float, canvas: Canvas) -> None:
+    """Draw the plume of a chimney, which the wind bends over.
+
+    It rises with about the power 2/3 of its age, and widens with its rise (Briggs, Plume Rise,
+    U.S. Atomic Energy Commission, 1969).
+    """
+    from_x, from_y = float(band.light.smoke[source, 0]), float(band.light.smoke[source, 1])
+    from_z, grey = float(band.light.smoke[source, 2]), float(band.light.smoke[source, 3])
+    wind_x, wind_y = drift(band.lit, 1.3, 0.7)
+    colour = _scaled(grey, sky_lit(band.lit))
+    count, part = _emitted(instant, _SMOKE_EVERY)
+    for k in range(_SMOKE_PUFFS):
+        chance = scrambled(u4(u4(count - k) * u4(0x9E3779B1)) ^ u4(source + 7))
+        age = (k + part) * _SMOKE_EVERY
+        rise = 9.0 * (math.sqrt(1.0 + 0.35 * age) - 1.0)
+        width = (0.7 + 0.42 * rise) * (0.8 + 0.4 * tenth(chance, 0))
+        aside = 0.12 * rise * (tenth(chance, 10) - 0.5)
+        place = (
+            from_x + wind_x * age + aside + 0.3 * wave(0.11 * (count - k)) * rise,
+            from_y + wind_y * age - aside + 0.3 * wave(0.13 * (count - k)) * rise,
+            from_z + rise,
+        )
+        # A puff keeps its mass: the wider, the thinner; the oldest vanish, the newest appear.
+        last = min(4.0 * (1.0 - age / (_SMOKE_EVERY * _SMOKE_PUFFS)), 1.0)
+        thickness = (1.5 * min(3.0 * age, 1.0) * last) / (0.4 + 0.7 * width)
+        _draw_puff(band, Puff(place, width, thickness), colour, canvas)
+
+
+@kernel
+def _draw_spray(band: Band, source: int, instant: float, canvas: Canvas) -> None:
+    """Draw what the rear wheels of a vehicle throw up, see `DrawList.spray`."""
+    row = band.movers.spray[band.world, source]
+    x, y, z = float(row[0]), float(row[1]), float(row[2])
+    over_x, over_y, half = float(row[3]), float(row[4]), float(row[5])
+    square = over_x * over_x + over_y * over_y
+    strength = (square - _SPRAY_FROM**2) / (_SPRAY_FULL**2 - _SPRAY_FROM**2)
+    eye = band.camera.eye
+    away = math.sqrt((x - eye.x) ** 2 + (y - eye.y) ** 2 + (z - eye.z) ** 2)
+    if strength <= 0.0 or away > _SPRAY_FARTHEST:
+        return
+    strength = min(strength, 1.0) * min(4.0 * (1.0 - away / _SPRAY_FARTHEST), 1.0)
+    strength *= float(band.lit.air.spray)
+    part = 1.0 / math.sqrt(square)
+    slowed = min(part * _SPRAY_FULL, 1.0)
+    left_x, left_y = -over_y * part, over_x * part
+    wind_x, wind_y = drift(band.lit, 0.0, 0.0)
+    colour = _scaled(0.9, sky_lit(band.lit))
+    count, begun = _emitted(instant, _SPRAY_EVERY)
+    for k in range(_SPRAY_PUFFS):
+        chance = scrambled(u4(u4(count - k) * u4(0x85EBCA77)) ^ u4(int(row[6])))
+        age = (k + begun) * _SPRAY_EVERY
+        aside = half * (1.5 * tenth(chance, 0) - 0.75)
+        width = 0.35 + 0.3 * half + (0.5 + 0.4 * tenth(chance, 10)) * age
+        # The wake draws it along at first.
+        behind = 0.75 * age * slowed
+        place = (
+            x - behind * over_x + aside * left_x + 0.1 * age * wind_x,
+            y - behind * over_y + aside * left_y + 0.1 * age * wind_y,
+            z + 0.25 + 0.55 * width,
+        )
+        fade = min(1.0 - age / (_SPRAY_EVERY * _SPRAY_PUFFS), 1.0) * min(8.0 * age + 0.2, 1.0)
+        thickness = 1.9 * strength * fade * half / (0.5 + width)
+        _draw_puff(band, Puff(place, width, thickness), colour, canvas)
+
+
+@kernel(inline=True)
+def _emitted(instant: float, every: float) -> tuple[int, float]:
+    """Return the number of the last puff, and how old it is, as a share of the time to the next."""
+    turn = instant / every
+    number = math.floor(turn)
+    return i8(number) + i8(1 << 20), turn - number
+
+
+@kernel
+def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
+    """Draw a puff in a light; what lies in front of it hides it, softly."""
+    view, eye, (x, y, z) = band.camera, band.camera.eye, puff.place
+    ahead, left, up = seen_from(view, x - eye.x, y - eye.y, z - eye.z)
+    reach = _REACH * puff.width
+    thickness = puff.thickness * min((ahead - 0.4) / puff.width, 1.0)
+    if thickness < 0.01:
+        return
+    row, column, tall, wide = _on_screen(band, ahead, left, up, reach)
+    first, last = max(i8(math.floor(row - tall)), 0), min(i8(math.ceil(row + tall)), band.lines)
+    start = max(i8(math.floor(column - wide)), 0)
+    stop = min(i8(math.ceil(column + wide)), band.columns)
+    if first >= last or start >= stop:
+        return
+    lit, key, step = band.lit, band.key, view.samples
+    if lit.air.lamps > f4(0.0):
+        colour = lit_by_lamps(colour, band, puff.place)
+    fog, hidden = lit.fog, fog_share(lit, f4(ahead))
+    colour = (
+        colour[0] + hidden * (fog.x - colour[0]),
+        colour[1] + hidden * (fog.y - colour[1]),
+        colour[2] + hidden * (fog.z - colour[2]),
+    )
+    pale = bytes_of(band.light, lit.air.exposure, colour)
+    per_tall, per_wide, soft = 1.0 / tall, 1.0 / wide, 0.5 / puff.width
+    for i in range(first, last):
+        y = (i + 0.5 - row) * per_tall
+        half = wide * math.sqrt(max(1.0 - y * y, 0.0))
+        begin = max(start, i8(math.floor(column - half)))
+        for j in range(begin, min(stop, i8(math.ceil(column + half)))):
+            x = (j + 0.5 - column) * per_wide
+            round_ = 1.0 - x * x - y * y
+            shown = key[i * step, j * step]
+            if round_ <= 0.0 or shown < i8(0):
+                continue
+            deep, inverse = 1.0, float(distance_inverse(shown))
+            if inverse > 0.0:
+                deep = min(max(0.5 + (1.0 / inverse - ahead) * soft, 0.0), 1.0)
+            thick = thickness * round_ * round_ * deep
+            # 1 - exp(-t), nearly.
+            cover = thick * (1.0 + 0.5 * thick) / (1.0 + thick * (1.0 + 0.5 * thick))
+            if cover > 0.006:
+                blend(canvas, i, j, cover, colour, pale, True)
+
+
+@kernel(inline=True)
+def _on_screen(
+    band: Band, ahead: float, left: float, up: float, reach: float
+) -> tuple[float, float, float, float]:
+    """Return row and column of a ball's middle in the band, half its height and half its width
+    [pixels].
+    """
+    view = band.camera
+    across = view.focal_x / (ahead * view.samples)
+    down = view.focal_y / (ahead * view.samples)
+    column = 0.5 * view.width / view.samples - left * across
+    row = (0.5 * view.height - view.top) / view.samples - up * down
+    tall, wide = max(reach * down, 0.5), max(reach * across, 0.5)
+    if band.glass.on == 1:
+        column, row = shown_at(band.glass, ahead, left, up)
+        aside, beside = shown_at(band.glass, ahead, left - reach, up)
+        wide = math.sqrt((aside - column) ** 2 + (beside - row) ** 2)
+        aside, beside = shown_at(band.glass, ahead, left, up - reach)
+        tall = math.sqrt((aside - column) ** 2 + (beside - row) ** 2)
+        wide, tall = max(wide, 0.5), max(tall, 0.5)
+    return row, column, tall, wide

@@ -1,0 +1,66 @@
+"""Which vehicles throw up water, and from where."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.state.motion import ActorState
+from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import MODELS
+from eyas.targets.kind import Kind
+
+__all__ = ["SPRAY_REACH", "spray_of", "throwing"]
+
+SPRAY_REACH = 21.0
+"""Distance from a vehicle beyond which its spray is not seen [m], see `sky.plumes`."""
+
+_SLOWEST = 8.0
+"""Speed up to which none is thrown up [m/s]."""
+
+_AXLE = 0.32
+"""Distance of the rear axle behind the middle, as a share of the length."""
+
+_VEHICLES = (ObjectClass.CAR, ObjectClass.TRUCK, ObjectClass.BUS, ObjectClass.MOTORCYCLE)
+
+
+def throwing(kinds: Sequence[Kind]) -> NDArray[np.bool_]:
+    """Return which kinds have wheels that throw up water, shape (K,)."""
+    return np.array([kind.object_class in _VEHICLES for kind in kinds], np.bool_)
+
+
+def spray_of(
+    actors: ActorState,
+    model: NDArray[np.int32],
+    throws: NDArray[np.bool_],
+    world: NDArray[np.int64],
+    actor: NDArray[np.integer],
+    worlds: int,
+) -> NDArray[np.float32]:
+    """Return `DrawList.spray` of E actors.
+
+    Args:
+        actors: Their state, as of one world.
+        model: Their models.
+        throws: Whether each is of a kind that throws up water, shape (E,).
+        world: World of each, shape (E,).
+        actor: Their numbers in their worlds, shape (E,).
+        worlds: Number of worlds.
+    """
+    velocity = actors.velocity[0, : len(throws), :2]
+    chosen = np.flatnonzero(throws & (np.square(velocity).sum(axis=1) > _SLOWEST**2))
+    chosen = chosen[np.argsort(world[chosen], kind="stable")]
+    at = world[chosen]
+    rank = np.arange(len(at)) - np.searchsorted(at, at)
+    spray = np.zeros((worlds, int(rank.max(initial=-1)) + 1, 8), np.float32)
+    size = np.array([MODELS[k].size for k in model[chosen].tolist()]).reshape(-1, 3)
+    yaw, place = actors.yaw[0, chosen], actors.position[0, chosen]
+    back = _AXLE * size[:, 0]
+    spray[at, rank, 0] = place[:, 0] - back * exact.cos(yaw)
+    spray[at, rank, 1] = place[:, 1] - back * exact.sin(yaw)
+    spray[at, rank, 2] = place[:, 2]
+    spray[at, rank, 3:5] = velocity[chosen]
+    spray[at, rank, 5] = 0.5 * size[:, 1]
+    spray[at, rank, 6] = actor[chosen]
+    return spray

@@ -1,0 +1,46 @@
+"""Lenses of traffic lights that work."""
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.sim.assets import load_assets
+from eyas.state.mesh import Surface
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.signals import Aspect
+from eyas.world.config import WorldConfig
+from eyas.world.street.signals import lens_levels, signal_levels
+
+AMBER = 1.0, 0.55, 0.06
+"""What shines amber."""
+
+
+def boxes(mesh, wanted) -> np.ndarray:
+    """Lower and upper corners of the boxes of a mesh whose material is wanted, shape (K, 2, 3)."""
+    which = [wanted(material) for material in mesh.palette]
+    corners = mesh.positions[mesh.triangles[np.array(which)[mesh.materials]]].reshape(-1, 36, 3)
+    return np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1)
+
+
+@pytest.mark.parametrize("level", [0, 1])
+def test_an_amber_that_does_not_shine_is_hidden(level):
+    def amber(material):
+        return material.surface == Surface.SIGNAL and material.tint == AMBER
+
+    below = boxes(signal_levels()[level], amber)
+    assert len(below) == 3 - level
+    for aspect, levels in enumerate(lens_levels(covers=True)):
+        shines = len(boxes(levels[level], amber)) > 0
+        assert shines == (aspect in (Aspect.AMBER, Aspect.RED_AMBER))
+        over = boxes(levels[level], lambda material: True)
+        for low, high in below:  # seen from the front, along y
+            assert any(
+                (a[[0, 2]] < low[[0, 2]]).all() and (b[[0, 2]] > high[[0, 2]]).all()
+                and b[1] > high[1]
+                for a, b in over
+            )  # fmt: skip
+
+
+def test_maps_without_traffic_lights_say_so():
+    with pytest.raises(ConfigError, match="'simpleway-grass', which has no traffic lights"):
+        load_assets(WorldConfig(map="simpleway-grass"), TrafficConfig(signals="working"))
