@@ -46,7 +46,7 @@ WEATHERS, FURTHER = (
     ("snow", "dusk", "dust", "autumn", "overcast"),
 )
 GROUPS: Mapping[str, tuple[str, Collection[str]]] = {
-    "clean camera": ("corrupted", ("clean",)),
+    "a good sensor, no fault": ("corrupted", ("clean",)),
     "six faults of kinds that the varied have seen": ("corrupted", SEEN),
     "nine faults that neither has seen": ("corrupted", UNSEEN),
     "all fifteen": ("corrupted", (*SEEN, *UNSEEN)),
@@ -121,7 +121,7 @@ def compare(folder: Path) -> None:
     print("| TSR | flights each | clean | varied | varied less clean | each seed |")
     print("|---|---|---|---|---|---|")
     singly = {name: ("corrupted", (name,)) for name in (*SEEN, *UNSEEN)}
-    singly |= {name: ("weathers", (name,)) for name in (*WEATHERS, *FURTHER)}
+    singly |= {f"{name}, weather": ("weathers", (name,)) for name in (*WEATHERS, *FURTHER)}
     for label, (protocol, chosen) in {**GROUPS, **singly}.items():
         both = [flights(folder, protocol, kind, chosen) for kind in KINDS]
         seeds = sorted({seed for seed, _ in both[0]} & {seed for seed, _ in both[1]})
