@@ -1,5 +1,6 @@
 """Counts of few electrons, whose distribution is far from normal."""
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ _ROWS = 64
 """Means of which there are tables, evenly spread over the root of the mean, beside 0. Means in
 between take one of their neighbours at random, which makes the variance at most 0.3 % too large."""
 
-_STEP = (FEW / (_ROWS * _ROWS)) ** 0.5
+_STEP = math.sqrt(FEW / (_ROWS * _ROWS))
 
 _MOST = 32
 """Counts are below this: of the mean `FEW`, all but two in a million."""

@@ -47,7 +47,7 @@ def spray_of(listed: "Listed", kinds: NDArray[np.bool_], worlds: int) -> NDArray
     actor = listed.object_id.reshape(-1)[slot] - ACTOR_OBJECT
     world = slot // max(listed.part.shape[1], 1)
     velocity = actors.velocity[0, : len(throws), :2]
-    chosen = np.flatnonzero(throws & (np.square(velocity).sum(axis=1) > _SLOWEST**2))
+    chosen = np.flatnonzero(throws & (np.square(velocity).sum(axis=1) > np.square(_SLOWEST)))
     chosen = chosen[np.argsort(world[chosen], kind="stable")]
     at = world[chosen]
     rank = np.arange(len(at)) - np.searchsorted(at, at)
