@@ -204,18 +204,13 @@ def tries(words: list[str], work: Path) -> Iterator[tuple[str, Callable[[], str]
             continue
         place = Place(work / f"{version}-{packages}", work / f"cache-{version}-{packages}")
         name = f"Python {version}, {packages} packages"
-        todo = [
-            (
-                f"{name}: install and first command",
-                _installer(packages, known[version], place, work),
-            )
-        ]
-        todo += [(f"{name}: quick tests", _tests(place))]
+        todo = [(f"{name}: quick tests", _tests(place))]
         todo += [(f"{name}: eyas verify as {kind}", _verify(place, kind)) for kind in kinds]
-        for title, function in todo:
-            installs = "install" in title
-            if all(word in (name if installs else title) for word in words):
-                yield title, function
+        install = f"{name}: install and first command"
+        chosen = [(title, each) for title, each in todo if all(word in title for word in words)]
+        if chosen or all(word in install for word in words):
+            yield install, _installer(packages, known[version], place, work)
+        yield from chosen
     if not words or "QEMU" in words:
         yield "QEMU: eyas verify on a Nehalem without AVX", _emulated(work, known)
 
