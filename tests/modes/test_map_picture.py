@@ -41,6 +41,6 @@ def test_each_tree_is_green(village):
     trees = scene.object_class[fixtures.object_id] == ObjectClass.TREE
     tall = [name.startswith("cone tree") for name in fixtures.names]
     places = fixtures.pose[trees & np.array(tall)[fixtures.prototype], :2, 3]
-    seen = pixels(scene, village, places)
-    assert len(seen) == 41
+    seen = pixels(scene, village, places[np.abs(places).max(axis=1) < 300.0])
+    assert len(seen) > 60
     assert (seen[:, 1] > seen[:, 0] + 5).mean() > 0.9  # some are below the roof of a tunnel

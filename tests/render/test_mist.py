@@ -105,7 +105,9 @@ def test_no_veil_lies_over_the_picture_in_the_shade(seen):
     glaring = dataclasses.replace(clear, glare=1.0)
     facing = {"scene": scene, "fov": 0.4}
     shaded, sunny = (0.0, 0.0, 3.0), (0.0, 120.0, 3.0)
-    assert (seen(glaring, shaded, **facing) == seen(clear, shaded, **facing)).all()
+    veil = seen(glaring, shaded, **facing).astype(int) - seen(clear, shaded, **facing)
+    assert np.abs(veil).max() <= 1  # of rounding
+    assert np.abs(veil).mean() < 1e-3
     assert (seen(glaring, sunny, yaw=0.2, **facing) > seen(clear, sunny, yaw=0.2, **facing)).any()
 
 
