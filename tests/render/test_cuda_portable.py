@@ -46,7 +46,7 @@ def checked(text) -> str:
 def shade_thread(row, column, geometry, light, scratch, movers, task, found):
     """Do what one thread does for one pixel whose triangle is known."""
     job = task.job
-    view = address_of(view_of(job, 0, task.width, task.height, task.samples))
+    view = address_of(view_of(task, 0))
     lit = address_of(view_light(light.weather, job.light, 0))
     band = address_of(band_of(geometry, light, lit, movers, 0, view, task.until, scratch, 0))
     key, shade = band.key[row, column], u4(band.shade[row, column, 0])
@@ -58,7 +58,7 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(renderer_of, tmp_path
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(*(getattr(traffic, name) for name in Movers._fields))
-    size = Size(1, 24, 32, 1, int(DrawStage.SHADING), False, False, 1)
+    size = Size(1, 24, 32, 1, 1, int(DrawStage.SHADING), False, False, 1)
     task = new_task(size)
     set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
     scratch = renderer._scratch_for(1, 24, size, movers.part.shape[1], False, None).bundle

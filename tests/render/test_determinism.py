@@ -83,7 +83,7 @@ def in_all_weathers(renderer_of):
     return renderer_of(scene, car_parts(), ALL_WEATHERS)
 
 
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 @pytest.mark.parametrize("weather", ["day", "all"])
 def test_threads_and_neighbours_change_no_byte(city, renderer_of, drawn, threads, samples, weather):
     renderer, traffic = city
@@ -102,7 +102,7 @@ def test_threads_and_neighbours_change_no_byte(city, renderer_of, drawn, threads
             np.testing.assert_array_equal(array[0], reference[name][k], err_msg=name)
 
 
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 @pytest.mark.parametrize("weather", ["day", "all"])
 def test_bands_change_no_byte(city, renderer_of, drawn, threads, monkeypatch, samples, weather):
     renderer, traffic = city
@@ -117,7 +117,7 @@ def test_bands_change_no_byte(city, renderer_of, drawn, threads, monkeypatch, sa
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
     renderer._tasks.clear()  # which keep their bands
-    assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 0, False, False, 2)).job.band) == 24
+    assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 1, 0, False, False, 2)).job.band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160), samples)).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
 

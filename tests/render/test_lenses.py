@@ -131,7 +131,7 @@ def test_depths_are_those_along_the_rays(block, name):
 
 
 @pytest.mark.parametrize("name", LENSES)
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 def test_boxes_and_pixels_are_those_of_the_ids(city, name, samples):
     renderer, traffic = city
     lens, fov = LENSES[name]
@@ -160,7 +160,7 @@ def test_boxes_and_pixels_are_those_of_the_ids(city, name, samples):
     assert seen >= 4
 
 
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 def test_without_distortion_the_picture_is_that_of_a_pinhole(city, samples):
     renderer, traffic = city
     places = [(-20.0, -14.0, 12.0)]
@@ -174,7 +174,7 @@ def test_without_distortion_the_picture_is_that_of_a_pinhole(city, samples):
     assert (np.abs(plain.rgb.astype(int) - bent.rgb) > 0).mean() < 1e-3
 
 
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 def test_neighbours_threads_and_bands_change_no_byte(city, threads, monkeypatch, samples):
     renderer, traffic = city
     lenses = [lens for lens, _ in LENSES.values()]

@@ -34,7 +34,7 @@ WEATHERS = {
 @compiled
 def one_by_one(geometry, light, scratch, movers, _output, task, _tables, places, found):
     job = task.job
-    view = address_of(view_of(job, 0, task.width, task.height, task.samples))
+    view = address_of(view_of(task, 0))
     lit = address_of(view_light(light.weather, job.light, 0))
     band = address_of(band_of(geometry, light, lit, movers, 0, view, task.until, scratch, 0))
     for k in range(len(places)):

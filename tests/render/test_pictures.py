@@ -205,7 +205,7 @@ def test_paint_takes_the_colour_of_the_instance(renderer_of, drawn):
 def test_wrong_arguments_are_refused_in_one_line(renderer_of, images):
     scene = scene_of([floor()], [GROUND])
     views = looking([(0.0, 0.0, 5.0)])
-    with pytest.raises(ConfigError, match="samples: 3 is not allowed; allowed: 1, 4"):
+    with pytest.raises(ConfigError, match="samples: 3 is not allowed; allowed: 1, 2, 4"):
         renderer_of(scene).draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8), 3)
     without = {name: image for name, image in images.items() if name != "lawn"}
     with pytest.raises(UnknownNameError, match=r"texture.*'lawn'"):

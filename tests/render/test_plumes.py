@@ -74,7 +74,7 @@ def test_spray_is_behind_the_vehicle(drawn, wet):
     assert change[60:].sum() > 10 * change[:40].sum()
 
 
-@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("samples", [1, 2, 4])
 def test_plumes_do_not_depend_on_other_views_or_bands(drawn, wet, samples):
     places = [(0.0, y, 5.0) for y in (-4.0, 0.0, 4.0)]
     views = at(looking(places, pitch=0.2, fov=0.9), 4.0)

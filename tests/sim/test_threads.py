@@ -16,7 +16,7 @@ from eyas.state.draw import Picture
 
 picture = Picture.create(1, 240, 320, depth=True, object_id=True, class_id=True)
 for weather in ("day", "snow"):
-    for samples in (1, 4):
+    for samples in (1, 2, 4):
         settings = {"world": {"weather": weather}, "camera": {"samples": samples}}
         simulation = build_simulation(SimConfig(**settings), each_alone(1))
         simulation.reset()
@@ -42,6 +42,6 @@ def drawn(threads) -> str:
 @pytest.mark.slow  # three processes that load two maps
 def test_one_two_and_five_threads_draw_the_same():
     alone = drawn(1)
-    assert len(set(alone.split())) == 2 + 2 + 4
+    assert len(set(alone.split())) == 2 + 3 + 6
     assert drawn(2) == alone
     assert drawn(5) == alone

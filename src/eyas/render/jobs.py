@@ -29,8 +29,10 @@ class Size(NamedTuple):
     """Height of the pictures [pixels]."""
     width: int
     """Width of the pictures [pixels]."""
-    side: int
-    """Samples along a side of each pixel."""
+    across: int
+    """Samples along a row of each pixel."""
+    down: int
+    """Samples along a column of each pixel."""
     until: int
     """See `Task`."""
     falls: bool
@@ -62,7 +64,7 @@ def new_task(size: Size) -> Task:
         focal=np.empty((views, 2)),
         lens=np.zeros(views if size.bent else 0, np.int32),
     )
-    return Task(size.side, size.width, size.height, int(size.falls), size.until, job)
+    return Task(size.across, size.down, size.width, size.height, int(size.falls), size.until, job)
 
 
 def set_views(task: Task, views: Views, density: float, workers: int) -> None:

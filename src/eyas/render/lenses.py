@@ -56,13 +56,15 @@ class _Shape(NamedTuple):
     height: int
     """[pixels]"""
     width: int
-    samples: int
-    """Along a side of each pixel."""
+    across: int
+    """Samples along a row of each pixel."""
+    down: int
+    """Samples along a column of each pixel."""
 
     def tables(self, lenses: int, tiles: tuple[int, int]) -> LensTables:
         """Return tables without content."""
-        side, padded = self.samples, self.width + -self.width % WIDTH
-        plane = (lenses, self.height * side, padded * side)
+        padded = self.width + -self.width % WIDTH
+        plane = (lenses, self.height * self.down, padded * self.across)
         return LensTables(
             column=np.zeros(plane, np.float32),
             line=np.zeros(plane, np.float32),
@@ -80,7 +82,7 @@ class _Shape(NamedTuple):
         )
 
 
-NO_TABLES = _Shape(0, 0, 1).tables(0, (0, 0))
+NO_TABLES = _Shape(0, 0, 1, 1).tables(0, (0, 0))
 """What is handed over where there is no lens."""
 
 
@@ -94,11 +96,12 @@ class LensBank:
     Args:
         height: Height of the pictures [pixels].
         width: Their width [pixels].
-        samples: Samples along a side of each pixel.
+        across: Samples along a row of each pixel.
+        down: Samples along a column of each pixel.
     """
 
-    def __init__(self, height: int, width: int, samples: int) -> None:
-        self._shape = _Shape(height, width, samples)
+    def __init__(self, height: int, width: int, across: int, down: int) -> None:
+        self._shape = _Shape(height, width, across, down)
         self._slots: dict[bytes, int] = {}
         self.tables = self._shape.tables(1, (1, 1))
         self.size = 0, 0
@@ -154,12 +157,13 @@ class LensBank:
 
     def _make(self, slot: int, numbers: Floats) -> None:
         """Write the tables of a lens."""
-        shape, side = self._shape, self._shape.samples
+        shape = self._shape
         lens = Lens(int(numbers[0]), *numbers[1:10].tolist())
-        rows, columns = shape.height * side, shape.width * side
+        rows, columns = shape.height * shape.down, shape.width * shape.across
         camera = np.array([*numbers[10:], *principal_point(lens, shape.width, shape.height)])
         survey = Survey(
-            lens, camera, side, np.empty((rows, columns, 4)), np.empty((rows, columns), np.int32),
+            lens, camera, shape.across, shape.down,
+            np.empty((rows, columns, 4)), np.empty((rows, columns), np.int32),
             _TURNS[:1], np.empty((1, 3)),
         )  # fmt: skip
         look_around(survey)
@@ -170,7 +174,8 @@ class LensBank:
             survey_faces(survey)
             focal, extent = self._sized(survey.reach, camera)
         faces, tables = len(survey.turn), self.tables
-        tiles = tuple((extent.max(axis=0)[::-1] * side // LENS_TILE + 1).tolist())
+        samples = extent.max(axis=0)[::-1] * (shape.down, shape.across)
+        tiles = tuple((samples // LENS_TILE + 1).tolist())
         if tiles[0] > tables.tile.shape[2] or tiles[1] > tables.tile.shape[3]:
             wanted = np.maximum(tiles, tables.tile.shape[2:4]).tolist()
             self._enlarge(len(tables.faces), tuple(wanted))
@@ -191,7 +196,7 @@ class LensBank:
         """
         # As many samples for each of the picture's as the least dense place needs, with the
         # picture's ratio of width to height of a pixel.
-        dense = DENSITY / (reach[:, 2] * self._shape.samples)
+        dense = DENSITY / (reach[:, 2] * math.sqrt(self._shape.across * self._shape.down))
         stretch = math.sqrt(camera[0] / camera[1])
         focal = np.stack([dense * stretch, dense / stretch], axis=1)
         unused = reach[:, 0] == 0.0

@@ -60,7 +60,7 @@ class CpuRenderer:
         self._held = Held(geometry), Held(light)
         self._last = Held(_NO_MOVERS), Held(NO_OUTPUT), Held(NO_TABLES)
         self._scratch: dict[tuple[object, ...], Held[Scratch]] = {}
-        self._banks: dict[tuple[int, int, int], LensBank] = {}
+        self._banks: dict[tuple[int, int, int, int], LensBank] = {}
         self._tasks: dict[Size, Held[Task]] = {}
 
     def part_reach(self) -> NDArray[np.float64]:
@@ -85,23 +85,23 @@ class CpuRenderer:
         until: DrawStage = DrawStage.SHADING,
     ) -> None:
         """Draw views into the arrays of a picture that are not None, see `Renderer`."""
-        if samples not in (1, 4):
-            raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 4")
+        if samples not in _GRIDS:
+            raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
         if self._ready is not None:
             self._ready()
         movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
-        side = 2 if samples == 4 else 1
-        if len(output.radiance) and (side == 2 or len(output.rgb)):
+        grid, several = _GRIDS[samples], samples > 1
+        if len(output.radiance) and (several or len(output.rgb)):
             colours = NO_OUTPUT._replace(radiance=output.radiance)
-            self._draw(views, movers, colours, picture, side, until)
+            self._draw(views, movers, colours, picture, grid, until)
             output = output._replace(radiance=NO_OUTPUT.radiance)
-        if len(output.rgb) and side == 2:
+        if len(output.rgb) and several:
             colours = NO_OUTPUT._replace(rgb=output.rgb)
-            self._draw(views, movers, colours, picture, side, until)
+            self._draw(views, movers, colours, picture, grid, until)
             output = output._replace(rgb=NO_OUTPUT.rgb)
         if any(len(array) for array in output):
-            self._draw(views, movers, output, picture, 1, until)
+            self._draw(views, movers, output, picture, _GRIDS[1], until)
 
     def _draw(
         self,
@@ -109,17 +109,17 @@ class CpuRenderer:
         movers: Movers,
         output: Output,
         picture: Picture,
-        side: int,
+        grid: tuple[int, int],
         until: DrawStage,
     ) -> None:
-        """Draw with `side` x `side` samples per pixel."""
+        """Draw with some samples along a row and along a column of each pixel."""
         height, width = picture_size(picture)
         timed, threads = views.instant is not None, thread_count()
         falls = timed and views.falling
         parts = views.rows is not None
         bent = views.lens is not None
         size = Size(
-            len(views.position), height, width, side, int(until), falls, parts, threads,
+            len(views.position), height, width, *grid, int(until), falls, parts, threads,
             bent, timed,
         )  # fmt: skip
         # Taken away while it is in use, so that another thread that draws gets another one.
@@ -127,9 +127,9 @@ class CpuRenderer:
         band = task.bundle.job.band
         jobs, workers = len(band), min(threads, len(band))
         set_views(task.bundle, views, float(self._light.weather.fog_density), workers)
-        bank = self._banks.pop((height, width, side), None) if bent else None
+        bank = self._banks.pop((height, width, *grid), None) if bent else None
         if views.lens is not None:
-            bank = bank or LensBank(height, width, side)
+            bank = bank or LensBank(height, width, *grid)
             task.bundle.job.lens[:] = bank.slots(views.lens, task.bundle.job.focal)
         wanted = len(output.subject) + len(output.actor) > 0
         if wanted:
@@ -148,7 +148,7 @@ class CpuRenderer:
             write_measured(task.bundle.job, output, picture)
         _keep(self._tasks, size, task)
         if bank is not None:
-            _keep(self._banks, (height, width, side), bank)
+            _keep(self._banks, (height, width, *grid), bank)
 
     def _scratch_for(
         self,
@@ -163,13 +163,13 @@ class CpuRenderer:
 
         `face` is the largest width and height of a lens' faces [pixels], None without lenses.
         """
-        width, side = size.width, size.side
-        key = (workers, rows, width, side, slots, measured, face)
+        width, grid = size.width, (size.across, size.down)
+        key = (workers, rows, width, grid, slots, measured, face)
         if key not in self._scratch:
-            bent = (workers, 0, 0) if face is None else _plane(workers, rows, width, side)
-            plane = _plane(workers, rows, width, side)
+            bent = (workers, 0, 0) if face is None else _plane(workers, rows, width, grid)
+            plane = _plane(workers, rows, width, grid)
             if face is not None:
-                plane = _plane(workers, face[1], face[0], side)
+                plane = _plane(workers, face[1], face[0], grid)
             shade = np.empty((*plane, 4), np.uint8)
             chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
             # What is measured alone takes rows after those of the whole picture.
@@ -227,6 +227,10 @@ def build_renderer(
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
+_GRIDS = {1: (1, 1), 2: (1, 2), 4: (2, 2)}
+"""Samples along a row and along a column of a pixel, by their number. Two lie one above the other:
+seen from a drone, kerbs, sills and lines of the road lie rather across the picture."""
+
 _KEPT = 4
 """Sizes of pictures for which arrays are kept."""
 
@@ -243,9 +247,10 @@ _NO_MOVERS = Movers(
 )
 
 
-def _plane(workers: int, rows: int, width: int, side: int) -> tuple[int, int, int]:
+def _plane(workers: int, rows: int, width: int, grid: tuple[int, int]) -> tuple[int, int, int]:
     """Return the shape of a plane of samples for each worker; rows are padded."""
-    return workers, rows * side, (width + -width % WIDTH) * side
+    across, down = grid
+    return workers, rows * down, (width + -width % WIDTH) * across
 
 
 def _keep(kept: dict[Key, Value], key: Key, value: Value) -> None:

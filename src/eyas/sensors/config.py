@@ -78,7 +78,7 @@ class CameraConfig(Config):
     """[pixels]"""
     field_of_view: Annotated[Variation, AfterValidator(within(0.05, 2.8))] = 0.7854
     """Horizontal [rad]; a variation is sampled anew for each tracker at each reset."""
-    samples: Literal[1, 4] = 1
+    samples: Literal[1, 2, 4] = 1
     """Samples per pixel."""
     mount: MountConfig | None = None
     """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a

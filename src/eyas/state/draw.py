@@ -307,7 +307,7 @@ class Renderer(Protocol):
             views: V cameras.
             draw_list: The moving things.
             picture: Written in place.
-            samples: Colour samples per pixel, 1 or 4. Depth, objects and the subject's
+            samples: Colour samples per pixel, 1, 2 or 4. Depth, objects and the subject's
                 measurements are always those at the pixels' centres.
             until: Last stage to run, to measure the cost of each stage.
 

@@ -121,7 +121,7 @@ class PictureBatch:
     width: int
     height: int
     weather: str = "day"
-    samples: Literal[1, 4] = 1
+    samples: Literal[1, 2, 4] = 1
 
     @property
     def name(self) -> str:
@@ -135,6 +135,7 @@ BY_DAY = (
     PictureBatch(1, 84, 84),
     PictureBatch(64, 48, 48),
     PictureBatch(64, 84, 84),
+    PictureBatch(64, 84, 84, samples=2),
     PictureBatch(64, 84, 84, samples=4),
     PictureBatch(1, 640, 480),
     PictureBatch(1, 1280, 720),

@@ -86,7 +86,7 @@ class TargetStage:
             colour: The target's colour.
             shots: How it is, and from where it is seen.
             size: Height and width of the pictures [pixels].
-            samples: Samples for each pixel, 1 or 4.
+            samples: Samples for each pixel, 1, 2 or 4.
         """
         count, kinds = len(shots), len(self._kinds)
         actor = self._kinds.index(kind_index(MODELS[model].kind))

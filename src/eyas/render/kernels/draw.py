@@ -85,7 +85,7 @@ def _draw_band(
     """Draw job `index` with a worker's memory, and write what is wanted of it."""
     job, until = task.job, task.until
     number = job.band[index, 0]
-    view = address_of(view_of(job, index, task.width, task.height, task.samples))
+    view = address_of(view_of(task, index))
     lit = address_of(_light_at(light, job, number))
     world = i8(job.world[number])
     band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
@@ -226,9 +226,10 @@ def band_of(
     worker: int,
 ) -> Band:
     """Return a band of a view with a worker's rows of the working memory."""
-    rows, side = view.rows, view.samples
+    rows = view.rows
     return Band(
-        geometry, light, lit, movers, world, view, until, view.width // side, rows // side,
+        geometry, light, lit, movers, world, view, until, view.width // view.across,
+        rows // view.down,
         address_of(_no_glass(scratch, worker)), scratch.key[worker, :rows],
         scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
         scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
@@ -263,7 +264,7 @@ def bent_band(
         columns: Width of the picture [pixels].
         lines: Rows of the band [pixels].
     """
-    rows = lines * face.camera.samples
+    rows = lines * face.camera.down
     return Band(
         face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,
         i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,

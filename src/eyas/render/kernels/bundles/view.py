@@ -79,8 +79,10 @@ class View(NamedTuple):
     """First row of samples of the band."""
     rows: int
     """Number of rows of samples in the band."""
-    samples: int
-    """Samples along a side of each pixel, 1 or 2."""
+    across: int
+    """Samples along a row of each pixel, 1 or 2."""
+    down: int
+    """Samples along a column of each pixel, 1 or 2."""
     screen: Projection
     """World to screen."""
     planes: Planes

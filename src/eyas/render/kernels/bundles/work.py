@@ -114,8 +114,10 @@ class Canvas(NamedTuple):
 class Task(NamedTuple):
     """Inputs that change from picture to picture."""
 
-    samples: int
-    """Samples along a side of each pixel, 1 or 2."""
+    across: int
+    """Samples along a row of each pixel, 1 or 2."""
+    down: int
+    """Samples along a column of each pixel, 1 or 2."""
     width: int
     """Size of the pictures [pixels]."""
     height: int

@@ -65,13 +65,13 @@ def face_view(
     )
     focal = tables.focal[slot, face, 0], tables.focal[slot, face, 1]
     size = i8(tables.extent[slot, face, 0]), i8(tables.extent[slot, face, 1])
-    return view_along(eye, axes, focal, size, (first, last), task.samples)
+    return view_along(eye, axes, focal, size, (first, last), task)
 
 
 @kernel
 def glass_of(task: Task, tables: LensTables, number: int, face: int, top: int) -> Glass:
     """Return the lens of a band of a view that begins at a row of pixels."""
-    slot, first = task.job.lens[number], top * task.samples
+    slot, first = task.job.lens[number], top * task.down
     n, camera = tables.lens[slot], tables.camera[slot]
     lens = Lens(i8(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9])
     return Glass(
@@ -117,10 +117,10 @@ def look_through(source: Band, word: NDArray[np.uint32], bent: Band, words: bool
         words: Whether `shade` is wanted.
     """
     glass, key = bent.glass, source.key
-    samples, top = bent.camera.samples, f4(bent.camera.top)
+    top = f4(bent.camera.top)
     columns, stride = glass.column.shape[1], bent.key.shape[1]
     face, half, wide = i4(glass.number), f4(0.5), i4(key.shape[1])
-    for row in range(bent.lines * samples):
+    for row in range(bent.lines * bent.camera.down):
         for first in range(0, columns, WIDTH):
             here = row * columns + first
             mine = load(glass.face, here) == face

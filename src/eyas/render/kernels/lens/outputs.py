@@ -40,12 +40,12 @@ def write_bent_depth(band: Band, output: NDArray[np.float32]) -> None:
 @kernel
 def darken(task: Task, tables: LensTables, output: Output, index: int) -> None:
     """Write the pixels of a band to which no light comes: black, and the ids of the sky."""
-    job, side = task.job, task.samples
+    job = task.job
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     face, into = tables.face[job.lens[number]], job.picture[number]
     for row in range(top, bottom):
         for column in range(task.width):
-            if face[row * side, column * side] != DARK:
+            if face[row * task.down, column * task.across] != DARK:
                 continue
             if len(output.rgb) > 0:
                 output.rgb[into, row, column] = 0

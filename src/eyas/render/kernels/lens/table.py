@@ -27,8 +27,10 @@ class Survey(NamedTuple):
     lens: Lens
     camera: Floats
     """See `LensTables`, shape (4,)."""
-    samples: int
-    """Samples along a side of each pixel."""
+    across: int
+    """Samples along a row of each pixel."""
+    down: int
+    """Samples along a column of each pixel."""
     direction: Floats
     """Forward, left, up of length 1, and the solid angle of each sample [sr], 0 where it is dark,
     shape (rows, columns, 4)."""
@@ -44,16 +46,17 @@ class Survey(NamedTuple):
 @compiled
 def look_around(survey: Survey) -> None:
     """Write `Survey.direction`."""
-    lens, camera, side, seen = survey.lens, survey.camera, survey.samples, survey.direction
+    lens, camera, seen = survey.lens, survey.camera, survey.direction
+    across, down = survey.across, survey.down
     rows, columns = seen.shape[0], seen.shape[1]
-    one = 1.0 / (camera[0] * camera[1] * side * side)
+    one = 1.0 / (camera[0] * camera[1] * across * down)
     for row in range(rows):
-        y = ((row + 0.5) / side - camera[3]) / camera[1]
+        y = ((row + 0.5) / down - camera[3]) / camera[1]
         for column in range(columns):
-            x = ((column + 0.5) / side - camera[2]) / camera[0]
-            right, down, ahead, area = undistorted(lens, x, y)
+            x = ((column + 0.5) / across - camera[2]) / camera[0]
+            right, below, ahead, area = undistorted(lens, x, y)
             seen[row, column, 0], seen[row, column, 1] = ahead, -right
-            seen[row, column, 2], seen[row, column, 3] = -down, area * one
+            seen[row, column, 2], seen[row, column, 3] = -below, area * one
 
 
 @kernel(inline=True)
@@ -83,21 +86,22 @@ def _in_face(survey: Survey, row: int, column: int, face: int) -> tuple[float, f
 @compiled
 def survey_faces(survey: Survey) -> None:
     """Write the face of each pixel, and what the faces must reach."""
-    side, seen, face, reach = survey.samples, survey.direction, survey.face, survey.reach
+    seen, face, reach = survey.direction, survey.face, survey.reach
+    across, down = survey.across, survey.down
     reach[:, 0], reach[:, 1], reach[:, 2] = 0.0, 0.0, 1e9
     face[:] = DARK
-    for row in range(0, seen.shape[0], side):
-        for column in range(0, seen.shape[1], side):
+    for row in range(0, seen.shape[0], down):
+        for column in range(0, seen.shape[1], across):
             ahead, left, up, least = 0.0, 0.0, 0.0, 1e9
-            for k in range(side * side):
-                sample = seen[row + k // side, column + k % side]
+            for k in range(across * down):
+                sample = seen[row + k // across, column + k % across]
                 ahead, left, up = ahead + sample[0], left + sample[1], up + sample[2]
                 least = min(least, sample[3])
             if least <= 0.0:
                 continue
             number = _face_of(ahead, left, up, len(survey.turn))
-            for k in range(side * side):
-                i, j = row + k // side, column + k % side
+            for k in range(across * down):
+                i, j = row + k // across, column + k % across
                 face[i, j] = number
                 forward, aside, upright = _in_face(survey, i, j, number)
                 wide = math.sqrt(seen[i, j, 3] / (forward * forward * forward))
@@ -109,7 +113,7 @@ def survey_faces(survey: Survey) -> None:
 @compiled
 def fill_tables(survey: Survey, tables: LensTables, slot: int) -> None:
     """Write the places of all samples into the tables of a lens, whose faces are known."""
-    side, seen = survey.samples, survey.direction
+    seen, across, down = survey.direction, survey.across, survey.down
     row_of, tile = tables.row[slot], tables.tile[slot]
     row_of[:, :, 0], row_of[:, :, 1] = _FAR, 0
     tile[:, :, :, :2], tile[:, :, :, 2:] = _FAR, 0
@@ -124,15 +128,15 @@ def fill_tables(survey: Survey, tables: LensTables, slot: int) -> None:
             forward, aside, upright = _in_face(survey, row, column, face)
             focal_x, focal_y = tables.focal[slot, face, 0], tables.focal[slot, face, 1]
             width, height = tables.extent[slot, face, 0], tables.extent[slot, face, 1]
-            x = side * (0.5 * width - focal_x * aside / forward)
-            y = side * (0.5 * height - focal_y * upright / forward)
+            x = across * (0.5 * width - focal_x * aside / forward)
+            y = down * (0.5 * height - focal_y * upright / forward)
             wide = math.sqrt(seen[row, column, 3] / (forward * forward * forward))
             tables.column[slot, row, column], tables.line[slot, row, column] = x, y
-            tables.size[slot, row, column] = wide * side * math.sqrt(focal_x * focal_y)
+            tables.size[slot, row, column] = wide * math.sqrt(across * down * focal_x * focal_y)
             # One sample more at each side: neighbours tell how distances change.
-            rows = row_of[face, row // side]
-            rows[0] = min(rows[0], max(int(y - 1.0) // side, 0))
-            rows[1] = max(rows[1], min(int(y + 1.0) // side + 1, height))
+            rows = row_of[face, row // down]
+            rows[0] = min(rows[0], max(int(y - 1.0) // down, 0))
+            rows[1] = max(rows[1], min(int(y + 1.0) // down + 1, height))
             box = tile[face, int(y) // LENS_TILE, int(x) // LENS_TILE]
             box[0], box[1] = min(box[0], column), min(box[1], row)
             box[2], box[3] = max(box[2], column + 1), max(box[3], row + 1)

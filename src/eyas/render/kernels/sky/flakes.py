@@ -243,10 +243,10 @@ def _draw_flake(
         radius *= tumbling
     if radius < falling.smallest:
         return
-    across = view.focal_x / (ahead * view.samples)
-    down = view.focal_y / (ahead * view.samples)
-    column = 0.5 * view.width / view.samples - left * across
-    row = (0.5 * view.height - view.top) / view.samples - up * down
+    across = view.focal_x / (ahead * view.across)
+    down = view.focal_y / (ahead * view.down)
+    column = 0.5 * view.width / view.across - left * across
+    row = (0.5 * view.height - view.top) / view.down - up * down
     streak = Streak(column, row, -aside * across, -above * down, radius, 1.0 / ahead)
     if snowfall.band.glass.on == 1:
         moved = aside, above
@@ -300,7 +300,8 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    band, key, step = snowfall.band, snowfall.band.key, snowfall.band.camera.samples
+    band, key = snowfall.band, snowfall.band.key
+    across, down = band.camera.across, band.camera.down
     first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
     last = min(i8(math.ceil(max(row, row + to_row) + reach)), band.lines)
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
@@ -316,7 +317,7 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
     strength *= snowfall.falling.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     for i in range(first, last):
         for j in range(start, stop):
-            shown = key[i * step, j * step]
+            shown = key[i * down, j * across]
             if shown < i8(0) or distance_inverse(shown) > inverse:
                 continue
             y, x = i + 0.5 - row, j + 0.5 - column

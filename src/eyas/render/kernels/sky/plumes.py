@@ -175,7 +175,7 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
     if thickness < 0.01:
         return
     row, column, tall, wide = _on_screen(band, ahead, left, up, reach)
-    top = i8(view.top // view.samples) if band.glass.on == 0 else i8(band.glass.top)
+    top = i8(view.top // view.down) if band.glass.on == 0 else i8(band.glass.top)
     first = max(i8(math.floor(row - tall)) - top, 0)
     last = min(i8(math.ceil(row + tall)) - top, band.lines)
     start = max(i8(math.floor(column - wide)), 0)
@@ -222,8 +222,8 @@ def _cover(
         ahead: Its distance [m].
         soft: What lies by more than half of one over this behind it is behind all of it [1/m].
     """
-    zero, one, step = f4(0.0), f4(1.0), band.camera.samples
-    keys = keys_of(band.key, i * step, j * step, step)
+    zero, one, across = f4(0.0), f4(1.0), band.camera.across
+    keys = keys_of(band.key, i * band.camera.down, j * across, across)
     inside = (round_ > zero) & (keys >= i8(0))
     away = one / greater(distance_inverse(keys), f4(1e-6))
     deep = lesser(greater(f4(0.5) + (away - ahead) * soft, zero), one)
@@ -281,10 +281,10 @@ def _on_screen(
 ) -> tuple[float, float, float, float]:
     """Return row and column of a ball's middle, half its height and half its width [pixels]."""
     view = band.camera
-    across = view.focal_x / (ahead * view.samples)
-    down = view.focal_y / (ahead * view.samples)
-    column = 0.5 * view.width / view.samples - left * across
-    row = 0.5 * view.height / view.samples - up * down
+    across = view.focal_x / (ahead * view.across)
+    down = view.focal_y / (ahead * view.down)
+    column = 0.5 * view.width / view.across - left * across
+    row = 0.5 * view.height / view.down - up * down
     tall, wide = max(reach * down, 0.5), max(reach * across, 0.5)
     if band.glass.on == 1:
         column, row = shown_at(band.glass, ahead, left, up)

@@ -25,7 +25,7 @@ from eyas.lanes.vector import (
     to_f4,
     to_i4,
 )
-from eyas.render.kernels.bundles import Band, Canvas, Direction, Glass, Illumination, Light
+from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
 from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8
@@ -313,23 +313,26 @@ def sky_colour(light: Light, lit: Illumination, rays: Rays, line: float, column:
 
 
 @kernel(inline=True)
-def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> int:
+def _sky_bits(band: Band, row: int, first: int) -> int:
     """Return in which of eight pixels any sample shows the sky, a bit each."""
-    bits = i8(0)
-    for k in range(samples * samples):
-        keys = keys_of(key, line + (k >> 1), sample + (k & 1), samples)
-        bits |= bits_of(keys == i8(0))
+    bits, across, down = i8(0), band.camera.across, band.camera.down
+    for i in range(down):
+        for j in range(across):
+            keys = keys_of(band.key, row * down + i, first * across + j, across)
+            bits |= bits_of(keys == i8(0))
     return bits
 
 
 @kernel(inline=True)
-def _middle(glass: Glass, row: int, first: int, samples: int) -> tuple[float, float]:
+def _middle(band: Band, row: int, first: int) -> tuple[float, float]:
     """Return line and column in their face of the middles of eight pixels."""
-    line, column, _ = place_in_face(glass, row, first, samples)
-    for k in range(1, samples * samples):
-        down, right, _ = place_in_face(glass, row + (k >> 1), first + (k & 1), samples)
-        line, column = line + down, column + right
-    part = f4(1.0) / f4(samples * samples)
+    across, down = band.camera.across, band.camera.down
+    line, column = splat(f4(0.0)), splat(f4(0.0))
+    for i in range(down):
+        for j in range(across):
+            below, right, _ = place_in_face(band.glass, row * down + i, first * across + j, across)
+            line, column = line + below, column + right
+    part = f4(1.0) / f4(across * down)
     return line * part, column * part
 
 
@@ -343,20 +346,18 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    view, light, lit, key = band.camera, band.light, band.lit, band.key
-    rays, samples = rays_of(view), view.samples
-    side, half = f4(samples), f4(0.5) * f4(samples)
-    width, glass = band.columns, band.glass
+    view, light, lit, width = band.camera, band.light, band.lit, band.columns
+    rays, across, down = rays_of(view), f4(view.across), f4(view.down)
     for row in range(band.lines):
         for first in range(0, width, WIDTH):
-            chosen = _sky_bits(key, row * samples, first * samples, samples)
+            chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:
                 chosen &= (1 << (width - first)) - 1
             if chosen == 0:
                 continue
-            column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
-            line = splat(rays.top + f4(row) * side + half)
-            if glass.on == 1:
-                line, column = _middle(glass, row * samples, first * samples, samples)
+            column = to_f4(lane_numbers()) * across + (f4(first) * across + f4(0.5) * across)
+            line = splat(rays.top + f4(row) * down + f4(0.5) * down)
+            if band.glass.on == 1:
+                line, column = _middle(band, row, first)
             colour = sky_colour(light, lit, rays, line, column)
             write_colours(canvas, light, lit.air.exposure, row, first, chosen, colour)

@@ -34,6 +34,7 @@ __all__ = ["instance_frame", "shade_band"]
 
 
 Colour = tuple[float, float, float]
+Four = tuple[int, int, int, int]
 
 
 @kernel(inline=True)
@@ -111,9 +112,14 @@ def _colours_of(
 
 
 @kernel(inline=True)
-def _four_keys(band: Band, line: int, sample: int) -> tuple[int, int, int, int]:
-    """Return the keys of the four samples of eight pixels."""
-    key = band.key
+def _keys_within(band: Band, line: int, sample: int, across: int) -> Four:
+    """Return the keys of the samples of eight pixels, `across` in a row and two rows.
+
+    Where there are only two, the others are 0, which is the sky.
+    """
+    key, none = band.key, splat(i8(0))
+    if across == 1:
+        return keys_of(key, line, sample, 1), keys_of(key, line + 1, sample, 1), none, none
     return (
         keys_of(key, line, sample, 2),
         keys_of(key, line, sample + 1, 2),
@@ -123,12 +129,17 @@ def _four_keys(band: Band, line: int, sample: int) -> tuple[int, int, int, int]:
 
 
 @kernel(inline=True)
-def _four_places(band: Band, line: int, sample: int) -> tuple[Colour, Colour, Colour, Colour]:
-    """Return row, column and width in the face of the four samples; without a lens nothing."""
+def _places_within(
+    band: Band, line: int, sample: int, across: int
+) -> tuple[Colour, Colour, Colour, Colour]:
+    """Return row, column and width in the face of those samples; without a lens nothing."""
     zero, glass = splat(f4(0.0)), band.glass
+    none = zero, zero, zero
     if glass.on == 0:
-        none = zero, zero, zero
         return none, none, none, none
+    if across == 1:
+        upper = place_in_face(glass, line, sample, 1)
+        return upper, place_in_face(glass, line + 1, sample, 1), none, none
     return (
         place_in_face(glass, line, sample, 2),
         place_in_face(glass, line, sample + 1, 2),
@@ -140,18 +151,20 @@ def _four_places(band: Band, line: int, sample: int) -> tuple[Colour, Colour, Co
 @kernel(inline=True)
 def _alike(
     bent: bool,
-    four: tuple[int, int, int, int],
+    four: Four,
     places: tuple[Colour, Colour, Colour, Colour],
     k: int,
+    across: int,
 ) -> tuple[int, bool, int, float, float, float, float]:
-    """Compare sample `k` of four of eight pixels with the others.
+    """Compare sample `k` of eight pixels with the others.
 
     Args:
         bent: Whether there is a lens.
         four: Their keys. These and the places are read once, before anything is shaded: each time
             is a load for each pixel.
-        places: See `_four_places`.
+        places: See `_places_within`.
         k: The number.
+        across: Samples in a row.
 
     Returns:
         Its tag, whether no sample before it shows the same, and of all that show the same: how
@@ -164,7 +177,7 @@ def _alike(
     if bent:
         wide = splat(zero)
     is_first = splat(f4(1.0)) > zero
-    for other in range(4):
+    for other in range(2 * across):
         keys = four[other]
         same = (tag_of(keys) == tag) & (keys != i8(0))
         if other < k:
@@ -176,8 +189,8 @@ def _alike(
             below, aside, size = places[other]
             down, right, wide = down + share * below, right + share * aside, wide + share * size
         else:
-            down += share * (f4(other >> 1) + f4(0.5))
-            right += share * (f4(other & 1) + f4(0.5))
+            down += share * (f4(other // across) + f4(0.5))
+            right += share * (f4(other % across) + f4(0.5))
     part = f4(1.0) / greater(count, f4(1.0))
     if bent:
         wide = greater(wide * part, f4(1e-6))
@@ -203,37 +216,40 @@ def _shade_one(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, fir
 
 
 @kernel(inline=True)
-def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int) -> None:
-    """Write the bytes of eight pixels of a row, with four samples each.
+def _shade_several(
+    band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int, across: int
+) -> None:
+    """Write the bytes of eight pixels of a row, with two rows of samples each.
 
     Each triangle that a pixel shows is computed once, in the middle of the samples that show it,
     and counts as often as there are of them; 1/distance is linear on the screen, so the mean of
     theirs is the one in the middle.
     """
-    numbers, line, sample = to_f4(lane_numbers()), 2 * row, 2 * first
-    key, inside = band.key, numbers < f4(pixels.shape[1] - first)
-    # Sums of red and blue in the halves of one number, and of green.
-    both, green, shown = splat(u4(0)), splat(u4(0)), i8(0)
+    numbers, line, sample = to_f4(lane_numbers()), 2 * row, across * first
+    inside = numbers < f4(pixels.shape[1] - first)
+    # Sums of red and blue in the halves of one number, and of green, of four samples.
+    both, green, shown, each = splat(u4(0)), splat(u4(0)), i8(0), u4(2 // across)
     even, eight = u4(0x00FF00FF), u4(8)
-    four, places = _four_keys(band, line, sample), _four_places(band, line, sample)
-    bent = band.glass.on == 1
-    for k in range(4):
-        keys = four[k]
+    keys_all = _keys_within(band, line, sample, across)
+    places, bent = _places_within(band, line, sample, across), band.glass.on == 1
+    for k in range(2 * across):
+        keys = keys_all[k]
         seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
         sky = _written(pixels, row, first, inside & (keys == i8(0)))
-        both, green = both + (sky & even), green + ((sky >> eight) & even)
-        tag, is_first, weight, inverse, down, right, wide = _alike(bent, four, places, k)
+        both, green = both + each * (sky & even), green + each * ((sky >> eight) & even)
+        tag, is_first, count, inverse, down, right, wide = _alike(bent, keys_all, places, k, across)
         seen &= is_first
         if not any_of(seen):
             continue
-        words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
+        words = _words_within(band, line + k // across, sample + k % across, across)
         distance = f4(1.0) / select(seen, inverse, f4(1.0))
         if band.glass.on == 0:
-            down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+            down = down + (rays.top + f4(line))
+            right = numbers * f4(across) + f4(sample) + right
         colour = _colours_of(band, rays, tag, seen, distance, down, right, wide, words)
         red_byte, green_byte, blue_byte = tone_bytes(band.light, band.lit.air.exposure, colour)
-        packed = select(seen, pack(red_byte, green_byte, blue_byte), u4(0))
+        packed, weight = select(seen, pack(red_byte, green_byte, blue_byte), u4(0)), each * count
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
     if shown != 0:
         two, halves = u4(2), u4(0x00020002)
@@ -242,19 +258,22 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
 
 
 @kernel(inline=True)
-def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, first: int) -> None:
-    """Write the mean radiance of eight pixels of a row, with four samples each; see `_shade_four`.
+def _mean_of_several(
+    band: Band, rays: Rays, canvas: Canvas, row: int, first: int, across: int
+) -> None:
+    """Write the mean radiance of eight pixels of a row; see `_shade_several`.
 
     Light is added up, not bytes: a lamp in a quarter of a pixel keeps a quarter of its light.
     """
-    numbers, line, sample = to_f4(lane_numbers()), 2 * row, 2 * first
-    key, inside = band.key, numbers < f4(width - first)
+    numbers, line, sample = to_f4(lane_numbers()), 2 * row, across * first
+    width = band.columns
+    inside = numbers < f4(width - first)
     red, green, blue, shown = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), i8(0)
     zero, one = f4(0.0), splat(f4(1.0))
-    four, places = _four_keys(band, line, sample), _four_places(band, line, sample)
-    bent = band.glass.on == 1
-    for k in range(4):
-        keys = four[k]
+    keys_all = _keys_within(band, line, sample, across)
+    places, bent = _places_within(band, line, sample, across), band.glass.on == 1
+    for k in range(2 * across):
+        keys = keys_all[k]
         seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
         sky = inside & (keys == i8(0))
@@ -263,21 +282,22 @@ def _mean_of_four(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, 
             red += select(sky, gather(canvas.red, at), zero)
             green += select(sky, gather(canvas.green, at), zero)
             blue += select(sky, gather(canvas.blue, at), zero)
-        tag, is_first, weight, inverse, down, right, wide = _alike(bent, four, places, k)
+        tag, is_first, count, inverse, down, right, wide = _alike(bent, keys_all, places, k, across)
         seen &= is_first
         if not any_of(seen):
             continue
-        words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
+        words = _words_within(band, line + k // across, sample + k % across, across)
         distance = f4(1.0) / select(seen, inverse, one)
         if band.glass.on == 0:
-            down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+            down = down + (rays.top + f4(line))
+            right = numbers * f4(across) + f4(sample) + right
         colour = _colours_of(band, rays, tag, seen, distance, down, right, wide, words)
-        share = to_f4(to_i4(weight))
+        share = to_f4(to_i4(count))
         red += share * colour[0]
         green += share * colour[1]
         blue += share * colour[2]
     if shown != 0:
-        part = f4(0.25)
+        part = f4(1.0) / f4(2 * across)
         colour = (part * red, part * green, part * blue)
         write_colours(canvas, band.light, band.lit.air.exposure, row, first, shown, colour)
 
@@ -291,23 +311,33 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         canvas: Its colours.
     """
     rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
-    if view.samples == 1:
+    if view.down == 1:
         for row in range(rows):
             for first in range(0, width, WIDTH):
                 _shade_one(band, rays, canvas, width, row, first)
     elif len(canvas.red) > 0:
         for row in range(rows):
             for first in range(0, width, WIDTH):
-                _mean_of_four(band, rays, canvas, width, row, first)
+                if view.across == 1:
+                    _mean_of_several(band, rays, canvas, row, first, 1)
+                else:
+                    _mean_of_several(band, rays, canvas, row, first, 2)
+    elif view.across == 1:
+        for row in range(rows):
+            for first in range(0, width, WIDTH):
+                _shade_several(band, rays, canvas.pixels, row, first, 1)
     else:
         for row in range(rows):
             for first in range(0, width, WIDTH):
-                _shade_four(band, rays, canvas.pixels, row, first)
+                _shade_several(band, rays, canvas.pixels, row, first, 2)
 
 
 @kernel(inline=True)
-def _spread_words(shade: NDArray[np.uint8], at: int) -> int:
-    """Return the four bytes of every second sample, from sample `at` on."""
+def _words_within(band: Band, line: int, sample: int, across: int) -> int:
+    """Return the four bytes of eight samples, `across` apart, from one on."""
+    shade, at = band.shade, line * band.key.shape[1] + sample
+    if across == 1:
+        return load_words(shade, 4 * at)
     first = (lane_numbers() * i4(2) + i4(at)) * i4(4)
     words = gather(shade, first)
     for k in range(1, 4):

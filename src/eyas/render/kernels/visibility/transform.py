@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import NEAR, Job, Point, Projection, Row, View
+from eyas.render.kernels.bundles import NEAR, Job, Point, Projection, Row, Task, View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.cull import planes_of
 
@@ -21,21 +21,14 @@ __all__ = [
 
 
 @kernel(inline=True)
-def view_of(job: Job, band: int, width: int, height: int, samples: int) -> View:
-    """Return a band of a view.
-
-    Args:
-        job: The cameras.
-        band: Row of `Job.band`.
-        width: Width of the pictures [pixels].
-        height: Height of the pictures [pixels].
-        samples: Samples along a side of each pixel.
-    """
+def view_of(task: Task, band: int) -> View:
+    """Return a band of a view, row `band` of `Job.band`."""
+    job = task.job
     number, top, bottom = job.band[band, 0], job.band[band, 1], job.band[band, 2]
     eye = Point(job.eye[number, 0], job.eye[number, 1], job.eye[number, 2])
     ahead, left, up = _axis(job, number, 0), _axis(job, number, 1), _axis(job, number, 2)
     focal = job.focal[number, 0], job.focal[number, 1]
-    return view_along(eye, (ahead, left, up), focal, (width, height), (top, bottom), samples)
+    return view_along(eye, (ahead, left, up), focal, (task.width, task.height), (top, bottom), task)
 
 
 @kernel(inline=True)
@@ -45,7 +38,7 @@ def view_along(
     focal: tuple[float, float],
     size: tuple[int, int],
     rows: tuple[int, int],
-    samples: int,
+    task: Task,
 ) -> View:
     """Return a band of a view.
 
@@ -55,19 +48,21 @@ def view_along(
         focal: Focal length along rows and along columns [pixels].
         size: Width and height of the whole picture [pixels].
         rows: Its first row, and the row after the last [pixels].
-        samples: Samples along a side of each pixel.
+        task: Tells how many samples each pixel has.
     """
     ahead, left, up = axes
     pixels_x, pixels_y = focal
-    focal_x, focal_y = pixels_x * samples, pixels_y * samples
+    across, down = task.across, task.down
+    focal_x, focal_y = pixels_x * across, pixels_y * down
     screen = Projection(
         _through(eye, -focal_x, left), _through(eye, -focal_y, up), _through(eye, 1.0, ahead)
     )
-    columns, lines = i8(size[0] * samples), i8(size[1] * samples)
-    first, last = i8(rows[0] * samples), i8(rows[1] * samples)
+    columns, lines = i8(size[0] * across), i8(size[1] * down)
+    first, last = i8(rows[0] * down), i8(rows[1] * down)
     return View(
         eye, ahead, left, up, focal_x, focal_y, math.sqrt(pixels_x * pixels_y), columns, lines,
-        first, last - first, i8(samples), screen, planes_of(screen, columns, lines, first, last),
+        first, last - first, i8(across), i8(down), screen,
+        planes_of(screen, columns, lines, first, last),
     )  # fmt: skip
 
 
