@@ -17,7 +17,7 @@ from eyas.targets.catalogue import MODELS
 from eyas.targets.config import TargetName
 from eyas.targets.habit import Behaviour
 from eyas.traffic.replay import Replay
-from eyas.world.roads.areas import streets
+from eyas.world.roads.areas import road_area, streets
 
 from .conftest import CLOCK, group, table_of
 from .habits import HABITS
@@ -241,3 +241,12 @@ def test_the_ground_under_a_point_does_not_depend_on_the_others(city):
 def test_a_full_turn_is_no_jump(city_tables):
     for table in city_tables.values():
         assert np.abs(np.diff(table["yaw"], axis=0)).max() < math.pi / 2
+
+
+def test_who_walks_along_a_verge_keeps_near_the_road_and_off_it(hills):
+    rows = table_of(hills, group("Pedestrian", behaviour=Behaviour.VERGE))
+    roads = road_area(hills.scene.network)
+    away = shapely.distance(roads, shapely.points(rows["x"][::200], rows["y"][::200]))
+    assert 0.7 < away.min() < 1.1
+    assert np.median(away) < 2.0
+    assert away.max() < 5.5

@@ -136,11 +136,12 @@ def test_extras_leave_the_vehicles_and_their_episodes_as_they_are(extras):
         ({"world": {"map": "downtown"}}, "crossing", 80),
         ({"traffic": {"source": "live"}}, "pavement", 40),
         ({"target": "BB-8"}, "crossing", 40),
-        ({"world": {"map": "lake"}}, None, 0),
+        ({"world": {"map": "lake"}}, "verge", 24),
+        ({"world": {"map": "desert"}}, None, 0),
         ({"extras": []}, None, 0),
     ],
 )
-def test_pedestrians_walk_in_the_cities_unless_extras_says_otherwise(settings, behaviour, count):
+def test_pedestrians_walk_where_people_are_unless_extras_says_otherwise(settings, behaviour, count):
     found = [(who.kind, who.behaviour, who.count) for who in extras_of(SimConfig(**settings))]
     assert found == ([("Pedestrian", behaviour, count)] if count else [])
 

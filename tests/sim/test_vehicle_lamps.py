@@ -27,7 +27,7 @@ from eyas.traffic.config import TrafficConfig
 from eyas.traffic.lamps import shining
 from eyas.world.config import WorldConfig
 
-WORKING = TrafficConfig(lamps="working")
+WORKING = TrafficConfig(signals="amber", lamps="working")
 
 EPISODE = Episode(Path(), "0", 0, 64, 48, np.eye(3), 25.0)
 
@@ -55,7 +55,7 @@ def behind(world: StillWorld, time: float, actor: int) -> Views:
 @pytest.mark.parametrize("weather", ["day", "night"])
 def test_a_braking_car_is_seen_to_brake(weather):
     working = StillWorld(assets(weather))
-    dark = StillWorld(assets(weather, TrafficConfig()))
+    dark = StillWorld(assets(weather, TrafficConfig(signals="amber", lamps="dark")))
     time, actor = braking_in(working.assets.traffic.motion)
     views, shown = behind(working, time, actor), []
     for world in (dark, working):

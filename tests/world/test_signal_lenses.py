@@ -7,8 +7,12 @@ from eyas.core.errors import ConfigError
 from eyas.sim.assets import load_assets
 from eyas.state.mesh import Surface
 from eyas.traffic.config import TrafficConfig
-from eyas.traffic.signals import Aspect
+from eyas.traffic.net_file import SumoNet
+from eyas.traffic.network import network_xml
+from eyas.traffic.signals import Aspect, load_plan, signal_plan
 from eyas.world.config import WorldConfig
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import SIGNALS_FILE
 from eyas.world.street.signals import lens_levels, signal_levels
 
 AMBER = 1.0, 0.55, 0.06
@@ -39,6 +43,34 @@ def test_an_amber_that_does_not_shine_is_hidden(level):
                 and b[1] > high[1]
                 for a, b in over
             )  # fmt: skip
+
+
+def test_signals_work_by_default_with_the_traffic_that_obeys_them():
+    made = [
+        load_assets(WorldConfig(map=name), TrafficConfig(**changes))
+        for name, changes in (
+            ("village", {}),
+            ("village", {"signals": "amber"}),
+            ("village", {"demand": "respawn"}),
+            ("village-bare", {}),  # the same roads, but no poles
+            ("lake", {}),
+        )
+    ]
+    assert [each.signals is not None for each in made] == [True, False, False, False, False]
+    lit, still = made[0].traffic.motion, made[1].traffic.motion
+    standing = [np.mean(np.hypot(m.table["velocity_x"], m.table["velocity_y"]) < 0.1)
+                for m in (lit, still)]  # fmt: skip
+    assert standing[0] > 0.15 > 0.1 > standing[1]
+
+
+@pytest.mark.sumo
+def test_the_shipped_plans_are_those_of_the_networks():
+    for name in ("citystreet", "desert", "downtown", "village"):
+        recipe = MAPS.get(name)
+        made = signal_plan(SumoNet(network_xml(recipe.roads(0), signals=True)))
+        kept = load_plan(recipe.shipped(SIGNALS_FILE))
+        assert kept.edges == made.edges
+        assert all(np.array_equal(*both) for both in zip(kept[1:], made[1:], strict=True))
 
 
 def test_maps_without_traffic_lights_say_so():

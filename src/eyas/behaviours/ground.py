@@ -52,7 +52,12 @@ class Ground:
 
 
 def walkways(
-    ground: Ground, breadth: float, bend: float, vehicles: Motion | None = None
+    ground: Ground,
+    breadth: float,
+    bend: float,
+    vehicles: Motion | None = None,
+    *,
+    verges: bool = False,
 ) -> list[Walkway]:
     """Return the ways on pavements.
 
@@ -61,6 +66,7 @@ def walkways(
         breadth: Diameter of the circle in which those fit who walk [m].
         bend: Radius at which they round corners [m].
         vehicles: Those that may come over kerbs in narrow corners; None: there are none.
+        verges: Whether one also walks along the edges of roads that have no pavement.
     """
     scene, radius = ground.scene, 0.5 * breadth + ROOM
     if scene.footways.told:
@@ -68,8 +74,10 @@ def walkways(
         obstacles = ground.solids
         found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
     else:
-        obstacles = ground.obstacles
-        found = pavement_ways(scene.network, scene.size, obstacles, ground.surface, radius)
+        obstacles, extent = ground.obstacles, scene.size
+        found = pavement_ways(
+            scene.network, extent, obstacles, ground.surface, radius, verges=verges
+        )
     once = [outline(chain_through(way.corners, bend, 1)) for way in found]
     # A rounded corner may come too near to what the way leads round.
     lines = np.array([shapely.LineString(points) for points in once], object)

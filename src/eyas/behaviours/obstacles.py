@@ -10,6 +10,7 @@ from eyas.core import exact
 from eyas.state.scene import Fixtures, ObjectClass, Scene
 from eyas.state.terrain import Terrain, reliefs
 from eyas.world.roads.areas import corridors, split_on_grid
+from eyas.world.street.clutter import CLUTTER
 
 __all__ = ["GroundObstacles"]
 
@@ -132,9 +133,14 @@ def _fixtures(fixtures: Fixtures, *, as_placed: bool) -> NDArray[np.object_]:
         as_placed: Whether heights are those of the copies, so that one walks below crowns of trees.
             On maps with wide pavements heights are those of the prototypes: the crowns of trees,
             which are 1 m high, are kept clear of as a whole.
+
+    The clutter of streets stands where people do not walk along, and so that who wanders about goes
+    his way as before there was any, it is in nobody's way.
     """
     shapes: list[shapely.Geometry] = []
     for number, levels in enumerate(fixtures.levels):
+        if fixtures.names and fixtures.names[number] in CLUTTER:
+            continue
         pose = fixtures.pose[fixtures.prototype == number].astype(np.float64)
         scale = np.ones(len(pose))
         if as_placed:

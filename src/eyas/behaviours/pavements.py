@@ -27,6 +27,9 @@ _DRIVEWAY: Final = 12.0
 _LAWN: Final = -0.05
 """Height above that of lawns [m]."""
 
+_BESIDE: Final = 5.0
+"""Largest distance from the road of those who walk along its edge, round what stands there [m]."""
+
 _EVERY: Final = 1.0
 """Distance between points that are tested for pavement [m]."""
 
@@ -53,6 +56,8 @@ def pavement_ways(
     obstacles: GroundObstacles,
     surface: WalkedSurface,
     radius: float,
+    *,
+    verges: bool = False,
 ) -> list[Walkway]:
     """Return the ways along the pavements of all blocks, round what stands on them.
 
@@ -64,6 +69,7 @@ def pavement_ways(
         obstacles: What stands in the way.
         surface: The ground.
         radius: Distance to obstacles that is kept [m].
+        verges: Whether one walks wherever the way is near the road, on pavement or not.
     """
     if not len(network.lane_width):
         return []
@@ -75,8 +81,13 @@ def pavement_ways(
             ring = _ring(block, beyond, obstacles, radius)
             if ring is not None:
                 line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)
-                under = surface.at(along(line))
-                found += paved_parts(line, bridged(under.pavement, is_hard(under.height)), lane)
+                points = along(line)
+                if verges:
+                    walked = shapely.distance(block.exterior, shapely.points(points)) < _BESIDE
+                else:
+                    under = surface.at(points)
+                    walked = bridged(under.pavement, is_hard(under.height))
+                found += paved_parts(line, walked, lane)
     return found
 
 

@@ -87,7 +87,7 @@ def scripted_table(
         paths = _crossing_walks(
             ground, group, habit, ways, lifetimes.enters / clock.rate, seconds, gaps, rng
         )
-    elif (group.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
+    elif (group.behaviour or habit.behaviour) in (Behaviour.PAVEMENT, Behaviour.VERGE):
         paths = _strolls(_walkways(ground, group, habit, vehicles), habit, seconds, rng)
     else:
         paths = _paths(ground, group, habit, seconds, rng)
@@ -213,11 +213,12 @@ def _walkways(
     Raises:
         SpawnError: There are none.
     """
-    ways = walkways(ground, group.breadth, habit.radius, vehicles)
+    behaviour = group.behaviour or habit.behaviour
+    verges = behaviour is Behaviour.VERGE
+    ways = walkways(ground, group.breadth, habit.radius, vehicles, verges=verges)
     if not ways:
-        behaviour = (group.behaviour or habit.behaviour).value
         raise SpawnError(
-            f"{group.chosen_by}: '{behaviour}': '{ground.scene.name}' has no pavement; "
+            f"{group.chosen_by}: '{behaviour.value}': '{ground.scene.name}' has no pavement; "
             "allowed: another behaviour, or another map such as citystreet"
         )
     return ways

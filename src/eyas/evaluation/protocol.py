@@ -61,6 +61,10 @@ _IDLE: Mapping[str, Callable[[SimConfig], bool]] = {
 """When settings have no effect on an episode."""
 
 
+_AS_PUBLISHED: Mapping[str, str] = {"signals": "amber", "lamps": "dark"}
+"""Defaults of `traffic` when the first hashes were published, where it has others now."""
+
+
 def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
     """Return nested settings with some changed."""
     both = dict(first)
@@ -152,10 +156,15 @@ class Protocol:
     @cached_property
     def hash(self) -> str:
         """Twelve hexadecimal digits of what the episodes mean: the settings that have an effect and
-        are not at their defaults. The world in which they happen has a digest of its own
+        are not at their (first) defaults. The world in which they happen has a digest of its own
         (`eyas.core.build.Build.world`).
         """
         settings = self.settings.model_dump(mode="json", include=_FIXED, exclude_defaults=True)
+        told = settings.setdefault("traffic", {})
+        for name, former in _AS_PUBLISHED.items():
+            told[name] = getattr(self.settings.traffic, name)
+            if told[name] == former:
+                del told[name]
         idle = (path for path, is_idle in _IDLE.items() if is_idle(self.settings))
         for path in (*_PLACED, *idle):
             *groups, name = path.split(".")

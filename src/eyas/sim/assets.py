@@ -29,16 +29,17 @@ from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, Drivers, Lamps, Signals, Source, TrafficConfig
-from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
+from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file, obeys_signals
 from eyas.traffic.live import LiveSumo
 from eyas.traffic.net_file import SumoNet
 from eyas.traffic.record import resolved, roads_for
 from eyas.traffic.recorded import kept_lamps, kept_motion
 from eyas.traffic.replay import Replay
-from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
+from eyas.traffic.signals import SignalPlan, load_plan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig, WorldWindConfig
 from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import SIGNALS_FILE, SIGNALS_TRAFFIC_FILE
 
 __all__ = ["Assets", "load_assets"]
 
@@ -89,6 +90,10 @@ def load_assets(
     lighting, season = _lighting(world), recipe.season(world.weather)
     town = bool(recipe.roads(world.seed).finished)
     scene = load_scene(world.map, world.seed, season)
+    if traffic.signals is None:
+        working = not town and _obeyed(world, traffic, scene)
+        decided = Signals.WORKING if working else Signals.AMBER
+        traffic = traffic.model_copy(update={"signals": decided})
     if not town and traffic.signals is Signals.WORKING and not signal_poles(scene):
         raise ConfigError(
             f"traffic.signals: 'working' is not allowed on '{world.map}', which has no traffic "
@@ -102,24 +107,37 @@ def load_assets(
     if trackers > 1:
         body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
-    plans = _signal_plans(world.map, world.seed, traffic.drivers, traffic.signals)
-    signals = None if plans is None else lights_of(scene, plans[0], parts)
+    plan = _signal_plan(world.map, world.seed, traffic.drivers, traffic.signals)
+    signals = None if plan is None else lights_of(scene, plan, parts)
     lenses = Lenses.NONE if signals is None else Lenses.PLAIN if town else Lenses.COVERING
     renderer = _renderer(world, tuple(kinds), lenses)
     solids = partial(load_solids, world.map, world.seed, season)
     return Assets(scene, source, lighting, renderer, rigs, solids, body_part, signals)
 
 
+def _obeyed(world: WorldConfig, traffic: TrafficConfig, scene: Scene) -> bool:
+    """Return whether signals work if the settings leave it open, see `TrafficConfig.signals`."""
+    if traffic.source is Source.LIVE:
+        return bool(signal_poles(scene))
+    recipe = MAPS.get(world.map)
+    kept = recipe.shipped(SIGNALS_TRAFFIC_FILE)
+    # A bare map has the traffic of another, but not its poles.
+    return obeys_signals(recipe.roads(world.seed), traffic, kept) and bool(signal_poles(scene))
+
+
 @lru_cache(maxsize=4)
-def _signal_plans(
-    map_name: str, seed: int, drivers: Drivers, signals: Signals
-) -> tuple[SignalPlan, SignalPlan] | None:
-    """Return what signals and crossings with lights show; None if there are none that work."""
-    graph = MAPS.get(map_name).roads(seed)
-    if signals is Signals.AMBER and not graph.finished:
+def _signal_plan(
+    map_name: str, seed: int, drivers: Drivers, signals: Signals | None
+) -> SignalPlan | None:
+    """Return what signals show; None if there are none that work."""
+    recipe = MAPS.get(map_name)
+    graph = recipe.roads(seed)
+    if signals is not Signals.WORKING and not graph.finished:
         return None
-    net = SumoNet(graph.finished or _signalled(graph, drivers))
-    return signal_plan(net), walk_plan(net)
+    kept = recipe.shipped(SIGNALS_FILE)
+    if kept is not None and seed == 0 and drivers is not Drivers.EVADING:
+        return load_plan(kept)  # so that it needs no SUMO
+    return signal_plan(SumoNet(graph.finished or _signalled(graph, drivers)))
 
 
 def _signalled(graph: RoadGraph, drivers: Drivers) -> bytes:
@@ -144,10 +162,9 @@ def _traffic(
         clock = SampleClock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    plans = None
-    if scene.footways.told:
-        plans = _signal_plans(map_name, seed, config.drivers, config.signals)
-    lights = None if plans is None else plans[1]
+    finished, lights = MAPS.get(map_name).roads(seed).finished, None
+    if scene.footways.told and finished:
+        lights = walk_plan(SumoNet(finished))
     around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(vehicles, crowd, around)
     replay = Replay(motion, targets)

@@ -77,10 +77,11 @@ def extras_of(config: SimConfig) -> tuple[ExtraConfig, ...]:
     """
     if config.extras is not None:
         return config.extras
-    count = MAPS.get(config.world.map).pedestrians
+    recipe = MAPS.get(config.world.map)
     live = config.traffic.source is Source.LIVE
     behaviour = Behaviour.PAVEMENT if live else Behaviour.CROSSING
-    return (ExtraConfig(count=count, behaviour=behaviour),) if count else ()
+    walking = ((recipe.pedestrians, behaviour), (recipe.strollers, Behaviour.VERGE))
+    return tuple(ExtraConfig(count=count, behaviour=way) for count, way in walking if count)
 
 
 def vehicles_of(crowd: Crowd, known: int) -> int:

@@ -192,7 +192,8 @@ def _depends_on(
     """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
     crosses = group.behaviour is Behaviour.CROSSING
-    heeds = crosses or (scene.footways.told and group.behaviour is Behaviour.PAVEMENT)
+    along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE)
+    heeds = crosses or (scene.footways.told and along)
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
     obeys = lights if crosses else None
     moves = group._replace(setting="", chosen_by="")  # which only messages name

@@ -13,6 +13,8 @@ class Behaviour(StrEnum):
     """Round and round through 2 to 4 random points within 30 m, as the original's pedestrians."""
     PAVEMENT = "pavement"
     """Round a block on its pavement, at 1.1 to 1.7 m/s."""
+    VERGE = "verge"
+    """The same along the edges of roads, on grass where there is no pavement."""
     CROSSING = "crossing"
     """As on pavements, and over the painted crossings, when no recorded vehicle comes."""
     STRAIGHT = "straight"

@@ -132,9 +132,11 @@ class TrafficConfig(Config):
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
     """Body colour of every car, RGB 0 to 1; None: sampled for each car."""
-    signals: Signals = Signals.AMBER
-    """What the traffic lights of our own maps show; those of imported towns always work."""
-    lamps: Lamps = Lamps.DARK
+    signals: Signals | None = None
+    """What the traffic lights of our own maps show; those of imported towns always work. None:
+    working with a recording whose drivers obey them, as the usual ones are on maps with traffic
+    lights, and with live traffic there; else amber."""
+    lamps: Lamps = Lamps.WORKING
     """What vehicles signal with brake lamps and indicators."""
     recording: str | None = None
     """Path of a recording to replay; None: a shipped or cached recording that fits."""

@@ -38,6 +38,7 @@ __all__ = [
     "TEST_TRAFFIC",
     "find_file",
     "find_recording",
+    "obeys_signals",
     "record_canonical",
 ]
 
@@ -163,6 +164,31 @@ def find_recording(
 ) -> Recording:
     """Return the recording of `find_file`."""
     return find_file(graph, config, trackers=trackers, duration=duration, shipped=shipped).load()
+
+
+def obeys_signals(
+    graph: RoadGraph, config: TrafficConfig, shipped: Traversable | None = None
+) -> bool:
+    """Return whether the recording of settings that leave signals open is one whose drivers obey
+    them: that which the user names, or the shipped one if all other settings are its.
+
+    Args:
+        graph: Roads to drive on.
+        config: Settings of the traffic.
+        shipped: File of the recording of drivers who do; None: none is shipped.
+
+    Raises:
+        DataFileError: A recording cannot be read.
+    """
+    if config.recording is not None:
+        named = RecordingFile.read(user_path(config.recording))
+        return named.outline().provenance.config.signals is Signals.WORKING
+    if shipped is None or config.demand is not Demand.KEEP_ALIVE:
+        return False
+    wanted = config.model_copy(update={"signals": Signals.WORKING})
+    seed = CANONICAL_SEED if config.seed is None else config.seed
+    origin = RecordingFile.read(shipped).outline().provenance
+    return _fits(origin, graph, resolved(wanted, seed))
 
 
 def record_canonical(

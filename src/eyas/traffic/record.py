@@ -85,18 +85,18 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
     """Return the settings that affect SUMO, with all values filled in; others at their defaults.
 
     Args:
-        config: The user's settings.
+        config: The user's settings. Where they leave signals open, nobody obeys any.
         seed: Seed of SUMO and of the routes.
         trackers: Number of trackers in a world, which determines the least size of a group.
     """
     seen: dict[str, object] = {
-        name: getattr(config, name)
-        for name in ("demand", "drivers", "signals", "max_vehicles", "max_speed")
+        name: getattr(config, name) for name in ("demand", "drivers", "max_vehicles", "max_speed")
     }
     seen |= {
         "vehicle_type": simplest(config.vehicle_type),
         "max_acceleration": config.max_acceleration,
         "max_deceleration": config.max_deceleration,
+        "signals": config.signals or Signals.AMBER,
         "seed": seed,
     }
     if config.demand is Demand.RESPAWN:

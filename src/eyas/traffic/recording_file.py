@@ -211,7 +211,8 @@ def _outline(header: dict[str, Any], source: str) -> Outline:
 
 def _provenance(header: dict[str, Any], source: str) -> Provenance:
     origin = dict(header["provenance"])
-    origin["config"] = validated(TrafficConfig, origin["config"], f"{source}: config")
+    known = {"signals": Signals.AMBER, **origin["config"]}
+    origin["config"] = validated(TrafficConfig, known, f"{source}: config")
     origin["options"] = tuple(origin["options"])
     return Provenance(**origin)
 

@@ -1,16 +1,23 @@
 """The programs of traffic lights in a network of SUMO: what each shows at any time."""
 
+import io
+import zipfile
+import zlib
 from enum import IntEnum
+from importlib.resources.abc import Traversable
+from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import DataFileError
+from eyas.core.files import write_atomic
 from eyas.traffic.net_file import NetConnection, NetProgram, SumoNet
 from eyas.traffic.network import STRAIGHT_FIRST
 from eyas.traffic.record import WARM_UP
 
-__all__ = ["Aspect", "SignalPlan", "signal_plan", "walk_plan"]
+__all__ = ["Aspect", "SignalPlan", "load_plan", "save_plan", "signal_plan", "walk_plan"]
 
 
 class Aspect(IntEnum):
@@ -84,6 +91,31 @@ def signal_plan(net: SumoNet) -> SignalPlan:
         for edge, one in links.items()
     }
     return _plan(shown)
+
+
+def save_plan(path: Path, plan: SignalPlan) -> None:
+    """Write a plan as npz; the same plan gives the same bytes.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **plan._asdict())
+    write_atomic(path, buffer.getvalue())
+
+
+def load_plan(file: Traversable) -> SignalPlan:
+    """Read a plan.
+
+    Raises:
+        DataFileError: The file is truncated or of another kind.
+    """
+    try:
+        with file.open("rb") as opened, np.load(opened) as archive:
+            told = {name: archive[name] for name in SignalPlan._fields}
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise DataFileError(f"{file}: not a readable plan of signals: {error}") from error
+    return SignalPlan(**{**told, "edges": tuple(told["edges"].tolist())})
 
 
 def walk_plan(net: SumoNet) -> SignalPlan:

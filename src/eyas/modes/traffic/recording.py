@@ -12,7 +12,7 @@ from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.progress import sumo_progress
 from eyas.modes.traffic.seeds import RecordingJob, record_all
 from eyas.sim.cover import cover_of
-from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
+from eyas.traffic.config import Demand, Drivers, Mix, Signals, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
@@ -25,15 +25,19 @@ from eyas.traffic.library import (
     TEST_TRAFFIC,
     record_canonical,
 )
-from eyas.traffic.network import build_network
+from eyas.traffic.net_file import SumoNet
+from eyas.traffic.network import build_network, network_xml
 from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import load
+from eyas.traffic.signals import save_plan, signal_plan
 from eyas.traffic.smoothing import Tracks, runs, smooth
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import (
     DENSE_FILE,
     MIXED_FILE,
+    SIGNALS_FILE,
+    SIGNALS_TRAFFIC_FILE,
     TEST_TOWNS,
     TRAFFIC_FILE,
     MapRecipe,
@@ -51,6 +55,9 @@ _CITIES = ("citystreet", "downtown")
 
 _TESTED = ("citystreet", "desert", "downtown", "farmland", "lake", "village")
 """Maps that ship traffic for the protocol `standard`."""
+
+_WITH_SIGNALS = ("citystreet", "desert", "downtown", "village")
+"""Maps with traffic lights, which ship traffic that obeys them."""
 
 _WITH_TOWNS = ("citystreet", "downtown", "village")
 """Maps of which other towns ship, for the protocol `unseen`."""
@@ -145,6 +152,9 @@ def run_canonical(world: WorldConfig) -> None:
     folder = Path(str(recipe.folder))
     for seed in (0, *(TEST_TOWNS if recipe.name in _WITH_TOWNS else ())):
         save_network(folder / network_file(seed), build_network(recipe.roads(seed)))
+    if recipe.name in _WITH_SIGNALS:
+        lit = SumoNet(network_xml(recipe.roads(0), signals=True))
+        save_plan(folder / SIGNALS_FILE, signal_plan(lit))
     for name, town, config, duration in _shipped_recordings(recipe):
         cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, town)
         with sumo_progress() as progress:
@@ -162,6 +172,9 @@ def run_canonical(world: WorldConfig) -> None:
 def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficConfig, float]]:
     """Yield the recordings that ship with a map: file, seed of the map, settings, length [s]."""
     yield TRAFFIC_FILE, 0, TrafficConfig(), STANDARD_DURATION
+    if recipe.name in _WITH_SIGNALS:
+        obeying = TrafficConfig(signals=Signals.WORKING)
+        yield SIGNALS_TRAFFIC_FILE, 0, obeying, STANDARD_DURATION
     for size in RESPAWN_GROUPS:
         groups = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
         yield respawn_file(size), 0, groups, STANDARD_DURATION

@@ -19,6 +19,7 @@ from eyas.settings.legacy.own_target import CUSTOM
 from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
 from eyas.trackers.config import Flight
+from eyas.traffic.config import Lamps, Signals
 
 __all__ = [
     "LIKE_THE_ORIGINAL",
@@ -38,6 +39,7 @@ LIKE_THE_ORIGINAL = updated(
     {
         "video": {"jpeg_quality": 100, "flight": "exact"},
         "tracker": {"flight": Flight.ORIGINAL.value},
+        "traffic": {"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
     },
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""

@@ -26,6 +26,8 @@ __all__ = [
     "NETWORK_FILE",
     "PLAN_FILE",
     "PLAN_SUFFIXES",
+    "SIGNALS_FILE",
+    "SIGNALS_TRAFFIC_FILE",
     "TEST_TOWNS",
     "TRAFFIC_FILE",
     "MapRecipe",
@@ -58,6 +60,12 @@ MIXED_FILE = "traffic-mixed.npz"
 
 DENSE_FILE = "traffic-dense.npz"
 """File in a city's package with the same classes in dense traffic, eight times as many."""
+
+SIGNALS_TRAFFIC_FILE = "traffic-signals.npz"
+"""File in a map's package with the canonical recording of drivers who obey its traffic lights."""
+
+SIGNALS_FILE = "signals.npz"
+"""File in a map's package with what these lights show."""
 
 TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
 """Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
@@ -134,7 +142,10 @@ class MapRecipe:
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0
-    """Number of people on its pavements, unless the settings name others (`extras`)."""
+    """Number of people on its pavements and crossings, unless the settings name others
+    (`extras`)."""
+    strollers: int = 0
+    """Number of people who walk along the edges of its roads, where it has no pavements."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):
@@ -179,10 +190,11 @@ class MapRecipe:
         return path if path is not None and path.is_file() else None
 
     def shipped_traffic(self) -> tuple[Traversable, ...]:
-        """Return the recordings that come with the map's package, `TRAFFIC_FILE` first."""
+        """Return the recordings that come with the map's package, the canonical ones first."""
         files = () if self.folder is None else self.folder.iterdir()
         found = [file for file in files if re.fullmatch(r"traffic.*\.npz", file.name)]
-        return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
+        usual = {TRAFFIC_FILE, SIGNALS_TRAFFIC_FILE}
+        return tuple(sorted(found, key=lambda file: (file.name not in usual, file.name)))
 
     def data_hash(self) -> str | None:
         """Return a digest of a plan in a file, or of what a folder holds beside code of Eyas, roads

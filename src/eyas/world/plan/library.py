@@ -8,12 +8,21 @@ from eyas.world.build.placed import Placed
 from eyas.world.buildings.cottages import Cottage
 from eyas.world.plan.plan import ThingKind
 from eyas.world.plants.shrubs import PLANTS
+from eyas.world.street.clutter import CLUTTER
 from eyas.world.street.furniture import FURNITURE
 from eyas.world.street.parked_cars import CARS
 
-__all__ = ["CAR_KINDS", "FURNITURE_KINDS", "STREET_KINDS", "houses", "plant_kinds"]
+__all__ = [
+    "CAR_KINDS",
+    "CLUTTER_KINDS",
+    "FURNITURE_KINDS",
+    "STREET_KINDS",
+    "houses",
+    "plant_kinds",
+]
 
 CAR_KINDS = tuple(ThingKind(name=name, make="parked car", variant=k) for k, name in enumerate(CARS))
+CLUTTER_KINDS = tuple(ThingKind(name=name) for name in CLUTTER)
 FURNITURE_KINDS = tuple(ThingKind(name=name) for name in FURNITURE)
 STREET_KINDS = (ThingKind(name="traffic light"), ThingKind(name="street lamp"))
 

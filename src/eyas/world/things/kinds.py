@@ -19,7 +19,7 @@ from eyas.world.buildings.skyline import FLOOR
 from eyas.world.plants import cones, forest, trees
 from eyas.world.plants.autumn import in_autumn
 from eyas.world.plants.shrubs import DECIDUOUS, PLANTS
-from eyas.world.street import furniture, gantries, lamps, parked_cars, signals
+from eyas.world.street import clutter, furniture, gantries, lamps, parked_cars, signals
 from eyas.world.things import subway
 from eyas.world.weather import Season
 
@@ -197,6 +197,7 @@ THINGS: Mapping[str, Thing] = {
     ),
     "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
     **{name: Thing(levels=_always(make)) for name, make in furniture.FURNITURE.items()},
+    **{name: Thing(levels=_always(make)) for name, make in clutter.CLUTTER.items()},
     "gantry": Thing(
         levels=lambda kind, rng, season: gantries.gantry_levels(kind.variant),
         kind=_POLE,

@@ -16,7 +16,13 @@ from eyas.world.build.placed import Placed
 from eyas.world.land import ground, outskirts
 from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, CityLayout, lay_out
 from eyas.world.maps.citystreet.roads import NAME
-from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
+from eyas.world.plan.library import (
+    CAR_KINDS,
+    CLUTTER_KINDS,
+    FURNITURE_KINDS,
+    STREET_KINDS,
+    plant_kinds,
+)
 from eyas.world.plan.plan import (
     Building,
     Buildings,
@@ -38,6 +44,7 @@ from eyas.world.plants import gardens, trees
 from eyas.world.roads import overpass
 from eyas.world.roads.pillars import pillars
 from eyas.world.street import furniture
+from eyas.world.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
 from eyas.world.street.furnishing import furniture_along
 from eyas.world.street.lamps import lamps_along, lit_by
 from eyas.world.street.parked_cars import CARS
@@ -94,6 +101,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             *(ThingKind(name=name, make="street tree", variant=k, chance="trees")
               for k, name in enumerate(_TREES)),
             *plant_kinds("beds"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
+            *CLUTTER_KINDS,
         ),
         chances={"trees": state_of(trunks), "beds": state_of(beds)},
         # The largest occluders come first: they are drawn first, so less is drawn twice.
@@ -108,8 +116,33 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             things(furnished, tuple(furniture.FURNITURE)),
             things(green, tuple(kind.name for kind in plant_kinds("beds"))),
             things(cars, CARS),
+            things(_clutter(city, network, [*lamps, *furnished], green, seed)),
         ),
     )  # fmt: skip
+
+
+def _clutter(
+    city: CityLayout,
+    network: RoadNetwork,
+    poles: Sequence[Placed],
+    green: Sequence[Placed],
+    seed: int,
+) -> list[Placed]:
+    """Return the clutter of the streets, clear of what stands there already."""
+    around = shapely.buffer(shapely.points([[one.x, one.y] for one in green]), 1.4, quad_segs=2)
+    thin = shapely.buffer(shapely.points([[one.x, one.y] for one in poles]), 1.3, quad_segs=2)
+    taken = shapely.union_all([_taken(city, network), *thin])
+    paved = shapely.difference(city.pavement, taken)
+    deck = shapely.buffer(overpass.deck_area(city.deck), 1.0)
+    built = shapely.buffer(shapely.union_all([b.outline for b in city.buildings]), 0.3)
+    covered = shapely.union_all([taken, city.pavement, city.lots, built, deck, *around])
+    lawn = shapely.difference(shapely.union_all(city.blocks), covered)
+    for area in (paved, lawn, city.roads):
+        shapely.prepare(area)
+    behind, rng = Ground(lawn, FLOOR_HEIGHT), stream(seed, "citystreet clutter")
+    grounds = {"pavement": Ground(paved, KERB_HEIGHT), "behind": behind}
+    beside = along_kerbs(network, {**grounds, "road": Ground(city.roads, 0.0)}, CITY_KERBS, rng)
+    return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng)]
 
 
 def _buildings(city: CityLayout) -> Buildings:

@@ -13,7 +13,13 @@ from eyas.world.maps.downtown.kerbs import crossing_lamps
 from eyas.world.maps.downtown.layout import EXTENT, FLOOR, DowntownLayout, lay_out
 from eyas.world.maps.downtown.roads import NAME
 from eyas.world.maps.downtown.surfaces import backdrop, surfaces
-from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
+from eyas.world.plan.library import (
+    CAR_KINDS,
+    CLUTTER_KINDS,
+    FURNITURE_KINDS,
+    STREET_KINDS,
+    plant_kinds,
+)
 from eyas.world.plan.plan import (
     Building,
     Buildings,
@@ -29,6 +35,7 @@ from eyas.world.plan.plan import (
 from eyas.world.plants import gardens
 from eyas.world.roads.areas import joints, streets
 from eyas.world.street import lamps
+from eyas.world.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
 from eyas.world.street.furnishing import furniture_along
 from eyas.world.street.furniture import FURNITURE
 from eyas.world.street.parked_cars import CARS
@@ -81,7 +88,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             *(ThingKind(name=name, make="street tree", variant=k, width=width, chance="trees")
               for names, width in ((_GREAT, _BROADER), (_SLIM, _SLIMMER))
               for k, name in enumerate(names)),
-            *plant_kinds("trees"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
+            *plant_kinds("trees"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS, *CLUTTER_KINDS,
             ThingKind(name="subway entrance"), ThingKind(name=_TAXI), ThingKind(name="fountain"),
         ),
         chances={"trees": Chance(stream="downtown tree shapes")},
@@ -93,7 +100,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             backdrop(city.grid, EXTENT, built, stream(seed, "downtown backdrop")),
             *surfaces(city, seed),
             things(_trees(city, stream(seed, "downtown trees")), (*_GREAT, *_SLIM, *_SHRUBS)),
-            *_along_streets(city, network, stream(seed, "downtown furniture")),
+            *_along_streets(city, network, seed),
             things(_parked(city, stream(seed, "downtown parked cars")), (*CARS, _TAXI)),
             things(_in_park(city)),
         ),
@@ -116,10 +123,9 @@ def _trees(city: DowntownLayout, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _along_streets(
-    city: DowntownLayout, network: RoadNetwork, rng: np.random.Generator
-) -> list[Things]:
-    """Return signals, lamps, entrances of the subway and furniture."""
+def _along_streets(city: DowntownLayout, network: RoadNetwork, seed: int) -> list[Things]:
+    """Return signals, lamps, entrances of the subway, furniture and clutter."""
+    rng = stream(seed, "downtown furniture")
     lit = crossing_lamps(network, lamps.BEYOND_KERB)
     lights = [Placed.at("street lamp", foot, KERB_HEIGHT, turn) for foot, turn in lit]
     feet = np.array([foot for foot, _ in lit])
@@ -131,12 +137,35 @@ def _along_streets(
     room = [shapely.Point(one.x, one.y).buffer(0.5 * LONG + 0.3) for one in entrances]
     taken = shapely.union(taken, shapely.union_all(room))
     furnished = furniture_along(network, city.pavement, taken, KERB_HEIGHT, rng)
+    clutter = _clutter(city, network, taken, furnished, stream(seed, "downtown clutter"))
     return [
         things(signals_along(network)),
         things(lights),
         things(entrances, ("subway entrance",)),
         things(furnished, tuple(FURNITURE)),
+        things(clutter),
     ]
+
+
+def _clutter(
+    city: DowntownLayout,
+    network: RoadNetwork,
+    taken: shapely.Geometry,
+    furnished: list[Placed],
+    rng: np.random.Generator,
+) -> list[Placed]:
+    """Return the clutter of the streets, clear of what stands there already."""
+    thin = shapely.buffer(shapely.points([[one.x, one.y] for one in furnished]), 1.3, quad_segs=2)
+    paved = shapely.difference(city.pavement, shapely.union_all([taken, *thin]))
+    ways = shapely.union(city.roads, city.kerbs.bays)
+    back = shapely.difference(paved, shapely.buffer(ways, 2.45))
+    asphalt = shapely.difference(city.roads, shapely.buffer(city.kerbs.bays, 0.3))
+    for area in (paved, back, asphalt):
+        shapely.prepare(area)
+    behind = Ground(back, KERB_HEIGHT)
+    grounds = {"road": Ground(asphalt, 0.0), "pavement": Ground(paved, KERB_HEIGHT)}
+    beside = along_kerbs(network, {**grounds, "behind": behind}, CITY_KERBS, rng)
+    return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng)]
 
 
 def _entrances(

@@ -60,6 +60,7 @@ FARMLAND = MapRecipe(
     seasons=True,
     package=__name__,
     original=Original(road=4.43),
+    strollers=12,
 )
 
 FARMLAND_BARE = replace(

@@ -73,6 +73,7 @@ VILLAGE = MapRecipe(
     weather=_weather,
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
+    strollers=24,
 )
 
 VILLAGE_BARE = replace(

@@ -20,7 +20,8 @@ from eyas.world.land.facets import Relief, heights_of
 from eyas.world.land.rising import relief_of
 from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.world.maps.village.roads import NAME
-from eyas.world.plan.library import STREET_KINDS, houses, plant_kinds
+from eyas.world.maps.village.yards import yard_things
+from eyas.world.plan.library import CLUTTER_KINDS, STREET_KINDS, houses, plant_kinds
 from eyas.world.plan.plan import (
     Chance,
     Far,
@@ -39,6 +40,7 @@ from eyas.world.plan.plan import (
 from eyas.world.plants import gardens
 from eyas.world.plants.cones import VARIANTS
 from eyas.world.street import gantries
+from eyas.world.street.dressing import VILLAGE_KERBS, Ground, along_kerbs
 from eyas.world.street.lamps import lamps_along
 from eyas.world.street.signals import signal_places, signals_along
 
@@ -100,7 +102,9 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     plants = _plants(valley, rising, rng)
     woods = _woods(valley, relief, stream(seed, "village woods"))
     signs = _signs(valley, stream(seed, "village signs"))
-    lamps, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
+    count, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
+    lamps = lamps_along(network, count, taken, stream(seed, "village lamps"))
+    clutter = _clutter(valley, network, rising, [*plants, *lamps], seed)
     tunnels = Tunnels(
         items=tuple(valley.tunnels),
         outside=GRASS,
@@ -118,7 +122,14 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         name=NAME,
         seed=seed,
         size=FLOOR,
-        library=(*kinds, *cones, *plant_kinds("plants"), *STREET_KINDS, *gantry_kinds),
+        library=(
+            *kinds,
+            *cones,
+            *plant_kinds("plants"),
+            *STREET_KINDS,
+            *gantry_kinds,
+            *CLUTTER_KINDS,
+        ),
         chances={"plants": state_of(rng)},
         layers=(
             hills,
@@ -128,7 +139,8 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             things([*plants, *woods], (*_CONES, *(kind.name for kind in plant_kinds("plants")))),
             things(signals_along(network)),
             things(signs),
-            things(lamps_along(network, lamps, taken, stream(seed, "village lamps"))),
+            things(lamps),
+            things(clutter),
         ),
         horizon=VALLEY,
     )
@@ -258,6 +270,28 @@ def _signs(valley: VillageLayout, rng: np.random.Generator) -> list[Placed]:
         kind = int((index + rng.integers(2)) % gantries.KINDS)
         made.append(Placed.at(f"gantry {kind}", place, 0.0, turn))
     return made
+
+
+def _clutter(
+    valley: VillageLayout,
+    network: RoadNetwork,
+    rising: shapely.Geometry,
+    standing: list[Placed],
+    seed: int,
+) -> list[Placed]:
+    """Return what lies about along roads and about houses, clear of what stands there already."""
+    thin = shapely.buffer(shapely.points([[one.x, one.y] for one in standing]), 1.4, quad_segs=2)
+    steep = shapely.buffer(shapely.union(rising, valley.covered), 1.0)
+    taken = shapely.union_all([_taken(valley, network), steep, *thin])
+    verge = shapely.difference(shapely.buffer(valley.roads, 1.4, quad_segs=4), taken)
+    open_road = shapely.difference(valley.roads, shapely.buffer(valley.covered, 1.0))
+    for area in (verge, open_road):
+        shapely.prepare(area)
+    rng = stream(seed, "village clutter")
+    grounds = {"road": Ground(open_road, 0.0), "verge": Ground(verge, FLOOR_HEIGHT)}
+    beside = along_kerbs(network, grounds, VILLAGE_KERBS, rng)
+    free = shapely.difference(shapely.union_all(valley.blocks), taken)
+    return [*beside, *yard_things(valley.cottages, valley.roads, free, rng)]
 
 
 def _taken(valley: VillageLayout, network: RoadNetwork) -> shapely.Geometry:
