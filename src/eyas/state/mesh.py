@@ -66,6 +66,8 @@ class Surface(IntEnum):
     """Heath beside water; u is the distance from the water."""
     DESERT_DRIFT = 22
     """Asphalt under sand that grows thinner; u is the distance from where it hides the road."""
+    HILLSIDE_VERGE = 23
+    """Gravel beside a road that grass grows into; u is the distance from the road."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,15 @@ from eyas.render.kernels.surface.signalling import signalled
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
-from eyas.render.kernels.surface.wild_ground import DESERT, HEATH, HILLSIDE, WILD_EDGES, wild
+from eyas.render.kernels.surface.wild_ground import (
+    DESERT,
+    GREEN_SHORE,
+    HEATH,
+    HEATH_SHORE,
+    HILLSIDE,
+    WILD_EDGES,
+    wild,
+)
 from eyas.render.kernels.wind import shimmer
 from eyas.state.mesh import MARGIN, Surface
 
@@ -224,10 +232,15 @@ def shade_point(
         blue = select(untended, grown[2], blue)
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        bare_r, bare_g, bare_b = red, green, blue
         red, green, blue = snowed(
             (red, green, blue), light, air.snow, at.bed, at.crown_middle, point, at.own,
             normal[2], footprint,
         )  # fmt: skip
+        shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
+        if any_of(shore):  # it melts where the water wets it
+            melted = select(shore, lesser(greater(f4(1.5) - at.u, zero), one), zero)
+            red, green, blue = blended((red, green, blue), (bare_r, bare_g, bare_b), melted)
     if air.litter > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = littered(

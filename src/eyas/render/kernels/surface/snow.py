@@ -164,12 +164,14 @@ def _lying(
         fallen = (patch + f4(0.5) * (fine - half) + (depth - f4(0.76))) * f4(4.0) + much
         lies = select(partly, hollow * _clip(fallen), lies)
     # Stubble, tufts and stones stick out; from what is paved or warm, it has melted here and there.
-    ground = bed == POROUS
-    out = f4(4.0) * (f4(0.6) * fine + f4(0.4) * patch - f4(0.64))
+    ground, stalk = bed == POROUS, like(rise, half)
+    if any_of(ground):
+        stalk = seen_noise(x + f4(0.8) * y, y - f4(0.8) * x, f4(11.0), footprint)
+    out = f4(5.0) * (f4(0.3) * fine + f4(0.3) * patch + f4(0.4) * stalk - f4(0.62))
     gone = f4(5.0) * (f4(0.24) - f4(0.75) * patch - f4(0.25) * fine)
     lies *= one - select(ground, f4(0.6) * _clip(out), f4(0.7) * _clip(gone))
     share = lies * (f4(0.12) + f4(0.85) * depth)
-    bright = f4(0.865) + f4(0.1) * drift + f4(0.13) * (patch - half) + f4(0.07) * (fine - half)
+    bright = f4(0.865) + f4(0.1) * drift + f4(0.13) * (patch - half) + f4(0.06) * (fine - half)
     return _mixed(colour, share, bright)
 
 

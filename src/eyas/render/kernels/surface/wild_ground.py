@@ -13,7 +13,7 @@ Colour = tuple[float, float, float]
 HILLSIDE, HEATH = i4(int(Surface.HILLSIDE)), i4(int(Surface.HEATH))
 DESERT, TRACK = i4(int(Surface.DESERT)), i4(int(Surface.DESERT_TRACK))
 CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
-DRIFT = i4(int(Surface.DESERT_DRIFT))
+DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
 
 WILD_EDGES = i4(int(Surface.DESERT_TRACK))
@@ -60,7 +60,7 @@ def wild(surface: int, colour: Colour, along: float, point: Colour, rise: float,
         footprint: Size of a pixel on the surface [m].
     """
     result = colour
-    hilly = (surface == HILLSIDE) | (surface == PATH) | (surface == GREEN_SHORE)
+    hilly = (surface == HILLSIDE) | (surface == PATH) | (surface == GREEN_SHORE) | (surface == VERGE)
     heathy = (surface == HEATH) | (surface == HEATH_SHORE)
     sandy = (surface == DESERT) | (surface == TRACK) | (surface == CAPPED) | (surface == DRIFT)
     if any_of(hilly):
@@ -83,6 +83,7 @@ def _edged(
     wide = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(0.21), footprint) - half
     clump = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint) - half
     fine = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint) - half
+    fine += f4(0.8) * (seen_noise(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), footprint) - half)
     trodden = (surface == TRACK) | (surface == PATH)
     if any_of(trodden):
         ragged = along + f4(0.34) * clump + f4(0.3) * fine
@@ -99,6 +100,13 @@ def _edged(
         share = _clip(f4(0.62) * (ragged - f4(0.5)))
         light = f4(0.095) + f4(0.04) * fine
         result = _where(strewn, _toward(result, (light, light, f4(0.96) * light), share), result)
+    verge = surface == VERGE
+    if any_of(verge):
+        ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
+        light = f4(0.9) + f4(0.8) * fine + f4(0.2) * clump
+        gravel = (f4(0.255) * light, f4(0.225) * light, f4(0.180) * light)
+        share = f4(0.95) * _clip(f4(3.0) * (f4(1.0) - ragged))
+        result = _where(verge, _toward(result, gravel, share), result)
     shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
     if any_of(shore):
         result = _where(shore, _shore(colour, along, (wide, clump, fine)), result)
@@ -193,7 +201,8 @@ def hillside(colour: Colour, point: Colour, rise: float, footprint: float) -> Co
     wide = noise(f4(0.021) * x + f4(0.012) * y, f4(0.021) * y - f4(0.012) * x)
     tuft = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.13), footprint)
     dry = _clip(f4(1.5) * (wide - f4(0.42)) + f4(0.9) * (tuft - half))
-    bright = f4(0.86) + f4(0.28) * tuft
+    blade = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), footprint)
+    bright = f4(0.61) + f4(0.28) * tuft + f4(0.5) * blade
     red = colour[0] * bright * (one + f4(0.62) * dry)
     green = colour[1] * bright * (one + f4(0.06) * dry)
     blue = colour[2] * bright * (one - f4(0.10) * dry)

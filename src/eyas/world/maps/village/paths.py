@@ -16,7 +16,7 @@ __all__ = ["GRASS_KINDS", "STONE_KINDS", "grown", "trodden"]
 GRASS_KINDS = ("green tuft 0", "green tuft 1", "dry tuft 0", "dry tuft 1")
 STONE_KINDS = ("stones 2", "stones 3", "boulder 2", "boulder 3")
 
-_PATHS, _STEPS, _STEP = 26, (6, 16), 6.0
+_PATHS, _STEPS, _STEP = 20, (6, 16), 6.0
 """Number of paths, of their pieces, and the length of a piece [m]."""
 _WIDTHS = (0.55, 0.8)
 """Half the width of a path [m]."""

@@ -51,6 +51,7 @@ GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
 _VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
 _SHORE = replace(GRASS, surface=Surface.HILLSIDE_SHORE)
 _BANK = material("soil", (0.60, 0.56, 0.50))
+_SHOULDER = replace(GRASS, surface=Surface.HILLSIDE_VERGE)
 _PATH = replace(GRASS, surface=Surface.HILLSIDE_PATH)
 _ROCK = material("stone", (0.50, 0.52, 0.47))
 """Inside of the tunnels."""
@@ -190,7 +191,7 @@ def _ground(
         Flat(area=shapely.difference(lawn, beaten), cover=GRASS),
         Flat(area=beaten, cover=_PATH),
         Flat(area=shapely.intersection(verge, passages), cover=without_snow(_VERGE)),
-        Flat(area=shapely.difference(verge, passages), cover=_VERGE),
+        Flat(area=shapely.difference(verge, passages), cover=_SHOULDER, beside=roads),
         Flat(area=shore, cover=_SHORE, beside=lake, sides=_BANK, foot=FLOOR_HEIGHT - 0.3),
         Far(rule="plain", covers=(GRASS,), beyond=(2 * HALF, 2 * HALF)),
     )
