@@ -140,6 +140,9 @@ class _Pool:
     ) -> tuple[int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
+        if len(keep) == 0:  # the level of detail of what is too small to be seen
+            first = CLUSTER * self._cluster_count
+            return first, first, self._bounds_count
         lookup, leafy = self._looked_up(mesh.palette)
         size = np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep]
         order = cluster_order(

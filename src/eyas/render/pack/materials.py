@@ -17,7 +17,8 @@ __all__ = ["MaterialTable", "crown_middles", "material_table", "snow_beds"]
 _POROUS = {"lawn", "lawn_mown", "soil", "sand", "dry_leaves"}
 """Textures of ground into which rain soaks; crops let none be seen."""
 
-_BARE = {Surface.WATER, Surface.LAMP, Surface.SIGNAL, *range(Surface.TAIL_LAMP, len(Surface))}
+_SIGNALS = range(Surface.TAIL_LAMP, Surface.INDICATOR_RIGHT + 1)
+_BARE = {Surface.WATER, Surface.LAMP, Surface.SIGNAL, *_SIGNALS}
 """Surfaces on which snow melts."""
 
 _MIDDLE = 0.3

@@ -122,6 +122,7 @@ def surface_of(
     kind: NDArray[np.integer],
     *,
     smooth: bool = False,
+    along: Points | None = None,
 ) -> Mesh:
     """Return the surface of a relief.
 
@@ -131,6 +132,7 @@ def surface_of(
         cover: Materials.
         kind: Index of the material of each triangle, shape (T,).
         smooth: Whether light changes smoothly over the edges of triangles; otherwise each is flat.
+        along: u of each point where the second cover has a distance there, shape (V,) [m].
     """
     normals = _normals(ground, smooth=smooth)
     made = []
@@ -140,6 +142,8 @@ def surface_of(
             continue
         corners = ground.corners[some].reshape(-1, 3)
         uvs = corners[:, :2] / TEXTURES[material.texture]
+        if along is not None and index == 1:
+            uvs = np.column_stack([along[ground.triangles[some]].ravel(), np.zeros(len(corners))])
         triangles = np.arange(len(corners)).reshape(-1, 3)
         placed = corners + np.array([0.0, 0.0, floor])
         made.append(of_one_material(placed, normals[some].reshape(-1, 3), uvs, triangles, material))

@@ -23,10 +23,10 @@ from eyas.world.build.materials import TEXTURES
 from eyas.world.build.placed import Placed
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.buildings import facades, parts, rooftops
-from eyas.world.land import outskirts, plain
+from eyas.world.land import edges, outskirts, plain
 from eyas.world.land.facets import surface_of, terrain_of
 from eyas.world.land.ground import asphalt
-from eyas.world.land.rising import kinds_of, relief_of, snowed
+from eyas.world.land.rising import kinds_of, relief_of, snow_over
 from eyas.world.plan import plan as p
 from eyas.world.roads import markings, overpass, painting, pillars, tunnels
 from eyas.world.roads.areas import kerbstones, polygons_of, skirt, surface
@@ -42,6 +42,8 @@ _NEAR = 80.0
 """Reach of the ground that is cut into small squares beside streets [m]."""
 _SLOPE = 1.4
 """Width of the slope around a heap [m]."""
+_SNOW_FRINGE = 12.0
+"""Depth below the line where snow begins down to which there are patches of it [m]."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height on which something else stands carry nothing: no camera sees it [m]."""
 _LAMP_HEIGHTS = (6.75, 6.6)
@@ -249,7 +251,9 @@ def _ground(work: _Work, layer: p.GroundCover) -> None:
 def _flat(work: _Work, piece: p.Flat) -> Mesh:
     cover = work.look(piece)
     tile = TEXTURES[cover.texture]
-    if piece.cells == "wide":
+    if cover.surface > Surface.DESERT:
+        top = edges.edged(piece.area, piece.beside, cover, piece.z)
+    elif piece.cells == "wide":
         top = plain.plain(piece.area, work.near, cover, piece.z)
     elif piece.cells == "whole":
         top = flat_polygons([piece.area], piece.z, cover, tile, piece.turn)
@@ -327,13 +331,14 @@ def _tunnels(work: _Work, layer: p.Tunnels) -> None:
 
 def _relief(work: _Work, layer: p.Hills) -> None:
     seed, ground = work.plan.seed, relief_of(layer, work.plan.seed)
-    kinds: NDArray[np.intp]
+    kinds, over = np.zeros(len(ground.triangles), np.intp), None
     if layer.shades is not None:
         kinds = kinds_of(ground, len(layer.covers), layer.shades.generator(seed))
-    else:
-        white = layer.white if work.season is Season.WINTER else ()
-        ground, kinds = snowed(ground, layer.mounds, set(white))
-    mesh = surface_of(ground, FLOOR_HEIGHT, layer.covers, kinds, smooth=layer.smooth)
+    elif layer.white and work.season is Season.WINTER:
+        over = snow_over(ground, layer.mounds, set(layer.white))
+        kinds = (over[ground.triangles].max(axis=1) > -_SNOW_FRINGE).astype(np.intp)
+        over = 32.0 + np.clip(over, -_SNOW_FRINGE, 24.0)
+    mesh = surface_of(ground, FLOOR_HEIGHT, layer.covers, kinds, smooth=layer.smooth, along=over)
     work.builder.add(ObjectClass.GROUND, mesh)
 
 

@@ -19,6 +19,7 @@ __all__ = [
     "STREET_KINDS",
     "houses",
     "plant_kinds",
+    "wild_kinds",
 ]
 
 CAR_KINDS = tuple(ThingKind(name=name, make="parked car", variant=k) for k, name in enumerate(CARS))
@@ -30,6 +31,21 @@ STREET_KINDS = (ThingKind(name="traffic light"), ThingKind(name="street lamp"))
 def plant_kinds(chance: str) -> tuple[ThingKind, ...]:
     """Return borders, hedges and islands, whose shapes share a chance."""
     return tuple(ThingKind(name=name, chance=chance) for name in PLANTS)
+
+
+def wild_kinds(*makes: str, shapes: int = 2, looks: Sequence[int] = ()) -> tuple[ThingKind, ...]:
+    """Return stones or plants that nobody tends, in some different shapes.
+
+    Args:
+        makes: What they are, rows of `eyas.world.things.kinds.THINGS`.
+        shapes: Number of shapes of each.
+        looks: Looks of each, in place of one look in that many shapes.
+    """
+    return tuple(
+        ThingKind(name=f"{make} {k}", make=make, variant=k)
+        for make in makes
+        for k in (looks or range(shapes))
+    )
 
 
 def houses(

@@ -326,6 +326,8 @@ class Flat:
     """What covers its sides; None: it has none."""
     foot: float = FLOOR_HEIGHT
     """z down to which the sides reach [m]."""
+    beside: Area | None = None
+    """From what a cover that changes with a distance measures it; None: from its own edge [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -439,7 +441,7 @@ class Hills:
     chance: Chance = _CORNERS
     """Of the corners."""
     covers: Annotated[tuple[Cover, ...], Len(1)] = (_LAWN,)
-    """Covers from the foot up; under snow: ground, thin snow, snow."""
+    """Covers from the foot up; under snow: ground, and ground with snow."""
     shades: Chance | None = None
     """Of the choice of covers by height; None: all is of the first, with snow on it in winter."""
     white: tuple[Natural, ...] = ()

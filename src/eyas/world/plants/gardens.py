@@ -8,11 +8,20 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.world.build.apart import Apart
-from eyas.world.build.millimetres import length, unit
+from eyas.world.build.millimetres import length, rounded, unit
 from eyas.world.build.placed import Placed
 from eyas.world.plants.shrubs import PIECE
 
-__all__ = ["BORDERS", "borders", "clustered", "paved_yards", "row", "scattered", "small_trees"]
+__all__ = [
+    "BORDERS",
+    "borders",
+    "clustered",
+    "paved_yards",
+    "row",
+    "scattered",
+    "small_trees",
+    "sown",
+]
 
 _APRON = 0.9
 """Width of the paving at the foot of walls [m]."""
@@ -168,6 +177,30 @@ def scattered(
         for x, y in points[shapely.contains_xy(part, points)].tolist():
             chosen.add(x, y)
     return np.array(chosen.points, np.float64).reshape(-1, 2)
+
+
+def sown(
+    spots: Points,
+    kinds: Sequence[str],
+    sizes: tuple[float, float],
+    z: float | Points,
+    rng: np.random.Generator,
+) -> list[Placed]:
+    """Return a copy of one of some kinds at each place, turned at random.
+
+    Args:
+        spots: Places [m], shape (K, 2).
+        kinds: Kinds; one is chosen for each place.
+        sizes: Least and largest scale.
+        z: Height of their feet [m], one or shape (K,).
+        rng: Random numbers of the plants.
+    """
+    spots, feet = rounded(spots), rounded(np.broadcast_to(np.asarray(z, np.float64), len(spots)))
+    which = rng.integers(len(kinds), size=len(spots)).tolist()
+    turns = np.round(rng.uniform(0.0, 2 * np.pi, len(spots)), 3).tolist()
+    scales = np.round(rng.uniform(*sizes, len(spots)), 3).tolist()
+    rows = zip(spots.tolist(), feet.tolist(), which, turns, scales, strict=True)
+    return [Placed(kinds[k], x, y, foot, turn, size) for (x, y), foot, k, turn, size in rows]
 
 
 def clustered(

@@ -16,11 +16,13 @@ from eyas.world.build.placed import Placed
 from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import cottages
 from eyas.world.buildings.skyline import FLOOR
+from eyas.world.land import stones
 from eyas.world.plants import cones, forest, trees
 from eyas.world.plants.autumn import in_autumn
 from eyas.world.plants.shrubs import DECIDUOUS, PLANTS
+from eyas.world.plants.wild import WILD
 from eyas.world.street import clutter, furniture, gantries, lamps, parked_cars, signals
-from eyas.world.things import subway
+from eyas.world.things import jetties, subway
 from eyas.world.weather import Season
 
 if TYPE_CHECKING:
@@ -167,6 +169,10 @@ def _always(
     return lambda kind, rng, season: make()
 
 
+def _wild(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
+    return lambda kind, rng, season: WILD[name](rng)
+
+
 def _plant(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
     def levels(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
         made = PLANTS[name](rng)
@@ -176,7 +182,7 @@ def _plant(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Le
     return levels
 
 
-_TREE, _POLE = ObjectClass.TREE, ObjectClass.POLE
+_TREE, _POLE, _GROUND = ObjectClass.TREE, ObjectClass.POLE, ObjectClass.GROUND
 _LIGHT = (lamps.LIGHT[0], lamps.LIGHT[2])
 
 THINGS: Mapping[str, Thing] = {
@@ -190,6 +196,15 @@ THINGS: Mapping[str, Thing] = {
     "stand": Thing(levels=_stand, kind=_TREE, trees=forest.TREES),
     **{name: Thing(levels=_plant(name), kind=_TREE) for name in PLANTS if name != "island"},
     "island": Thing(levels=_plant("island")),
+    **{name: Thing(levels=_wild(name), kind=_GROUND) for name in WILD},
+    "stones": Thing(
+        levels=lambda kind, rng, season: stones.stone_levels(rng, kind.variant), kind=_GROUND
+    ),
+    "boulder": Thing(
+        levels=lambda kind, rng, season: stones.boulder_levels(rng, kind.variant), kind=_GROUND
+    ),
+    "jetty": Thing(levels=_always(jetties.jetty_levels)),
+    "boat": Thing(levels=lambda kind, rng, season: jetties.boat_levels(kind.variant)),
     "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
     "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
     "dark traffic light": Thing(

@@ -1,17 +1,23 @@
 """The air between the camera and things."""
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import lesser
-from eyas.render.kernels.bundles import Illumination
+from eyas.lanes.vector import greater, lesser
+from eyas.render.kernels.bundles import Illumination, Light
+from eyas.render.kernels.chance import noise
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["HAZE_END", "fog_share", "hidden_at"]
+__all__ = ["HAZE_END", "fog_share", "hidden_at", "land_fog"]
+
+Colour = tuple[float, float, float]
 
 HAZE_END = 4.0
 """Distance beyond which land gets no hazier, and at which the hills begin [km]. So the foot of
 the hills matches the end of the land, however high the viewer is."""
 
 _FARTHEST = f4(1000.0 * HAZE_END)
+
+_BANKS = f4(1.0 / 1200.0)
+"""Density of the air from which it is fog, in banks [1/m]."""
 
 
 @kernel(inline=True)
@@ -32,3 +38,34 @@ def hidden_at(lit: Illumination, distance: float) -> float:
 def fog_share(lit: Illumination, distance: float) -> float:
     """Return how much of what lies at a distance [m] the air hides, 0 to 1; see `HAZE_END`."""
     return hidden_at(lit, lesser(distance, _FARTHEST))
+
+
+@kernel(inline=True)
+def land_fog(light: Light, lit: Illumination, eye: Colour, point: Colour, away: float) -> float:
+    """Return how much of what lies at a point the air hides, 0 to 1; fog lies in banks.
+
+    It is thicker low down and in banks of some ten metres, and on average as thick as without: the
+    mean of the noise is a half, and that of the heights is about 7 m. Seen over a long way, banks
+    and gaps even out.
+
+    Args:
+        light: Says where the ground is.
+        lit: Light and air.
+        eye: Optical centre [m].
+        point: The point [m].
+        away: Distance between them [m].
+    """
+    away = lesser(away, _FARTHEST)
+    if lit.fog_density < _BANKS:
+        return hidden_at(lit, away)
+    one, third = f4(1.0), f4(0.33)
+    x, y = point[0] - eye[0], point[1] - eye[1]
+    near_x, near_y = eye[0] + third * x, eye[1] + third * y
+    far_x, far_y = point[0] - f4(0.15) * x, point[1] - f4(0.15) * y
+    cell, turn = f4(0.034), f4(0.013)
+    bank = noise(cell * near_x + turn * near_y, cell * near_y - turn * near_x)
+    bank += noise(cell * far_x + turn * far_y, cell * far_y - turn * far_x)
+    uneven = f4(0.85) * (bank - one) / (one + f4(0.006) * away)
+    high = f4(0.5) * (eye[2] + point[2]) - light.ambient_frame.ground
+    low = greater(lesser(f4(1.14) - f4(0.02) * high, f4(1.14)), f4(0.8))
+    return hidden_at(lit, away * low * (one + uneven))

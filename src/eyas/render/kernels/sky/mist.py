@@ -6,7 +6,7 @@ from eyas.render.kernels.bundles import Illumination, Light
 from eyas.render.kernels.chance import noise
 from eyas.render.kernels.light.land import land_at
 from eyas.render.kernels.scalars import f4
-from eyas.render.kernels.sky.fog import fog_share
+from eyas.render.kernels.sky.fog import land_fog
 
 __all__ = ["aired", "glare", "mist_share", "veil"]
 
@@ -104,7 +104,7 @@ def aired(
         way: Unit vector from the eye.
         away: Distance [m].
     """
-    sun, fog, clear = lit.sun_colour, lit.fog, f4(1.0) - fog_share(lit, away)
+    sun, fog, clear = lit.sun_colour, lit.fog, f4(1.0) - land_fog(light, lit, eye, point, away)
     if lit.air.mist > f4(0.0):
         clear *= f4(1.0) - mist_share(light, lit, eye, point, away)
     shine = glare(lit, way) * (f4(1.0) - clear)

@@ -10,7 +10,7 @@ from eyas.render.kernels.light.ambient import openness
 from eyas.render.kernels.light.lamps import night_light, window_light
 from eyas.render.kernels.light.sunlight import sunlight
 from eyas.render.kernels.scalars import f4, i4, u4
-from eyas.render.kernels.sky.fog import fog_share
+from eyas.render.kernels.sky.fog import land_fog
 from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
@@ -19,7 +19,15 @@ from eyas.render.kernels.surface.signalling import signalled
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
-from eyas.render.kernels.surface.wild_ground import heath, hillside
+from eyas.render.kernels.surface.wild_ground import (
+    DESERT,
+    GREEN_SHORE,
+    HEATH,
+    HEATH_SHORE,
+    HILLSIDE,
+    WILD_EDGES,
+    wild,
+)
 from eyas.render.kernels.wind import shimmer
 from eyas.state.mesh import MARGIN, Surface
 
@@ -33,15 +41,13 @@ FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
 MARKING = i4(int(Surface.MARKING))
-HILLSIDE = i4(int(Surface.HILLSIDE))
-HEATH = i4(int(Surface.HEATH))
 
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
 rows of pixels, and a blend would cost a tenth of the shading to hide what is hardly seen."""
 
 TILES = f4(1.0 / 8.0)
-"""Repeats of the texture in a metre, see `Surface.MARKING`."""
+"""Repeats of the texture in a metre where u is something else, see `Surface`."""
 
 _WIDEST = f4(2.0 * MARGIN)
 
@@ -183,9 +189,10 @@ def shade_point(
             )
 
     marked, u, v, density = surface == MARKING, at.u, at.v, at.density
-    if any_of(marked):
-        u, v = select(marked, TILES * point[0], u), select(marked, TILES * point[1], v)
-        density = select(marked, like(density, TILES), density)
+    level = marked | (surface >= WILD_EDGES)
+    if any_of(level):
+        u, v = select(level, TILES * point[0], u), select(level, TILES * point[1], v)
+        density = select(level, like(density, TILES), density)
     span = f4(256.0) * density * distance * pixel
     detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
     blend = pixel < SHARP
@@ -216,26 +223,24 @@ def shade_point(
         red = select(wet, at.tint[0] * bright, red)
         green = select(wet, at.tint[1] * bright, green)
         blue = select(wet, at.tint[2] * bright, blue)
-    hilly, heathy = surface == HILLSIDE, surface == HEATH
-    if any_of(hilly | heathy):
+    untended = (surface == HILLSIDE) | (surface == HEATH) | (surface >= DESERT)
+    if any_of(untended):
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
-        soil = (red, green, blue)
-        if any_of(hilly):
-            wild_r, wild_g, wild_b = hillside(soil, point, normal[2], footprint)
-            red = select(hilly, wild_r, red)
-            green = select(hilly, wild_g, green)
-            blue = select(hilly, wild_b, blue)
-        if any_of(heathy):
-            wild_r, wild_g, wild_b = heath(soil, point, footprint)
-            red = select(heathy, wild_r, red)
-            green = select(heathy, wild_g, green)
-            blue = select(heathy, wild_b, blue)
+        grown = wild(surface, (red, green, blue), at.u, point, normal[2], footprint)
+        red = select(untended, grown[0], red)
+        green = select(untended, grown[1], green)
+        blue = select(untended, grown[2], blue)
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
+        bare_r, bare_g, bare_b = red, green, blue
         red, green, blue = snowed(
             (red, green, blue), light, air.snow, at.bed, at.crown_middle, point, at.own,
             normal[2], footprint,
         )  # fmt: skip
+        shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
+        if any_of(shore):  # it melts where the water wets it
+            melted = select(shore, lesser(greater(f4(1.5) - at.u, zero), one), zero)
+            red, green, blue = blended((red, green, blue), (bare_r, bare_g, bare_b), melted)
     if air.litter > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = littered(
@@ -305,5 +310,6 @@ def shade_point(
         colour = red, green, blue
         red, green, blue = aired(light, lit, colour, eye, point, way, distance * stretch)
     elif lit.fog_density > zero:
-        red, green, blue = blended((red, green, blue), lit.fog, fog_share(lit, distance * stretch))
+        hidden = land_fog(light, lit, eye, point, distance * stretch)
+        red, green, blue = blended((red, green, blue), lit.fog, hidden)
     return red, green, blue

@@ -41,7 +41,7 @@ class Bed(IntEnum):
 
 
 BARE, DRIVEN = i4(int(Bed.BARE)), i4(int(Bed.DRIVEN))
-LEAVES, VEHICLE = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE))
+LEAVES, VEHICLE, POROUS = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE)), i4(int(Bed.POROUS))
 
 
 @kernel(inline=True)
@@ -145,25 +145,40 @@ def _where(mask: int, a: Colour, b: Colour) -> Colour:
 
 @kernel(inline=True)
 def _lying(
-    colour: Colour, depth: float, point: Colour, rise: float, foot: float, footprint: float
+    colour: Colour,
+    depth: float,
+    bed: int,
+    point: Colour,
+    rise: float,
+    foot: float,
+    footprint: float,
 ) -> Colour:
     """Return the colour of a surface on which snow lies as it fell, in low, wide drifts."""
-    x, y = point[0], point[1]
+    x, y, half, one = point[0], point[1], f4(0.5), f4(1.0)
     # In rows across the wind.
     drift = noise(f4(0.075) * x + f4(0.03) * y, f4(0.13) * y - f4(0.06) * x)
-    lies = like(rise, f4(1.0))
-    partly = (rise < f4(0.97)) | like(rise < f4(0.97), depth < f4(1.0))
+    patch = seen_noise(x + f4(0.3) * y, y - f4(0.3) * x, f4(0.8), footprint)
+    fine = seen_noise(x - f4(0.5) * y, y + f4(0.5) * x, f4(4.3), footprint)
+    lies = like(rise, one)
+    partly = (rise < f4(0.97)) | like(rise < f4(0.97), depth < one)
     if any_of(partly):
         # Steep faces are bare; where little has fallen, it lies in the hollows.
-        patch = seen_noise(x, y, f4(0.9), footprint)
-        hollow = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
-        hollow = greater(hollow, foot * _clip(f4(0.5) + patch))
-        fallen = (patch + (depth - f4(0.76))) * f4(4.0) + greater(depth - f4(0.9), f4(0.0)) * f4(
-            40.0
-        )
+        ragged = f4(0.7) * (patch - half) + f4(0.4) * (fine - half)
+        hollow = _clip((rise - f4(0.45) + ragged) * f4(3.0))
+        hollow = greater(hollow, foot * _clip(half + patch + f4(0.6) * (fine - half)))
+        much = greater(depth - f4(0.9), f4(0.0)) * f4(40.0)
+        fallen = (patch + f4(0.5) * (fine - half) + (depth - f4(0.76))) * f4(4.0) + much
         lies = select(partly, hollow * _clip(fallen), lies)
+    # Stubble, tufts and stones stick out; from what is paved or warm, it has melted here and there.
+    ground, stalk = bed == POROUS, like(rise, half)
+    if any_of(ground):
+        stalk = seen_noise(x + f4(0.8) * y, y - f4(0.8) * x, f4(11.0), footprint)
+    out = f4(5.0) * (f4(0.3) * fine + f4(0.3) * patch + f4(0.4) * stalk - f4(0.62))
+    gone = f4(5.0) * (f4(0.24) - f4(0.75) * patch - f4(0.25) * fine)
+    lies *= one - select(ground, f4(0.6) * _clip(out), f4(0.7) * _clip(gone))
     share = lies * (f4(0.12) + f4(0.85) * depth)
-    return _mixed(colour, share, f4(0.88) + f4(0.1) * drift)
+    bright = f4(0.865) + f4(0.1) * drift + f4(0.13) * (patch - half) + f4(0.06) * (fine - half)
+    return _mixed(colour, share, bright)
 
 
 @kernel(inline=True)
@@ -217,5 +232,5 @@ def snowed(
         result = _where(road, _on_road(colour, worn, grain, fine), result)
     lying = ground & ~road
     if any_of(lying):
-        result = _where(lying, _lying(colour, depth, point, rise, foot, footprint), result)
+        result = _where(lying, _lying(colour, depth, bed, point, rise, foot, footprint), result)
     return result

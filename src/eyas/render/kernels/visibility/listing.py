@@ -93,6 +93,8 @@ def _list_instance(
     if radius * view.focal < SMALLEST * distance or count >= len(drawn):
         return count
     mesh = level_of_detail(geometry, prototype, radius, distance, view.focal)
+    if geometry.mesh_range[mesh, 0] == geometry.mesh_range[mesh, 1]:  # nothing is seen from here
+        return count
     drawn[count, 0], drawn[count, 1] = geometry.mesh_range[mesh, 0], instance
     band.mesh[count] = mesh
     item = geometry.chunk_range.shape[0] + count

@@ -1,18 +1,22 @@
 """The plan of the desert."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
+from eyas.state.mesh import Surface
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import facade, material
 from eyas.world.land.rising import relief_of
+from eyas.world.build.millimetres import snapped
 from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.world.maps.desert.roads import NAME
-from eyas.world.plan.library import STREET_KINDS, houses
+from eyas.world.maps.desert.scatter import scattered_over, wheel_tracks
+from eyas.world.plan.library import STREET_KINDS, houses, wild_kinds
 from eyas.world.plan.plan import (
     Chance,
     Far,
@@ -35,17 +39,17 @@ __all__ = [
     "make_plan",
 ]
 
-SAND = material("sand", (1.0, 0.93, 0.60))
+SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
 
-_DUSTY = material("sand", (0.76, 0.70, 0.48))
+_DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)
 """Asphalt under a thin layer of sand."""
 
-_SNOW = material("snow", (0.97, 0.97, 0.97))
+_SNOW = replace(SAND, surface=Surface.DESERT_SNOW)
 """Dunes under snow."""
 
-_THIN_SNOW = material("snow", (0.98, 0.91, 0.72))
-"""Their feet, where sand shows through."""
+_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)
+"""Where wheels have left the road."""
 
 _HOUSES = (
     (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),
@@ -82,22 +86,30 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         half=(_CORE, HALF),
         spacing=_SPACING,
         chance=Chance(stream="desert facets"),
-        covers=(SAND, _THIN_SNOW, _SNOW),
+        covers=(SAND, _SNOW),
         white=_white(len(desert.dunes), stream(seed, "desert snow")),
         smooth=True,
     )
+    ground = relief_of(dunes, seed)
     # Slightly below the feet of the dunes, so that rounding leaves no gap between them.
-    rest = shapely.buffer(relief_of(dunes, seed).area, -0.4, join_style="mitre")
-    level = Flat(area=shapely.difference(EXTENT, shapely.union(desert.roads, rest)), cover=SAND)
+    rest = shapely.buffer(ground.area, -0.4, join_style="mitre")
+    level = shapely.difference(EXTENT, shapely.union(desert.roads, rest))
+    tracks = snapped(
+        shapely.intersection(wheel_tracks(desert, stream(seed, "desert tracks")), level)
+    )
+    sand = Flat(area=shapely.difference(level, tracks), cover=SAND)
     far = Far(rule="plain", covers=(SAND,), beyond=(2 * HALF, 2 * HALF))
     kinds, placed = houses(desert.houses, _HOUSES)
     poles = shapely.buffer(shapely.points([place for place, _ in signal_places(network)]), 2.0)
     taken = shapely.union_all([desert.roads, desert.walls, *poles])
+    wild = wild_kinds("dry tuft", "dry bush", shapes=3)
+    stones = wild_kinds("stones", looks=(0, 1)) + wild_kinds("boulder", looks=(0, 1))
+    litter = scattered_over(desert, ground, taken, stream(seed, "desert stones"))
     return MapPlan(
         name=NAME,
         seed=seed,
         size=FLOOR,
-        library=(*kinds, *STREET_KINDS),
+        library=(*kinds, *STREET_KINDS, *wild, *stones),
         layers=(
             dunes,
             things(placed),
@@ -105,9 +117,10 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             Roadway(
                 area=desert.roads, paint=Paint(crossings=0), wear=Chance(stream="desert road wear")
             ),
-            GroundCover(pieces=(level, far)),
+            GroundCover(pieces=(sand, Flat(area=tracks, cover=_TRACK), far)),
             things(signals_along(network)),
             things(lamps_along(network, _LAMPS, taken, stream(seed, "desert lamps"))),
+            things(litter, [kind.name for kind in (*wild, *stones)]),
         ),
         horizon=DUNES,
     )
@@ -127,5 +140,5 @@ def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     return [
         *(Heap(area=drift.area, z=DRIFT_HEIGHT, cover=SAND) for drift in desert.drifts),
         *(Heap(area=tongue, z=_FRINGE_HEIGHT, cover=SAND) for tongue in desert.tongues),
-        Flat(area=edge, z=_FRINGE_HEIGHT, cover=_DUSTY, cells="whole"),
+        Flat(area=edge, z=_FRINGE_HEIGHT, cover=_DUSTY, beside=sand),
     ]

@@ -1,6 +1,7 @@
 """The plan of the lake district."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -12,12 +13,13 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.millimetres import rounded
+from eyas.world.build.millimetres import rounded, snapped
 from eyas.world.build.placed import Placed
 from eyas.world.land import ground
 from eyas.world.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_out
 from eyas.world.maps.lake.roads import NAME
-from eyas.world.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds
+from eyas.world.maps.lake.shores import boats, shore_life, water_in
+from eyas.world.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds, wild_kinds
 from eyas.world.plan.plan import (
     Building,
     Buildings,
@@ -42,20 +44,22 @@ from eyas.world.street.parked_cars import CARS
 __all__ = ["make_plan"]
 
 _SOIL = Material("soil", (0.97, 0.95, 0.95), Surface.HEATH)
-_DAMP = material("soil", (0.74, 0.70, 0.66))
-_SHORE = material("sand", (0.86, 0.84, 0.80))
+_SHORE = replace(_SOIL, surface=Surface.HEATH_SHORE)
 _WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)
 _LEAVES = material("dry_leaves")
 _KERB = material("stone", (1.0, 0.92, 0.85))
 _APRON = material("concrete", (0.92, 0.90, 0.88))
 _KERB_WIDTH = 0.8
-_BANK, _BEACH = 1.4, 7.0
-"""Width of the damp ground around ponds and of the shores of lakes [m]."""
+_BEACH = 7.0
+"""Width of the shores [m]."""
+_TUFTS, _TUFTS_BESIDE = (5.0, 0.012), (1.3, 14.0)
+"""Least distance between two groups of tufts [m], and number of attempts on a square metre; their
+least and largest distance from a road [m]."""
 _SHRUBS, _BESIDE = (16.0, 0.004), 7.0
 """Least distance between two shrubs [m], and number of attempts on a square metre; their least
 distance from a road [m]."""
-_SHORE_SHRUBS = (3.5, 0.03)
-"""The same of those along shores, which stand closer."""
+_SHORE_SHRUBS, _BANK = (3.5, 0.03), 1.4
+"""The same of those along shores, which stand closer; their least distance from a basin [m]."""
 _NEAR = 90.0
 """Reach of the ground that is cut into small squares beside a road [m]."""
 _LAMPS = 48
@@ -77,28 +81,37 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     rng = stream(seed, "lake forests")
     forests = [stand for strip in district.strips for stand in _stands(strip, rng)]
     plants = stream(seed, "lake plants")
+    shores = stream(seed, "lake shores")
+    waters = [water_in(area, shores) for area in (*district.ponds, *district.lakes)]
+    near = shapely.buffer(district.roads, _NEAR, quad_segs=2)
+    shapely.prepare(near)
     shrubs = _shrubs(district, plants)
+    life = shore_life(waters, near, shores) + _tufts(district, stream(seed, "lake tufts"))
     kinds = [kind for strip in district.strips for kind in _kinds(strip)]
     water = shapely.union_all([*district.ponds, *(strip.area for strip in district.strips)])
     built = shapely.union_all([house.outline for house in district.houses])
     parks = (park.area for park in district.car_parks)
     taken = shapely.union_all([district.roads, water, built, *parks])
+    wild = wild_kinds("dry tuft", "green tuft", "reeds") + wild_kinds("stones", looks=(2, 3))
+    afloat = (ThingKind(name="jetty"), *wild_kinds("boat", shapes=3))
     return MapPlan(
         name=NAME,
         seed=seed,
         size=FLOOR,
-        library=(*kinds, *CAR_KINDS, *STREET_KINDS, *plant_kinds("plants")),
+        library=(*kinds, *CAR_KINDS, *STREET_KINDS, *plant_kinds("plants"), *wild, *afloat),
         chances={"forests": state_of(rng), "plants": state_of(plants)},
         layers=(
             Buildings(items=tuple(Building(parts=(house,)) for house in district.houses)),
             *_roads(district),
-            *_ground(district),
+            *_ground(district, waters),
             things(forests, [kind.name for kind in kinds]),
             things(shrubs, gardens.BORDERS),
             things(_parked(district, stream(seed, "lake parked cars")), CARS),
             things(lamps_along(network, _LAMPS, taken, stream(seed, "lake lamps"))),
+            things(life, [kind.name for kind in wild]),
+            things(boats(waters, district, near, stream(seed, "lake boats"))),
         ),
-        near=shapely.buffer(district.roads, _NEAR, quad_segs=2),
+        near=near,
     )
 
 
@@ -134,28 +147,25 @@ def _kerbs(district: LakeLayout) -> shapely.Geometry:
     return shapely.difference(beside, shapely.union(district.roads, _lots(district)))
 
 
-def _ground(district: LakeLayout) -> list[Layer]:
+def _ground(district: LakeLayout, waters: Sequence[shapely.Polygon]) -> list[Layer]:
     """Return water with its shores, the floors of the forests, the feet of houses, the soil."""
     paved = shapely.union_all([district.roads, _lots(district), _kerbs(district)])
-    water = [*district.ponds, *district.lakes]
-    covered = shapely.union_all([paved, *water])
-    pieces = []
-    for areas, width, cover in ((district.ponds, _BANK, _DAMP), (district.lakes, _BEACH, _SHORE)):
-        shore = shapely.union_all([shapely.buffer(area, width, quad_segs=3) for area in areas])
-        shore = shapely.difference(shore, covered)
-        pieces.append(_wide(shore, cover))
-        covered = shapely.union(covered, shore)
+    water = shapely.union_all(waters)
     floors = shapely.union_all([shapely.buffer(strip.area, 1.0) for strip in district.strips])
     feet = [shapely.buffer(house.outline, 1.3, join_style="mitre") for house in district.houses]
-    aprons = shapely.difference(shapely.union_all(feet), covered)
-    covered = shapely.union_all([covered, floors, aprons])
-    pieces += [
+    aprons = shapely.difference(shapely.union_all(feet), paved)
+    covered = shapely.union_all([paved, water, floors, aprons])
+    beach = shapely.union_all([shapely.buffer(area, _BEACH, quad_segs=3) for area in waters])
+    shore = snapped(shapely.difference(beach, covered))
+    covered = shapely.union(covered, shore)
+    pieces = [
+        Flat(area=shore, cover=_SHORE, beside=water),
         _wide(floors, _LEAVES),
         Flat(area=aprons, cover=_APRON, cells="whole"),
         _wide(shapely.difference(EXTENT, covered), _SOIL),
     ]
     far = Far(rule="plain", covers=(_SOIL,))
-    wet = tuple(_wide(area, _WATER) for area in water)
+    wet = tuple(_wide(area, _WATER) for area in waters)
     return [GroundCover(kind=ObjectClass.WATER, pieces=wet), GroundCover(pieces=(*pieces, far))]
 
 
@@ -210,6 +220,20 @@ def _shrubs(district: LakeLayout, rng: np.random.Generator) -> list[Placed]:
         )
         for x, y in rounded(spots).tolist()
     ]
+
+
+def _tufts(district: LakeLayout, rng: np.random.Generator) -> list[Placed]:
+    """Return tufts of grass beside the roads."""
+    least, most = (shapely.buffer(district.roads, far, quad_segs=2) for far in _TUFTS_BESIDE)
+    water = shapely.union_all([*district.ponds, *district.lakes])
+    parks = [park.area for park in district.car_parks]
+    houses = [house.outline for house in district.houses]
+    taken = shapely.buffer(shapely.union_all([*parks, *houses]), 2.0)
+    strips = [strip.area for strip in district.strips]
+    room = shapely.difference(most, shapely.union_all([least, taken, water, *strips]))
+    spots = gardens.scattered(room, *_TUFTS, rng)
+    kinds = ("dry tuft 0", "dry tuft 1", "green tuft 0", "green tuft 1")
+    return gardens.sown(spots, kinds, (0.7, 1.2), FLOOR_HEIGHT - 0.03, rng)
 
 
 def _parked(district: LakeLayout, rng: np.random.Generator) -> Sequence[Placed]:

@@ -14,14 +14,15 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import facade, material, without_snow
-from eyas.world.build.millimetres import rounded
+from eyas.world.build.millimetres import rounded, snapped
 from eyas.world.build.placed import Placed
 from eyas.world.land.facets import Relief, heights_of
 from eyas.world.land.rising import relief_of
 from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
+from eyas.world.maps.village.paths import grown, trodden
 from eyas.world.maps.village.roads import NAME
 from eyas.world.maps.village.yards import yard_things
-from eyas.world.plan.library import CLUTTER_KINDS, STREET_KINDS, houses, plant_kinds
+from eyas.world.plan.library import CLUTTER_KINDS, STREET_KINDS, houses, plant_kinds, wild_kinds
 from eyas.world.plan.plan import (
     Chance,
     Far,
@@ -50,7 +51,10 @@ GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
 """The valley and its hills."""
 
 _VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
-_SHORE = material("sand", (0.80, 0.78, 0.70))
+_SHORE = replace(GRASS, surface=Surface.HILLSIDE_SHORE)
+_BANK = material("soil", (0.60, 0.56, 0.50))
+_SHOULDER = replace(GRASS, surface=Surface.HILLSIDE_VERGE)
+_PATH = replace(GRASS, surface=Surface.HILLSIDE_PATH)
 _ROCK = material("stone", (0.50, 0.52, 0.47))
 """Inside of the tunnels."""
 
@@ -83,6 +87,11 @@ _BUSHES = (26.0, 0.004)
 """Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)
 _WOOD_HEIGHTS = (5.0, 11.0)
+_SHORE_WIDTH = 5.0
+_WILD = (
+    *wild_kinds("green tuft", "dry tuft"),
+    *wild_kinds("stones", "boulder", looks=(2, 3)),
+)
 _CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
 
 
@@ -100,6 +109,14 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     kinds, placed = houses(valley.cottages, _HOUSES)
     rng = stream(seed, "village plants")
     plants = _plants(valley, rising, rng)
+    ground, paths = _ground(valley, rising, seed)
+    closed = [*paths, _paving(valley), shapely.buffer(valley.lake, 3.0), valley.walls]
+    wild = grown(
+        valley,
+        relief,
+        shapely.union_all([*closed, valley.covered]),
+        stream(seed, "village grass"),
+    )
     woods = _woods(valley, relief, stream(seed, "village woods"))
     signs = _signs(valley, stream(seed, "village signs"))
     count, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
@@ -111,6 +128,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         inside=_ROCK,
         chance=Chance(stream="village mounds"),
     )
+    wild_names = [kind.name for kind in _WILD]
     gantry_kinds = (
         ThingKind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
     )
@@ -128,6 +146,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             *plant_kinds("plants"),
             *STREET_KINDS,
             *gantry_kinds,
+            *_WILD,
             *CLUTTER_KINDS,
         ),
         chances={"plants": state_of(rng)},
@@ -135,12 +154,13 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
             hills,
             tunnels,
             things(placed),
-            *_ground(valley, rising, seed),
+            *ground,
             things([*plants, *woods], (*_CONES, *(kind.name for kind in plant_kinds("plants")))),
             things(signals_along(network)),
             things(signs),
             things(lamps),
             things(clutter),
+            things(wild, wild_names),
         ),
         horizon=VALLEY,
     )
@@ -163,26 +183,34 @@ def _hills(valley: VillageLayout) -> Hills:
     )
 
 
-def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[Layer]:
+def _ground(
+    valley: VillageLayout, hills: shapely.Geometry, seed: int
+) -> tuple[list[Layer], list[shapely.Polygon]]:
+    """Return roads, paving, lawn and water, and the paths on the lawn."""
     roads, lake = valley.roads, valley.lake
     passages = shapely.union_all([tunnel.passage for tunnel in valley.tunnels])
     beside = shapely.buffer(roads, 1.4, quad_segs=4)
     paved = _paving(valley)
     verge = shapely.difference(shapely.union(beside, passages), shapely.union(roads, paved))
-    shore = shapely.difference(shapely.buffer(lake, 2.6), lake)
+    shore = shapely.difference(
+        shapely.buffer(lake, _SHORE_WIDTH), shapely.union_all([lake, roads, paved, verge])
+    )
     # Slightly below the hills' feet, so that rounding leaves no gap between them.
     rest = shapely.buffer(hills, -0.4, join_style="mitre")
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
+    paths = trodden(valley, lawn, stream(seed, "village paths"))
+    beaten = snapped(shapely.union_all(paths))
     pieces: tuple[Flat | Far, ...] = (
-        Flat(area=lawn, cover=GRASS),
+        Flat(area=shapely.difference(lawn, beaten), cover=GRASS),
+        Flat(area=beaten, cover=_PATH),
         Flat(area=shapely.intersection(verge, passages), cover=without_snow(_VERGE)),
-        Flat(area=shapely.difference(verge, passages), cover=_VERGE),
-        Flat(area=shore, cover=_SHORE, sides=_SHORE, foot=FLOOR_HEIGHT - 0.3),
+        Flat(area=shapely.difference(verge, passages), cover=_SHOULDER, beside=roads),
+        Flat(area=shore, cover=_SHORE, beside=lake, sides=_BANK, foot=FLOOR_HEIGHT - 0.3),
         Far(rule="plain", covers=(GRASS,), beyond=(2 * HALF, 2 * HALF)),
     )
     slabs = Flat(area=paved, cover=material("paving", (0.95, 0.94, 0.92)))
     water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=_WATER)
-    return [
+    layers: list[Layer] = [
         Roadway(
             area=roads,
             paint=Paint(centre="double yellow", crossings=0),
@@ -192,6 +220,7 @@ def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[L
         GroundCover(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
         GroundCover(kind=ObjectClass.WATER, pieces=(water,)),
     ]
+    return layers, paths
 
 
 def _paving(valley: VillageLayout) -> shapely.Geometry:
