@@ -243,28 +243,28 @@ def _face(sheet: Sheet, channel: int) -> None:
     redder = (1.0, 0.62, 0.6)[channel]
     for sign in (-1.0, 1.0):
         eye = middle + 0.036 * sign
-        sheet.box((eye - 0.024, 0.108), (eye + 0.024, 0.142), 0.62 * BASE, 0.75, round_=0.016)
-        sheet.box((eye - 0.015, 0.119), (eye + 0.015, 0.131), 1.0, 0.9, round_=0.006)
-        sheet.box((eye - 0.0065, 0.118), (eye + 0.0065, 0.132), 0.03)
-        sheet.line([(eye - 0.017, 0.133), (eye + 0.017, 0.133)], 0.004, 0.06)
-        sheet.line(
-            [(eye - 0.026 * sign, 0.147), (eye + 0.004 * sign, 0.153), (eye + 0.026 * sign, 0.147)],
-            0.008, 0.13 * BASE, 0.85,
-        )  # fmt: skip
+        sheet.box((eye - 0.028, 0.104), (eye + 0.028, 0.146), 0.42 * BASE, 0.8, round_=0.018)
+        sheet.box((eye - 0.016, 0.117), (eye + 0.016, 0.131), 0.9, 0.8, round_=0.007)
+        sheet.box((eye - 0.009, 0.115), (eye + 0.009, 0.133), 0.02)
+        sheet.line([(eye - 0.02, 0.134), (eye + 0.02, 0.134)], 0.006, 0.03)
+        brow = [(-0.03, 0.149), (0.004, 0.157), (0.03, 0.149)]
+        sheet.line([(eye + sign * x, y) for x, y in brow], 0.012, 0.1 * BASE, 0.85)
         cheek = np.square(sheet.x - eye) + np.square(sheet.y - 0.085)
-        blush = np.clip(1.0 - np.sqrt(cheek) / 0.026, 0.0, 1.0)
-        sheet.scale(1.0 - 0.2 * (1.0 - redder) * blush)
-        sheet.box((middle + 0.009 * sign - 0.004, 0.077), (middle + 0.009 * sign + 0.004, 0.083),
-                  0.25 * BASE, 0.8, round_=0.003)  # fmt: skip
-        sheet.line([(middle + 0.012 * sign, 0.12), (middle + 0.014 * sign, 0.09)], 0.008,
-                   0.75 * BASE, 0.5)  # fmt: skip
-        sheet.box((middle + 0.135 * sign - 0.012, 0.085), (middle + 0.135 * sign + 0.012, 0.145),
-                  0.7 * BASE, 0.8, round_=0.01)  # fmt: skip
-    sheet.line([(middle, 0.125), (middle, 0.095)], 0.01, 1.1 * BASE, 0.6)
-    sheet.box((middle - 0.025, 0.04), (middle + 0.025, 0.058), 0.62 * redder * BASE, 0.9,
-              round_=0.008)  # fmt: skip
-    sheet.line([(middle - 0.026, 0.05), (middle + 0.026, 0.05)], 0.004, 0.18 * BASE)
-    sheet.line([(middle - 0.016, 0.03), (middle + 0.016, 0.03)], 0.008, 0.7 * BASE, 0.6)
+        blush = np.clip(1.0 - np.sqrt(cheek) / 0.03, 0.0, 1.0)
+        sheet.scale(1.0 - 0.35 * (1.0 - redder) * blush)
+        sheet.line([(middle + 0.015 * sign, 0.125), (middle + 0.02 * sign, 0.088)], 0.012,
+                   0.6 * BASE, 0.6)  # fmt: skip
+        sheet.line([(middle + 0.05 * sign, 0.105), (middle + 0.042 * sign, 0.03)], 0.03,
+                   0.75 * BASE, 0.35)  # fmt: skip
+        sheet.box((middle + 0.135 * sign - 0.014, 0.085), (middle + 0.135 * sign + 0.014, 0.145),
+                  0.6 * BASE, 0.8, round_=0.01)  # fmt: skip
+    sheet.box((middle - 0.016, 0.072), (middle + 0.016, 0.083), 0.3 * BASE, 0.75, round_=0.005)
+    sheet.line([(middle, 0.125), (middle, 0.095)], 0.012, 1.15 * BASE, 0.7)
+    sheet.box((middle - 0.028, 0.036), (middle + 0.028, 0.06), 0.5 * redder * BASE, 0.95,
+              round_=0.01)  # fmt: skip
+    sheet.line([(middle - 0.028, 0.049), (middle + 0.028, 0.049)], 0.006, 0.12 * BASE)
+    sheet.line([(middle - 0.02, 0.026), (middle + 0.02, 0.026)], 0.012, 0.55 * BASE, 0.7)
+    sheet.scale(1.0 - 0.12 * np.clip((sheet.y - 0.155) / 0.02, 0.0, 1.0))  # below the hair
     sheet.scale(1.0 - 0.3 * np.clip(1.0 - sheet.y / 0.025, 0.0, 1.0))
     turned = np.abs(sheet.x - middle) / middle
     sheet.scale(1.0 - 0.12 * exact.power(np.clip(turned, 1e-6, 1.0), 2.0))

@@ -160,7 +160,7 @@ def _leg(build: Build, dress: Dress, side: float) -> Leg:
     hip, at = _HIPS[build] * side, 0 if side > 0 else 1
     # One foot stands a little ahead of the other.
     return Leg(
-        hip=(0.0, hip, HIP),
+        hip=(-0.012, hip, HIP),
         foot=(0.045 * side, 0.85 * hip, ANKLE),
         bones=(THIGH, SHANK),
         knee=(1.0, 0.1 * side, 0.0),

@@ -14,7 +14,7 @@ from eyas.world.build.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair
 
 __all__ = ["head_shape"]
 
-_CHIN = 0.085
+_CHIN = 0.07
 """Height of the chin above the origin [m]."""
 
 _SKULL: tuple[Row, ...] = (
@@ -34,8 +34,8 @@ def head_shape(head: Head, tone: Colour) -> Shape:
         sides = (5, 8, 12)[detail]
         rows = _SKULL
         if detail:
-            neck = [(-0.03, 0.056, 0.060, 0.060), (0.06, 0.050, 0.060, 0.056),
-                    (0.125, 0.045, 0.060, 0.054)]  # fmt: skip
+            neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
+                    (0.11, 0.045, 0.060, 0.054)]  # fmt: skip
             wrapped(shell, neck, (0.0, 0.6, 1.0), NECK, skin(tone), sides=sides - 2, caps=False)
         lifted = [(z + _CHIN, 0.012 + ahead, back - 0.004, half) for z, ahead, back, half in rows]
         ups = [row[0] / 0.234 for row in rows]

@@ -138,7 +138,7 @@ def thigh(lower: Lower, build: Build, below: Colour | None, *, left: bool) -> Sh
     def shape(shell: Shell, detail: int) -> None:
         sides = (4, 6, 8)[detail]
         thick = _THICK[build]
-        rows = [(-THIGH - 0.02, 0.055), (-0.30, 0.068), (-0.15, 0.082), (-0.03, 0.090), (0.03, 0.070)]
+        rows = [(-THIGH - 0.02, 0.055), (-0.30, 0.068), (-0.15, 0.082), (-0.04, 0.086), (0.03, 0.060)]
         ups = (0.48, 0.62, 0.78, 0.93, 1.0)
         if below is not None:
             # What the leg pushes out of a skirt or coat is cloth.

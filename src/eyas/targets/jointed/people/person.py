@@ -156,6 +156,8 @@ class Person:
     shoe_colour: Colour
     cut: str = "plain"
     """Texture of the garment, one of `eyas.world.build.clothing.CLOTHES`."""
+    inner_colour: Colour = (0.84, 0.83, 0.81)
+    """Of the shirt that shows in a jacket or a coat."""
     posture: Posture = Posture.FREE
     carried: Carried = Carried.NOTHING
     carried_colour: Colour = (0.15, 0.15, 0.16)
@@ -163,7 +165,7 @@ class Person:
     @property
     def scale(self) -> float:
         """Factor on the lengths of a person of 1.80 m."""
-        return self.height / (HIP + NECK + 0.32 * self.build.head)
+        return self.height / (HIP + NECK + 0.305 * self.build.head)
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -175,6 +177,8 @@ class Person:
             ahead = 0.5
         if self.carried is Carried.PRAM:
             ahead = 1.25
+        if self.garment is Garment.HOODIE or self.posture is Posture.STOOPED:
+            back = 0.17
         if self.head in (Head.LONG, Head.TAIL, Head.BUN, Head.BOB):
             back = 0.195 if self.head in (Head.TAIL, Head.BUN) else 0.17
         if self.garment is Garment.DOWN_JACKET or self.lower is Lower.SKIRT:

@@ -13,6 +13,9 @@ from eyas.world.build.bodywork import Region
 
 __all__ = ["Row", "loop", "wrapped"]
 
+_CREASE = 1.35
+"""Bodies of five sides are round, boxes are not [rad]."""
+
 _FEW = 6
 """With fewer sides, every second outline is left out."""
 
@@ -65,6 +68,7 @@ def wrapped(  # noqa: PLR0913  # as its neighbours
     """
     if sides < _FEW:  # from afar
         rows, ups = (*rows[:-1:2], rows[-1]), (*ups[:-1:2], ups[-1])
+    shell.crease = _CREASE
     rings = np.stack([loop(row, sides, box=box) for row in rows])
     across = np.linspace(0.0, 1.0, sides + 1)
     uv = region.at((1.0 - across if flip else across)[None], np.asarray(ups)[:, None])

@@ -94,10 +94,15 @@ def _rows(garment: Garment, build: Build) -> tuple[list[Row], list[float]]:
             (-0.38, ahead + flare, back + flare, half + 0.45 * flare),
             (-0.19, ahead + 0.5 * flare, back + 0.5 * flare, half + 0.25 * flare),
         ]
-        return [*low, *body], [0.0, 0.05, 0.1, *ups[1:]]
+        end = -1 if garment is Garment.DRESS else None
+        return [*low, *body[:end]], [0.0, 0.05, 0.1, *ups[1:end]]
     hem = _HEM.get(garment, -0.09)
-    out = -0.012 if garment in (Garment.HOODIE, Garment.JACKET, Garment.DOWN_JACKET) else 0.008
-    return [(hem, ahead + out, back + out, half + out), *body], [0.0, 0.08, *ups[1:]]
+    # It hangs before the thighs, which swing out below it.
+    rows = [(hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006), *body]
+    ups = [0.0, 0.08, *ups[1:]]
+    if garment in (Garment.T_SHIRT, Garment.HOODIE):
+        return rows[:-1], ups[:-1]
+    return rows, ups
 
 
 def _collar(shell: Shell, garment: Garment, top: Row, inner: Colour, sides: int) -> None:
@@ -111,7 +116,8 @@ def _collar(shell: Shell, garment: Garment, top: Row, inner: Colour, sides: int)
         stand = [(z - 0.03, ahead + 0.012, back + 0.014, half + 0.014),
                  (z + 0.028, ahead + 0.014, back + 0.016, half + 0.012)]  # fmt: skip
         wrapped(shell, stand, (0.9, 1.0), TORSO, cloth(), sides=sides)
-        shirt = [(z, ahead + 0.002, back - 0.01, half - 0.002), (z + 0.03, ahead, back - 0.01, half)]
+        shirt = [(z, ahead + 0.004, back - 0.01, half - 0.002),
+                 (z + 0.012, ahead + 0.004, back - 0.012, half - 0.004)]  # fmt: skip
         wrapped(shell, shirt, (0.9, 1.0), TORSO, cloth(tint=inner), sides=sides)
     elif garment is Garment.SHIRT:
         stand = [(z - 0.035, ahead + 0.02, back + 0.012, half + 0.022),

@@ -34,9 +34,6 @@ _HOLDS = {
     Posture.PHONE: (Holds.NOTHING, Holds.PHONE),
     Posture.POCKETS: (Holds.POCKET, Holds.POCKET),
 }
-_INNER = (0.86, 0.85, 0.83)
-"""Colour of what shows in an open jacket."""
-
 
 def dress_of(person: Person) -> Dress:
     """Return the shapes of a person's parts."""
@@ -53,7 +50,7 @@ def dress_of(person: Person) -> Dress:
     thighs = [thigh(p.lower, p.build, below, left=left) for left in (True, False)]
     shanks = [shank(p.lower, p.build, p.shoes, left=left) for left in (True, False)]
     return Dress(
-        chest=chest(p.garment, p.build, p.cut, _INNER),
+        chest=chest(p.garment, p.build, p.cut, p.inner_colour),
         hips=None if p.garment.is_long else hips(p.lower, p.build),
         head=head_shape(p.head, p.skin),
         upper_arms=(arm, arm),
