@@ -104,7 +104,7 @@ def forearm(sleeve: Sleeve, build: Build, cut: str, tone: Colour, holds: Holds) 
         if holds is not Holds.POCKET:
             _hand(shell, skin(None if bare else tone), detail)
         if holds is Holds.PHONE and detail:
-            shell.box((0.035, -0.035, -FOREARM - 0.16), (0.047, 0.04, -FOREARM - 0.01),
+            shell.box((0.05, -0.036, -FOREARM - 0.17), (0.061, 0.036, -FOREARM - 0.02),
                       cloth(tint=(0.08, 0.08, 0.1)))  # fmt: skip
 
     return shape

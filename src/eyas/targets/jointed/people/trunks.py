@@ -50,7 +50,7 @@ _EASE = {
 }  # fmt: skip
 """How far a garment stands off the body [m]."""
 
-_HEM = {Garment.T_SHIRT: -0.06, Garment.SHIRT: -0.09, Garment.OPEN_JACKET: -0.13}
+_HEM = {Garment.T_SHIRT: -0.05, Garment.SHIRT: -0.06, Garment.OPEN_JACKET: -0.09}
 
 
 @cache
@@ -96,11 +96,11 @@ def _rows(garment: Garment, build: Build) -> tuple[list[Row], list[float]]:
         ]
         end = -1 if garment is Garment.DRESS else None
         return [*low, *body[:end]], [0.0, 0.05, 0.1, *ups[1:end]]
-    hem = _HEM.get(garment, -0.09)
+    hem = _HEM.get(garment, -0.07)
     # It hangs before the thighs, which swing out below it.
     rows = [(hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006), *body]
     ups = [0.0, 0.08, *ups[1:]]
-    if garment in (Garment.T_SHIRT, Garment.HOODIE):
+    if garment in (Garment.T_SHIRT, Garment.SHIRT, Garment.HOODIE):
         return rows[:-1], ups[:-1]
     return rows, ups
 
@@ -120,8 +120,8 @@ def _collar(shell: Shell, garment: Garment, top: Row, inner: Colour, sides: int)
                  (z + 0.012, ahead + 0.004, back - 0.012, half - 0.004)]  # fmt: skip
         wrapped(shell, shirt, (0.9, 1.0), TORSO, cloth(tint=inner), sides=sides)
     elif garment is Garment.SHIRT:
-        stand = [(z - 0.035, ahead + 0.02, back + 0.012, half + 0.022),
-                 (z + 0.02, ahead + 0.006, back + 0.006, half + 0.004)]  # fmt: skip
+        stand = [(z - 0.022, ahead + 0.014, back + 0.008, half + 0.012),
+                 (z + 0.03, ahead - 0.002, back - 0.002, half - 0.026)]  # fmt: skip
         wrapped(shell, stand, (0.97, 1.0), TORSO, cloth(), sides=sides)
 
 
