@@ -22,6 +22,8 @@ class Shell:
         self._corners: list[NDArray[np.float64]] = []
         self._uvs: list[NDArray[np.float64]] = []
         self._materials: list[Material] = []
+        self.crease = _CREASE
+        """Angle from which on an edge is hard [rad]; round bodies of few sides need a large one."""
 
     def quads(
         self,
@@ -162,7 +164,7 @@ class Shell:
         vertices = np.concatenate(
             [
                 corners.reshape(-1, 3),
-                _normals(corners, material).reshape(-1, 3),
+                _normals(corners, material, self.crease).reshape(-1, 3),
                 np.concatenate(self._uvs).reshape(-1, 2),
             ],
             axis=1,
@@ -198,7 +200,9 @@ def _angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(exact.acos(np.clip(cosine, -1.0, 1.0)), np.float64)
 
 
-def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArray[np.float64]:
+def _normals(
+    corners: NDArray[np.float64], material: NDArray[np.int32], crease: float
+) -> NDArray[np.float64]:
     """Return unit normals of the corners, shape (T, 3, 3).
 
     A normal is the mean over the triangles of the same material that meet at the corner at less
@@ -217,7 +221,7 @@ def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArr
     member[np.repeat(np.arange(len(size)), size), rank] = order
     others = member[group.reshape(-1)]
     cosine = exact.dot(unit[:, None], unit[others])
-    close = (others >= 0) & (cosine > exact.cos(_CREASE))
+    close = (others >= 0) & (cosine > exact.cos(crease))
     total = np.where(close[:, :, None], weighted[others], 0.0).sum(axis=1)
     total /= np.linalg.norm(total, axis=1, keepdims=True)
     smooth: NDArray[np.float64] = total.reshape(-1, 3, 3)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.textures import bodywork, facades, ground, land, plants, roofs, wear
+from eyas.render.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 from eyas.world.build.materials import TEXTURES
 
 __all__ = ["PAINTERS", "build_textures"]
@@ -74,6 +74,7 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "ground_shop": facades.ground_shop,
     "ground_lobby": facades.ground_lobby,
     **bodywork.PAINTERS,
+    **people.PAINTERS,
 }
 """The function that paints each texture of `eyas.world.build.materials.TEXTURES`."""
 
@@ -83,6 +84,6 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
 
     Each is sRGB and alpha, shape (256, 256, 4), and repeats without a seam. Row 0 of an array is
     the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
-    except for the holes of `leaves`, the glass of facades and `cloth`, where it is 0.
+    except for the holes of `leaves`, the glass of facades, `cloth` and people, where it is 0.
     """
     return {name: PAINTERS[name]() for name in TEXTURES}

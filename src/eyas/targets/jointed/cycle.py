@@ -5,14 +5,17 @@ that it stands still in the world. The bones are found by the law of cosines in 
 foot and knee.
 """
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.mesh.shell import Shape
+from eyas.mesh.shell import Shape, Shell
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg
 
-__all__ = ["frames_of", "shapes_of"]
+__all__ = ["frames_of", "shapes_of", "skeleton_of", "table_of"]
 
 _FLAT = (0.15, 0.5)
 """Part of the time on the ground during which the sole lies flat."""
@@ -43,10 +46,46 @@ def frames_of(figure: Figure, cycle: NDArray[np.float64], *, moving: bool) -> ND
     for joint in figure.joints:
         frames[joint.name] = _joint(frames[joint.parent], joint, cycle, moving=moving)
         if joint.shape is not None:
-            drawn.append(frames[joint.name])
+            drawn.append(_grown(frames[joint.name], joint.scale))
     for leg in figure.legs:
         drawn += _leg_frames(figure.gait, leg, frames[leg.parent], cycle, moving=moving)
-    return np.stack(drawn, axis=1)
+    return figure.scale * np.stack(drawn, axis=1)
+
+
+@cache
+def table_of(skeleton: Figure, intervals: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the frames of a `skeleton_of` at rest, shape (1, S, 3, 4), and through a cycle,
+    (intervals + 1, S, 3, 4) [m].
+    """
+    cycle = np.linspace(0.0, 1.0, intervals + 1)
+    still = frames_of(skeleton, np.zeros(1), moving=False)
+    return still, frames_of(skeleton, cycle, moving=True)
+
+
+def skeleton_of(figure: Figure) -> tuple[Figure, list[int]]:
+    """Return what moves like a figure and is as large as one of scale 1, the same for all figures
+    that differ in shapes only; and which of its parts the figure draws.
+    """
+    joints = tuple(replace(joint, shape=_any) for joint in figure.joints)
+    legs = []
+    drawn = [k for k, joint in enumerate(figure.joints) if joint.shape is not None]
+    count = len(joints)
+    for leg in figure.legs:
+        coxa = None if leg.coxa is None else (leg.coxa[0], _any)
+        legs.append(replace(leg, shapes=(_any, _any, _any), coxa=coxa))
+        own = (*(() if coxa is None else (leg.coxa,)), *leg.shapes)
+        drawn += [count + k for k, shape in enumerate(own) if shape is not None]
+        count += len(own)
+    return replace(figure, joints=joints, legs=tuple(legs), scale=1.0), drawn
+
+
+def _any(shell: Shell, detail: int) -> None:
+    """Stand for any shape."""
+
+
+def _grown(frames: NDArray[np.float64], scale: float) -> NDArray[np.float64]:
+    """Return frames whose axes are longer by a factor."""
+    return frames if scale == 1.0 else frames * [scale, scale, scale, 1.0]
 
 
 def _trunk(gait: Gait, cycle: NDArray[np.float64], *, moving: bool) -> NDArray[np.float64]:

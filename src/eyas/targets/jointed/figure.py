@@ -59,6 +59,8 @@ class Joint:
     yaw: Swing = STILL
     spins: bool = False
     """Whether it rolls about its y axis with the distance travelled, like a wheel."""
+    scale: float = 1.0
+    """Factor on the size of its shape, not on the places of what turns with it."""
     steers: float = 0.0
     """How far it is ahead of the axle that does not steer [m]; negative behind; 0: no steering."""
 
@@ -128,9 +130,11 @@ class Figure:
     """Radius of what spins [m]; 0: nothing does."""
     upright: bool = False
     """Whether it stays upright on slopes; else it tilts with the ground."""
+    scale: float = 1.0
+    """Factor on all lengths, also on those of the gait."""
 
     @property
     def period(self) -> float:
         """Distance after which its motion repeats [m]."""
         turn = 2.0 * math.pi * self.wheel_radius
-        return self.gait.stride if self.legs or not turn else turn
+        return self.scale * (self.gait.stride if self.legs or not turn else turn)

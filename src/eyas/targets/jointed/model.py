@@ -24,6 +24,9 @@ class JointedModel(Model):
     """How it moves by itself."""
     colours: tuple[Colour, ...]
     """Colours that it may have, sRGB."""
+    part_colours: tuple[Colour | None, ...] = ()
+    """Colours of its drawn parts, sRGB, in the order of `cycle.shapes_of`; None, or none at all:
+    the one that it has of `colours`."""
 
 
 def robot(

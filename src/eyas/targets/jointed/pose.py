@@ -21,11 +21,23 @@ _TIGHTEST = 0.3
 """Radius of the tightest curve that wheels steer [m]."""
 
 
-PART: Final = np.dtype([("part", np.int64), ("spins", "?"), ("steers", np.float64)], align=True)
+PART: Final = np.dtype(
+    [
+        ("part", np.int64),
+        ("spins", "?"),
+        ("steers", np.float64),
+        ("own", "?"),
+        ("red", np.float64),
+        ("green", np.float64),
+        ("blue", np.float64),
+    ],
+    align=True,
+)
 """A part of a model.
 
 part: index among the parts of the kind, -1 for an unused slot; spins: whether it rolls about its y
-axis; steers: distance ahead of the axle that does not steer [m], 0 if it does not.
+axis; steers: distance ahead of the axle that does not steer [m], 0 if it does not; own: whether it
+has a colour of its own, sRGB, in the place of the actor's.
 """
 
 BODY: Final = np.dtype(
@@ -181,8 +193,13 @@ def _pose_actor(
             _turn(pose, 0, 1, steer[0], steer[1])
         if part.spins:
             _turn(pose, 2, 0, cosine, sine)
-        for channel in range(3):
-            out.colour[w, slot, channel] = looks.colour[w, a, channel]
+        if part.own:
+            out.colour[w, slot, 0] = part.red
+            out.colour[w, slot, 1] = part.green
+            out.colour[w, slot, 2] = part.blue
+        else:
+            for channel in range(3):
+                out.colour[w, slot, channel] = looks.colour[w, a, channel]
 
 
 @parallel

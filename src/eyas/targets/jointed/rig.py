@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.mesh.shell import Shape, levels_of
 from eyas.state.mesh import Mesh
-from eyas.targets.jointed.cycle import frames_of, shapes_of
-from eyas.targets.jointed.figure import Figure
+from eyas.targets.jointed.cycle import frames_of, shapes_of, skeleton_of, table_of
 from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.pose import BODY, PART, CycleTable, pose_jointed
 from eyas.targets.posing import PoseCall
@@ -37,22 +36,21 @@ class JointedRig:
     slots: int
 
     def __init__(self, models: Sequence[JointedModel]) -> None:
-        self._models, self._shapes = models, list[Shape]()
-        figures = [model.figure for model in models]
-        drawn = [shapes_of(figure) for figure in figures]
-        for shape in (shape for shapes in drawn for shape in shapes):
-            if shape not in self._shapes:
-                self._shapes.append(shape)
+        self._models = models
+        drawn = [shapes_of(model.figure) for model in models]
+        shapes = dict.fromkeys(shape for shapes in drawn for shape in shapes)
+        self._place = {shape: place for place, shape in enumerate(shapes)}
         self.slots = max(map(len, drawn))
-        table = _tabulate(figures, drawn, self._shapes, self.slots)
+        table = _tabulate(models, drawn, self._place, self.slots)
         self._far = _farthest(table)
+        self._scale = np.linalg.norm(table.rest[:, :, 0].astype(np.float64), axis=-1)
         self._parts = table.part["part"]
         self.pose = PoseCall(pose_jointed, table)
 
     @property
     def part_count(self) -> int:
         """Total number of parts of all models."""
-        return len(self._shapes)
+        return len(self._place)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
         """Return the meshes of each part, the finest first.
@@ -60,11 +58,11 @@ class JointedRig:
         Raises:
             ValueError: A model is not of the size that it says.
         """
-        levels = [levels_of(shape) for shape in self._shapes]
+        levels = [levels_of(shape) for shape in self._place]
         for model in self._models:
             frames = frames_of(model.figure, np.zeros(1), moving=False)[0]
             placed = [
-                exact.product(levels[self._shapes.index(shape)][0].positions, frame[:, :3].T)
+                exact.product(levels[self._place[shape]][0].positions, frame[:, :3].T)
                 + frame[:, 3]
                 for shape, frame in zip(shapes_of(model.figure), frames, strict=True)
             ]
@@ -73,32 +71,42 @@ class JointedRig:
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of an actor may be from its reference point, see `Rig` [m]."""
-        return float((self._far + parts[self._parts])[self._parts >= 0].max())
+        away = self._far + self._scale * parts[self._parts]
+        return float(away[self._parts >= 0].max())
 
 
 def _tabulate(
-    figures: Sequence[Figure], drawn: Sequence[list[Shape]], shapes: list[Shape], slots: int
+    models: Sequence[JointedModel],
+    drawn: Sequence[list[Shape]],
+    place: dict[Shape, int],
+    slots: int,
 ) -> CycleTable:
-    models = len(figures)
+    count = len(models)
     table = CycleTable(
-        part=np.zeros((models, slots), PART),
-        body=np.zeros(models, BODY),
-        rest=np.zeros((models, slots, 4, 3), np.float32),
-        cycle=np.zeros((models, _INTERVALS + 1, slots, 4, 3), np.float32),
+        part=np.zeros((count, slots), PART),
+        body=np.zeros(count, BODY),
+        rest=np.zeros((count, slots, 4, 3), np.float32),
+        cycle=np.zeros((count, _INTERVALS + 1, slots, 4, 3), np.float32),
     )
     table.part["part"] = -1
-    cycle = np.linspace(0.0, 1.0, _INTERVALS + 1)
-    for m, (figure, own) in enumerate(zip(figures, drawn, strict=True)):
-        count, gait = len(own), figure.gait
-        table.part["part"][m, :count] = [shapes.index(shape) for shape in own]
+    for m, (model, own) in enumerate(zip(models, drawn, strict=True)):
+        figure, count = model.figure, len(own)
+        gait, scale = figure.gait, figure.scale
+        table.part["part"][m, :count] = [place[shape] for shape in own]
+        for k, colour in enumerate(model.part_colours):
+            if colour is not None:
+                table.part["own"][m, k] = True
+                table.part["red"][m, k], table.part["green"][m, k], table.part["blue"][m, k] = colour
         joints = [joint for joint in figure.joints if joint.shape is not None]
         table.part["spins"][m, : len(joints)] = [joint.spins for joint in joints]
         table.part["steers"][m, : len(joints)] = [joint.steers for joint in joints]
-        table.body[m] = (1.0 / gait.stride, gait.slowest, figure.wheel_radius, figure.upright)
-        still = frames_of(figure, np.zeros(1), moving=False)[0]
-        table.rest[m, :count] = still.swapaxes(-1, -2)
-        moving = frames_of(figure, cycle, moving=True)
-        table.cycle[m, :, :count] = moving.swapaxes(-1, -2)
+        table.body[m] = (
+            1.0 / (scale * gait.stride), gait.slowest, scale * figure.wheel_radius, figure.upright,
+        )  # fmt: skip
+        skeleton, shown = skeleton_of(figure)
+        still, moving = table_of(skeleton, _INTERVALS)
+        table.rest[m, :count] = scale * still[0, shown].swapaxes(-1, -2)
+        table.cycle[m, :, :count] = scale * moving[:, shown].swapaxes(-1, -2)
     return table
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from eyas.state.mesh import Material, Surface
 from eyas.world.build.bodywork import BODYWORK
+from eyas.world.build.clothing import PEOPLE_TEXTURES
 
 __all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material", "without_snow"]
 
@@ -65,6 +66,7 @@ TEXTURES: dict[str, float] = {
     "stone": 4.0,
     **dict.fromkeys(FACADES + GROUND_FLOORS, 12.0),
     **dict.fromkeys((*BODYWORK, "panes"), 4.6),
+    **dict.fromkeys(PEOPLE_TEXTURES, 1.1),
 }
 """Size of one repeat of each texture [m]."""
 

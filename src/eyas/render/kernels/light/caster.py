@@ -20,6 +20,13 @@ __all__ = [
     "reach_of",
 ]
 
+_UPRIGHT = 4.0
+"""What is higher than so many times half its width stands on two feet."""
+
+_HIPS, _LEGS, _TRUNK = 0.5, 0.6, 0.82
+"""Of what stands on two feet: height of the hips, as a share of its own; width of the legs, and of
+trunk and head, as shares of that of the trunk."""
+
 CORNER = 1.75
 """Root of 3, and a little for rounding."""
 
@@ -167,15 +174,23 @@ def camera_of(caster: Caster, view: View) -> LocalCamera:
 @kernel(inline=True)
 def boxes_of(caster: Caster, sun: Direction) -> ShadowBoxes:
     """Return what blocks the light from a direction."""
-    waist, top = f4(caster.waist - caster.bottom), f4(caster.top - caster.bottom)
+    height = caster.top - caster.bottom
+    upright = height > _UPRIGHT * caster.width
+    waist, top = f4(caster.waist - caster.bottom), f4(height)
+    legs, trunk = 1.0, 1.0
+    if upright:
+        waist, legs, trunk = f4(_HIPS * height), _LEGS, _TRUNK
     lower = Box(
-        f4(-caster.length), f4(caster.length), f4(caster.lower_right), f4(caster.lower_left),
-        f4(0.0), waist,
+        f4(-caster.length), f4(caster.length), f4(legs * caster.lower_right),
+        f4(legs * caster.lower_left), f4(0.0), waist,
     )  # fmt: skip
-    upper = Box(f4(caster.back), f4(caster.front), f4(caster.right), f4(caster.left), waist, top)
+    upper = Box(
+        f4(caster.back), f4(caster.front), f4(trunk * caster.right), f4(trunk * caster.left),
+        waist, top,
+    )  # fmt: skip
     turned = Direction(
         sun.x * caster.along_x + sun.y * caster.along_y,
         sun.y * caster.along_x - sun.x * caster.along_y,
         float(sun.z),
     )
-    return shadow_boxes(lower, upper, turned, caster.width, caster.beyond)
+    return shadow_boxes(lower, upper, turned, caster.width, caster.beyond, upright)

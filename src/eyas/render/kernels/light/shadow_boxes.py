@@ -21,6 +21,15 @@ _EDGE = 0.15
 _WIDENING = 0.12
 """Growth of that length with the distance of the box."""
 
+_SHOE = 0.13
+"""Distance of the middle of a shoe from its toes [m]."""
+
+_PER_LENGTH, _PER_WIDTH = f4(1.0 / 0.24), f4(1.0 / 0.17)
+"""One over half the length and half the width of the dark ground around a foot [1/m]."""
+
+_TOUCH = f4(0.8)
+"""Share of all light that a shoe hides from the ground at its sole."""
+
 _STEEP = 1e-4
 """Smallest step of a ray along an axis, so that its inverse is finite."""
 
@@ -53,6 +62,8 @@ class ShadowBoxes(NamedTuple):
     """Inverse of the distance over which the thing blocks the sky's light on the ground [1/m]."""
     most: float
     """Share of it that is blocked under the thing."""
+    feet: float
+    """Distance of the feet of what stands on two of them from its middle [m]; 0: it does not."""
 
 
 @kernel(inline=True)
@@ -62,7 +73,7 @@ def _inverse(step: float) -> float:
 
 @kernel(inline=True)
 def shadow_boxes(
-    lower: Box, upper: Box, sun: Direction, width: float, beyond: float
+    lower: Box, upper: Box, sun: Direction, width: float, beyond: float, upright: bool
 ) -> ShadowBoxes:
     """Return what blocks light.
 
@@ -72,6 +83,7 @@ def shadow_boxes(
         sun: Unit vector to it, in the thing's frame.
         width: Half the width of the thing [m].
         beyond: Distance from the thing up to which it blocks the sky's light on the ground [m].
+        upright: Whether it stands on two feet.
     """
     half, rise = 0.5 * (lower.left - lower.right), max(sun.z, 1e-3)
     return ShadowBoxes(
@@ -82,6 +94,7 @@ def shadow_boxes(
         (f4(lower.front + beyond), f4(width + beyond)),
         f4(1.0 / (beyond + _INSET)),
         f4(_UNDER * min(half + 0.35, 1.0)),  # light comes under a motorbike from both sides
+        f4(max(lower.front - _SHOE, 0.04) if upright else 0.0),
     )
 
 
@@ -129,4 +142,11 @@ def darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> tuple[float, flo
     out_y = greater(magnitude(y - middle) - half + lesser(f4(_INSET), half), zero)
     near = greater(one - root(out_x * out_x + out_y * out_y) * boxes.reach, zero)
     near = select(magnitude(z) > f4(0.3), zero, near)
-    return one - lesser(hidden, one), one - boxes.most * near * near * (f4(3.0) - f4(2.0) * near)
+    share = boxes.most * near * near * (f4(3.0) - f4(2.0) * near)
+    if boxes.feet > zero:
+        along, aside = (magnitude(x) - boxes.feet) * _PER_LENGTH, (y - middle) * _PER_WIDTH
+        touch = greater(one - along * along - aside * aside, zero)
+        touch = select(magnitude(z) > f4(0.1), zero, touch * touch)
+        hidden += _TOUCH * touch
+        share += (one - share) * _TOUCH * touch
+    return one - lesser(hidden, one), one - share
