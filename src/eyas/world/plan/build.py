@@ -42,6 +42,8 @@ _NEAR = 80.0
 """Reach of the ground that is cut into small squares beside streets [m]."""
 _SLOPE = 1.4
 """Width of the slope around a heap [m]."""
+_SUNK = 0.015
+"""How far the sides of a slab stand back from its edge, clear of those of others beside it [m]."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height on which something else stands carry nothing: no camera sees it [m]."""
 _LAMP_HEIGHTS = (6.75, 6.6)
@@ -258,7 +260,8 @@ def _flat(work: _Work, piece: p.Flat) -> Mesh:
     if piece.sides is None:
         return top
     side = TEXTURES[piece.sides.texture]
-    return concatenate([top, skirt(piece.area, piece.foot, piece.z, piece.sides, side)])
+    sunk = shapely.buffer(piece.area, -_SUNK, join_style="mitre")
+    return concatenate([top, skirt(sunk, piece.foot, piece.z, piece.sides, side)])
 
 
 def _heap(work: _Work, piece: p.Heap) -> Mesh:
