@@ -144,7 +144,7 @@ def test_what_can_be_seen_is_measured_above_the_target(monkeypatch):
 
 def test_no_parked_car_has_a_colour_of_look_alikes():
     taxi = (0.93, 0.70, 0.08)
-    distances = np.sqrt(colour_distances(np.array([*PARKED, taxi])))
+    distances = np.sqrt(colour_distances(np.array([*PARKED.values(), taxi])))
     for name in COLOURS:
         own = distances[:, list(COLOUR_NAMES).index(name)]
         assert (own > 1.6 * distances.min(axis=1)).all(), name

@@ -8,9 +8,9 @@ from eyas.mesh import shell
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.state.mesh import Surface
 from eyas.targets.catalogue import MODELS, model_index
-from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
 from eyas.targets.vehicles.models import VEHICLES
-from eyas.targets.vehicles.wheels import wheel_levels
+from eyas.world.cars.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
+from eyas.world.cars.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
 

@@ -7,7 +7,7 @@ from eyas.mesh.flat import quads
 from eyas.mesh.shell import levels_of
 from eyas.state.mesh import Material
 from eyas.targets.vehicles.models import VEHICLES
-from eyas.targets.vehicles.wheels import wheel_levels
+from eyas.world.cars.wheels import wheel_levels
 
 CLOSE = 0.01
 """Surfaces that face alike must be farther apart, or the same [m]."""

@@ -9,7 +9,17 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.core import exact
 from eyas.mesh.panels import fan
 from eyas.mesh.shell import Shell, levels_of
-from eyas.targets.vehicles.finishes import (
+from eyas.targets.vehicles.vehicle import (
+    CAB,
+    CHASSIS_BEHIND,
+    Trailer,
+    VehicleModel,
+    vehicle,
+)
+from eyas.traffic.config import VehicleType
+from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
+from eyas.world.build.bodywork import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
+from eyas.world.cars.finishes import (
     BRIGHT,
     HEAD_LAMP,
     INDICATOR_LEFT,
@@ -21,17 +31,7 @@ from eyas.targets.vehicles.finishes import (
     TAIL_LAMP,
     TRIM,
 )
-from eyas.targets.vehicles.vehicle import (
-    CAB,
-    CHASSIS_BEHIND,
-    Axle,
-    Trailer,
-    VehicleModel,
-    vehicle,
-)
-from eyas.traffic.config import VehicleType
-from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
-from eyas.world.build.bodywork import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
+from eyas.world.cars.frame import Axle
 
 __all__ = ["HALF", "TRACTOR_BASE", "facing", "trailer_frame", "truck"]
 

@@ -10,8 +10,9 @@ from eyas.mesh.shell import levels_of
 from eyas.state.mesh import Mesh
 from eyas.targets.posing import PoseCall
 from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicles
-from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Axle, Trailer, VehicleModel
-from eyas.targets.vehicles.wheels import DESIGNS, wheel_levels
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Trailer, VehicleModel
+from eyas.world.cars.frame import Axle
+from eyas.world.cars.wheels import DESIGNS, wheel_levels
 
 __all__ = ["VehicleRig", "trailers_of"]
 

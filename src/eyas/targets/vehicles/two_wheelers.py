@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 
 from eyas.mesh.shell import Shell, levels_of
-from eyas.targets.vehicles.finishes import (
+from eyas.targets.vehicles.vehicle import VehicleModel, vehicle
+from eyas.traffic.config import VehicleType
+from eyas.world.cars.finishes import (
     CLOTH,
     GLASS,
     HEAD_LAMP,
@@ -14,8 +16,7 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.vehicle import Axle, VehicleModel, vehicle
-from eyas.traffic.config import VehicleType
+from eyas.world.cars.frame import Axle
 
 __all__ = ["LEAN_LIMIT", "SEAT", "Posture", "lamp", "two_wheeler"]
 

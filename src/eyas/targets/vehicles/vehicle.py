@@ -9,6 +9,7 @@ from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.kind import Block, Colour, Model, Section
 from eyas.traffic.config import VehicleType
+from eyas.world.cars.frame import Axle
 
 __all__ = [
     "BODY_COLOURS",
@@ -16,7 +17,6 @@ __all__ = [
     "CHASSIS_BEHIND",
     "MOTORCYCLE_COLOURS",
     "VEHICLE_AHEAD",
-    "Axle",
     "Trailer",
     "VehicleModel",
     "vehicle",
@@ -61,22 +61,6 @@ MOTORCYCLE_COLOURS: tuple[Colour, ...] = (
 )
 """The main colours of the original's six colour pairs for two-wheelers, sRGB: red, blue, teal,
 ochre, green, plum."""
-
-
-@dataclass(frozen=True, slots=True)
-class Axle:
-    """One or two wheels that turn together."""
-
-    x: float
-    """Position along the vehicle [m]."""
-    track: float
-    """Distance between the middles of the two wheels [m]; 0 for a single wheel."""
-    width: float
-    """Width of a tyre [m]."""
-    steered: bool = False
-    """Whether the wheels steer."""
-    towed: bool = False
-    """Whether it is a trailer's."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,9 @@ __all__ = ["chance_of", "mesh_of", "prisms_of"]
 _LOWEST = 0.3
 """Lower walls are left out [m]."""
 
+_LEDGES = 0.08
+"""How far ledges may lie above or below the edge that they hide [m]."""
+
 _TALL = 10
 """Number of storeys from which a building has a base and a top."""
 
@@ -59,7 +62,9 @@ def mesh_of(building: BuildingPart) -> Mesh:
                 parts.window_wall(outline, foot, foot + street, front, starts, storey / FLOOR)
             )
     if street > 0:
-        meshes.append(parts.ledge(building.footprint, foot + street, stone))
+        # Not at one height with the next house's, whose plane it would share at the party wall.
+        ledge = foot + street + rng.uniform(-_LEDGES, _LEDGES)
+        meshes.append(parts.ledge(building.footprint, ledge, stone))
     if building.roof == "pyramid":
         meshes.append(parts.pyramid_roof(building.footprint, top, stone, building.cover))
     elif building.roof != "flat":

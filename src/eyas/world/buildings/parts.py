@@ -24,6 +24,10 @@ __all__ = [
 PARAPET = 0.9
 """Height of the wall around a flat roof [m]."""
 
+_PROUD = 0.015
+"""How far it stands out from the walls, so that it does not share their planes where a taller part
+of the building rises from its edge [m]."""
+
 Outline = NDArray[np.float64]
 
 _TILE = 12.0
@@ -74,9 +78,14 @@ def ledge(outline: Outline, z: float, stone: Material) -> Mesh:
 def flat_roof(shape: shapely.Polygon, top: float, stone: Material, cover: Material) -> Mesh:
     """Return a roof with a parapet around it, and around its courtyards."""
     inside = shapely.buffer(shape, -0.35, join_style="mitre")
+    outside = shapely.buffer(shape, _PROUD, join_style="mitre")
     edge = top + PARAPET
-    pieces = [walls(ring, top, edge, stone, 6.0) for ring in rings(shape)]
-    pieces.append(flat_polygon(shape - inside, edge, stone, 6.0))
+    pieces = [
+        walls(ring, top - 0.02, edge, stone, 6.0)
+        for part in shapely.get_parts(outside)
+        for ring in rings(part)
+    ]
+    pieces.append(flat_polygon(outside - inside, edge, stone, 6.0))
     pieces += [
         walls(ring[::-1], top, edge, stone, 6.0)
         for part in shapely.get_parts(inside)

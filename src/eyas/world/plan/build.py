@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.assembly import concatenate
@@ -44,6 +43,8 @@ _SLOPE = 1.4
 """Width of the slope around a heap [m]."""
 _SNOW_FRINGE = 12.0
 """Depth below the line where snow begins down to which there are patches of it [m]."""
+_SUNK = 0.015
+"""How far the sides of a slab stand back from its edge, clear of those of others beside it [m]."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height on which something else stands carry nothing: no camera sees it [m]."""
 _LAMP_HEIGHTS = (6.75, 6.6)
@@ -262,7 +263,8 @@ def _flat(work: _Work, piece: p.Flat) -> Mesh:
     if piece.sides is None:
         return top
     side = TEXTURES[piece.sides.texture]
-    return concatenate([top, skirt(piece.area, piece.foot, piece.z, piece.sides, side)])
+    sunk = shapely.buffer(piece.area, -_SUNK, join_style="mitre")
+    return concatenate([top, skirt(sunk, piece.foot, piece.z, piece.sides, side)])
 
 
 def _heap(work: _Work, piece: p.Heap) -> Mesh:

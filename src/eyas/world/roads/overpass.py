@@ -151,7 +151,7 @@ def _swept(
 
 
 def _line(middle: Points, offset: float, width: float, *, dashed: bool = False) -> Mesh:
-    section = ((offset - width / 2, 0.02), (offset + width / 2, 0.02))
+    section = ((offset - width / 2, 0.035), (offset + width / 2, 0.035))
     whole = _swept(middle, section, _WHITE, 1.0)
     if not dashed:
         return whole

@@ -90,8 +90,17 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator, apart: float = 1.0
     flat.uvs = (flat.positions[:, :2] / TEXTURES["asphalt_patch"]).astype(np.float32)
     stains = _slabs(oil, WEAR_HEIGHTS[1], _OIL)
     stains.uvs[:, 1] *= (_WAITING[1] - _WAITING[0]) / TEXTURES["asphalt_oil"]
-    top_down = [*seals, _slabs(lids, WEAR_HEIGHTS[2], _LID), flat, stains, *tracks]
+    top_down = [*_clear_of(lids, seals), _slabs(lids, WEAR_HEIGHTS[2], _LID), flat, stains, *tracks]
     return concatenate(top_down)
+
+
+def _clear_of(lids: Sequence[Line], seals: Sequence[Mesh]) -> list[Mesh]:
+    """Return the seals that touch no lid, which lies at their height."""
+    if not lids or not seals:
+        return list(seals)
+    around = [shapely.MultiPoint(seal.positions[:, :2]).convex_hull for seal in seals]
+    touching = shapely.STRtree(shapely.polygons(np.array(lids))).query(around, "intersects")[0]
+    return [seal for k, seal in enumerate(seals) if k not in touching]
 
 
 def worn_lanes(network: RoadNetwork, shortest: float) -> RoadNetwork:

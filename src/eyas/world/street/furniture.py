@@ -42,7 +42,7 @@ def _bench() -> Mesh:
     seat = [_part((1.8, 0.11, 0.04), (0, y, 0.45), _WOOD) for y in (-0.13, 0.01, 0.15)]
     back = [_part((1.8, 0.04, 0.1), (0, -0.24, z), _WOOD) for z in (0.62, 0.78)]
     feet = [_part((0.06, 0.45, 0.43), (x, 0, 0.21), _IRON) for x in (-0.75, 0.75)]
-    arms = [_part((0.05, 0.05, 0.42), (x, -0.22, 0.62), _IRON) for x in (-0.75, 0.75)]
+    arms = [_part((0.05, 0.05, 0.38), (x, -0.22, 0.60), _IRON) for x in (-0.75, 0.75)]
     return concatenate([*seat, *back, *feet, *arms])
 
 

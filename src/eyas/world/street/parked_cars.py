@@ -1,85 +1,104 @@
-"""Cars that never leave their car parks: simple shapes, part of the scene, not of the traffic."""
+"""Cars that never leave their car parks: part of the scene, not of the traffic."""
 
 from dataclasses import replace
-from functools import partial
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
-from eyas.mesh.flat import quads
-from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Material, Mesh, Surface
-from eyas.world.build.bodywork import (
-    BAND,
-    FRONT,
-    RAISED,
-    REAR,
-    REAR_WINDOW,
-    SIDE,
-    SIDE_SHARES,
-    TOP,
-    TOP_SHARES,
-    WINDSCREEN,
-    body_paint,
-)
-from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
+from eyas.world.cars.body import body_levels
+from eyas.world.cars.types import TYPES, CarType
+from eyas.world.cars.wheels import wheel_levels
 
-__all__ = ["CARS", "HIGH", "LONG", "VARIANTS", "WIDE", "parked_car"]
+__all__ = ["CARS", "KINDS", "VARIANTS", "ParkedKind", "parked_car", "parked_taxi", "solid_size"]
 
-Points = NDArray[np.float64]
+_COLOURS = {
+    "white": (0.92, 0.92, 0.91),
+    "black": (0.09, 0.09, 0.10),
+    "grey": (0.34, 0.36, 0.39),
+    "silver": (0.62, 0.64, 0.66),
+    "blue": (0.12, 0.22, 0.42),
+    "red": (0.52, 0.10, 0.10),
+    "green": (0.16, 0.28, 0.22),
+    "beige": (0.74, 0.70, 0.60),
+}
 
-_COLOURS = (
-    (0.92, 0.92, 0.91),
-    (0.62, 0.64, 0.66),
-    (0.09, 0.09, 0.10),
-    (0.34, 0.36, 0.39),
-    (0.52, 0.10, 0.10),
-    (0.12, 0.22, 0.42),
-    (0.74, 0.70, 0.60),
-    (0.16, 0.28, 0.22),
+
+class ParkedKind(NamedTuple):
+    """A car as it stands there."""
+
+    type: str
+    """A name in `eyas.world.cars.types.TYPES`."""
+    colour: str
+    """Of the paint."""
+    look: str = ""
+    """What it has: `sunroof`, `worn`, `rack`, `dark` bumpers; `covered` by a tarpaulin; none."""
+    steer: float = 0.0
+    """Angle of the front wheels, to the left [rad]."""
+    rims: int = 0
+    """Design of its wheel discs."""
+
+
+KINDS: tuple[ParkedKind, ...] = (
+    ParkedKind("compact", "white", rims=1),
+    ParkedKind("compact", "black", "sunroof", 0.22),
+    ParkedKind("compact", "grey", "worn", rims=2),
+    ParkedKind("compact", "silver", "dark", rims=2),
+    ParkedKind("compact", "white", "sunroof", -0.2),
+    ParkedKind("compact", "blue", rims=3),
+    ParkedKind("estate", "grey", "rack", rims=1),
+    ParkedKind("compact", "silver", "covered"),
+    ParkedKind("small", "white", "dark", rims=2),
+    ParkedKind("small", "red", rims=3),
+    ParkedKind("small", "grey", steer=0.25),
+    ParkedKind("small", "black", "worn", rims=2),
+    ParkedKind("small", "white", rims=1),
+    ParkedKind("small", "blue", "sunroof"),
+    ParkedKind("saloon", "black", "sunroof", rims=1),
+    ParkedKind("saloon", "silver", "worn", -0.22),
+    ParkedKind("saloon", "white", rims=3),
+    ParkedKind("estate", "black", "rack", rims=3),
+    ParkedKind("estate", "blue", rims=1),
+    ParkedKind("crossover", "white", "rack", rims=1),
+    ParkedKind("crossover", "grey", "sunroof", 0.2),
+    ParkedKind("crossover", "red", "dark", rims=3),
+    ParkedKind("off-road", "black", "rack", rims=1),
+    ParkedKind("off-road", "grey", "sunroof"),
+    ParkedKind("mini", "white", rims=2),
+    ParkedKind("mini", "green", steer=-0.25, rims=2),
+    ParkedKind("people carrier", "blue", "rack"),
+    ParkedKind("people carrier", "beige", "worn", rims=2),
+    ParkedKind("delivery van", "white", "worn", rims=2),
+    ParkedKind("minibus", "grey", rims=2),
+    ParkedKind("minibus", "white", "worn", 0.2, 2),
+    ParkedKind("pickup", "black", rims=3),
 )
-VARIANTS = len(_COLOURS)
+"""All kinds; each is as frequent as another.
+
+Types: of the cars registered in Germany, 25 % are compact, 19 % small, 13 % of the middle class
+(Kraftfahrt-Bundesamt, 1 January 2020) and 10 % sport utility vehicles (the same, 2021); estates are
+counted there among the compact and the middle class, and the shares of the others are guesses.
+Paint: of those built in 2020 for Europe, the Middle East and Africa, 28 % were white, 76 % white,
+black, grey or silver, and 11 % blue (BASF Color Report 2020)."""
+
+VARIANTS = len(KINDS)
 """Number of kinds of cars."""
 CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
 """Names of these kinds."""
 
-LONG, WIDE, HIGH = 2.28, 0.9, 1.5
-"""Half the length, half the width and the height of their solid shape [m]."""
+_TAXI = ParkedKind("saloon", "taxi", rims=1)
+_YELLOW = (0.93, 0.70, 0.08)
+_TARPAULIN = Material(tint=(0.47, 0.48, 0.49))
 
-_GLASS = Material(texture="panes", tint=(0.5, 0.51, 0.53), surface=Surface.GLASS)
-"""Not that of cars in traffic: snow lies on it."""
-_RUBBER = material("plain", (0.09, 0.09, 0.09))
-_LIGHT = material("plain", (0.86, 0.86, 0.82))
-_LENS = material("plain", (0.55, 0.06, 0.05))
-_RIM = material("plain", (0.62, 0.63, 0.65))
-_PLATE = material("plain", (0.88, 0.88, 0.84))
+_AGED = 0.97
+"""Factor on the tints of all that is not paint: materials of the traffic bear no snow."""
 
-_STYLES = tuple(
-    f"bodywork_{style}"
-    for style in (
-        *("saloon", "hatch", "saloon_worn", "hatch_sunroof", "saloon_sunroof", "hatch_worn"),
-        *("saloon", "hatch"),
-    )
-)
-"""Bodywork of each kind; it fits the shape."""
-
-_AXLE, _ARCH = 1.38, 0.37
-"""Distance of the axles from the middle, and half the length of an arch [m]."""
-
-# Outlines of the lower body and of the cabin from the side: x, half width, z [m].
-_SALOON = (
-    ((-2.25, 0.74, 0.36), (-2.28, 0.80, 0.62), (-2.15, 0.80, 0.96), (-1.2, 0.87, 0.98),
-     (0.95, 0.87, 0.94), (2.1, 0.80, 0.76), (2.25, 0.76, 0.58), (2.2, 0.72, 0.34)),
-    ((-1.75, 0.76, 0.97), (-0.95, 0.60, 1.42), (0.1, 0.60, 1.44), (0.95, 0.76, 0.95)),
-)  # fmt: skip
-_ESTATE = (
-    ((-2.2, 0.76, 0.38), (-2.25, 0.84, 0.66), (-2.18, 0.84, 1.06), (-1.2, 0.90, 1.06),
-     (1.0, 0.90, 1.02), (2.05, 0.84, 0.90), (2.2, 0.80, 0.64), (2.15, 0.76, 0.36)),
-    ((-2.1, 0.78, 1.06), (-1.85, 0.66, 1.62), (0.25, 0.66, 1.66), (1.05, 0.80, 1.04)),
-)  # fmt: skip
+_UNLIT = {Surface.LAMP, *range(Surface.TAIL_LAMP, len(Surface))}
+"""Surfaces that are matt on a car without anybody in it."""
 
 
 def parked_car(variant: int) -> Levels:
@@ -88,102 +107,86 @@ def parked_car(variant: int) -> Levels:
     It stands on the origin and faces along x; lengths are in metres.
 
     Args:
-        variant: Index of the shape and colour, below `VARIANTS`.
+        variant: Index in `KINDS`.
     """
-    paint = replace(body_paint(_STYLES[variant]), tint=_raised(_COLOURS[variant]))
-    body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[variant % 2])
-    hull, top = partial(_hull, paint=paint, cabin=cabin), _cabin(cabin, paint)
-    fine = concatenate([hull(body), top, _lamps(body), *_wheels()])
-    coarse = concatenate([hull(body[[0, 2, 5, 7]]), top])
-    return fine, coarse
+    return _levels(KINDS[variant])
 
 
-def _raised(colour: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return a tint that gives plain paint a colour, see `body_paint`."""
-    red, green, blue = (RAISED * part for part in colour)
-    return red, green, blue
+def parked_taxi() -> Levels:
+    """Return a yellow taxi, as `parked_car` does."""
+    return _levels(_TAXI)
 
 
-def _hull(outline: Points, *, paint: Material, cabin: Points) -> Mesh:
-    """Return the body over an outline from tail to nose, with its two sides down to the sills."""
-    x, half, z = outline.T
-    left, middle = outline, outline * [1.0, 0.0, 1.0]
-    over = np.stack([left[:-1], middle[:-1], middle[1:], left[1:]], axis=1)
-    sill = float(z.min())
-    low = np.column_stack([x, half, np.full(len(x), sill)])
-    side = np.stack([left[:-1], left[1:], low[1:], low[:-1]], axis=1)
-    uvs = TOP.at(
-        np.interp(over[..., 0], [x.min(), *cabin[:, 0], x.max()], TOP_SHARES),
-        over[..., 1] / half.max(),
+def solid_size(variant: int) -> tuple[float, float, float]:
+    """Return length, width and height of the solid shape of a kind [m]."""
+    car = TYPES[KINDS[variant].type]
+    return car.length, car.width - 0.08, car.height
+
+
+def _levels(kind: ParkedKind) -> Levels:
+    car = TYPES[kind.type]
+    wheels = wheel_levels(car.wheel_radius, car.axles[0].width, 0.0, kind.rims)
+    fine, middle, coarse = _bodies(car, kind)
+    return (
+        _painted(concatenate([fine, *_wheels(car, wheels[0], kind.steer)]), kind),
+        _painted(concatenate([middle, *_wheels(car, wheels[1], kind.steer)]), kind),
+        _painted(coarse, kind),
     )
-    count = len(outline) // 4  # panels of each end
-    for rows, region, high in (
-        (slice(0, count), REAR, z[count]),
-        (slice(-count, None), FRONT, z[-count - 1]),
-    ):
-        end = over[rows]
-        uvs[rows] = region.at(end[..., 1] / half.max(), (end[..., 2] - sill) / (high - sill))
-    arches = [-_AXLE - _ARCH, -_AXLE + _ARCH, -0.2, 0.9, _AXLE - _ARCH, _AXLE + _ARCH]
-    along = np.interp(side[..., 0], [x.min(), *arches, x.max()], SIDE_SHARES)
-    belt = np.interp(side[..., 0], x[count:-count], z[count:-count])
-    side_uvs = SIDE.at(along, (side[..., 2] - sill) / np.maximum(belt - sill, 0.05))
-    faces, all_uvs = np.concatenate([over, side]), np.concatenate([uvs, side_uvs])
-    return _both_sides(faces, all_uvs, paint)
 
 
-def _both_sides(faces: Points, uvs: Points, skin: Material) -> Mesh:
-    """Return faces of the left half, and the same mirrored."""
-    out = _inwards(faces)
-    faces = np.where(out[:, None, None], faces[:, ::-1], faces)
-    uvs = np.where(out[:, None, None], uvs[:, ::-1], uvs)
-    mirror = faces[:, ::-1] * [1.0, -1.0, 1.0]
-    return quads(np.concatenate([faces, mirror]), np.concatenate([uvs, uvs[:, ::-1]]), skin)
-
-
-def _cabin(outline: Points, paint: Material) -> Mesh:
-    """Return windows all round and a painted roof."""
-    x, _, z = outline.T
-    across = np.array([1.0, 0.0, 0.0, 1.0])
-    left, middle = outline, outline * [1.0, 0.0, 1.0]
-    roof = np.array([left[1], middle[1], middle[2], left[2]])[None]
-    roof_uvs = TOP.at(np.take(TOP_SHARES, [2, 2, 3, 3]), across)[None]
-    up = (z - z.min()) / np.ptp(z)
-    side_uvs = BAND.at((x - x[0]) / (x[3] - x[0]), up)[None]
-    painted = _both_sides(
-        np.concatenate([roof, outline[None]]), np.concatenate([roof_uvs, side_uvs]), paint
+def _bodies(car: CarType, kind: ParkedKind) -> Levels:
+    style = kind.look if kind.look in ("sunroof", "worn") else ""
+    shape = replace(
+        car.shape,
+        bodywork=_bodywork(car.shape.bodywork, style),
+        rack=kind.look == "rack",
+        dark_bumpers=car.shape.dark_bumpers or kind.look == "dark",
     )
-    right = outline * [1.0, -1.0, 1.0]
-    rear = np.array([left[0], right[0], right[1], left[1]])
-    screen = np.array([right[3], left[3], left[2], right[2]])
-    corners = [0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]
-    panes = quads([rear, screen], [REAR_WINDOW.at(*corners), WINDSCREEN.at(*corners)], _GLASS)
-    return concatenate([painted, panes])
+    return body_levels(shape, car)
 
 
-def _inwards(faces: Points) -> NDArray[np.bool_]:
-    """Return which quadrilaterals face the middle of the car."""
-    middle = np.array([0.0, 0.0, 0.7])
-    normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    inwards: NDArray[np.bool_] = exact.dot(normal, faces.mean(axis=1) - middle) < 0
-    return inwards
+def _bodywork(base: str, style: str) -> str:
+    return f"{base}_{style}" if style and (base, style) != ("van", "sunroof") else base
 
 
-def _lamps(body: Points) -> Mesh:
-    nose, tail = body[-2], body[1]
-    front = [box((0.06, 0.36, 0.12), (nose[0] - 0.01, y, nose[2] + 0.02), _LIGHT, 1.0)
-             for y in (-0.52, 0.52)]  # fmt: skip
-    rear = [box((0.06, 0.3, 0.16), (tail[0] + 0.01, y, tail[2] + 0.1), _LENS, 1.0)
-            for y in (-0.58, 0.58)]  # fmt: skip
-    plate = box((0.03, 0.5, 0.11), (tail[0] + 0.0, 0.0, tail[2] + 0.13), _PLATE, 1.0)
-    return concatenate([*front, *rear, plate])
+def _wheels(car: CarType, wheel: Mesh, steer: float) -> list[Mesh]:
+    made = []
+    for axle in car.axles:
+        turn = steer if axle.steered else 0.0
+        cosine, sine = exact.cos(turn), exact.sin(turn)
+        for side in (0.5, -0.5):
+            place = (axle.x, side * axle.track, car.wheel_radius)
+            rows = (cosine, -sine, 0.0), (sine, cosine, 0.0), (0.0, 0.0, 1.0)
+            pose = np.array([[*row, at] for row, at in zip(rows, place, strict=True)])
+            made.append(transformed(_outer(wheel, side), pose))
+    return made
 
 
-def _wheels() -> list[Mesh]:
-    tyre = cylinder((0.32, 0.32), (-0.1, 0.1), 9, _RUBBER, cap=True)
-    disc = cylinder((0.2, 0.0), (0.1, 0.115), 9, _RIM)
-    wheel = concatenate([tyre, disc])
-    return [
-        transformed(wheel, np.array([[-side, 0, 0, x], [0, 0, side, 0.81 * side], [0, 1, 0, 0.32]]))
-        for x in (-_AXLE, _AXLE)
-        for side in (1.0, -1.0)
-    ]
+def _outer(wheel: Mesh, side: float) -> Mesh:
+    """Return a wheel without the side that faces the middle of the car, where nobody looks."""
+    y = side * wheel.positions[wheel.triangles, 1].astype(np.float64).mean(axis=1)
+    shown = y > 0.5 * float(y.min())
+    return replace(wheel, triangles=wheel.triangles[shown], materials=wheel.materials[shown])
+
+
+def _painted(mesh: Mesh, kind: ParkedKind) -> Mesh:
+    """Return a mesh in the colour of a kind, with its lamps off."""
+    colour = _YELLOW if kind.colour == "taxi" else _COLOURS[kind.colour]
+    if kind.look == "covered":
+        return replace(mesh, palette=tuple(_covered(m) for m in mesh.palette))
+    return replace(mesh, palette=tuple(_finish(m, colour) for m in mesh.palette))
+
+
+@cache
+def _finish(material: Material, colour: tuple[float, float, float]) -> Material:
+    factors = colour if material.surface is Surface.PAINT else (_AGED,) * 3
+    red, green, blue = (t * f for t, f in zip(material.tint, factors, strict=True))
+    if material.surface in _UNLIT:
+        return Material(tint=(red, green, blue))
+    return replace(material, tint=(red, green, blue))
+
+
+def _covered(material: Material) -> Material:
+    """Return a tarpaulin instead of paint, panes and lamps."""
+    shown = {Surface.PAINT, Surface.GLASS, *_UNLIT}
+    return _TARPAULIN if material.surface in shown else _finish(material, (1.0, 1.0, 1.0))

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eyas.core import exact
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
@@ -29,8 +28,6 @@ if TYPE_CHECKING:
     from eyas.world.plan.plan import ThingKind
 
 __all__ = ["SOLIDS", "THINGS", "Thing"]
-
-_TAXI = (0.93, 0.70, 0.08)
 
 
 Solid = Callable[[SceneBuilder, "ThingKind", Placed, int], None]
@@ -72,14 +69,10 @@ def _upright(radius: float, top: float, *, by_size: bool = False, from_foot: boo
 
 
 def _car(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
-    size, (x, y) = pose.scale, (exact.cos(pose.turn), exact.sin(pose.turn))
-    ahead, aside = (
-        size * parked_cars.LONG * np.array([x, y]),
-        size * parked_cars.WIDE * np.array([-y, x]),
-    )
-    corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
-    outline = rounded(np.array((pose.x, pose.y)) + np.array(corners))
-    builder.add_prism(outline, pose.z, pose.z + size * parked_cars.HIGH, owner)
+    length, width, height = (pose.scale * side for side in parked_cars.solid_size(kind.variant))
+    x, y = length / 2, width / 2
+    outline = rounded(pose.at_corners([(-x, -y), (x, -y), (x, y), (-x, y)]))
+    builder.add_prism(outline, pose.z, pose.z + height, owner)
 
 
 def _cottage(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
@@ -152,17 +145,6 @@ def _house(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Level
     return cottages.cottage_levels(kind.storeys, kind.walls, kind.roof)
 
 
-def _taxi(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
-    paint = parked_cars.parked_car(0)[0].palette[0]
-    return tuple(
-        replace(
-            mesh,
-            palette=tuple(replace(m, tint=_TAXI) if m == paint else m for m in mesh.palette),
-        )
-        for mesh in parked_cars.parked_car(0)
-    )
-
-
 def _always(
     make: Callable[[], Levels],
 ) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
@@ -221,7 +203,7 @@ THINGS: Mapping[str, Thing] = {
     "parked car": Thing(
         levels=lambda kind, rng, season: parked_cars.parked_car(kind.variant), solid="car"
     ),
-    "parked taxi": Thing(levels=_taxi, solid="car"),
+    "parked taxi": Thing(levels=_always(parked_cars.parked_taxi), solid="car"),
     "bale": Thing(levels=_always(furniture.bale_levels), solid="bale"),
     "subway entrance": Thing(levels=_always(subway.entrance_levels), solid="entrance"),
     "fountain": Thing(levels=_always(furniture.fountain_levels)),

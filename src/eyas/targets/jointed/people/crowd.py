@@ -16,7 +16,6 @@ from eyas.targets.jointed.people.person import (
     Posture,
     Shoes,
 )
-from eyas.targets.kind import Colour
 
 __all__ = ["LOOKS", "PEOPLE"]
 
@@ -177,7 +176,9 @@ def _person(number: int) -> Person:
     shoes = dice.one("shoes", _SHOES) if build is not Build.CHILD else Shoes.TRAINERS
     posture, carried = _carrying(dice, build, garment)
     tone = dice.one("skin", _SKINS)
-    hair_colour = dice.one("hair", _HAIR if tone not in (_TAN, _DARK, _DEEP) else _HAIR[:1] + _HAIR[3:5])
+    hair_colour = dice.one(
+        "hair", _HAIR if tone not in (_TAN, _DARK, _DEEP) else _HAIR[:1] + _HAIR[3:5]
+    )
     return Person(
         name=f"Pedestrian{number}",
         height=round(height, 2),

@@ -99,7 +99,13 @@ def _bob(shell: Shell, sides: int, detail: int) -> None:
 
 def _bun(shell: Shell, sides: int, detail: int) -> None:
     _short(shell, sides, detail)
-    shell.ball((-0.115, 0.0, _CHIN + 0.185), (0.048, 0.05, 0.048), hair(), rows=2 + detail, sides=max(sides - 4, 4))
+    shell.ball(
+        (-0.115, 0.0, _CHIN + 0.185),
+        (0.048, 0.05, 0.048),
+        hair(),
+        rows=2 + detail,
+        sides=max(sides - 4, 4),
+    )
 
 
 def _tail(shell: Shell, sides: int, detail: int) -> None:
@@ -122,7 +128,11 @@ def _covered(shell: Shell, rows: list[Row], sides: int) -> None:
 
 def _nape(shell: Shell, sides: int) -> None:
     """Add short dark hair below a cap or hat."""
-    rows = [(0.045, -0.030, 0.068, 0.052), (0.085, -0.012, 0.097, 0.077), (0.15, -0.01, 0.101, 0.08)]
+    rows = [
+        (0.045, -0.030, 0.068, 0.052),
+        (0.085, -0.012, 0.097, 0.077),
+        (0.15, -0.01, 0.101, 0.08),
+    ]
     lifted = [(z + _CHIN, *row) for z, *row in rows]
     wrapped(shell, lifted, (0.0, 0.5, 1.0), TORSO, cloth(tint=(0.2, 0.15, 0.12)), sides=sides)
 

@@ -138,16 +138,26 @@ def thigh(lower: Lower, build: Build, below: Colour | None, *, left: bool) -> Sh
     def shape(shell: Shell, detail: int) -> None:
         sides = (4, 6, 8)[detail]
         thick = _THICK[build]
-        rows = [(-THIGH - 0.02, 0.055), (-0.30, 0.068), (-0.15, 0.082), (-0.04, 0.086), (0.03, 0.060)]
+        rows = [
+            (-THIGH - 0.02, 0.055),
+            (-0.30, 0.068),
+            (-0.15, 0.082),
+            (-0.04, 0.086),
+            (0.03, 0.060),
+        ]
         ups = (0.48, 0.62, 0.78, 0.93, 1.0)
         if below is not None:
             # What the leg pushes out of a skirt or coat is cloth.
             hem = [(-0.31, 0.088), (-0.15, 0.096), (-0.03, 0.096), (0.02, 0.08)]
-            wrapped(shell, _grown(hem, thick, 0.012), ups[1:], LEG, cloth(), sides=sides, flip=not left)
+            wrapped(
+                shell, _grown(hem, thick, 0.012), ups[1:], LEG, cloth(), sides=sides, flip=not left
+            )
             bare = lower in (Lower.NONE, Lower.SKIRT)
             leg = _grown(rows[:3], thick, 0.0 if bare else 0.01)
             material = skin(below) if bare else cloth(tint=below)
-            wrapped(shell, leg, ups[:3], SKIN if bare else LEG, material, sides=sides, flip=not left)
+            wrapped(
+                shell, leg, ups[:3], SKIN if bare else LEG, material, sides=sides, flip=not left
+            )
             return
         ease = {Lower.WIDE: 0.02, Lower.SHORTS: 0.018}.get(lower, 0.008)
         wrapped(shell, _grown(rows, thick, ease), ups, LEG, cloth(), sides=sides, flip=not left)
@@ -167,7 +177,13 @@ def shank(lower: Lower, build: Build, shoes: Shoes, *, left: bool) -> Shape:
             calf = 0.058 if lower is Lower.TROUSERS else 0.075
             tucked = shoes is Shoes.BOOTS and lower is Lower.TROUSERS
             end = (-0.28, 0.05) if tucked else (-SHANK - 0.035, hem)
-            rows = [end, (-0.24 if tucked else -0.33, calf - 0.002), (-0.14, calf), (0.0, 0.062), (0.03, 0.045)]
+            rows = [
+                end,
+                (-0.24 if tucked else -0.33, calf - 0.002),
+                (-0.14, calf),
+                (0.0, 0.062),
+                (0.03, 0.045),
+            ]
             wrapped(shell, _grown(rows, thick, 0.004), (0.0, 0.13, 0.3, 0.47, 0.52), LEG, cloth(),
                     sides=sides, flip=not left)  # fmt: skip
             return

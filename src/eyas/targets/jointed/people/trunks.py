@@ -98,7 +98,10 @@ def _rows(garment: Garment, build: Build) -> tuple[list[Row], list[float]]:
         return [*low, *body[:end]], [0.0, 0.05, 0.1, *ups[1:end]]
     hem = _HEM.get(garment, -0.07)
     # It hangs before the thighs, which swing out below it.
-    rows = [(hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006), *body]
+    rows = [
+        (hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006),
+        *body,
+    ]
     ups = [0.0, 0.08, *ups[1:]]
     if garment in (Garment.T_SHIRT, Garment.SHIRT, Garment.HOODIE):
         return rows[:-1], ups[:-1]
@@ -184,4 +187,3 @@ def hips(lower: Lower, build: Build) -> Shape:
         wrapped(shell, rows, (0.0, 0.2, 0.6, 1.0), HIPS, cloth(), sides=sides, box=0.25)
 
     return shape
-

@@ -35,6 +35,7 @@ _HOLDS = {
     Posture.POCKETS: (Holds.POCKET, Holds.POCKET),
 }
 
+
 def dress_of(person: Person) -> Dress:
     """Return the shapes of a person's parts."""
     p = person
@@ -76,5 +77,3 @@ def colours_of(person: Person) -> tuple[Colour | None, ...]:
     thighs = None if p.garment.is_long else p.lower_colour
     leg = [thighs, p.skin if bare_legs else p.lower_colour, p.shoe_colour]
     return (*own, *leg, *leg)
-
-

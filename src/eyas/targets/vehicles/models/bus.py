@@ -1,10 +1,10 @@
 """A city bus."""
 
-from eyas.targets.vehicles.car_body import car
-from eyas.targets.vehicles.car_shape import CarShape
-from eyas.targets.vehicles.finishes import TRIM
-from eyas.targets.vehicles.vehicle import Axle
+from eyas.targets.vehicles.car import car
 from eyas.traffic.config import VehicleType
+from eyas.world.cars.finishes import TRIM
+from eyas.world.cars.frame import Axle
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["MODEL"]
 

@@ -1,7 +1,7 @@
 """Lincoln MKZ."""
 
-from eyas.targets.vehicles.car_body import car
-from eyas.targets.vehicles.car_shape import CarShape
+from eyas.targets.vehicles.car import car
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["MODEL"]
 

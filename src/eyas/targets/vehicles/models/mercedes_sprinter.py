@@ -1,8 +1,8 @@
 """Mercedes-Benz Sprinter, a long van."""
 
-from eyas.targets.vehicles.car_body import car
-from eyas.targets.vehicles.car_shape import CarShape
-from eyas.targets.vehicles.finishes import TRIM
+from eyas.targets.vehicles.car import car
+from eyas.world.cars.finishes import TRIM
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["MODEL"]
 

@@ -1,8 +1,8 @@
 """Range Rover Sport SVR, with a black roof."""
 
-from eyas.targets.vehicles.car_body import car
-from eyas.targets.vehicles.car_shape import CarShape
-from eyas.targets.vehicles.finishes import BLACK_PAINT, TRIM
+from eyas.targets.vehicles.car import car
+from eyas.world.cars.finishes import BLACK_PAINT, TRIM
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["MODEL"]
 

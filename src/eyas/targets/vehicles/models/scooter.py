@@ -1,9 +1,9 @@
 """A scooter, whose rider sits upright."""
 
 from eyas.mesh.shell import Shell
-from eyas.targets.vehicles.finishes import BRIGHT, GLASS, PAINT, PLATE, STEEL, TRIM
 from eyas.targets.vehicles.two_wheelers import SEAT, Posture, lamp, two_wheeler
 from eyas.targets.vehicles.vehicle import VehicleModel
+from eyas.world.cars.finishes import BRIGHT, GLASS, PAINT, PLATE, STEEL, TRIM
 
 __all__ = ["MODEL"]
 

@@ -1,8 +1,8 @@
 """Tesla Model 3, with a roof of glass."""
 
-from eyas.targets.vehicles.car_body import car
-from eyas.targets.vehicles.car_shape import CarShape
-from eyas.targets.vehicles.finishes import ROOF_GLASS
+from eyas.targets.vehicles.car import car
+from eyas.world.cars.finishes import ROOF_GLASS
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["MODEL"]
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from eyas.mesh.shell import Shell
-from eyas.targets.vehicles.finishes import FREIGHT, SKIN_WHITE, TRIM
 from eyas.targets.vehicles.heavy import HALF, TRACTOR_BASE, facing, trailer_frame, truck
 from eyas.targets.vehicles.vehicle import Trailer, VehicleModel
 from eyas.world.build.bodywork import BOX_DOORS, BOX_ROOF, BOX_SIDE, PLAIN
+from eyas.world.cars.finishes import FREIGHT, SKIN_WHITE, TRIM
 
 __all__ = ["MODEL"]
 

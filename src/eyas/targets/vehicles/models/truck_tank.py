@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.shell import Shell
-from eyas.targets.vehicles.finishes import BRIGHT, STEEL, TRIM
 from eyas.targets.vehicles.heavy import TRACTOR_BASE, trailer_frame, truck
 from eyas.targets.vehicles.vehicle import Trailer, VehicleModel
+from eyas.world.cars.finishes import BRIGHT, STEEL, TRIM
 
 __all__ = ["MODEL"]
 

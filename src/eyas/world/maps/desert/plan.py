@@ -11,8 +11,8 @@ from eyas.state.lighting import Horizon
 from eyas.state.mesh import Surface
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import facade, material
-from eyas.world.land.rising import relief_of
 from eyas.world.build.millimetres import snapped
+from eyas.world.land.rising import relief_of
 from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.maps.desert.scatter import scattered_over, wheel_tracks
@@ -66,8 +66,8 @@ _SPACING = (6.0, 13.0)
 """Half the side of the square with the smaller triangles, and distances of their corners [m]."""
 DRIFT_HEIGHT = 0.03
 """z of the drifts: above all paint [m]."""
-_FRINGE_HEIGHT = 0.022
-"""z of the thin sand around them, and of the tongues at the kerbs [m]."""
+_FRINGE_HEIGHT, _TONGUE_HEIGHT = 0.022, 0.026
+"""z of the thin sand around them, and of the tongues at the kerbs, which cross it [m]."""
 _SNOWED = 22
 """Number of dunes under snow in winter, as in the original."""
 
@@ -139,6 +139,6 @@ def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     edge = shapely.intersection(shapely.difference(dusty, sand), desert.roads)
     return [
         *(Heap(area=drift.area, z=DRIFT_HEIGHT, cover=SAND) for drift in desert.drifts),
-        *(Heap(area=tongue, z=_FRINGE_HEIGHT, cover=SAND) for tongue in desert.tongues),
+        *(Heap(area=tongue, z=_TONGUE_HEIGHT, cover=SAND) for tongue in desert.tongues),
         Flat(area=edge, z=_FRINGE_HEIGHT, cover=_DUSTY, beside=sand),
     ]

@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.targets.vehicles.car_shape import CarShape, arch_radius
-from eyas.targets.vehicles.vehicle import VehicleModel
 from eyas.world.build.bodywork import (
     BAND,
     BEAMS,
@@ -20,6 +18,8 @@ from eyas.world.build.bodywork import (
     TOP_SHARES,
     WINDSCREEN,
 )
+from eyas.world.cars.frame import Frame
+from eyas.world.cars.shape import CarShape, arch_radius
 
 __all__ = ["Wrap"]
 
@@ -40,10 +40,10 @@ class _Marks(NamedTuple):
     """See `BEAMS`."""
 
 
-def _marks(model: VehicleModel, shape: CarShape) -> _Marks:
+def _marks(frame: Frame, shape: CarShape) -> _Marks:
     tail, nose = shape.top[0][0], shape.top[-1][0]
-    ahead, behind = model.axles[0].x, model.axles[1].x
-    reach = arch_radius(model.wheel_radius)
+    ahead, behind = frame.axles[0].x, frame.axles[1].x
+    reach = arch_radius(frame.wheel_radius)
     doors = [window for window in shape.windows if window[1] - window[0] > _DOOR]
     pillar = 0.5 * (doors[-1][0] + doors[-2][1]) if len(doors) > 1 else doors[-1][0]
     door = min(doors[-1][1] + 0.05, ahead - reach - 0.04)
@@ -58,13 +58,13 @@ class Wrap:
     """Finds texture coordinates of points on the left half of a body or on either side of it.
 
     Args:
-        model: The car.
+        frame: The car without its body.
         shape: Its lines.
     """
 
-    def __init__(self, model: VehicleModel, shape: CarShape) -> None:
+    def __init__(self, frame: Frame, shape: CarShape) -> None:
         self._shape = shape
-        self._marks = _marks(model, shape)
+        self._marks = _marks(frame, shape)
 
     def side(self, points: Points) -> Points:
         """Return those of points below the windows, shape (..., 3)."""

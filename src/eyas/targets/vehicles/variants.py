@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from eyas.targets.vehicles.car_shape import CarShape
+from eyas.world.cars.shape import CarShape
 
 __all__ = ["variants_of"]
 

@@ -7,7 +7,7 @@ from eyas.core import exact
 from eyas.mesh.panels import fan
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
-from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
+from eyas.world.cars.finishes import RIM, TRIM, TYRE
 
 __all__ = ["DESIGNS", "wheel_levels"]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Material
-from eyas.targets.vehicles.finishes import PAINT
-from eyas.targets.vehicles.vehicle import VehicleModel
+from eyas.world.cars.finishes import PAINT
+from eyas.world.cars.frame import Frame
 
 __all__ = [
     "CarShape",
@@ -75,6 +75,8 @@ class CarShape:
     """Whether the bumpers are not painted."""
     rack: bool = False
     """Whether it has rails on the roof."""
+    bed: Range | None = None
+    """Where it has an open bed behind the cab, under a dark cover (x)."""
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 
@@ -92,15 +94,16 @@ def coarse_stations(shape: CarShape) -> NDArray[np.float64]:
     return _merged([tail, *shape.rear_window, *shape.windscreen, bend, nose], 0.1)
 
 
-def fine_stations(vehicle: VehicleModel, shape: CarShape) -> NDArray[np.float64]:
+def fine_stations(frame: Frame, shape: CarShape) -> NDArray[np.float64]:
     """Return x of the sections of the finest level [m]: one at each end of a panel."""
     tail, nose = shape.top[0][0], shape.top[-1][0]
-    reach = arch_radius(vehicle.wheel_radius)
+    reach = arch_radius(frame.wheel_radius)
     cuts = np.array([-1.0, -0.96, -0.6, 0.6, 0.96, 1.0]) * reach
-    arches = [float(axle.x + cut) for axle in vehicle.axles for cut in cuts]
+    arches = [float(axle.x + cut) for axle in frame.axles for cut in cuts]
     lamps = [tail + shape.tail_lamps, nose - shape.head_lamps]
     windows = [x for pair in shape.windows for x in pair]
-    edges = [*windows, *lamps, *arches, *shape.windscreen, *shape.rear_window, tail, nose]
+    glass = [*windows, *shape.windscreen, *shape.rear_window]
+    edges = [*glass, *lamps, *arches, *(shape.bed or ()), tail, nose]
     # Kinks of the outline may move slightly to the end of a panel nearby.
     kinks = [x for line in (shape.top, shape.plan) for x, _ in line]
     kinks = [x for x in kinks if min(abs(x - edge) for edge in edges) > 0.07]
@@ -133,33 +136,31 @@ def height_at(points: Points, x: float) -> float:
     return float(_line(points, np.array([x]))[0])
 
 
-def _floor(vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _floor(frame: Frame, shape: CarShape, x: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return z of the lower edge of the sides, with wheel arches [m]."""
     z = np.full(len(x), shape.clearance)
-    reach = arch_radius(vehicle.wheel_radius)
-    for axle in vehicle.axles:
+    reach = arch_radius(frame.wheel_radius)
+    for axle in frame.axles:
         away = np.abs(x - axle.x) / reach
-        arch = vehicle.wheel_radius + reach * np.sqrt(np.maximum(1.0 - np.square(away), 0.0))
+        arch = frame.wheel_radius + reach * np.sqrt(np.maximum(1.0 - np.square(away), 0.0))
         z = np.where(away < 0.99, np.maximum(z, arch), z)
     return z
 
 
-def half_widths(
-    vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def half_widths(frame: Frame, shape: CarShape, x: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return half the widths of the body at its widest points [m]."""
-    return (vehicle.width / 2 - _WIDE_OF_BODY) * _line(shape.plan, x)
+    return (frame.width / 2 - _WIDE_OF_BODY) * _line(shape.plan, x)
 
 
 def sections(
-    vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64], *, arches: bool
+    frame: Frame, shape: CarShape, x: NDArray[np.float64], *, arches: bool
 ) -> NDArray[np.float64]:
     """Return the left halves of the sections, all eight points, shape (S, 8, 3)."""
-    wide = half_widths(vehicle, shape, x)
+    wide = half_widths(frame, shape, x)
     top = _line(shape.top, x)
     belt = np.minimum(_line(shape.belt, x), top - 0.012)
     rise = top - belt
-    floor = _floor(vehicle, shape, x) if arches else np.full(len(x), shape.clearance)
+    floor = _floor(frame, shape, x) if arches else np.full(len(x), shape.clearance)
     floor = np.minimum(floor, belt - 0.07)
     tucked = 0.06 if arches else 0.055  # without arches the wheels protrude from the sides
     sill = wide - np.where(floor > shape.clearance, 0.0, tucked)

@@ -1,26 +1,15 @@
 """Car bodies: surfaces through cross-sections, with windows, lamps and wheel arches."""
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
-from eyas.targets.vehicles.bumpers import AHEAD, add_bumpers
-from eyas.targets.vehicles.car_shape import (
-    CarShape,
-    coarse_stations,
-    fine_stations,
-    height_at,
-    middle_stations,
-    sections,
-)
-from eyas.targets.vehicles.car_trim import add_trimmings
-from eyas.targets.vehicles.car_variants import variants_of
-from eyas.targets.vehicles.car_wrap import Wrap
-from eyas.targets.vehicles.finishes import (
+from eyas.world.build.bodywork import body_paint
+from eyas.world.cars.bumpers import AHEAD, add_bumpers
+from eyas.world.cars.finishes import (
     GLASS,
     HEAD_LAMP,
     INDICATOR_LEFT,
@@ -30,11 +19,19 @@ from eyas.targets.vehicles.finishes import (
     TAIL_LAMP,
     TRIM,
 )
-from eyas.targets.vehicles.vehicle import Axle, VehicleModel, vehicle
-from eyas.traffic.config import VehicleType
-from eyas.world.build.bodywork import body_paint
+from eyas.world.cars.frame import Frame
+from eyas.world.cars.shape import (
+    CarShape,
+    coarse_stations,
+    fine_stations,
+    height_at,
+    middle_stations,
+    sections,
+)
+from eyas.world.cars.trim import add_trimmings
+from eyas.world.cars.wrap import Wrap
 
-__all__ = ["car"]
+__all__ = ["TRACK", "body_levels"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +47,7 @@ class _Detail:
     arches: bool
 
 
-_TRACK = 0.285
+TRACK = 0.285
 """Distance between the middles of two wheels less the width with mirrors [m]: their sides stand out
 from the body by half a centimetre, so that tyres are seen from above."""
 
@@ -65,61 +62,19 @@ _MIDDLE = _Detail((0, 1, 2, 3, 4, 6, 7), _ENDS, _LIT, arches=False)
 _COARSE = _Detail((1, 4, 6), (-1.0, 1.0), (-1.0, 1.0), arches=False)
 
 
-def car(
-    name: str,
-    kind: VehicleType = VehicleType.PASSENGER,
-    *,
-    size: tuple[float, float, float],
-    wheels: tuple[float, float, float],
-    mass: float,
-    words: tuple[str, ...],
-    shape: CarShape,
-    axles: tuple[Axle, ...] | None = None,
-) -> VehicleModel:
-    """Return a car, van or bus.
-
-    Args:
-        name: The original's name.
-        kind: SUMO's class.
-        size: Length, width with mirrors, and height [m].
-        wheels: Wheelbase, wheel radius and x of the front axle [m].
-        mass: Empty [kg].
-        words: See `Model.words`.
-        shape: Its lines.
-        axles: None: two with the wheels of a car.
-    """
-    wheelbase, radius, front = wheels
-    track = size[1] - _TRACK
-    usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)
-
-    return vehicle(
-        name,
-        kind,
-        size=size,
-        wheelbase=wheelbase,
-        wheel_radius=radius,
-        axles=axles or usual,
-        mass=mass,
-        words=words,
-        body=partial(_levels, shape),
-        variants=tuple(partial(_levels, variant) for variant in variants_of(shape)),
-    )
-
-
-def _levels(shape: CarShape, model: VehicleModel) -> tuple[Mesh, ...]:
+def body_levels(shape: CarShape, frame: Frame) -> tuple[Mesh, ...]:
+    """Return the meshes of a car without its wheels, the finest level of detail first."""
     return (
-        _body(model, shape, _FINE, fine_stations(model, shape)),
-        _body(model, shape, _MIDDLE, middle_stations(shape)),
-        _body(model, shape, _COARSE, coarse_stations(shape)),
+        _body(frame, shape, _FINE, fine_stations(frame, shape)),
+        _body(frame, shape, _MIDDLE, middle_stations(shape)),
+        _body(frame, shape, _COARSE, coarse_stations(shape)),
     )
 
 
-def _body(
-    model: VehicleModel, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]
-) -> Mesh:
-    shell, wrap = Shell(), Wrap(model, shape)
+def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]) -> Mesh:
+    shell, wrap = Shell(), Wrap(frame, shape)
     paint = body_paint(f"bodywork_{shape.bodywork}")
-    every = sections(model, shape, stations, arches=detail.arches)
+    every = sections(frame, shape, stations, arches=detail.arches)
     if detail.arches:  # the bumpers are the ends
         every[0, :, 0] += AHEAD
         every[-1, :, 0] -= AHEAD
@@ -129,13 +84,13 @@ def _body(
         rise = halves[i : i + 2, -1, 2].mean() - height_at(shape.belt, middle)
         pair = every[i : i + 2]
         for low, high in zip(detail.points, detail.points[1:], strict=False):
-            skin = _skin(model, shape, detail, middle, rise, (low, high))
+            skin = _skin(frame, shape, detail, middle, rise, (low, high))
             _panel(shell, wrap, pair, (low, high), skin, paint)
         if detail.points[-1] != 7:
             mirror = [1.0, -1.0, 1.0]
             back, front = halves[i, -1], halves[i + 1, -1]
             quad = np.array([back, back * mirror, front * mirror, front])
-            skin = _skin(model, shape, detail, middle, rise, (6, 7))
+            skin = _skin(frame, shape, detail, middle, rise, (6, 7))
             edge = pair[[0, 0, 1, 1], 5, 1]
             if skin is PAINT:
                 # The middle of the roof has no points here, nor have its seams.
@@ -149,8 +104,8 @@ def _body(
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
     if detail.arches:
-        add_trimmings(shell, model, shape)
-        add_bumpers(shell, model, shape, wrap, paint)
+        add_trimmings(shell, frame, shape)
+        add_bumpers(shell, frame, shape, wrap, paint)
     return shell.mesh()
 
 
@@ -195,7 +150,7 @@ def _panel(
 
 
 def _skin(
-    model: VehicleModel,
+    frame: Frame,
     shape: CarShape,
     detail: _Detail,
     x: float,
@@ -205,7 +160,7 @@ def _skin(
     """Return the material of a panel.
 
     Args:
-        model: The car.
+        frame: The car without its body.
         shape: Shape of the car.
         detail: Resolution of the body.
         x: Position of the panel's middle [m].
@@ -224,12 +179,14 @@ def _skin(
         return TAIL_LAMP
     if strip == (1, 2) and detail.arches:
         # The dark lower edges of the bumpers go round the corners, to the wheels.
-        return shape.sill if model.axles[1].x < x < model.axles[0].x else TRIM
+        return shape.sill if frame.axles[1].x < x < frame.axles[0].x else TRIM
     return TRIM if low == 0 else PAINT
 
 
 def _roof(shape: CarShape, x: float, *, edge: bool) -> Material:
-    """Return the material of roof, bonnet, boot and the windows between them."""
+    """Return the material of roof, bonnet, boot or bed, and of the windows between them."""
+    if shape.bed and shape.bed[0] < x < shape.bed[1] and not edge:
+        return TRIM
     if not shape.rear_window[0] < x < shape.windscreen[1]:
         return PAINT
     if edge:

@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from eyas.mesh.panels import cells
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material
-from eyas.targets.vehicles.car_shape import CarShape, arch_radius, half_widths
-from eyas.targets.vehicles.car_wrap import Wrap
-from eyas.targets.vehicles.finishes import TRIM
-from eyas.targets.vehicles.vehicle import VehicleModel
+from eyas.world.cars.finishes import TRIM
+from eyas.world.cars.frame import Frame
+from eyas.world.cars.shape import CarShape, arch_radius, half_widths
+from eyas.world.cars.wrap import Wrap
 
 __all__ = ["AHEAD", "add_bumpers"]
 
@@ -23,29 +23,27 @@ _TOP = 0.565
 """Height of its upper edge, as a share of that of the belt line above the floor."""
 
 
-def add_bumpers(
-    shell: Shell, model: VehicleModel, shape: CarShape, wrap: Wrap, paint: Material
-) -> None:
+def add_bumpers(shell: Shell, frame: Frame, shape: CarShape, wrap: Wrap, paint: Material) -> None:
     """Add both bumpers.
 
     Args:
         shell: Shell to add them to.
-        model: The car.
+        frame: The car without its body.
         shape: Its lines; its ends are where the bumpers end.
         wrap: Its texture coordinates.
         paint: Its paint.
     """
-    reach = arch_radius(model.wheel_radius) + 0.01
+    reach = arch_radius(frame.wheel_radius) + 0.01
     for front in (False, True):
         end, belt = (shape.top[-1 if front else 0][0], shape.belt[-1 if front else 0][1])
-        axle = model.axles[0 if front else 1].x
+        axle = frame.axles[0 if front else 1].x
         start = axle + reach if front else axle - reach
         top = shape.clearance + _TOP * (belt - shape.clearance)
         rows = _rows(shape.clearance, top)
-        grid = np.array([_ring(model, shape, (start, end), row) for row in rows])
+        grid = np.array([_ring(frame, shape, (start, end), row) for row in rows])
         if front:
             grid = grid[:, ::-1]
-        half = float(half_widths(model, shape, np.array([end]))[0])
+        half = float(half_widths(frame, shape, np.array([end]))[0])
         uvs = cells(wrap.end(grid, half, front=front))
         count = grid.shape[1] - 1
         lip = 2 * count
@@ -67,7 +65,7 @@ def _rows(low: float, top: float) -> list[tuple[float, float]]:
 
 
 def _ring(
-    model: VehicleModel, shape: CarShape, ends: tuple[float, float], row: tuple[float, float]
+    frame: Frame, shape: CarShape, ends: tuple[float, float], row: tuple[float, float]
 ) -> NDArray[np.float64]:
     """Return an edge of a bumper, from the left wheel arch round the end to the right one."""
     start, end = ends
@@ -77,7 +75,7 @@ def _ring(
         x for x, _ in shape.plan if way * start < way * x - 0.03 and way * x < way * end - 0.02
     ]
     along = np.array([start, start + 0.04 * way, *kinks[:: int(way)], end])
-    y = half_widths(model, shape, along) + _ASIDE - inwards
+    y = half_widths(frame, shape, along) + _ASIDE - inwards
     y[0] -= _ASIDE + 0.02  # ends inside the body
     along[-1] = end - way * inwards
     left = np.column_stack([along, y, np.full(len(y), z)])

@@ -5,9 +5,9 @@ import numpy as np
 from eyas.core import exact
 from eyas.mesh.panels import box_panels
 from eyas.mesh.shell import Shell
-from eyas.targets.vehicles.bumpers import AHEAD
-from eyas.targets.vehicles.car_shape import CarShape, arch_radius, height_at, sections
-from eyas.targets.vehicles.finishes import (
+from eyas.world.build.bodywork import COOLER, PLAIN
+from eyas.world.cars.bumpers import AHEAD
+from eyas.world.cars.finishes import (
     BRIGHT,
     FREIGHT,
     GLASS,
@@ -16,15 +16,15 @@ from eyas.targets.vehicles.finishes import (
     PLATE,
     TRIM,
 )
-from eyas.targets.vehicles.vehicle import VehicleModel
-from eyas.world.build.bodywork import COOLER, PLAIN
+from eyas.world.cars.frame import Frame
+from eyas.world.cars.shape import CarShape, arch_radius, height_at, sections
 
 __all__ = ["add_trimmings"]
 
 
-def add_trimmings(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
+def add_trimmings(shell: Shell, frame: Frame, shape: CarShape) -> None:
     """Add what is fixed to a body of the finest level."""
-    _mirrors(shell, model, shape)
+    _mirrors(shell, frame, shape)
     for start, end, top in shape.pods:
         under, over, *sides = box_panels((start, -0.8, top - 0.5), (end, 0.8, top), 0.06)
         corners = COOLER.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
@@ -33,14 +33,14 @@ def add_trimmings(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
     _plates(shell, shape)
     x = shape.rear_window[1]
     z = height_at(shape.top, x)
-    shell.box((x - 0.03, -0.17, z - 0.07), (x + 0.1, 0.17, z - 0.002), HIGH_BRAKE_LAMP)
+    shell.box((x - 0.03, -0.11, z - 0.07), (x + 0.1, 0.11, z - 0.002), HIGH_BRAKE_LAMP)
     if shape.rack:
-        _rack(shell, model, shape)
-    _arches(shell, model, shape)
+        _rack(shell, frame, shape)
+    _arches(shell, frame, shape)
 
 
-def _mirrors(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
-    half = model.width / 2
+def _mirrors(shell: Shell, frame: Frame, shape: CarShape) -> None:
+    half = frame.width / 2
     x = shape.windscreen[1] - 0.42
     z = height_at(shape.belt, x)
     low, high = (x - 0.06, half - 0.2, z + 0.02), (x + 0.08, half, z + 0.15)
@@ -61,23 +61,23 @@ def _plates(shell: Shell, shape: CarShape) -> None:
     shell.box((tail, -0.26, z), (tail + AHEAD + 0.02, 0.26, z + 0.12), PLATE)
 
 
-def _rack(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
+def _rack(shell: Shell, frame: Frame, shape: CarShape) -> None:
     """Add rails along both edges of the roof."""
     start, end = shape.rear_window[1] + 0.25, shape.windscreen[0] - 0.2
     x = np.array([start, start + 0.12, 0.5 * (start + end), end - 0.12, end])
-    edge = sections(model, shape, x, arches=True)[:, 6]
+    edge = sections(frame, shape, x, arches=True)[:, 6]
     lift = np.array([-0.02, 0.045, 0.045, 0.045, -0.02])
     path = edge + np.column_stack([0 * lift, 0 * lift + 0.015, lift])
     shell.tube(path, (0.022,) * 5, BRIGHT, sides=4, both_sides=True)
 
 
-def _arches(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
+def _arches(shell: Shell, frame: Frame, shape: CarShape) -> None:
     """Add the walls inside the wheel arches."""
-    for axle in model.axles:
+    for axle in frame.axles:
         y = (axle.track - axle.width) / 2 - 0.02
-        reach = 1.1 * arch_radius(model.wheel_radius)
+        reach = 1.1 * arch_radius(frame.wheel_radius)
         angle = np.linspace(-0.3, np.pi + 0.3, 7)
-        rise = np.maximum(model.wheel_radius + reach * exact.sin(angle), shape.clearance)
+        rise = np.maximum(frame.wheel_radius + reach * exact.sin(angle), shape.clearance)
         wall = np.column_stack([axle.x - reach * exact.cos(angle), np.full(7, y), rise])
         fan = [[wall[0], wall[i], wall[i + 1]] for i in range(1, 6)]
         shell.triangles(fan, TRIM)
