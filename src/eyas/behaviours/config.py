@@ -1,5 +1,6 @@
 """Settings of what moves by itself."""
 
+from enum import StrEnum
 from typing import Annotated
 
 from pydantic import Field
@@ -8,13 +9,19 @@ from eyas.core.config import Config
 from eyas.targets.config import TargetName
 from eyas.targets.habit import Behaviour
 
-__all__ = ["ExtraConfig"]
+__all__ = ["ExtraConfig", "Rider"]
+
+
+class Rider(StrEnum):
+    """Who rides, and is nobody's target."""
+
+    CYCLIST = "Cyclist"
 
 
 class ExtraConfig(Config):
     """A group that shares the world with the targets, but is never chosen as one."""
 
-    kind: TargetName = TargetName.PEDESTRIAN
+    kind: TargetName | Rider = TargetName.PEDESTRIAN
     """What they are. `SUMO_VEHICLE`: vehicles of `traffic`, where the target is none of these."""
     count: Annotated[int, Field(ge=1, le=1000)] = 10
     """How many."""

@@ -1,5 +1,6 @@
 """A map as those see it who walk on it: what is in their way, and where they walk."""
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Final
 
@@ -10,7 +11,7 @@ from eyas.behaviours.chain import chain_through, outline
 from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.kerbs import kerb_ways
 from eyas.behaviours.obstacles import GroundObstacles
-from eyas.behaviours.pavements import Walkway, pavement_ways
+from eyas.behaviours.pavements import LANES, Walkway, pavement_ways
 from eyas.behaviours.places import Roadside
 from eyas.behaviours.surface import WalkedSurface
 from eyas.state.motion import Motion
@@ -58,6 +59,7 @@ def walkways(
     vehicles: Motion | None = None,
     *,
     verges: bool = False,
+    lanes: Sequence[float] = LANES,
 ) -> list[Walkway]:
     """Return the ways on pavements.
 
@@ -67,6 +69,8 @@ def walkways(
         bend: Radius at which they round corners [m].
         vehicles: Those that may come over kerbs in narrow corners; None: there are none.
         verges: Whether one also walks along the edges of roads that have no pavement.
+        lanes: Distances from the kerb, see `pavement_ways`; in towns whose kerbs are known, the
+            usual ones.
     """
     scene, radius = ground.scene, 0.5 * breadth + ROOM
     if scene.footways.told:
@@ -76,7 +80,7 @@ def walkways(
     else:
         obstacles, extent = ground.obstacles, scene.size
         found = pavement_ways(
-            scene.network, extent, obstacles, ground.surface, radius, verges=verges
+            scene.network, extent, obstacles, ground.surface, radius, verges=verges, lanes=lanes
         )
     once = [outline(chain_through(way.corners, bend, 1)) for way in found]
     # A rounded corner may come too near to what the way leads round.

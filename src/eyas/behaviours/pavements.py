@@ -1,5 +1,6 @@
 """Ways along pavements."""
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -50,7 +51,7 @@ class Walkway(NamedTuple):
         return shapely.LineString([*self.corners, self.corners[0]])
 
 
-def pavement_ways(
+def pavement_ways(  # noqa: PLR0913  # where, and round what
     network: RoadNetwork,
     size: tuple[float, float],
     obstacles: GroundObstacles,
@@ -58,6 +59,7 @@ def pavement_ways(
     radius: float,
     *,
     verges: bool = False,
+    lanes: Sequence[float] = LANES,
 ) -> list[Walkway]:
     """Return the ways along the pavements of all blocks, round what stands on them.
 
@@ -70,6 +72,7 @@ def pavement_ways(
         surface: The ground.
         radius: Distance to obstacles that is kept [m].
         verges: Whether one walks wherever the way is near the road, on pavement or not.
+        lanes: See `LANES`; those of the first have the road on their left.
     """
     if not len(network.lane_width):
         return []
@@ -77,7 +80,7 @@ def pavement_ways(
     closed, _ = blocks(road_area(network), extent)
     found = []
     for block in closed:
-        for lane, beyond in enumerate(LANES):
+        for lane, beyond in enumerate(lanes):
             ring = _ring(block, beyond, obstacles, radius)
             if ring is not None:
                 line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)

@@ -15,9 +15,10 @@ from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import ROOM, Ground, walkways
 from eyas.behaviours.groups import SampleClock, ScriptedGroup
-from eyas.behaviours.pavements import Walkway
+from eyas.behaviours.pavements import LANES, Walkway
 from eyas.behaviours.routes import RouteTask, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.timetable import TimedMotion, ride, time_of
+from eyas.behaviours.waiting import Spot, waiting_spots
 from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
@@ -38,6 +39,12 @@ _WIDE: Final = 1.2
 _TOGETHER: Final = 4
 """Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
 
+_BY_KERB: Final = 0.5
+"""Distance from the kerb of those who ride, between it and those who walk [m]."""
+
+_UNHURRIED: Final = 0.7
+"""Speed of the slowest who ride, as a share of the usual one."""
+
 Floats = NDArray[np.float64]
 
 
@@ -48,13 +55,15 @@ STROLL: Final = (1.1, 1.7)
 class _Course(NamedTuple):
     """The path of a life, and how it is gone."""
 
-    path: Chain | CrossingWalk
+    path: Chain | CrossingWalk | Spot
     habit: Habit
     begun: float = 0.0
     """For how long it has been gone when the life begins [s]."""
 
     def ride(self, time: Floats) -> TimedMotion:
         """Return the motion at times since the beginning of the life [s]."""
+        if isinstance(self.path, Spot):
+            return self.path.stand(time)
         if isinstance(self.path, CrossingWalk):
             return walk_motion(self.path, self.habit, time)
         return ride(self.path, self.habit, self.begun + time)
@@ -89,6 +98,12 @@ def scripted_table(
         )
     elif (group.behaviour or habit.behaviour) in (Behaviour.PAVEMENT, Behaviour.VERGE):
         paths = _strolls(_walkways(ground, group, habit, vehicles), habit, seconds, rng)
+    elif (group.behaviour or habit.behaviour) is Behaviour.RIDE:
+        pace = (_UNHURRIED * habit.speed, habit.speed)
+        paths = _strolls(_walkways(ground, group, habit, vehicles), habit, seconds, rng, pace)
+    elif group.behaviour is Behaviour.WAIT:
+        spots = waiting_spots(ground.scene, len(seconds), rng, group.chosen_by)
+        paths = [_Course(spot, habit) for spot in spots]
     else:
         paths = _paths(ground, group, habit, seconds, rng)
     return _gone(ground, group, clock, paths)
@@ -148,13 +163,17 @@ def _paths(
 
 
 def _strolls(
-    ways: list[Walkway], habit: Habit, seconds: Floats, rng: np.random.Generator
+    ways: list[Walkway],
+    habit: Habit,
+    seconds: Floats,
+    rng: np.random.Generator,
+    pace: tuple[float, float] = STROLL,
 ) -> list[_Course]:
     """Return ways on pavements.
 
     All who go the same way are equally fast and begin apart, so none overtakes or walks in another.
     """
-    speed = rng.uniform(*STROLL, len(ways))
+    speed = rng.uniform(*pace, len(ways))
     length = np.array([way.length for way in ways])
     chosen = rng.choice(len(ways), size=len(seconds), p=length / length.sum())
     begun, made = np.zeros(len(seconds)), []
@@ -214,8 +233,9 @@ def _walkways(
         SpawnError: There are none.
     """
     behaviour = group.behaviour or habit.behaviour
-    verges = behaviour is Behaviour.VERGE
-    ways = walkways(ground, group.breadth, habit.radius, vehicles, verges=verges)
+    verges = behaviour in (Behaviour.VERGE, Behaviour.RIDE)
+    lanes = (_BY_KERB,) if behaviour is Behaviour.RIDE else LANES
+    ways = walkways(ground, group.breadth, habit.radius, vehicles, verges=verges, lanes=lanes)
     if not ways:
         raise SpawnError(
             f"{group.chosen_by}: '{behaviour.value}': '{ground.scene.name}' has no pavement; "

@@ -47,6 +47,7 @@ CLASS_NAMES = {
     ObjectClass.MOTORCYCLE: "motorcycle",
     ObjectClass.PERSON: "person",
     ObjectClass.ROBOT: "robot",
+    ObjectClass.BICYCLE: "bicycle",
 }
 """Names of the classes of moving objects, in the order of the formats that number classes."""
 

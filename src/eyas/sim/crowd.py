@@ -1,7 +1,7 @@
 """Who is in a world besides, or instead of, SUMO's vehicles: the settings that tell."""
 
 from eyas.behaviours.airborne import AirborneConfig
-from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.config import ExtraConfig, Rider
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
@@ -80,8 +80,15 @@ def extras_of(config: SimConfig) -> tuple[ExtraConfig, ...]:
     recipe = MAPS.get(config.world.map)
     live = config.traffic.source is Source.LIVE
     behaviour = Behaviour.PAVEMENT if live else Behaviour.CROSSING
-    walking = ((recipe.pedestrians, behaviour), (recipe.strollers, Behaviour.VERGE))
-    return tuple(ExtraConfig(count=count, behaviour=way) for count, way in walking if count)
+    everyone = (
+        (TargetName.PEDESTRIAN, recipe.pedestrians, behaviour),
+        (TargetName.PEDESTRIAN, recipe.strollers, Behaviour.VERGE),
+        (TargetName.PEDESTRIAN, recipe.waiting, Behaviour.WAIT),
+        (Rider.CYCLIST, recipe.cyclists, Behaviour.RIDE),
+    )
+    return tuple(
+        ExtraConfig(kind=kind, count=count, behaviour=way) for kind, count, way in everyone if count
+    )
 
 
 def vehicles_of(crowd: Crowd, known: int) -> int:

@@ -192,7 +192,7 @@ def _depends_on(
     """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
     crosses = group.behaviour is Behaviour.CROSSING
-    along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE)
+    along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE, Behaviour.RIDE)
     heeds = crosses or (scene.footways.told and along)
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
     obeys = lights if crosses else None
@@ -245,7 +245,10 @@ def _group(
     extra: ExtraConfig, lifetimes: Lifetimes, offset: Variation, setting: str
 ) -> ScriptedGroup:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
-    breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
+    if extra.behaviour is Behaviour.RIDE:  # always ahead, along what is beside one
+        breadth = max(model.width for model in models)
+    else:
+        breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
     return ScriptedGroup(
         kind=extra.kind.value,
         breadth=breadth,

@@ -53,6 +53,8 @@ class ObjectClass(IntEnum):
     """A motorcycle, including its rider."""
     PERSON = 14
     ROBOT = 15
+    BICYCLE = 16
+    """A bicycle, including its rider."""
 
 
 DRONE_CLASS = max(ObjectClass) + 1

@@ -15,7 +15,7 @@ from eyas.lanes.elementary.arrays import cos
 from eyas.state.scene import ObjectClass
 from eyas.targets.bird import BIRD
 from eyas.targets.habit import Habit
-from eyas.targets.jointed.kinds import JOINTED_KINDS
+from eyas.targets.jointed.kinds import CYCLIST, JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
@@ -115,5 +115,5 @@ def sections_of(model: int) -> tuple[Section, ...]:
     return kind.sections[kind.models.index(MODELS[model])] if kind.sections else ()
 
 
-for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS, BIRD):
+for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS, BIRD, CYCLIST):
     register(_kind)

@@ -43,6 +43,7 @@ TYPES = {
     ObjectClass.MOTORCYCLE: "Misc",
     ObjectClass.PERSON: "Pedestrian",
     ObjectClass.ROBOT: "Misc",
+    ObjectClass.BICYCLE: "Cyclist",
 }
 """KITTI's types; it has none for buses, motorcycles and robots."""
 

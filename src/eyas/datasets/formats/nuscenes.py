@@ -44,6 +44,7 @@ CATEGORIES = {
     ObjectClass.MOTORCYCLE: "vehicle.motorcycle",
     ObjectClass.PERSON: "human.pedestrian.adult",
     ObjectClass.ROBOT: "robot",
+    ObjectClass.BICYCLE: "vehicle.bicycle",
 }
 VISIBILITIES = {"1": "0-40", "2": "40-60", "3": "60-80", "4": "80-100"}
 ATTRIBUTES = ("vehicle.moving", "vehicle.stopped", "pedestrian.moving", "pedestrian.standing")

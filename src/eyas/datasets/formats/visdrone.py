@@ -34,8 +34,9 @@ CATEGORIES = {
     ObjectClass.MOTORCYCLE: 10,
     ObjectClass.PERSON: 1,
     ObjectClass.ROBOT: OTHERS,
+    ObjectClass.BICYCLE: 3,
 }
-"""VisDrone's own numbers: 1 pedestrian, 4 car, 6 truck, 9 bus, 10 motor, 11 others."""
+"""VisDrone's own numbers: 1 pedestrian, 3 bicycle, 4 car, 6 truck, 9 bus, 10 motor, 11 others."""
 
 Row = tuple[int, ...]
 

@@ -36,6 +36,7 @@ _SHAPES: Final = {
     BodyWord.BUS: (9.5, 2.4),
     BodyWord.TRUCK: (3.0, 2.5),
     BodyWord.MOTORCYCLE: (1.6, 0.6),
+    BodyWord.BICYCLE: (1.6, 0.5),
 }
 """Length and width of what is painted, as blobs are measured [m]: of a truck, the cab."""
 

@@ -67,6 +67,7 @@ _WARMTH = {
     ObjectClass.MOTORCYCLE: Warmth(12.0, 0.3, 3.0),
     ObjectClass.PERSON: Warmth(6.0, 0.1, 1.0),
     ObjectClass.ROBOT: Warmth(14.0, 0.3, 4.0),
+    ObjectClass.BICYCLE: Warmth(6.0, 0.1, 1.0),
 }
 
 _WARM, _COLD = 22.0, -3.0

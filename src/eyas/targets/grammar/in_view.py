@@ -30,6 +30,7 @@ class BodyWord(StrEnum):
     BUS = "bus"
     TRUCK = "truck"
     MOTORCYCLE = "motorcycle"
+    BICYCLE = "bicycle"
     PERSON = "person"
     ROBOT = "robot"
 
@@ -43,6 +44,7 @@ _ROAD = (
     BodyWord.BUS,
     BodyWord.TRUCK,
     BodyWord.MOTORCYCLE,
+    BodyWord.BICYCLE,
 )
 
 CAN_BE_CALLED: dict[BodyWord, frozenset[BodyWord]] = {
@@ -75,6 +77,7 @@ _CLASSES = {
     ObjectClass.TRUCK: BodyWord.TRUCK,
     ObjectClass.MOTORCYCLE: BodyWord.MOTORCYCLE,
     ObjectClass.PERSON: BodyWord.PERSON,
+    ObjectClass.BICYCLE: BodyWord.BICYCLE,
 }
 
 

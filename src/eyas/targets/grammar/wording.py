@@ -33,6 +33,7 @@ _NOUNS: Mapping[BodyWord, tuple[str, ...]] = {
     BodyWord.BUS: ("bus",),
     BodyWord.TRUCK: ("truck", "lorry"),
     BodyWord.MOTORCYCLE: ("motorcycle", "motorbike"),
+    BodyWord.BICYCLE: ("cyclist", "bicycle"),
     BodyWord.PERSON: ("pedestrian", "person"),
     BodyWord.ROBOT: ("robot",),
 }

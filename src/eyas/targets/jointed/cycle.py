@@ -129,6 +129,11 @@ def _ankle(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ankle in the model frame [m], shape (K, 3), and the pitch of the foot [rad]."""
     x, y, height = leg.foot
+    if leg.circle is not None:
+        turn = 2.0 * np.pi * (cycle + leg.phase)
+        round_x, round_z = leg.circle * exact.sin(turn), leg.circle * exact.cos(turn)
+        ankle = np.stack([x + round_x, np.full(len(cycle), y), height + round_z], axis=-1)
+        return ankle, np.zeros(len(cycle))
     if not moving:
         return np.tile([x, y, height], (len(cycle), 1)), np.zeros(len(cycle))
     part = (cycle + leg.phase) % 1.0

@@ -87,6 +87,9 @@ class Leg:
     """Part of the cycle by which it is ahead of a leg that touches the ground at its beginning."""
     shapes: tuple[Shape, Shape, Shape | None]
     """Upper bone, lower bone, and foot; a foot's frame is level, with its origin at the ankle."""
+    circle: float | None = None
+    """Radius of the circle in which the foot goes round `foot`, once in a cycle, as on a pedal [m];
+    0: it stays there, as a hand on handlebars; None: it steps."""
     coxa: tuple[float, Shape] | None = None
     """Length and shape of a bone before the upper one, which turns about z to the foot's side."""
     sole: tuple[float, float] = (0.0, 0.0)

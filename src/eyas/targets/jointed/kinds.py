@@ -9,11 +9,12 @@ from eyas.state.scene import ObjectClass
 from eyas.targets.jointed.extent import Extents, extents_of
 from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.people.people import PEDESTRIANS
+from eyas.targets.jointed.riders.cyclist import CYCLISTS
 from eyas.targets.jointed.rig import JointedRig
 from eyas.targets.jointed.robots import ROBOTS
 from eyas.targets.kind import Kind
 
-__all__ = ["JOINTED_KINDS"]
+__all__ = ["CYCLIST", "JOINTED_KINDS"]
 
 
 def _kind(models: tuple[JointedModel, ...], object_class: ObjectClass) -> Kind:
@@ -43,3 +44,6 @@ JOINTED_KINDS: tuple[Kind, ...] = (
     *(_kind((model,), ObjectClass.ROBOT) for model in ROBOTS),
 )
 """The pedestrian, then the robots in the order of `TargetName`."""
+
+CYCLIST = _kind(CYCLISTS, ObjectClass.BICYCLE)
+"""The cyclist, who is nobody's target in the original and so no `TargetName`."""

@@ -146,6 +146,10 @@ class MapRecipe:
     (`extras`)."""
     strollers: int = 0
     """Number of people who walk along the edges of its roads, where it has no pavements."""
+    waiting: int = 0
+    """Number of people who stand at its bus stops and cafes."""
+    cyclists: int = 0
+    """Number of people who ride bicycles."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):

@@ -211,7 +211,7 @@ def _crates() -> Levels:
 
 def _rack() -> Levels:
     """Return a rack with three bicycles, which stand across it."""
-    near, far = [], []
+    near, far = list[Mesh](), list[Mesh]()
     for k, (x, turn) in enumerate(((-0.75, 0.05), (0.0, -0.08), (0.62, 0.1))):
         angle = 0.5 * np.pi * (1.0 if k != 1 else -1.0) + turn
         cosine, sine = exact.cos(angle), exact.sin(angle)

@@ -31,4 +31,6 @@ CITYSTREET = MapRecipe(
     package=__name__,
     original=Original(road=4.01, buildings=83, height=30.0, trees=63),
     pedestrians=40,
+    waiting=16,
+    cyclists=10,
 )

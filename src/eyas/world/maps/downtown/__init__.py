@@ -52,4 +52,6 @@ DOWNTOWN = MapRecipe(
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),
     pedestrians=80,
+    waiting=40,
+    cyclists=18,
 )

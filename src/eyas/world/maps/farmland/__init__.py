@@ -61,6 +61,7 @@ FARMLAND = MapRecipe(
     package=__name__,
     original=Original(road=4.43),
     strollers=12,
+    cyclists=4,
 )
 
 FARMLAND_BARE = replace(

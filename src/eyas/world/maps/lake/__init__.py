@@ -38,4 +38,5 @@ LAKE = MapRecipe(
     package=__name__,
     original=Original(road=19.67, buildings=56, height=9.0, trees=13_520),
     strollers=24,
+    cyclists=8,
 )

@@ -74,6 +74,8 @@ VILLAGE = MapRecipe(
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
     strollers=24,
+    waiting=12,
+    cyclists=8,
 )
 
 VILLAGE_BARE = replace(
