@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.assembly import concatenate

@@ -145,7 +145,13 @@ def _where(mask: int, a: Colour, b: Colour) -> Colour:
 
 @kernel(inline=True)
 def _lying(
-    colour: Colour, depth: float, bed: int, point: Colour, rise: float, foot: float, footprint: float
+    colour: Colour,
+    depth: float,
+    bed: int,
+    point: Colour,
+    rise: float,
+    foot: float,
+    footprint: float,
 ) -> Colour:
     """Return the colour of a surface on which snow lies as it fell, in low, wide drifts."""
     x, y, half, one = point[0], point[1], f4(0.5), f4(1.0)

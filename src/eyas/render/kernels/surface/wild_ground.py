@@ -32,6 +32,9 @@ CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
 DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
 
+NO_BLEND = False
+"""Mip levels of ridges are not blended: noise lies over where they meet."""
+
 RIDGES = f4(1.0 / 54.0)
 """Repeats of the texture `sand` in a metre where its ripples are ridges of two metres and more."""
 
@@ -49,7 +52,7 @@ def _clip(value: float) -> float:
 
 
 @kernel(inline=True)
-def _where(mask: bool, a: Colour, b: Colour) -> Colour:
+def _where(mask: int, a: Colour, b: Colour) -> Colour:
     return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
 
 
@@ -210,7 +213,7 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     down, along = downwind(point)
     wide = noise(f4(0.016) * down + f4(0.004) * along, f4(0.013) * along - f4(0.003) * down) - half
     coarser = to_i4(greater(look.detail - i4(811), i4(0)))
-    low, high = texel(look.textures, look.layer, coarser, False, RIDGES * along, RIDGES * down)
+    low, high = texel(look.textures, look.layer, coarser, NO_BLEND, RIDGES * along, RIDGES * down)
     _, crest, _, patch = colour_of(low, high)
     ridge, patch, grit = crest * f4(1.908) - one, patch - half, look.alpha - half
     # Stones stay where the wind takes the sand away: on level ground, in broad stripes.

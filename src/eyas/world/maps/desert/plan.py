@@ -11,8 +11,8 @@ from eyas.state.lighting import Horizon
 from eyas.state.mesh import Surface
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import facade, material
-from eyas.world.land.rising import relief_of
 from eyas.world.build.millimetres import snapped
+from eyas.world.land.rising import relief_of
 from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.maps.desert.scatter import scattered_over, wheel_tracks
@@ -94,7 +94,9 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     # Slightly below the feet of the dunes, so that rounding leaves no gap between them.
     rest = shapely.buffer(ground.area, -0.4, join_style="mitre")
     level = shapely.difference(EXTENT, shapely.union(desert.roads, rest))
-    tracks = snapped(shapely.intersection(wheel_tracks(desert, stream(seed, "desert tracks")), level))
+    tracks = snapped(
+        shapely.intersection(wheel_tracks(desert, stream(seed, "desert tracks")), level)
+    )
     sand = Flat(area=shapely.difference(level, tracks), cover=SAND)
     far = Far(rule="plain", covers=(SAND,), beyond=(2 * HALF, 2 * HALF))
     kinds, placed = houses(desert.houses, _HOUSES)

@@ -29,7 +29,9 @@ _STONES, _STONES_BESIDE, _STONES_REACH = (19.0, 0.004), 6.0, 110.0
 """The same of stones; their least and largest distance from a road [m]."""
 
 
-def trodden(valley: VillageLayout, lawn: shapely.Geometry, rng: np.random.Generator) -> list:
+def trodden(
+    valley: VillageLayout, lawn: shapely.Geometry, rng: np.random.Generator
+) -> list[shapely.Polygon]:
     """Return the paths on a lawn, in plan view [m]."""
     rings = [ring for part in shapely.get_parts(valley.roads) for ring in _rings(part)]
     sizes = np.array([round(float(ring.length), 3) for ring in rings])
@@ -78,9 +80,7 @@ def grown(
         rng: Random numbers of them.
     """
     least, most = (shapely.buffer(valley.roads, far, quad_segs=3) for far in _BESIDE)
-    spots = gardens.scattered(
-        shapely.difference(most, shapely.union(least, taken)), *_TUFTS, rng
-    )
+    spots = gardens.scattered(shapely.difference(most, shapely.union(least, taken)), *_TUFTS, rng)
     made = gardens.sown(spots, GRASS_KINDS, (0.7, 1.2), _feet(ground, spots, 0.03), rng)
     least = shapely.buffer(valley.roads, _STONES_BESIDE, quad_segs=3)
     most = shapely.buffer(valley.roads, _STONES_REACH, quad_segs=2)
