@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 from eyas.sim.scenes import load_network, load_scene
+from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
 from eyas.state.terrain import reliefs
 from eyas.traffic.recording_file import load
@@ -183,28 +184,64 @@ def corners_of(scene):
 
 
 def test_building_again_gives_the_same_bytes(desert, winter):
-    """Winter is a scene of its own, with the same things at the same places; its dunes are cut
-    where their snow begins.
-    """
-    assert set(map(tuple, corners_of(desert))) < set(map(tuple, corners_of(winter)))
+    """Winter is a scene of its own, with the same things at the same places."""
+    assert corners_of(desert).tobytes() == corners_of(winter).tobytes()
     assert winter.fixtures.pose.tobytes() == desert.fixtures.pose.tobytes()
     assert winter.terrain.relief.tobytes() == desert.terrain.relief.tobytes()
     assert winter.colliders.prism_points.tobytes() == desert.colliders.prism_points.tobytes()
 
 
+def snowed(scene):
+    """Triangles with snow, and u at their corners."""
+    looks = np.array([look.surface == Surface.DESERT_SNOW for look in scene.static.palette])
+    white = looks[scene.static.materials]
+    return white, scene.static.uvs[scene.static.triangles[white], 0]
+
+
 def test_in_winter_about_every_second_dune_is_white_and_nothing_else(desert, winter, plan):
-    names = np.array([material.texture for material in winter.static.palette])
-    white = names[winter.static.materials] == "snow"
-    assert "snow" not in [material.texture for material in desert.static.palette]
-    middle = winter.static.positions[winter.static.triangles[white]].mean(axis=1)
-    assert middle[:, 2].min() > 0.5
+    assert not snowed(desert)[0].any()
+    white, over = snowed(winter)
     dunes = winter.static_object == winter.static_object[white][0]
     assert not (white & ~dunes).any()
-    assert 0.22 < white.sum() / dunes.sum() < 0.5
-    _, owners = highest(plan.dunes, middle[:, :2].astype(float))
+    middle = winter.static.positions[winter.static.triangles[white]].mean(axis=1)
+    covered = over.mean(axis=1) > 32.0  # above the line where snow begins
+    assert middle[covered, 2].min() > 0.5
+    assert 0.22 < covered.sum() / dunes.sum() < 0.5
+    _, owners = highest(plan.dunes, middle[covered, :2].astype(float))
     assert 20 <= (np.bincount(owners) > 0.01 * len(owners)).sum() <= 22
     assert np.sort(np.bincount(owners))[:-22].sum() < 0.01 * len(owners)  # at their edges
     assert DESERT.light("snow").snow == 0.0
+
+
+def test_snow_begins_at_a_line_that_no_triangle_shows(winter):
+    """u goes on over the edges of triangles, and stays within one repeat of a texture."""
+    white, over = snowed(winter)
+    assert (over > 0.0).all()
+    assert (over < 64.0).all()
+    crossing = (over.min(axis=1) < 32.0) & (over.max(axis=1) > 32.0)
+    assert crossing.sum() > 300
+    points = winter.static.positions[winter.static.triangles[white]].reshape(-1, 3)
+    _, same = np.unique(points, axis=0, return_inverse=True)
+    least, most = np.full(same.max() + 1, np.inf), np.full(same.max() + 1, -np.inf)
+    np.minimum.at(least, same, over.ravel())
+    np.maximum.at(most, same, over.ravel())
+    assert np.abs(most - least).max() == 0.0
+
+
+def test_stones_and_plants_are_low_and_off_the_road(desert, plan):
+    names = np.array(desert.fixtures.names)[desert.fixtures.prototype]
+    wild = np.char.startswith(names, ("dry",)) | np.char.startswith(names, ("stones",))
+    wild |= np.char.startswith(names, ("boulder",))
+    assert 1500 < wild.sum() < 4000
+    places = shapely.points(desert.fixtures.pose[wild][:, :2, 3])
+    assert shapely.distance(places, plan.roads).min() > 2.0
+    for kind in np.unique(desert.fixtures.prototype[wild]):
+        finest, *_, last = desert.fixtures.levels[kind]
+        scale = np.linalg.norm(
+            desert.fixtures.pose[desert.fixtures.prototype == kind][:, 0, :3], axis=1
+        )
+        assert scale.max() * finest.positions[:, 2].max() < 1.4
+        assert len(last.triangles) < len(finest.triangles)
 
 
 def test_scenes_are_small_enough_for_small_machines(desert):

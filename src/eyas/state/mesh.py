@@ -52,20 +52,21 @@ class Surface(IntEnum):
     INDICATOR_RIGHT = 15
     """One that blinks before it goes right."""
     DESERT = 16
-    """Sand with ripples, gravel and dry grass."""
+    """Sand with ripples, gravel and dry grass; of this and all that follow, the texture lies on the
+    ground, whatever u and v."""
     DESERT_TRACK = 17
     """The same, driven on; of this and all that follow, u is a distance [m], here from the edge of
-    the track, and the texture repeats every 8 m."""
+    the track."""
     DESERT_SNOW = 18
     """The same with snow; u is 32 m more than the height over the line where snow begins."""
-    HILLSIDE_PATH = 19
-    """Grass trodden down to the soil; u is the distance from the edge of the path."""
-    HILLSIDE_SHORE = 20
-    """Grass beside water; u is the distance from the water."""
-    HEATH_SHORE = 21
-    """Heath beside water; u is the distance from the water."""
-    DESERT_DRIFT = 22
+    DESERT_DRIFT = 19
     """Asphalt under sand that grows thinner; u is the distance from where it hides the road."""
+    HILLSIDE_PATH = 20
+    """Grass trodden down to the soil; u is the distance from the edge of the path."""
+    HILLSIDE_SHORE = 21
+    """Grass beside water; u is the distance from the water."""
+    HEATH_SHORE = 22
+    """Heath beside water; u is the distance from the water."""
     HILLSIDE_VERGE = 23
     """Gravel beside a road that grass grows into; u is the distance from the road."""
 

@@ -28,6 +28,7 @@ from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.sunlight import sunlit
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.flakes import let_flakes_fall
+from eyas.render.kernels.sky.halos import draw_halos
 from eyas.render.kernels.sky.plumes import draw_plumes
 from eyas.render.kernels.sky.radiance import draw_backdrop
 from eyas.render.kernels.surface.band import shade_band
@@ -196,6 +197,8 @@ def _write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     canvas = address_of(canvas_of(output, job.picture[number], top, bottom))
     draw_backdrop(shown, canvas)
     shade_band(shown, canvas)
+    if shown.lit.air.lamps > f4(0.0):
+        draw_halos(shown, canvas)
     if len(job.instant) > 0:
         draw_plumes(shown, job.instant[number], canvas)
     if task.falls == 1:

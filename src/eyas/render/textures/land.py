@@ -35,7 +35,10 @@ Texture = NDArray[np.uint8]
 
 
 def sand() -> Texture:
-    """Return pale sand with wind ripples, whose crest lines wander and fork."""
+    """Return pale sand with wind ripples, whose crest lines wander and fork.
+
+    Alpha is cloudy noise, for what lies on the sand, see `eyas.render.kernels.surface.wild_ground`.
+    """
     rng = source("sand")
     y = np.arange(SIZE)[:, None] / SIZE
     x = np.arange(SIZE)[None] / SIZE
@@ -47,7 +50,10 @@ def sand() -> Texture:
     grain = 0.03 * white(rng) + 0.018 * fractal(rng, 0.8, longest=60.0)
     picture = painted((214.0, 190.0, 148.0), 0.06 * ripple * strength + grain)
     pebble = rng.random(grain.shape)
-    return opaque(mixed(picture, (150.0, 130.0, 104.0), 0.5 * (pebble > 0.996)))
+    made = opaque(mixed(picture, (150.0, 130.0, 104.0), 0.5 * (pebble > 0.996)))
+    cloud = 0.5 + 0.21 * fractal(rng, 0.85, longest=70.0)
+    made[..., 3] = np.round(255.0 * np.clip(cloud, 0.0, 1.0))
+    return made
 
 
 def crops() -> Texture:

@@ -57,7 +57,7 @@ def stone_levels(rng: np.random.Generator, look: int) -> Levels:
             ]
         )
 
-    return first(_COUNT, 3), first(6, 0), first(2, 0), Mesh.none()
+    return first(_COUNT, 3), first(5, 0), Mesh.none()
 
 
 def boulder_levels(rng: np.random.Generator, look: int) -> Levels:

@@ -10,7 +10,7 @@ from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.scene_builder import Levels
-from eyas.world.plants.foliage import Crown, leaf_cards, shell
+from eyas.world.plants.foliage import Crown, leaf_cards
 
 __all__ = ["BED", "WILD"]
 
@@ -35,7 +35,9 @@ def _blades(
     tints: Sequence[Tint],
     rng: np.random.Generator,
 ) -> Mesh:
-    """Return blades, a triangle each, that lean outwards from the middle.
+    """Return blades, a triangle each, that lean outwards and are seen from above.
+
+    They are no `Surface.FOLIAGE`, whose holes and shadows cost more than such small plants show.
 
     Args:
         count: Number of blades.
@@ -58,6 +60,8 @@ def _blades(
     tip[:, 2] = tall
     half = 0.5 * width * across
     corners = np.stack([foot - half, foot + half, tip], axis=1)
+    below = np.cross(2.0 * half, tip - foot)[:, 2] < 0.0
+    corners[below] = corners[below][:, ::-1]
     normal = 0.7 * out + np.array([0.0, 0.0, 0.7])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     return Mesh(
@@ -66,7 +70,7 @@ def _blades(
         uvs=np.tile([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01]], (count, 1)).astype(np.float32),
         triangles=np.arange(3 * count, dtype=np.int32).reshape(-1, 3),
         materials=rng.integers(0, len(tints), count).astype(np.int32),
-        palette=tuple(Material("plain", tint, Surface.FOLIAGE) for tint in tints),
+        palette=tuple(Material("plain", tint, Surface.CROWN) for tint in tints),
     )
 
 
@@ -86,7 +90,6 @@ def _tufts(tints: Sequence[Tint], rng: np.random.Generator) -> Levels:
     return (
         each(34, 0.34, (0.16, 0.50), 0.045),
         each(11, 0.31, (0.18, 0.46), 0.14),
-        each(4, 0.24, (0.20, 0.40), 0.32),
         Mesh.none(),
     )
 
@@ -112,15 +115,13 @@ def _bush(rng: np.random.Generator) -> Levels:
     return (
         _pale(leaf_cards(crown, 60, (0.22, 0.38), _DRY, rng, bent=False)),
         _pale(leaf_cards(crown, 22, (0.32, 0.5), _DRY, rng, bent=False)),
-        _pale(shell(Crown(centres[4:], radii[4:] + 0.2, crown.middle), 0, 0.8, _DRY[0])),
         Mesh.none(),
     )
 
 
 def _pale(mesh: Mesh) -> Mesh:
     """Return leaves in the colours of their tints alone."""
-    names = {"leaves": "pale_leaves", "foliage": "pale_foliage"}
-    mesh.palette = tuple(replace(one, texture=names[one.texture]) for one in mesh.palette)
+    mesh.palette = tuple(replace(one, texture="pale_leaves") for one in mesh.palette)
     return mesh
 
 

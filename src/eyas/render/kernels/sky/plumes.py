@@ -36,7 +36,7 @@ from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.visibility.key import distance_inverse
 from eyas.render.kernels.wind import wave
 
-__all__ = ["draw_plumes"]
+__all__ = ["draw_plumes", "on_screen"]
 
 Colour = tuple[float, float, float]
 Vector = tuple[float, float, float]
@@ -174,7 +174,7 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
     thickness = puff.thickness * min((ahead - 0.4) / puff.width, 1.0)
     if thickness < 0.01:
         return
-    row, column, tall, wide = _on_screen(band, ahead, left, up, reach)
+    row, column, tall, wide = on_screen(band, ahead, left, up, reach)
     top = i8(view.top // view.down) if band.glass.on == 0 else i8(band.glass.top)
     first = max(i8(math.floor(row - tall)) - top, 0)
     last = min(i8(math.ceil(row + tall)) - top, band.lines)
@@ -276,7 +276,7 @@ def _mix_plane(plane: NDArray[np.float32], i: int, j: int, cover: float, colour:
 
 
 @kernel(inline=True)
-def _on_screen(
+def on_screen(
     band: Band, ahead: float, left: float, up: float, reach: float
 ) -> tuple[float, float, float, float]:
     """Return row and column of a ball's middle, half its height and half its width [pixels]."""

@@ -21,11 +21,13 @@ from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.wet import wetted
 from eyas.render.kernels.surface.wild_ground import (
     DESERT,
+    DRIFT,
     GREEN_SHORE,
     HEATH,
     HEATH_SHORE,
     HILLSIDE,
-    WILD_EDGES,
+    Look,
+    downwind,
     wild,
 )
 from eyas.render.kernels.wind import shimmer
@@ -48,6 +50,9 @@ rows of pixels, and a blend would cost a tenth of the shading to hide what is ha
 
 TILES = f4(1.0 / 8.0)
 """Repeats of the texture in a metre where u is something else, see `Surface`."""
+
+SAND = f4(1.0 / 6.0)
+"""The same of sand."""
 
 _WIDEST = f4(2.0 * MARGIN)
 
@@ -189,10 +194,15 @@ def shade_point(
             )
 
     marked, u, v, density = surface == MARKING, at.u, at.v, at.density
-    level = marked | (surface >= WILD_EDGES)
+    level = marked | (surface >= DESERT)
     if any_of(level):
         u, v = select(level, TILES * point[0], u), select(level, TILES * point[1], v)
         density = select(level, like(density, TILES), density)
+        sandy = level & (surface >= DESERT) & (surface <= DRIFT)
+        if any_of(sandy):  # its ripples lie across the wind
+            down, along = downwind(point)
+            u, v = select(sandy, SAND * along, u), select(sandy, SAND * down, v)
+            density = select(sandy, like(density, SAND), density)
     span = f4(256.0) * density * distance * pixel
     detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
     blend = pixel < SHARP
@@ -226,7 +236,8 @@ def shade_point(
     untended = (surface == HILLSIDE) | (surface == HEATH) | (surface >= DESERT)
     if any_of(untended):
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
-        grown = wild(surface, (red, green, blue), at.u, point, normal[2], footprint)
+        look = Look(geometry.texture, at.layer, detail, alpha)
+        grown = wild(surface, look, (red, green, blue), at.u, point, normal[2], footprint)
         red = select(untended, grown[0], red)
         green = select(untended, grown[1], green)
         blue = select(untended, grown[2], blue)

@@ -172,7 +172,7 @@ def _lying(
     # Stubble, tufts and stones stick out; from what is paved or warm, it has melted here and there.
     ground, stalk = bed == POROUS, like(rise, half)
     if any_of(ground):
-        stalk = seen_noise(x + f4(0.8) * y, y - f4(0.8) * x, f4(11.0), footprint)
+        stalk = seen_noise(x + f4(0.8) * y, y - f4(0.8) * x, f4(11.0), f4(2.0) * footprint)
     out = f4(5.0) * (f4(0.3) * fine + f4(0.3) * patch + f4(0.4) * stalk - f4(0.62))
     gone = f4(5.0) * (f4(0.24) - f4(0.75) * patch - f4(0.25) * fine)
     lies *= one - select(ground, f4(0.6) * _clip(out), f4(0.7) * _clip(gone))

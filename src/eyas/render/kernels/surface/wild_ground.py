@@ -1,12 +1,28 @@
 """Ground that nobody tends: hillsides, heaths, deserts; their shores, paths and patches of snow."""
 
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, magnitude, select
+from eyas.lanes.vector import any_of, greater, lesser, magnitude, select, to_i4
 from eyas.render.kernels.chance import noise, seen_noise
 from eyas.render.kernels.scalars import f4, i4
+from eyas.render.kernels.surface.texture import colour_of, texel
 from eyas.state.mesh import Surface
 
-__all__ = ["WILD_EDGES", "wild"]
+__all__ = [
+    "DESERT",
+    "DRIFT",
+    "GREEN_SHORE",
+    "HEATH",
+    "HEATH_SHORE",
+    "HILLSIDE",
+    "Look",
+    "downwind",
+    "wild",
+]
 
 Colour = tuple[float, float, float]
 
@@ -16,8 +32,11 @@ CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
 DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
 
-WILD_EDGES = i4(int(Surface.DESERT_TRACK))
-"""First `Surface` whose u is a distance."""
+NO_BLEND = False
+"""Mip levels of ridges are not blended: noise lies over where they meet."""
+
+RIDGES = f4(1.0 / 54.0)
+"""Repeats of the texture `sand` in a metre where its ripples are ridges of two metres and more."""
 
 _ROCK = f4(0.75)
 """Upward component of the normal below which rock shows, on average."""
@@ -33,7 +52,7 @@ def _clip(value: float) -> float:
 
 
 @kernel(inline=True)
-def _where(mask: bool, a: Colour, b: Colour) -> Colour:
+def _where(mask: int, a: Colour, b: Colour) -> Colour:
     return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
 
 
@@ -48,32 +67,62 @@ def _toward(colour: Colour, other: Colour, share: float) -> Colour:
 
 
 @kernel(inline=True)
+def downwind(point: Colour) -> tuple[float, float]:
+    """Return a place down the desert's wind, and along the crests of ripples [m].
+
+    The wind is that of the desert's plan, -35 degrees.
+    """
+    return (
+        f4(0.819) * point[0] - f4(0.574) * point[1],
+        f4(0.574) * point[0] + f4(0.819) * point[1],
+    )
+
+
+class Look(NamedTuple):
+    """What is seen of a texture."""
+
+    textures: NDArray[np.uint32]
+    """See `Geometry.texture`."""
+    layer: int
+    """Which of them."""
+    detail: int
+    """From `detail_of`."""
+    alpha: float
+    """0 to 1."""
+
+
+@kernel(inline=True)
 def wild(
-    surface: int, colour: Colour, along: float, point: Colour, rise: float, footprint: float
+    surface: int,
+    look: Look,
+    colour: Colour,
+    along: float,
+    point: Colour,
+    rise: float,
+    footprint: float,
 ) -> Colour:
     """Return the colours of points with what grows or lies on wild ground, linear.
 
     Args:
         surface: A `Surface` of each.
-        colour: Of the texture.
+        look: Of their textures.
+        colour: Of the textures.
         along: u, where that is a distance [m].
         point: The point [m].
         rise: Upward component of its normal.
         footprint: Size of a pixel on the surface [m].
     """
     result = colour
-    hilly = (
-        (surface == HILLSIDE) | (surface == PATH) | (surface == GREEN_SHORE) | (surface == VERGE)
-    )
+    sandy = (surface >= DESERT) & (surface <= DRIFT)
     heathy = (surface == HEATH) | (surface == HEATH_SHORE)
-    sandy = (surface == DESERT) | (surface == TRACK) | (surface == CAPPED) | (surface == DRIFT)
+    hilly = (surface == HILLSIDE) | ((surface > DRIFT) & ~heathy)
     if any_of(hilly):
         result = _where(hilly, hillside(colour, point, rise, footprint), result)
     if any_of(heathy):
         result = _where(heathy, heath(colour, point, footprint), result)
     if any_of(sandy):
-        result = _where(sandy, desert(colour, point, rise, footprint), result)
-    if any_of(surface >= WILD_EDGES):
+        result = _where(sandy, desert(look, colour, point, rise), result)
+    if any_of(surface > DESERT):
         result = _edged(surface, result, along, point, rise, footprint)
     return result
 
@@ -87,7 +136,8 @@ def _edged(
     wide = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(0.21), footprint) - half
     clump = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint) - half
     fine = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint) - half
-    fine += f4(0.8) * (seen_noise(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), footprint) - half)
+    crumb = seen_noise(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), f4(2.0) * footprint)
+    fine += f4(0.8) * (crumb - half)
     trodden = (surface == TRACK) | (surface == PATH)
     if any_of(trodden):
         ragged = along + f4(0.34) * clump + f4(0.3) * fine
@@ -149,41 +199,35 @@ def _shore(colour: Colour, away: float, noises: Colour) -> Colour:
 
 
 @kernel(inline=True)
-def desert(colour: Colour, point: Colour, rise: float, footprint: float) -> Colour:
+def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     """Return the colour of a desert, linear: sand in ripples, flats of gravel, dry grass.
 
     Args:
+        look: Of the texture of the sand: it is looked up again much larger, so its ripples are
+            ridges there, and noise of many sizes costs little more than that of one.
         colour: Of the sand.
         point: The point [m].
         rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
     """
-    half = f4(0.5)
-    # Down the wind, and along the crests of ripples: the wind of the desert's plan, -35 degrees.
-    down = f4(0.819) * point[0] - f4(0.574) * point[1]
-    along = f4(0.574) * point[0] + f4(0.819) * point[1]
-    wide = noise(f4(0.016) * down + f4(0.004) * along, f4(0.013) * along - f4(0.003) * down)
-    patch = seen_noise(down - f4(0.6) * along, along + f4(0.6) * down, f4(0.17), footprint)
-    bent = f4(2.6) * patch
-    ridge = seen_noise(down + bent, f4(0.2) * along, f4(0.62), footprint) - half
-    ripple = seen_noise(down + bent, f4(0.16) * along + bent, f4(2.7), footprint) - half
-    grit = seen_noise(down + half * along, along - half * down, f4(6.7), footprint) - half
+    half, one = f4(0.5), f4(1.0)
+    down, along = downwind(point)
+    wide = noise(f4(0.016) * down + f4(0.004) * along, f4(0.013) * along - f4(0.003) * down) - half
+    coarser = to_i4(greater(look.detail - i4(811), i4(0)))
+    low, high = texel(look.textures, look.layer, coarser, NO_BLEND, RIDGES * along, RIDGES * down)
+    _, crest, _, patch = colour_of(low, high)
+    ridge, patch, grit = crest * f4(1.908) - one, patch - half, look.alpha - half
     # Stones stay where the wind takes the sand away: on level ground, in broad stripes.
     level = _clip(f4(14.0) * (rise - f4(0.93)))
-    ragged = f4(1.1) * ridge + f4(0.8) * ripple + f4(0.9) * grit
-    bare = f4(2.8) * (wide - f4(0.5)) + f4(1.8) * (patch - half)
-    stony = level * _clip(f4(1.6) * (bare + f4(0.8) * ragged))
-    loose = f4(1.0) - f4(0.75) * stony
-    light = f4(1.0) + loose * (f4(0.42) * ridge + f4(0.5) * ripple) + f4(0.2) * (wide - half)
-    stone = seen_noise(down - half * along, along + half * down, f4(16.0), footprint) - half
-    light += f4(0.22) * grit + f4(0.3) * stone
+    bare = f4(2.8) * wide + f4(1.4) * patch
+    stony = level * _clip(f4(1.6) * (bare + f4(1.6) * ridge + f4(0.8) * grit))
+    light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.2) * wide + f4(0.3) * grit
     red, green, blue = light * colour[0], light * colour[1], light * colour[2]
-    pebble = f4(0.85) + f4(1.1) * grit + f4(1.5) * stone + f4(0.4) * ripple
+    pebble = f4(0.85) + f4(1.5) * grit + f4(0.3) * patch
     gravel = (f4(0.27) * pebble, f4(0.205) * pebble, f4(0.138) * pebble)
     red, green, blue = _toward((red, green, blue), gravel, f4(0.66) * stony)
     # Grass finds water at the edges of the stony flats.
     dry = level * _clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
-    tuft = f4(0.2) + f4(2.2) * grit + f4(1.5) * ripple + f4(0.8) * (patch - half)
+    tuft = f4(0.2) + f4(2.6) * grit + f4(1.0) * patch
     blades = f4(0.9) + f4(0.9) * grit
     straw = (f4(0.190) * blades, f4(0.172) * blades, f4(0.075) * blades)
     return _toward((red, green, blue), straw, f4(0.9) * dry * _clip(tuft))
@@ -205,7 +249,7 @@ def hillside(colour: Colour, point: Colour, rise: float, footprint: float) -> Co
     wide = noise(f4(0.021) * x + f4(0.012) * y, f4(0.021) * y - f4(0.012) * x)
     tuft = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.13), footprint)
     dry = _clip(f4(1.5) * (wide - f4(0.42)) + f4(0.9) * (tuft - half))
-    blade = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), footprint)
+    blade = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), f4(4.0) * footprint)
     bright = f4(0.61) + f4(0.28) * tuft + f4(0.5) * blade
     red = colour[0] * bright * (one + f4(0.62) * dry)
     green = colour[1] * bright * (one + f4(0.06) * dry)

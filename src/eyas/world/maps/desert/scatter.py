@@ -84,8 +84,8 @@ def wheel_tracks(desert: DesertLayout, rng: np.random.Generator) -> shapely.Geom
         away = rng.uniform(4.0, 8.0) * np.minimum(1.0, 5.0 * np.minimum(along, 1.0 - along))
         away += rng.uniform(0.5, 1.2) * np.abs(along - 0.5) - 1.0
         line = _beside(ring, (start + length * along) % ring.length, away)
-        for side in (-_GAUGE, _GAUGE):
-            made.append(shapely.buffer(_aside(line, side), _RUT, cap_style="flat", quad_segs=2))
+        ruts = [_aside(line, side) for side in (-_GAUGE, _GAUGE)]
+        made += [shapely.buffer(rut, _RUT, cap_style="flat", quad_segs=2) for rut in ruts]
     houses = shapely.buffer(desert.walls, 2.0)
     drifts = shapely.union_all([drift.fringe for drift in desert.drifts] + desert.tongues)
     free = shapely.difference(shapely.union_all(made), shapely.union(houses, drifts))

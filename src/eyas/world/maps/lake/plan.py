@@ -52,7 +52,7 @@ _APRON = material("concrete", (0.92, 0.90, 0.88))
 _KERB_WIDTH = 0.8
 _BEACH = 7.0
 """Width of the shores [m]."""
-_TUFTS, _TUFTS_BESIDE = (5.0, 0.012), (1.3, 14.0)
+_TUFTS, _TUFTS_BESIDE = (6.0, 0.006), (1.3, 14.0)
 """Least distance between two groups of tufts [m], and number of attempts on a square metre; their
 least and largest distance from a road [m]."""
 _SHRUBS, _BESIDE = (16.0, 0.004), 7.0

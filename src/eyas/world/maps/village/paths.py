@@ -29,7 +29,9 @@ _STONES, _STONES_BESIDE, _STONES_REACH = (19.0, 0.004), 6.0, 110.0
 """The same of stones; their least and largest distance from a road [m]."""
 
 
-def trodden(valley: VillageLayout, lawn: shapely.Geometry, rng: np.random.Generator) -> list:
+def trodden(
+    valley: VillageLayout, lawn: shapely.Geometry, rng: np.random.Generator
+) -> list[shapely.Polygon]:
     """Return the paths on a lawn, in plan view [m]."""
     rings = [ring for part in shapely.get_parts(valley.roads) for ring in _rings(part)]
     sizes = np.array([round(float(ring.length), 3) for ring in rings])
