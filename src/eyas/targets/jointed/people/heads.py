@@ -20,8 +20,7 @@ _CHIN = 0.07
 _SKULL: tuple[Row, ...] = (
     (0.000, 0.078, 0.010, 0.026), (0.022, 0.092, 0.040, 0.050), (0.050, 0.098, 0.062, 0.062),
     (0.085, 0.100, 0.080, 0.070), (0.125, 0.096, 0.093, 0.074), (0.152, 0.102, 0.097, 0.077),
-    (0.185, 0.094, 0.096, 0.074), (0.212, 0.068, 0.078, 0.058), (0.228, 0.034, 0.044, 0.032),
-    (0.234, 0.004, 0.006, 0.004),
+    (0.190, 0.090, 0.094, 0.073), (0.222, 0.048, 0.058, 0.042), (0.234, 0.006, 0.008, 0.006),
 )  # fmt: skip
 """Outlines of a head above the chin."""
 
@@ -31,7 +30,7 @@ def head_shape(head: Head, tone: Colour) -> Shape:
     """Return a head with what is on it, and skin of a tone."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
+        sides = (5, 7, 10)[detail]
         rows = _SKULL
         if detail:
             neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
@@ -62,7 +61,7 @@ def _features(shell: Shell, tone: Colour) -> None:
             (z + 0.145, 0.006, 0.022, 0.004)]  # fmt: skip
     for side in (-1.0, 1.0):
         ear = Shell()
-        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, skin(tone), sides=6)
+        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, skin(tone), sides=4)
         mesh = ear.mesh()
         corners = mesh.positions[mesh.triangles] + [0.0, 0.076 * side, 0.0]
         shell.triangles(corners, skin(tone), uvs=mesh.uvs[mesh.triangles])
@@ -76,8 +75,8 @@ def _hairy(shell: Shell, rows: list[Row], sides: int) -> None:
 
 
 _TOP: list[Row] = [
-    (0.168, 0.108, 0.112, 0.087), (0.200, 0.103, 0.108, 0.084), (0.228, 0.078, 0.084, 0.064),
-    (0.243, 0.038, 0.045, 0.034), (0.248, 0.004, 0.005, 0.004),
+    (0.168, 0.108, 0.112, 0.087), (0.204, 0.102, 0.107, 0.083), (0.234, 0.066, 0.073, 0.055),
+    (0.248, 0.006, 0.008, 0.006),
 ]  # fmt: skip
 """Hair above the hairline."""
 

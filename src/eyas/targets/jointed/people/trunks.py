@@ -65,7 +65,7 @@ def chest(garment: Garment, build: Build, cut: str, inner: Colour) -> Shape:
     """
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
+        sides = (5, 7, 10)[detail]
         rows, ups = _rows(garment, build)
         wrapped(shell, rows, ups, TORSO, cloth(cut), sides=sides, box=0.25)
         if detail == 0:
@@ -171,7 +171,7 @@ def hips(lower: Lower, build: Build) -> Shape:
     """Return the upper end of trousers or a skirt, in the colour of the instance."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
+        sides = (5, 7, 10)[detail]
         _, ahead, back, half = _BODIES[build][0]
         belt = (0.05, ahead - 0.008, back - 0.012, half - 0.012)
         if lower is Lower.SKIRT:
