@@ -126,7 +126,7 @@ _HEIGHTS = {
     Build.MAN: (1.64, 1.94), Build.WOMAN: (1.54, 1.80), Build.STOUT: (1.60, 1.86),
     Build.CHILD: (1.08, 1.46),
 }  # fmt: skip
-_INNER = ((_WHITE, 40), ((0.20, 0.20, 0.22), 30), ((0.55, 0.60, 0.68), 30))
+_INNER = ((_WHITE, 60), ((0.20, 0.20, 0.22), 40))
 _OVER = (Garment.OPEN_JACKET, Garment.JACKET, Garment.COAT)
 _HAIRY = (Head.SHORT, Head.LONG, Head.BUN, Head.TAIL, Head.BOB, Head.BALD)
 

@@ -1,6 +1,6 @@
 """Heads of people: skull with a face, hair, hats; their origin is at the lower end of the neck.
 
-Skin has a colour of its own; hair or what covers it has that of the instance.
+Skin has the colour of one instance, hair or what covers it that of another.
 """
 
 from collections.abc import Callable
@@ -9,10 +9,12 @@ from functools import cache
 from eyas.mesh.shell import DETAILS, Shape, Shell
 from eyas.targets.jointed.people.person import Head
 from eyas.targets.jointed.people.surfaces import Row, wrapped
-from eyas.targets.kind import Colour
 from eyas.world.build.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair, skin
 
-__all__ = ["head_shape"]
+__all__ = ["hair_shape", "head_shape"]
+
+_SIDES = (5, 7, 10)
+_BARE = skin(None)
 
 _CHIN = 0.07
 """Height of the chin above the origin [m]."""
@@ -25,28 +27,30 @@ _SKULL: tuple[Row, ...] = (
 """Outlines of a head above the chin."""
 
 
+def head_shape(shell: Shell, detail: int) -> None:
+    """Add a bare head."""
+    sides = _SIDES[detail]
+    if detail:
+        neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
+                (0.11, 0.045, 0.060, 0.054)]  # fmt: skip
+        wrapped(shell, neck, (0.0, 0.6, 1.0), NECK, _BARE, sides=sides - 2, caps=False)
+    lifted = [(z + _CHIN, 0.012 + ahead, back - 0.004, half) for z, ahead, back, half in _SKULL]
+    wrapped(shell, lifted, [row[0] / 0.234 for row in _SKULL], FACE, _BARE, sides=sides)
+    if detail == DETAILS[0]:
+        _features(shell)
+
+
 @cache
-def head_shape(head: Head, tone: Colour) -> Shape:
-    """Return a head with what is on it, and skin of a tone."""
+def hair_shape(head: Head) -> Shape:
+    """Return what is on a head."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 7, 10)[detail]
-        rows = _SKULL
-        if detail:
-            neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
-                    (0.11, 0.045, 0.060, 0.054)]  # fmt: skip
-            wrapped(shell, neck, (0.0, 0.6, 1.0), NECK, skin(tone), sides=sides - 2, caps=False)
-        lifted = [(z + _CHIN, 0.012 + ahead, back - 0.004, half) for z, ahead, back, half in rows]
-        ups = [row[0] / 0.234 for row in rows]
-        wrapped(shell, lifted, ups, FACE, skin(tone), sides=sides)
-        if detail == DETAILS[0]:
-            _features(shell, tone)
-        _COVERS[head](shell, sides, detail)
+        _COVERS[head](shell, _SIDES[detail], detail)
 
     return shape
 
 
-def _features(shell: Shell, tone: Colour) -> None:
+def _features(shell: Shell) -> None:
     """Add a nose and ears."""
     z = _CHIN
     tip = (0.133, 0.0, z + 0.088)
@@ -56,15 +60,15 @@ def _features(shell: Shell, tone: Colour) -> None:
         faces = [(tip, root, edge), (tip, edge, low)]
         triangles = [face if side < 0 else face[::-1] for face in faces]
         uvs = FACE.at([0.5, 0.5, 0.5], [0.42, 0.5, 0.42])
-        shell.triangles(triangles, skin(tone), uvs=[uvs, uvs])
+        shell.triangles(triangles, _BARE, uvs=[uvs, uvs])
     ears = [(z + 0.082, 0.002, 0.014, 0.004), (z + 0.112, 0.016, 0.024, 0.01),
             (z + 0.145, 0.006, 0.022, 0.004)]  # fmt: skip
     for side in (-1.0, 1.0):
         ear = Shell()
-        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, skin(tone), sides=4)
+        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, _BARE, sides=4)
         mesh = ear.mesh()
         corners = mesh.positions[mesh.triangles] + [0.0, 0.076 * side, 0.0]
-        shell.triangles(corners, skin(tone), uvs=mesh.uvs[mesh.triangles])
+        shell.triangles(corners, _BARE, uvs=mesh.uvs[mesh.triangles])
 
 
 def _hairy(shell: Shell, rows: list[Row], sides: int) -> None:

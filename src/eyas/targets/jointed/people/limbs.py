@@ -185,7 +185,7 @@ def shoe(shoes: Shoes) -> Shape:
     sole = (0.82, 0.81, 0.78) if pale else (0.09, 0.08, 0.08)
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (4, 5, 8)[detail]
+        sides = (4, 6, 8)[detail]
         low = -ANKLE
         edge = low + (0.03 if pale else 0.02)
         if detail:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from eyas.mesh.shell import Shape
 from eyas.targets.jointed.people.carried import carried_shape
-from eyas.targets.jointed.people.heads import head_shape
+from eyas.targets.jointed.people.heads import hair_shape, head_shape
 from eyas.targets.jointed.people.limbs import SLEEVES, THICKNESS, Holds, forearm, shank, shoe, thigh, upper_arm
 from eyas.targets.jointed.people.person import Carried, Head, Lower, Person, Posture
 from eyas.targets.jointed.people.trunks import chest, hips
@@ -21,6 +21,8 @@ class Dress:
     hips: Shape | None
     """None below a long garment."""
     head: Shape
+    hair: Shape
+    """Or what covers it."""
     upper_arms: tuple[Shape, Shape]
     forearms: tuple[Shape, Shape]
     carried: Shape | None
@@ -52,7 +54,8 @@ def dress_of(person: Person) -> Dress:
     return Dress(
         chest=chest(p.garment, p.build, p.cut, p.inner_colour),
         hips=None if p.garment.is_long else hips(p.lower, p.build),
-        head=head_shape(p.head, p.skin),
+        head=head_shape,
+        hair=hair_shape(p.head),
         upper_arms=(arm, arm),
         forearms=(hands[0], hands[1]),
         carried=None if p.carried is Carried.NOTHING else carried_shape(p.carried, p.build),
@@ -69,6 +72,7 @@ def colours_of(person: Person) -> tuple[Colour | None, ...]:
     own: list[Colour | None] = [None]
     if not p.garment.is_long:
         own.append(p.lower_colour)
+    own.append(p.skin)
     own.append(None if p.head is Head.HOOD else p.hair_colour)
     own += [None, p.skin if p.garment.bare_arms else None] * 2
     if p.carried is not Carried.NOTHING:
