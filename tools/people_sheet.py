@@ -33,7 +33,9 @@ def seen(stage: TargetStage, index: int, place: int, distance: float) -> np.ndar
     colour = colours[place % len(colours)]
     picture = stage.draw(index, colour, [(pose, camera)], (480, 640))[0]
     half = int(0.75 * MODELS[index].height * 320 / np.tan(FIELD / 2) / distance)
-    tile = np.asarray(Image.fromarray(picture).crop((320 - half, 240 - half, 320 + half, 240 + half)))
+    tile = np.asarray(
+        Image.fromarray(picture).crop((320 - half, 240 - half, 320 + half, 240 + half))
+    )
     return np.asarray(Image.fromarray(tile).resize((TILE, TILE), Image.Resampling.BICUBIC))
 
 

@@ -165,7 +165,9 @@ def test_legs_step_in_the_order_of_their_kind():
                 assert len(set(when)) == 4
 
 
-@pytest.mark.parametrize("name", [name for name, person in LOOKS.items() if person.posture is Posture.FREE])
+@pytest.mark.parametrize(
+    "name", [name for name, person in LOOKS.items() if person.posture is Posture.FREE]
+)
 def test_arms_swing_against_their_legs_and_knees_bend_forward(name):
     figure, cycle = FIGURES[name], np.arange(64) / 64
     frames = frames_of(figure, cycle, moving=True)
@@ -183,9 +185,7 @@ def test_arms_swing_against_their_legs_and_knees_bend_forward(name):
         assert (knee[:, 0] >= straight - 1e-3).all()
 
 
-@pytest.mark.parametrize(
-    "person", [person for person in LOOKS.values() if person.garment.is_long]
-)
+@pytest.mark.parametrize("person", [person for person in LOOKS.values() if person.garment.is_long])
 def test_thighs_are_clothed_as_far_as_coats_and_dresses_reach(person):
     for level in range(3):
         mesh = levels_of(dress_of(person).thighs[0])[level]
@@ -256,7 +256,9 @@ def test_who_stands_is_at_rest_wherever_the_path_ended(name):
 def test_a_pedestrian_stays_upright_on_a_slope_with_the_feet_on_it():
     slope = 0.15
     _, pose = posed("Pedestrian", slope=[slope], speed=[0.0])
-    assert pose[0, 0, :, 2] / FIGURES["Pedestrian"].scale == pytest.approx([0.0, 0.0, 1.0], abs=0.01)
+    assert pose[0, 0, :, 2] / FIGURES["Pedestrian"].scale == pytest.approx(
+        [0.0, 0.0, 1.0], abs=0.01
+    )
     feet = pose[0, [10, 13], :, 3]
     ankle = FIGURES["Pedestrian"].scale * FIGURES["Pedestrian"].legs[0].foot[2]
     assert feet[:, 2] == pytest.approx(feet[:, 0] * np.tan(slope) + ankle, abs=1e-5)

@@ -59,7 +59,9 @@ def extents_of(figure: Figure) -> Extents:
     still = frames_of(figure, np.zeros(1), moving=False)
     moving = frames_of(figure, cycle, moving=True)
     gait = figure.gait
-    return Extents(_boxes(points, still)[0], _boxes(points, moving), figure.scale * gait.stride, gait.slowest)
+    return Extents(
+        _boxes(points, still)[0], _boxes(points, moving), figure.scale * gait.stride, gait.slowest
+    )
 
 
 def _points(figure: Figure, number: int) -> Floats:

@@ -76,8 +76,7 @@ class JointedRig:
         for model in self._models:
             frames = frames_of(model.figure, np.zeros(1), moving=False)[0]
             placed = [
-                exact.product(levels[self._place[shape]][0].positions, frame[:, :3].T)
-                + frame[:, 3]
+                exact.product(levels[self._place[shape]][0].positions, frame[:, :3].T) + frame[:, 3]
                 for shape, frame in zip(shapes_of(model.figure), frames, strict=True)
             ]
             model.check_meshes(np.concatenate(placed), 0.1, antennas=True)
@@ -110,7 +109,9 @@ def _tabulate(
         for k, colour in enumerate(model.part_colours):
             if colour is not None:
                 table.part["own"][m, k] = True
-                table.part["red"][m, k], table.part["green"][m, k], table.part["blue"][m, k] = colour
+                table.part["red"][m, k], table.part["green"][m, k], table.part["blue"][m, k] = (
+                    colour
+                )
         joints = [joint for joint in figure.joints if joint.shape is not None]
         table.part["spins"][m, : len(joints)] = [joint.spins for joint in joints]
         table.part["steers"][m, : len(joints)] = [joint.steers for joint in joints]

@@ -29,12 +29,28 @@ def carried_shape(carried: Carried, build: Build) -> Shape:
 
 
 def _backpack(shell: Shell, detail: int) -> None:
-    rows: list[Row] = [(0.06, -0.09, 0.215, 0.13), (0.09, -0.08, 0.25, 0.15), (0.25, -0.08, 0.26, 0.155),
-            (0.40, -0.08, 0.235, 0.14), (0.47, -0.08, 0.18, 0.11)]  # fmt: skip
-    wrapped(shell, rows, (0.0, 0.1, 0.4, 0.7, 0.85), TORSO, cloth("quilted" if detail else "plain"),
-            sides=(5, 8, 10)[detail], box=0.5)  # fmt: skip
+    rows: list[Row] = [
+        (0.06, -0.09, 0.215, 0.13),
+        (0.09, -0.08, 0.25, 0.15),
+        (0.25, -0.08, 0.26, 0.155),
+        (0.40, -0.08, 0.235, 0.14),
+        (0.47, -0.08, 0.18, 0.11),
+    ]
+    wrapped(
+        shell,
+        rows,
+        (0.0, 0.1, 0.4, 0.7, 0.85),
+        TORSO,
+        cloth("quilted" if detail else "plain"),
+        sides=(5, 8, 10)[detail],
+        box=0.5,
+    )
     if detail:
-        pocket: list[Row] = [(0.09, -0.2, 0.28, 0.11), (0.12, -0.2, 0.295, 0.115), (0.24, -0.2, 0.285, 0.11)]
+        pocket: list[Row] = [
+            (0.09, -0.2, 0.28, 0.11),
+            (0.12, -0.2, 0.295, 0.115),
+            (0.24, -0.2, 0.285, 0.11),
+        ]
         wrapped(shell, pocket, (0.15, 0.2, 0.3), TORSO, cloth(), sides=8, box=0.5)
 
 
@@ -60,7 +76,11 @@ def _pram(shell: Shell, detail: int) -> None:
     if detail:
         inside: list[Row] = [(0.762, 0.36, 0.30, 0.19), (0.775, 0.30, 0.1, 0.17)]
         wrapped(shell, inside, (0.1, 0.2), LEG, cloth(tint=(0.8, 0.78, 0.74)), sides=sides, box=0.6)
-    hood: list[Row] = [(0.74, 0.40, -0.05, 0.23), (0.90, 0.38, -0.06, 0.22), (1.0, 0.27, -0.1, 0.15)]
+    hood: list[Row] = [
+        (0.74, 0.40, -0.05, 0.23),
+        (0.90, 0.38, -0.06, 0.22),
+        (1.0, 0.27, -0.1, 0.15),
+    ]
     wrapped(shell, hood, (0.2, 0.5, 0.7), TORSO, cloth("quilted"), sides=sides, box=0.4)
     for x in (-0.26, 0.28):
         for y in (-0.22, 0.22):

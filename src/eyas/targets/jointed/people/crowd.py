@@ -16,7 +16,6 @@ from eyas.targets.jointed.people.person import (
     Posture,
     Shoes,
 )
-from eyas.targets.kind import Colour
 
 __all__ = ["LOOKS", "PEOPLE"]
 
@@ -116,8 +115,14 @@ _SHOE_COLOURS = {
     Shoes.LEATHER: ((_DARK_SHOE, 50), (_LEATHER, 35), (_SAND, 15)),
     Shoes.BOOTS: ((_DARK_SHOE, 60), (_LEATHER, 40)),
 }
-_COVERINGS = (((0.10, 0.10, 0.11), 30), ((0.11, 0.14, 0.30), 20), ((0.45, 0.12, 0.12), 12),
-              ((0.30, 0.30, 0.31), 14), ((0.66, 0.58, 0.45), 12), ((0.88, 0.86, 0.83), 12))  # fmt: skip
+_COVERINGS = (
+    ((0.10, 0.10, 0.11), 30),
+    ((0.11, 0.14, 0.30), 20),
+    ((0.45, 0.12, 0.12), 12),
+    ((0.30, 0.30, 0.31), 14),
+    ((0.66, 0.58, 0.45), 12),
+    ((0.88, 0.86, 0.83), 12),
+)
 _POSTURES = ((Posture.FREE, 68), (Posture.POCKETS, 12), (Posture.PHONE, 8), (Posture.LADEN, 12))
 _CARRIED = ((Carried.NOTHING, 56), (Carried.BACKPACK, 22), (Carried.SHOULDER_BAG, 22))
 _BAGS = (((0.13, 0.13, 0.14), 36), ((0.11, 0.15, 0.30), 14), ((0.34, 0.21, 0.13), 18),
@@ -177,7 +182,9 @@ def _person(number: int) -> Person:
     shoes = dice.one("shoes", _SHOES) if build is not Build.CHILD else Shoes.TRAINERS
     posture, carried = _carrying(dice, build, garment)
     tone = dice.one("skin", _SKINS)
-    hair_colour = dice.one("hair", _HAIR if tone not in (_TAN, _DARK, _DEEP) else _HAIR[:1] + _HAIR[3:5])
+    hair_colour = dice.one(
+        "hair", _HAIR if tone not in (_TAN, _DARK, _DEEP) else _HAIR[:1] + _HAIR[3:5]
+    )
     return Person(
         name=f"Pedestrian{number}",
         height=round(height, 2),

@@ -91,8 +91,17 @@ def _short(shell: Shell, sides: int, detail: int) -> None:
 
 
 def _long(shell: Shell, sides: int, detail: int) -> None:
-    _hairy(shell, [(-0.17, -0.055, 0.130, 0.085), (-0.09, -0.035, 0.132, 0.098),
-                   (0.03, 0.000, 0.120, 0.094), (0.12, 0.022, 0.118, 0.092), *_TOP], sides)  # fmt: skip
+    _hairy(
+        shell,
+        [
+            (-0.17, -0.055, 0.130, 0.085),
+            (-0.09, -0.035, 0.132, 0.098),
+            (0.03, 0.000, 0.120, 0.094),
+            (0.12, 0.022, 0.118, 0.092),
+            *_TOP,
+        ],
+        sides,
+    )
 
 
 def _bob(shell: Shell, sides: int, detail: int) -> None:
@@ -102,13 +111,23 @@ def _bob(shell: Shell, sides: int, detail: int) -> None:
 
 def _bun(shell: Shell, sides: int, detail: int) -> None:
     _short(shell, sides, detail)
-    shell.ball((-0.115, 0.0, _CHIN + 0.185), (0.048, 0.05, 0.048), hair(), rows=2 + detail, sides=max(sides - 4, 4))
+    shell.ball(
+        (-0.115, 0.0, _CHIN + 0.185),
+        (0.048, 0.05, 0.048),
+        hair(),
+        rows=2 + detail,
+        sides=max(sides - 4, 4),
+    )
 
 
 def _tail(shell: Shell, sides: int, detail: int) -> None:
     _short(shell, sides, detail)
-    fall = [(-0.13, -0.115, 0.135, 0.014), (-0.05, -0.09, 0.150, 0.032), (0.08, -0.08, 0.150, 0.034),
-            (0.16, -0.06, 0.125, 0.022)]  # fmt: skip
+    fall = [
+        (-0.13, -0.115, 0.135, 0.014),
+        (-0.05, -0.09, 0.150, 0.032),
+        (0.08, -0.08, 0.150, 0.034),
+        (0.16, -0.06, 0.125, 0.022),
+    ]
     _hairy(shell, fall, max(sides - 4, 5))
 
 
@@ -125,8 +144,12 @@ def _covered(shell: Shell, rows: list[Row], sides: int) -> None:
 
 def _nape(shell: Shell, sides: int) -> None:
     """Add short dark hair below a cap or hat."""
-    rows = [(0.045, -0.030, 0.068, 0.052), (0.085, -0.012, 0.097, 0.077), (0.15, -0.01, 0.101, 0.08)]
-    lifted = [(z + _CHIN, *row) for z, *row in rows]
+    rows = [
+        (0.045, -0.030, 0.068, 0.052),
+        (0.085, -0.012, 0.097, 0.077),
+        (0.15, -0.01, 0.101, 0.08),
+    ]
+    lifted = [(z + _CHIN, ahead, back, half) for z, ahead, back, half in rows]
     wrapped(shell, lifted, (0.0, 0.5, 1.0), TORSO, cloth(tint=(0.2, 0.15, 0.12)), sides=sides)
 
 

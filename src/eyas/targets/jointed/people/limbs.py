@@ -73,7 +73,7 @@ def upper_arm(sleeve: Sleeve, thick: float, cut: str, tone: Colour) -> Shape:
         top = [(-0.10, 0.052), (-0.03, 0.056), (0.02, 0.050), (0.045, 0.024)]
         if sleeve not in (Sleeve.NONE, Sleeve.SHORT):
             rows = [(-UPPER_ARM - 0.02, 0.042), (-0.22, 0.045), *top]
-            ups = (0.45, 0.62, 0.8, 0.9, 0.95, 1.0)
+            ups: tuple[float, ...] = (0.45, 0.62, 0.8, 0.9, 0.95, 1.0)
             wrapped(shell, _grown(rows, thick, ease), ups, SLEEVE, cloth(cut), sides=sides)
             return
         short = [(-0.19, 0.053), *top] if sleeve is Sleeve.SHORT else [(-0.09, 0.053), *top[1:]]
@@ -137,16 +137,26 @@ def thigh(lower: Lower, thick: float, below: Colour | None, *, left: bool) -> Sh
 
     def shape(shell: Shell, detail: int) -> None:
         sides = (4, 5, 7)[detail]
-        rows = [(-THIGH - 0.02, 0.055), (-0.30, 0.068), (-0.15, 0.082), (-0.04, 0.086), (0.03, 0.060)]
+        rows = [
+            (-THIGH - 0.02, 0.055),
+            (-0.30, 0.068),
+            (-0.15, 0.082),
+            (-0.04, 0.086),
+            (0.03, 0.060),
+        ]
         ups = (0.48, 0.62, 0.78, 0.93, 1.0)
         if below is not None:
             # What the leg pushes out of a skirt or coat is cloth.
             hem = [(-0.31, 0.088), (-0.15, 0.096), (-0.03, 0.096), (0.02, 0.08)]
-            wrapped(shell, _grown(hem, thick, 0.012), ups[1:], LEG, cloth(), sides=sides, flip=not left)
+            wrapped(
+                shell, _grown(hem, thick, 0.012), ups[1:], LEG, cloth(), sides=sides, flip=not left
+            )
             bare = lower in (Lower.NONE, Lower.SKIRT)
             leg = _grown(rows[:3], thick, 0.0 if bare else 0.01)
             material = skin(below) if bare else cloth(tint=below)
-            wrapped(shell, leg, ups[:3], SKIN if bare else LEG, material, sides=sides, flip=not left)
+            wrapped(
+                shell, leg, ups[:3], SKIN if bare else LEG, material, sides=sides, flip=not left
+            )
             return
         ease = {Lower.WIDE: 0.02, Lower.SHORTS: 0.018}.get(lower, 0.008)
         wrapped(shell, _grown(rows, thick, ease), ups, LEG, cloth(), sides=sides, flip=not left)
@@ -165,14 +175,28 @@ def shank(lower: Lower, thick: float, shoes: Shoes, *, left: bool) -> Shape:
             calf = 0.058 if lower is Lower.TROUSERS else 0.075
             tucked = shoes is Shoes.BOOTS and lower is Lower.TROUSERS
             end = (-0.32, 0.040) if tucked else (-SHANK - 0.035, hem)
-            rows = [end, (-0.24 if tucked else -0.33, calf - 0.002), (-0.14, calf), (0.0, 0.062), (0.03, 0.045)]
+            rows = [
+                end,
+                (-0.24 if tucked else -0.33, calf - 0.002),
+                (-0.14, calf),
+                (0.0, 0.062),
+                (0.03, 0.045),
+            ]
             wrapped(shell, _grown(rows, thick, 0.004), (0.0, 0.13, 0.3, 0.47, 0.52), LEG, cloth(),
                     sides=sides, flip=not left)  # fmt: skip
             return
-        rows = [(-SHANK - 0.02, 0.034), (-0.33, 0.038), (-0.14, 0.054), (-0.05, 0.050), (0.0, 0.053),
-                (0.03, 0.040)]  # fmt: skip
-        calves = [(z, r - (0.01 if z < -0.1 else 0.0), r + (0.012 if z < -0.1 else 0.0), r)
-                  for z, r, _, _ in _grown(rows, thick, 0.0)]  # fmt: skip
+        rows = [
+            (-SHANK - 0.02, 0.034),
+            (-0.33, 0.038),
+            (-0.14, 0.054),
+            (-0.05, 0.050),
+            (0.0, 0.053),
+            (0.03, 0.040),
+        ]
+        calves = [
+            (z, r - (0.01 if z < -0.1 else 0.0), r + (0.012 if z < -0.1 else 0.0), r)
+            for z, r, _, _ in _grown(rows, thick, 0.0)
+        ]
         wrapped(shell, calves, (0.0, 0.2, 0.5, 0.7, 0.9, 1.0), SKIN, skin(None), sides=sides)
 
     return shape

@@ -69,7 +69,9 @@ def _words(person: Person) -> tuple[str, ...]:
     below = "trousers" if person.lower is Lower.WIDE else person.lower.value
     colour = colour_name(person.lower_colour)
     clothed = f"{worn} and {'a ' if person.lower is Lower.SKIRT else ''}{colour} {below}"
-    clothed = clothed.replace("and a olive", "and an olive").replace("and a orange", "and an orange")
+    clothed = clothed.replace("and a olive", "and an olive").replace(
+        "and a orange", "and an orange"
+    )
     return worn, clothed, f"{clothed}, {head}"
 
 

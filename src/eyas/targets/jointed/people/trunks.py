@@ -98,7 +98,10 @@ def _rows(garment: Garment, build: Build) -> tuple[list[Row], list[float]]:
         return [*low, *body[:end]], [0.0, 0.05, 0.1, *ups[1:end]]
     hem = _HEM.get(garment, -0.07)
     # It hangs before the thighs, which swing out below it.
-    rows = [(hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006), *body]
+    rows = [
+        (hem, max(ahead, _BODIES[build][0][1] + 0.022) + 0.004, back + 0.006, half + 0.006),
+        *body,
+    ]
     ups = [0.0, 0.08, *ups[1:]]
     if garment in (Garment.T_SHIRT, Garment.SHIRT, Garment.HOODIE):
         return rows[:-1], ups[:-1]
@@ -109,8 +112,12 @@ def _collar(shell: Shell, garment: Garment, top: Row, inner: Colour, sides: int)
     """Add what lies around the neck: a collar, a hood that hangs down, a scarf."""
     z, ahead, back, half = top
     if garment is Garment.HOODIE:
-        hood = [(z - 0.075, 0.0, back + 0.075, half + 0.06), (z - 0.02, 0.03, back + 0.09, half + 0.05),
-                (z + 0.03, 0.03, back + 0.06, half + 0.03), (z + 0.02, 0.02, back, half)]  # fmt: skip
+        hood = [
+            (z - 0.075, 0.0, back + 0.075, half + 0.06),
+            (z - 0.02, 0.03, back + 0.09, half + 0.05),
+            (z + 0.03, 0.03, back + 0.06, half + 0.03),
+            (z + 0.02, 0.02, back, half),
+        ]
         wrapped(shell, hood, (0.6, 0.8, 0.95, 0.5), TORSO, cloth(), sides=sides)
     elif garment in (Garment.JACKET, Garment.OPEN_JACKET, Garment.DOWN_JACKET, Garment.COAT):
         stand = [(z - 0.03, ahead + 0.012, back + 0.014, half + 0.014),
@@ -155,9 +162,11 @@ def straps(shell: Shell, build: Build, carried: Carried) -> None:
             _strip(shell, *((inside, outside) if side > 0 else (outside, inside)), dark)
         return
     places = np.linspace(-0.42, 0.3, len(upper))
-    ends = [np.array([_front([row], p + d, 0.032)[0] for row, p in zip(upper, places, strict=True)])
-            for d in (-0.035, 0.035)]  # fmt: skip
-    _strip(shell, *ends, dark)
+    right, left = (
+        np.array([_front([row], p + d, 0.032)[0] for row, p in zip(upper, places, strict=True)])
+        for d in (-0.035, 0.035)
+    )
+    _strip(shell, right, left, dark)
 
 
 def _strip(shell: Shell, right: Points, left: Points, material: Material) -> None:
@@ -175,8 +184,12 @@ def hips(lower: Lower, build: Build) -> Shape:
         _, ahead, back, half = _BODIES[build][0]
         belt = (0.05, ahead - 0.008, back - 0.012, half - 0.012)
         if lower is Lower.SKIRT:
-            rows = [(-0.36, ahead + 0.085, back + 0.07, half + 0.03), (-0.16, ahead + 0.03, back + 0.03, half + 0.01),
-                    (-0.03, ahead - 0.002, back - 0.002, half - 0.004), belt]  # fmt: skip
+            rows = [
+                (-0.36, ahead + 0.085, back + 0.07, half + 0.03),
+                (-0.16, ahead + 0.03, back + 0.03, half + 0.01),
+                (-0.03, ahead - 0.002, back - 0.002, half - 0.004),
+                belt,
+            ]
             wrapped(shell, rows, (0.0, 0.25, 0.45, 0.5), TORSO, cloth(), sides=sides, box=0.2)
             return
         rows = [(-0.13, 0.07, 0.075, 0.12), (-0.09, ahead - 0.022, back - 0.012, half - 0.012),
@@ -184,4 +197,3 @@ def hips(lower: Lower, build: Build) -> Shape:
         wrapped(shell, rows, (0.0, 0.2, 0.6, 1.0), HIPS, cloth(), sides=sides, box=0.25)
 
     return shape
-

@@ -5,7 +5,16 @@ from dataclasses import dataclass
 from eyas.mesh.shell import Shape
 from eyas.targets.jointed.people.carried import carried_shape
 from eyas.targets.jointed.people.heads import hair_shape, head_shape
-from eyas.targets.jointed.people.limbs import SLEEVES, THICKNESS, Holds, forearm, shank, shoe, thigh, upper_arm
+from eyas.targets.jointed.people.limbs import (
+    SLEEVES,
+    THICKNESS,
+    Holds,
+    forearm,
+    shank,
+    shoe,
+    thigh,
+    upper_arm,
+)
 from eyas.targets.jointed.people.person import Carried, Head, Lower, Person, Posture
 from eyas.targets.jointed.people.trunks import chest, hips
 from eyas.targets.kind import Colour
@@ -36,6 +45,7 @@ _HOLDS = {
     Posture.PHONE: (Holds.NOTHING, Holds.PHONE),
     Posture.POCKETS: (Holds.POCKET, Holds.POCKET),
 }
+
 
 def dress_of(person: Person) -> Dress:
     """Return the shapes of a person's parts."""
@@ -80,5 +90,3 @@ def colours_of(person: Person) -> tuple[Colour | None, ...]:
     thighs = None if p.garment.is_long else p.lower_colour
     leg = [thighs, p.skin if bare_legs else p.lower_colour, p.shoe_colour]
     return (*own, *leg, *leg)
-
-
