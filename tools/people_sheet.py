@@ -16,7 +16,7 @@ FIELD = np.deg2rad(45.0)
 DISTANCES = (4.0, 6.0, 9.0, 13.0)
 ELEVATIONS = (0.35, 0.55, 0.8)
 BEARINGS = (0.3, 2.4, -2.9, -0.9, 1.5, np.pi)
-TILE = 200
+TILE = 150
 """Height and width of what is shown of each [pixels]."""
 
 

@@ -61,7 +61,7 @@ def _gait(stride: float) -> Gait:
         slowest=0.4,
         y=Swing(size=0.015, phase=-0.04),
         # The body is lowest when both feet are on the ground.
-        z=Swing(lean=-0.037, size=0.022, phase=-0.33, beats=2),
+        z=Swing(lean=-0.029, size=0.03, phase=-0.33, beats=2),
     )
 
 
