@@ -16,7 +16,7 @@ FIELD = np.deg2rad(45.0)
 DISTANCES = (4.0, 6.0, 9.0, 13.0)
 ELEVATIONS = (0.35, 0.55, 0.8)
 BEARINGS = (0.3, 2.4, -2.9, -0.9, 1.5, np.pi)
-TILE = 200
+TILE = 150
 """Height and width of what is shown of each [pixels]."""
 
 
@@ -33,7 +33,9 @@ def seen(stage: TargetStage, index: int, place: int, distance: float) -> np.ndar
     colour = colours[place % len(colours)]
     picture = stage.draw(index, colour, [(pose, camera)], (480, 640))[0]
     half = int(0.75 * MODELS[index].height * 320 / np.tan(FIELD / 2) / distance)
-    tile = np.asarray(Image.fromarray(picture).crop((320 - half, 240 - half, 320 + half, 240 + half)))
+    tile = np.asarray(
+        Image.fromarray(picture).crop((320 - half, 240 - half, 320 + half, 240 + half))
+    )
     return np.asarray(Image.fromarray(tile).resize((TILE, TILE), Image.Resampling.BICUBIC))
 
 

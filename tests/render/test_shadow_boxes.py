@@ -15,7 +15,7 @@ def _boxes(sun):
     """A body 4 m long, 1.8 m wide and 0.8 m high, with a cabin of 1.5 m on it."""
     lower = Box(f4(-2.0), f4(2.0), f4(-0.9), f4(0.9), f4(0.0), f4(0.8))
     upper = Box(f4(-1.2), f4(0.8), f4(-0.8), f4(0.8), f4(0.8), f4(1.5))
-    return shadow_boxes(lower, upper, Direction(sun[0], sun[1], sun[2]), 0.9, 0.85)
+    return shadow_boxes(lower, upper, Direction(sun[0], sun[1], sun[2]), 0.9, 0.85, False)
 
 
 @kernel

@@ -156,6 +156,10 @@ class Shell:
         rings = np.stack(unit, axis=-1) * np.asarray(radii) + np.asarray(centre)
         self.rings(rings, material, both_sides=both_sides, caps=False)
 
+    def corners(self) -> NDArray[np.float64]:
+        """Return the corners of all triangles [m], shape (3 T, 3)."""
+        return np.concatenate(self._corners).reshape(-1, 3)
+
     def mesh(self) -> Mesh:
         """Return all panels as one mesh."""
         corners = np.concatenate(self._corners)

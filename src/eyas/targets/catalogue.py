@@ -1,7 +1,7 @@
 """The catalogue: all kinds of targets and all their models.
 
 A model is one entry in one file: vehicles in `vehicles/models`, robots in `jointed/robots`, people
-in the table `jointed/people/people.py`. A new kind is a file with its models and its rig, and one
+in the grammar `jointed/people/crowd.py`. A new kind is a file with its models and its rig, and one
 call of `register`.
 """
 

@@ -28,6 +28,8 @@ _HEIGHT = 22.0
 """Distance of a tracker's camera [m]."""
 _FIELD = np.deg2rad(45.0)
 _TURNS = 8
+_MOST = 16
+"""Models of a kind on the sheet of all."""
 _FRAMES, _RATE = 72, 24
 """Frames of a film, and frames a second."""
 _BACK, _INK, _DIM = (24, 25, 27), (230, 230, 228), (160, 161, 163)
@@ -71,7 +73,8 @@ def run(name: str, path: Path, custom: CustomConfig | None = None) -> None:
 def _models(name: str, custom: CustomConfig) -> list[int]:
     """Return the models that a name stands for."""
     if name == ALL:
-        return list(range(len(MODELS)))
+        kinds = [models_of(kind) for kind in range(len(KINDS))]
+        return [model for models in kinds for model in models[:_MOST]]
     if own := as_custom(name, custom):
         return list(models_of(kind_index(kind_name_of(own))))
     found = [m for m, model in enumerate(MODELS) if name == model.name]

@@ -1,4 +1,4 @@
-"""Textures of people: clothes with seams and folds, faces, hair, see `eyas.world.build.clothing`."""
+"""Textures of people: clothes with folds, faces and hair, see `eyas.world.build.clothing`."""
 
 from collections.abc import Callable
 from functools import partial

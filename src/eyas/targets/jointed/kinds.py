@@ -10,7 +10,7 @@ from eyas.targets.jointed.extent import Extents, extents_of
 from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.people.people import PEDESTRIANS
 from eyas.targets.jointed.riders.cyclist import CYCLISTS
-from eyas.targets.jointed.rig import JointedRig
+from eyas.targets.jointed.rig import JointedRig, layout_of
 from eyas.targets.jointed.robots import ROBOTS
 from eyas.targets.kind import Kind
 
@@ -27,12 +27,13 @@ def _kind(models: tuple[JointedModel, ...], object_class: ObjectClass) -> Kind:
     def extent(name: str, travelled: float, speed: float) -> NDArray[np.float64]:
         return extents(name).at(travelled, speed)
 
+    layout = cache(lambda: layout_of(models))
     return Kind(
         name=models[0].kind,
         models=models,
         colours=models[0].colours,
         object_class=object_class,
-        rig=lambda: JointedRig(models),
+        rig=lambda: JointedRig(models, layout()),
         extent=extent,
         keeps_colours=True,
         habit=models[0].habit,

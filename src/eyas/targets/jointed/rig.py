@@ -1,6 +1,7 @@
 """The rig of people and robots."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,29 @@ from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.pose import BODY, PART, CycleTable, pose_jointed
 from eyas.targets.posing import PoseCall
 
-__all__ = ["JointedRig"]
+__all__ = ["JointedRig", "Layout", "layout_of"]
 
 _INTERVALS = 32
 """Intervals of a cycle; within one, parts move along straight lines."""
 
 _SHEARED = 1.25
 """Factor by which what stays upright on a slope may be farther from its origin."""
+
+
+class Layout(NamedTuple):
+    """The parts of the models of one kind, and where they are; made once for all rigs of it."""
+
+    place: dict[Shape, int]
+    """The shapes, numbered."""
+    table: CycleTable
+
+
+def layout_of(models: Sequence[JointedModel]) -> Layout:
+    """Return the layout of all models of a kind."""
+    drawn = [shapes_of(model.figure) for model in models]
+    shapes = dict.fromkeys(shape for shapes in drawn for shape in shapes)
+    place = {shape: number for number, shape in enumerate(shapes)}
+    return Layout(place, _tabulate(models, drawn, place, max(map(len, drawn))))
 
 
 class JointedRig:
@@ -31,17 +48,14 @@ class JointedRig:
 
     Args:
         models: All models of a kind.
+        layout: Their `layout_of`.
     """
 
     slots: int
 
-    def __init__(self, models: Sequence[JointedModel]) -> None:
-        self._models = models
-        drawn = [shapes_of(model.figure) for model in models]
-        shapes = dict.fromkeys(shape for shapes in drawn for shape in shapes)
-        self._place = {shape: place for place, shape in enumerate(shapes)}
-        self.slots = max(map(len, drawn))
-        table = _tabulate(models, drawn, self._place, self.slots)
+    def __init__(self, models: Sequence[JointedModel], layout: Layout) -> None:
+        self._models, self._place, table = models, *layout
+        self.slots = table.part.shape[1]
         self._far = _farthest(table)
         self._scale = np.linalg.norm(table.rest[:, :, 0].astype(np.float64), axis=-1)
         self._parts = table.part["part"]

@@ -29,10 +29,22 @@ def carried_shape(carried: Carried, build: Build) -> Shape:
 
 
 def _backpack(shell: Shell, detail: int) -> None:
-    rows: list[Row] = [(0.06, -0.09, 0.215, 0.13), (0.09, -0.08, 0.25, 0.15), (0.25, -0.08, 0.26, 0.155),
-            (0.40, -0.08, 0.235, 0.14), (0.47, -0.08, 0.18, 0.11)]  # fmt: skip
-    wrapped(shell, rows, (0.0, 0.1, 0.4, 0.7, 0.85), TORSO, cloth("quilted" if detail else "plain"),
-            sides=(5, 8, 10)[detail], box=0.5)  # fmt: skip
+    rows: list[Row] = [
+        (0.06, -0.09, 0.215, 0.13),
+        (0.09, -0.08, 0.25, 0.15),
+        (0.25, -0.08, 0.26, 0.155),
+        (0.40, -0.08, 0.235, 0.14),
+        (0.47, -0.08, 0.18, 0.11),
+    ]
+    wrapped(
+        shell,
+        rows,
+        (0.0, 0.1, 0.4, 0.7, 0.85),
+        TORSO,
+        cloth("quilted" if detail else "plain"),
+        sides=(5, 8, 10)[detail],
+        box=0.5,
+    )
     if detail:
         pocket: list[Row] = [
             (0.09, -0.2, 0.28, 0.11),

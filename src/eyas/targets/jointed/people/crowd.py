@@ -115,8 +115,14 @@ _SHOE_COLOURS = {
     Shoes.LEATHER: ((_DARK_SHOE, 50), (_LEATHER, 35), (_SAND, 15)),
     Shoes.BOOTS: ((_DARK_SHOE, 60), (_LEATHER, 40)),
 }
-_COVERINGS = (((0.10, 0.10, 0.11), 30), ((0.11, 0.14, 0.30), 20), ((0.45, 0.12, 0.12), 12),
-              ((0.30, 0.30, 0.31), 14), ((0.66, 0.58, 0.45), 12), ((0.88, 0.86, 0.83), 12))  # fmt: skip
+_COVERINGS = (
+    ((0.10, 0.10, 0.11), 30),
+    ((0.11, 0.14, 0.30), 20),
+    ((0.45, 0.12, 0.12), 12),
+    ((0.30, 0.30, 0.31), 14),
+    ((0.66, 0.58, 0.45), 12),
+    ((0.88, 0.86, 0.83), 12),
+)
 _POSTURES = ((Posture.FREE, 68), (Posture.POCKETS, 12), (Posture.PHONE, 8), (Posture.LADEN, 12))
 _CARRIED = ((Carried.NOTHING, 56), (Carried.BACKPACK, 22), (Carried.SHOULDER_BAG, 22))
 _BAGS = (((0.13, 0.13, 0.14), 36), ((0.11, 0.15, 0.30), 14), ((0.34, 0.21, 0.13), 18),
@@ -125,7 +131,7 @@ _HEIGHTS = {
     Build.MAN: (1.64, 1.94), Build.WOMAN: (1.54, 1.80), Build.STOUT: (1.60, 1.86),
     Build.CHILD: (1.08, 1.46),
 }  # fmt: skip
-_INNER = ((_WHITE, 40), ((0.20, 0.20, 0.22), 30), ((0.55, 0.60, 0.68), 30))
+_INNER = ((_WHITE, 60), ((0.20, 0.20, 0.22), 40))
 _OVER = (Garment.OPEN_JACKET, Garment.JACKET, Garment.COAT)
 _HAIRY = (Head.SHORT, Head.LONG, Head.BUN, Head.TAIL, Head.BOB, Head.BALD)
 

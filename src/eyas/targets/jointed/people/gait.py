@@ -21,8 +21,8 @@ from eyas.targets.jointed.people.wardrobe import Dress
 
 __all__ = ["STRIDE", "figure_of"]
 
-STRIDE = 1.5
-"""Of a person of 1.80 m [m]: 1.33 strides a second at the original's 2 m/s."""
+STRIDE = 1.46
+"""Of a person of 1.80 m [m]: 1.37 strides a second at the original's 2 m/s."""
 
 _SHOULDERS = {Build.MAN: 0.188, Build.WOMAN: 0.162, Build.STOUT: 0.198, Build.CHILD: 0.168}
 """y of the left shoulder [m]."""
@@ -57,11 +57,11 @@ def _gait(stride: float) -> Gait:
         stride=stride,
         duty=0.6,
         lift=0.035,
-        shift=-0.03,
+        shift=-0.045,
         slowest=0.4,
         y=Swing(size=0.015, phase=-0.04),
         # The body is lowest when both feet are on the ground.
-        z=Swing(lean=-0.024, size=0.018, phase=-0.33, beats=2),
+        z=Swing(lean=-0.029, size=0.03, phase=-0.33, beats=2),
     )
 
 
@@ -93,6 +93,7 @@ def _joints(person: Person, dress: Dress, stooped: bool) -> tuple[Joint, ...]:
             yaw=Swing(size=0.06, phase=0.75),
             scale=person.build.head,
         ),
+        Joint(name="hair", shape=dress.hair, parent="head", scale=person.build.head),
         *_arm(person, dress, 1.0),
         *_arm(person, dress, -1.0),
     ]
@@ -160,12 +161,12 @@ def _leg(build: Build, dress: Dress, side: float) -> Leg:
     hip, at = _HIPS[build] * side, 0 if side > 0 else 1
     # One foot stands a little ahead of the other.
     return Leg(
-        hip=(-0.012, hip, HIP),
+        hip=(-0.008, hip, HIP),
         foot=(0.045 * side, 0.85 * hip, ANKLE),
         bones=(THIGH, SHANK),
         knee=(1.0, 0.1 * side, 0.0),
         phase=0.0 if side > 0 else 0.5,
         shapes=(dress.thighs[at], dress.shanks[at], dress.shoe),
         sole=(HEEL, TOES),
-        roll=(0.32, 0.75),
+        roll=(0.36, 0.75),
     )

@@ -1,6 +1,6 @@
 """Heads of people: skull with a face, hair, hats; their origin is at the lower end of the neck.
 
-Skin has a colour of its own; hair or what covers it has that of the instance.
+Skin has the colour of one instance, hair or what covers it that of another.
 """
 
 from collections.abc import Callable
@@ -9,10 +9,12 @@ from functools import cache
 from eyas.mesh.shell import DETAILS, Shape, Shell
 from eyas.targets.jointed.people.person import Head
 from eyas.targets.jointed.people.surfaces import Row, wrapped
-from eyas.targets.kind import Colour
 from eyas.world.build.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair, skin
 
-__all__ = ["head_shape"]
+__all__ = ["hair_shape", "head_shape"]
+
+_SIDES = (5, 7, 10)
+_BARE = skin(None)
 
 _CHIN = 0.07
 """Height of the chin above the origin [m]."""
@@ -20,34 +22,35 @@ _CHIN = 0.07
 _SKULL: tuple[Row, ...] = (
     (0.000, 0.078, 0.010, 0.026), (0.022, 0.092, 0.040, 0.050), (0.050, 0.098, 0.062, 0.062),
     (0.085, 0.100, 0.080, 0.070), (0.125, 0.096, 0.093, 0.074), (0.152, 0.102, 0.097, 0.077),
-    (0.185, 0.094, 0.096, 0.074), (0.212, 0.068, 0.078, 0.058), (0.228, 0.034, 0.044, 0.032),
-    (0.234, 0.004, 0.006, 0.004),
+    (0.190, 0.090, 0.094, 0.073), (0.222, 0.048, 0.058, 0.042), (0.234, 0.006, 0.008, 0.006),
 )  # fmt: skip
 """Outlines of a head above the chin."""
 
 
+def head_shape(shell: Shell, detail: int) -> None:
+    """Add a bare head."""
+    sides = _SIDES[detail]
+    if detail:
+        neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
+                (0.11, 0.045, 0.060, 0.054)]  # fmt: skip
+        wrapped(shell, neck, (0.0, 0.6, 1.0), NECK, _BARE, sides=sides - 2, caps=False)
+    lifted = [(z + _CHIN, 0.012 + ahead, back - 0.004, half) for z, ahead, back, half in _SKULL]
+    wrapped(shell, lifted, [row[0] / 0.234 for row in _SKULL], FACE, _BARE, sides=sides)
+    if detail == DETAILS[0]:
+        _features(shell)
+
+
 @cache
-def head_shape(head: Head, tone: Colour) -> Shape:
-    """Return a head with what is on it, and skin of a tone."""
+def hair_shape(head: Head) -> Shape:
+    """Return what is on a head."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
-        rows = _SKULL
-        if detail:
-            neck = [(-0.03, 0.056, 0.060, 0.060), (0.05, 0.050, 0.060, 0.056),
-                    (0.11, 0.045, 0.060, 0.054)]  # fmt: skip
-            wrapped(shell, neck, (0.0, 0.6, 1.0), NECK, skin(tone), sides=sides - 2, caps=False)
-        lifted = [(z + _CHIN, 0.012 + ahead, back - 0.004, half) for z, ahead, back, half in rows]
-        ups = [row[0] / 0.234 for row in rows]
-        wrapped(shell, lifted, ups, FACE, skin(tone), sides=sides)
-        if detail == DETAILS[0]:
-            _features(shell, tone)
-        _COVERS[head](shell, sides, detail)
+        _COVERS[head](shell, _SIDES[detail], detail)
 
     return shape
 
 
-def _features(shell: Shell, tone: Colour) -> None:
+def _features(shell: Shell) -> None:
     """Add a nose and ears."""
     z = _CHIN
     tip = (0.133, 0.0, z + 0.088)
@@ -57,15 +60,15 @@ def _features(shell: Shell, tone: Colour) -> None:
         faces = [(tip, root, edge), (tip, edge, low)]
         triangles = [face if side < 0 else face[::-1] for face in faces]
         uvs = FACE.at([0.5, 0.5, 0.5], [0.42, 0.5, 0.42])
-        shell.triangles(triangles, skin(tone), uvs=[uvs, uvs])
+        shell.triangles(triangles, _BARE, uvs=[uvs, uvs])
     ears = [(z + 0.082, 0.002, 0.014, 0.004), (z + 0.112, 0.016, 0.024, 0.01),
             (z + 0.145, 0.006, 0.022, 0.004)]  # fmt: skip
     for side in (-1.0, 1.0):
         ear = Shell()
-        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, skin(tone), sides=6)
+        wrapped(ear, ears, (0.2, 0.5, 0.8), SKIN, _BARE, sides=4)
         mesh = ear.mesh()
         corners = mesh.positions[mesh.triangles] + [0.0, 0.076 * side, 0.0]
-        shell.triangles(corners, skin(tone), uvs=mesh.uvs[mesh.triangles])
+        shell.triangles(corners, _BARE, uvs=mesh.uvs[mesh.triangles])
 
 
 def _hairy(shell: Shell, rows: list[Row], sides: int) -> None:
@@ -76,8 +79,8 @@ def _hairy(shell: Shell, rows: list[Row], sides: int) -> None:
 
 
 _TOP: list[Row] = [
-    (0.168, 0.108, 0.112, 0.087), (0.200, 0.103, 0.108, 0.084), (0.228, 0.078, 0.084, 0.064),
-    (0.243, 0.038, 0.045, 0.034), (0.248, 0.004, 0.005, 0.004),
+    (0.168, 0.108, 0.112, 0.087), (0.204, 0.102, 0.107, 0.083), (0.234, 0.066, 0.073, 0.055),
+    (0.248, 0.006, 0.008, 0.006),
 ]  # fmt: skip
 """Hair above the hairline."""
 
@@ -88,8 +91,17 @@ def _short(shell: Shell, sides: int, detail: int) -> None:
 
 
 def _long(shell: Shell, sides: int, detail: int) -> None:
-    _hairy(shell, [(-0.17, -0.055, 0.130, 0.085), (-0.09, -0.035, 0.132, 0.098),
-                   (0.03, 0.000, 0.120, 0.094), (0.12, 0.022, 0.118, 0.092), *_TOP], sides)  # fmt: skip
+    _hairy(
+        shell,
+        [
+            (-0.17, -0.055, 0.130, 0.085),
+            (-0.09, -0.035, 0.132, 0.098),
+            (0.03, 0.000, 0.120, 0.094),
+            (0.12, 0.022, 0.118, 0.092),
+            *_TOP,
+        ],
+        sides,
+    )
 
 
 def _bob(shell: Shell, sides: int, detail: int) -> None:
@@ -110,8 +122,12 @@ def _bun(shell: Shell, sides: int, detail: int) -> None:
 
 def _tail(shell: Shell, sides: int, detail: int) -> None:
     _short(shell, sides, detail)
-    fall = [(-0.13, -0.115, 0.135, 0.014), (-0.05, -0.09, 0.150, 0.032), (0.08, -0.08, 0.150, 0.034),
-            (0.16, -0.06, 0.125, 0.022)]  # fmt: skip
+    fall = [
+        (-0.13, -0.115, 0.135, 0.014),
+        (-0.05, -0.09, 0.150, 0.032),
+        (0.08, -0.08, 0.150, 0.034),
+        (0.16, -0.06, 0.125, 0.022),
+    ]
     _hairy(shell, fall, max(sides - 4, 5))
 
 
@@ -133,7 +149,7 @@ def _nape(shell: Shell, sides: int) -> None:
         (0.085, -0.012, 0.097, 0.077),
         (0.15, -0.01, 0.101, 0.08),
     ]
-    lifted = [(z + _CHIN, *row) for z, *row in rows]
+    lifted = [(z + _CHIN, ahead, back, half) for z, ahead, back, half in rows]
     wrapped(shell, lifted, (0.0, 0.5, 1.0), TORSO, cloth(tint=(0.2, 0.15, 0.12)), sides=sides)
 
 

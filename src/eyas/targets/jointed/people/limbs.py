@@ -22,10 +22,10 @@ from eyas.targets.jointed.people.surfaces import Row, wrapped
 from eyas.targets.kind import Colour
 from eyas.world.build.clothing import LEG, SKIN, SLEEVE, cloth, skin
 
-__all__ = ["SLEEVES", "Holds", "forearm", "shank", "shoe", "thigh", "upper_arm"]
+__all__ = ["SLEEVES", "THICKNESS", "Holds", "forearm", "shank", "shoe", "thigh", "upper_arm"]
 
-_THICK = {Build.MAN: 1.0, Build.WOMAN: 0.84, Build.STOUT: 1.12, Build.CHILD: 0.92}
-"""Factor on the thickness of limbs."""
+THICKNESS = {Build.MAN: 1.02, Build.STOUT: 1.02, Build.WOMAN: 0.87, Build.CHILD: 0.87}
+"""Factor on the thickness of limbs; two of them, so that there are few parts."""
 
 
 class Sleeve(Enum):
@@ -64,16 +64,16 @@ class Holds(Enum):
 
 
 @cache
-def upper_arm(sleeve: Sleeve, build: Build, cut: str, tone: Colour) -> Shape:
+def upper_arm(sleeve: Sleeve, thick: float, cut: str, tone: Colour) -> Shape:
     """Return an upper arm; a short sleeve leaves its lower half bare."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (3, 5, 8)[detail]
-        thick, ease = _THICK[build], sleeve.value
+        sides = (3, 4, 6)[detail]
+        ease = sleeve.value
         top = [(-0.10, 0.052), (-0.03, 0.056), (0.02, 0.050), (0.045, 0.024)]
         if sleeve not in (Sleeve.NONE, Sleeve.SHORT):
             rows = [(-UPPER_ARM - 0.02, 0.042), (-0.22, 0.045), *top]
-            ups = (0.45, 0.62, 0.8, 0.9, 0.95, 1.0)
+            ups: tuple[float, ...] = (0.45, 0.62, 0.8, 0.9, 0.95, 1.0)
             wrapped(shell, _grown(rows, thick, ease), ups, SLEEVE, cloth(cut), sides=sides)
             return
         short = [(-0.19, 0.053), *top] if sleeve is Sleeve.SHORT else [(-0.09, 0.053), *top[1:]]
@@ -87,12 +87,12 @@ def upper_arm(sleeve: Sleeve, build: Build, cut: str, tone: Colour) -> Shape:
 
 
 @cache
-def forearm(sleeve: Sleeve, build: Build, cut: str, tone: Colour, holds: Holds) -> Shape:
+def forearm(sleeve: Sleeve, thick: float, cut: str, tone: Colour, holds: Holds) -> Shape:
     """Return a forearm with a hand; if it is bare, skin has the colour of the instance."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (3, 5, 8)[detail]
-        thick, ease = _THICK[build], sleeve.value
+        sides = (3, 4, 6)[detail]
+        ease = sleeve.value
         bare = sleeve in (Sleeve.NONE, Sleeve.SHORT)
         rows = [(-FOREARM, 0.028), (-0.17, 0.036), (-0.07, 0.043), (0.0, 0.042), (0.03, 0.026)]
         if bare:
@@ -117,27 +117,26 @@ def _hand(shell: Shell, material: Material, detail: int) -> None:
             (z - 0.075, 0.042, 0.036, 0.016), (z - 0.02, 0.030, 0.028, 0.020),
             (z + 0.02, 0.026, 0.026, 0.024)]  # fmt: skip
     ups = [0.1 + 0.2 * k for k in range(len(rows))]
-    wrapped(shell, rows, ups, SKIN, material, sides=(3, 5, 6)[detail])
+    wrapped(shell, rows, ups, SKIN, material, sides=(3, 4, 5)[detail])
     if detail == DETAILS[0]:
         path = [(0.03, 0.0, z - 0.03), (0.058, 0.0, z - 0.075), (0.055, 0.0, z - 0.105)]
-        shell.tube(path, (0.013, 0.012, 0.008), material, sides=4)
+        shell.tube(path, (0.013, 0.012, 0.008), material, sides=3)
 
 
 @cache
-def thigh(lower: Lower, build: Build, below: Colour | None, *, left: bool) -> Shape:
+def thigh(lower: Lower, thick: float, below: Colour | None, *, left: bool) -> Shape:
     """Return a thigh in the colour of the instance: that of a long garment, or of what it is
     clothed in.
 
     Args:
         lower: What the leg is clothed in.
-        build: Of the body.
+        thick: See `THICKNESS`.
         below: Colour of what shows below a long garment or a skirt; None: there is none.
         left: Whether it is the left one: thighs shade each other.
     """
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (4, 6, 8)[detail]
-        thick = _THICK[build]
+        sides = (4, 5, 7)[detail]
         rows = [
             (-THIGH - 0.02, 0.055),
             (-0.30, 0.068),
@@ -166,17 +165,16 @@ def thigh(lower: Lower, build: Build, below: Colour | None, *, left: bool) -> Sh
 
 
 @cache
-def shank(lower: Lower, build: Build, shoes: Shoes, *, left: bool) -> Shape:
+def shank(lower: Lower, thick: float, shoes: Shoes, *, left: bool) -> Shape:
     """Return a shank in the colour of the instance, bare or clothed."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (4, 6, 8)[detail]
-        thick = _THICK[build]
+        sides = (4, 5, 7)[detail]
         if lower in (Lower.TROUSERS, Lower.WIDE):
             hem = 0.058 if lower is Lower.TROUSERS else 0.085
             calf = 0.058 if lower is Lower.TROUSERS else 0.075
             tucked = shoes is Shoes.BOOTS and lower is Lower.TROUSERS
-            end = (-0.28, 0.05) if tucked else (-SHANK - 0.035, hem)
+            end = (-0.32, 0.040) if tucked else (-SHANK - 0.035, hem)
             rows = [
                 end,
                 (-0.24 if tucked else -0.33, calf - 0.002),
@@ -187,10 +185,18 @@ def shank(lower: Lower, build: Build, shoes: Shoes, *, left: bool) -> Shape:
             wrapped(shell, _grown(rows, thick, 0.004), (0.0, 0.13, 0.3, 0.47, 0.52), LEG, cloth(),
                     sides=sides, flip=not left)  # fmt: skip
             return
-        rows = [(-SHANK - 0.02, 0.034), (-0.33, 0.038), (-0.14, 0.054), (-0.05, 0.050), (0.0, 0.053),
-                (0.03, 0.040)]  # fmt: skip
-        calves = [(z, r - (0.01 if z < -0.1 else 0.0), r + (0.012 if z < -0.1 else 0.0), r)
-                  for z, r, _, _ in _grown(rows, thick, 0.0)]  # fmt: skip
+        rows = [
+            (-SHANK - 0.02, 0.034),
+            (-0.33, 0.038),
+            (-0.14, 0.054),
+            (-0.05, 0.050),
+            (0.0, 0.053),
+            (0.03, 0.040),
+        ]
+        calves = [
+            (z, r - (0.01 if z < -0.1 else 0.0), r + (0.012 if z < -0.1 else 0.0), r)
+            for z, r, _, _ in _grown(rows, thick, 0.0)
+        ]
         wrapped(shell, calves, (0.0, 0.2, 0.5, 0.7, 0.9, 1.0), SKIN, skin(None), sides=sides)
 
     return shape
@@ -203,7 +209,7 @@ def shoe(shoes: Shoes) -> Shape:
     sole = (0.82, 0.81, 0.78) if pale else (0.09, 0.08, 0.08)
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (4, 6, 10)[detail]
+        sides = (4, 6, 8)[detail]
         low = -ANKLE
         edge = low + (0.03 if pale else 0.02)
         if detail:
@@ -216,7 +222,7 @@ def shoe(shoes: Shoes) -> Shape:
             (low + 0.115, 0.045, 0.052, 0.036),
         ]
         if shoes is Shoes.BOOTS:
-            upper.append((0.17, 0.056, 0.062, 0.054))
+            upper += [(0.10, 0.060, 0.066, 0.056), (0.15, 0.062, 0.070, 0.060)]
         ups = [0.55 + 0.06 * k for k in range(len(upper))]
         wrapped(shell, upper, ups, LEG, cloth(), sides=sides, box=0.2)
 

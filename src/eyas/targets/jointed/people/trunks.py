@@ -65,7 +65,7 @@ def chest(garment: Garment, build: Build, cut: str, inner: Colour) -> Shape:
     """
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
+        sides = (5, 7, 10)[detail]
         rows, ups = _rows(garment, build)
         wrapped(shell, rows, ups, TORSO, cloth(cut), sides=sides, box=0.25)
         if detail == 0:
@@ -112,8 +112,12 @@ def _collar(shell: Shell, garment: Garment, top: Row, inner: Colour, sides: int)
     """Add what lies around the neck: a collar, a hood that hangs down, a scarf."""
     z, ahead, back, half = top
     if garment is Garment.HOODIE:
-        hood = [(z - 0.075, 0.0, back + 0.075, half + 0.06), (z - 0.02, 0.03, back + 0.09, half + 0.05),
-                (z + 0.03, 0.03, back + 0.06, half + 0.03), (z + 0.02, 0.02, back, half)]  # fmt: skip
+        hood = [
+            (z - 0.075, 0.0, back + 0.075, half + 0.06),
+            (z - 0.02, 0.03, back + 0.09, half + 0.05),
+            (z + 0.03, 0.03, back + 0.06, half + 0.03),
+            (z + 0.02, 0.02, back, half),
+        ]
         wrapped(shell, hood, (0.6, 0.8, 0.95, 0.5), TORSO, cloth(), sides=sides)
     elif garment in (Garment.JACKET, Garment.OPEN_JACKET, Garment.DOWN_JACKET, Garment.COAT):
         stand = [(z - 0.03, ahead + 0.012, back + 0.014, half + 0.014),
@@ -158,9 +162,11 @@ def straps(shell: Shell, build: Build, carried: Carried) -> None:
             _strip(shell, *((inside, outside) if side > 0 else (outside, inside)), dark)
         return
     places = np.linspace(-0.42, 0.3, len(upper))
-    ends = [np.array([_front([row], p + d, 0.032)[0] for row, p in zip(upper, places, strict=True)])
-            for d in (-0.035, 0.035)]  # fmt: skip
-    _strip(shell, *ends, dark)
+    right, left = (
+        np.array([_front([row], p + d, 0.032)[0] for row, p in zip(upper, places, strict=True)])
+        for d in (-0.035, 0.035)
+    )
+    _strip(shell, right, left, dark)
 
 
 def _strip(shell: Shell, right: Points, left: Points, material: Material) -> None:
@@ -174,12 +180,16 @@ def hips(lower: Lower, build: Build) -> Shape:
     """Return the upper end of trousers or a skirt, in the colour of the instance."""
 
     def shape(shell: Shell, detail: int) -> None:
-        sides = (5, 8, 12)[detail]
+        sides = (5, 7, 10)[detail]
         _, ahead, back, half = _BODIES[build][0]
         belt = (0.05, ahead - 0.008, back - 0.012, half - 0.012)
         if lower is Lower.SKIRT:
-            rows = [(-0.36, ahead + 0.085, back + 0.07, half + 0.03), (-0.16, ahead + 0.03, back + 0.03, half + 0.01),
-                    (-0.03, ahead - 0.002, back - 0.002, half - 0.004), belt]  # fmt: skip
+            rows = [
+                (-0.36, ahead + 0.085, back + 0.07, half + 0.03),
+                (-0.16, ahead + 0.03, back + 0.03, half + 0.01),
+                (-0.03, ahead - 0.002, back - 0.002, half - 0.004),
+                belt,
+            ]
             wrapped(shell, rows, (0.0, 0.25, 0.45, 0.5), TORSO, cloth(), sides=sides, box=0.2)
             return
         rows = [(-0.13, 0.07, 0.075, 0.12), (-0.09, ahead - 0.022, back - 0.012, half - 0.012),

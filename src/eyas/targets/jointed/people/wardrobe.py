@@ -4,8 +4,17 @@ from dataclasses import dataclass
 
 from eyas.mesh.shell import Shape
 from eyas.targets.jointed.people.carried import carried_shape
-from eyas.targets.jointed.people.heads import head_shape
-from eyas.targets.jointed.people.limbs import SLEEVES, Holds, forearm, shank, shoe, thigh, upper_arm
+from eyas.targets.jointed.people.heads import hair_shape, head_shape
+from eyas.targets.jointed.people.limbs import (
+    SLEEVES,
+    THICKNESS,
+    Holds,
+    forearm,
+    shank,
+    shoe,
+    thigh,
+    upper_arm,
+)
 from eyas.targets.jointed.people.person import Carried, Head, Lower, Person, Posture
 from eyas.targets.jointed.people.trunks import chest, hips
 from eyas.targets.kind import Colour
@@ -21,6 +30,8 @@ class Dress:
     hips: Shape | None
     """None below a long garment."""
     head: Shape
+    hair: Shape
+    """Or what covers it."""
     upper_arms: tuple[Shape, Shape]
     forearms: tuple[Shape, Shape]
     carried: Shape | None
@@ -39,21 +50,22 @@ _HOLDS = {
 def dress_of(person: Person) -> Dress:
     """Return the shapes of a person's parts."""
     p = person
-    sleeve = SLEEVES[p.garment]
+    sleeve, thick = SLEEVES[p.garment], THICKNESS[p.build]
     bare_legs = p.lower in (Lower.NONE, Lower.SKIRT)
     below = p.skin if bare_legs else p.lower_colour if p.garment.is_long else None
     # What has skin in the colour of the instance is one part for all skins.
-    arm = upper_arm(sleeve, p.build, p.cut, p.skin if p.garment.bare_arms else _ANY)
+    arm = upper_arm(sleeve, thick, p.cut, p.skin if p.garment.bare_arms else _ANY)
     hands = [
-        forearm(sleeve, p.build, p.cut, _ANY if p.garment.bare_arms else p.skin, holds)
+        forearm(sleeve, thick, p.cut, _ANY if p.garment.bare_arms else p.skin, holds)
         for holds in _HOLDS.get(p.posture, (Holds.NOTHING, Holds.NOTHING))
     ]
-    thighs = [thigh(p.lower, p.build, below, left=left) for left in (True, False)]
-    shanks = [shank(p.lower, p.build, p.shoes, left=left) for left in (True, False)]
+    thighs = [thigh(p.lower, thick, below, left=left) for left in (True, False)]
+    shanks = [shank(p.lower, thick, p.shoes, left=left) for left in (True, False)]
     return Dress(
         chest=chest(p.garment, p.build, p.cut, p.inner_colour),
         hips=None if p.garment.is_long else hips(p.lower, p.build),
-        head=head_shape(p.head, p.skin),
+        head=head_shape,
+        hair=hair_shape(p.head),
         upper_arms=(arm, arm),
         forearms=(hands[0], hands[1]),
         carried=None if p.carried is Carried.NOTHING else carried_shape(p.carried, p.build),
@@ -70,6 +82,7 @@ def colours_of(person: Person) -> tuple[Colour | None, ...]:
     own: list[Colour | None] = [None]
     if not p.garment.is_long:
         own.append(p.lower_colour)
+    own.append(p.skin)
     own.append(None if p.head is Head.HOOD else p.hair_colour)
     own += [None, p.skin if p.garment.bare_arms else None] * 2
     if p.carried is not Carried.NOTHING:
