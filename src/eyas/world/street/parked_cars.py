@@ -63,7 +63,7 @@ KINDS: tuple[ParkedKind, ...] = (
     ParkedKind("saloon", "silver", "worn", -0.22),
     ParkedKind("saloon", "white", rims=3),
     ParkedKind("estate", "black", "rack", rims=3),
-    ParkedKind("estate", "blue", rims=1),
+    ParkedKind("compact", "blue", "sunroof", rims=1),
     ParkedKind("crossover", "white", "rack", rims=1),
     ParkedKind("crossover", "grey", "sunroof", 0.2),
     ParkedKind("crossover", "red", "dark", rims=3),
