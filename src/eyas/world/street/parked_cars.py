@@ -5,6 +5,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
@@ -62,7 +63,7 @@ KINDS: tuple[ParkedKind, ...] = (
     ParkedKind("saloon", "silver", "worn", -0.22),
     ParkedKind("saloon", "white", rims=3),
     ParkedKind("estate", "black", "rack", rims=3),
-    ParkedKind("estate", "blue", rims=1),
+    ParkedKind("compact", "blue", "sunroof", rims=1),
     ParkedKind("crossover", "white", "rack", rims=1),
     ParkedKind("crossover", "grey", "sunroof", 0.2),
     ParkedKind("crossover", "red", "dark", rims=3),
@@ -93,6 +94,9 @@ CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
 _TAXI = ParkedKind("saloon", "taxi", rims=1)
 _YELLOW = (0.93, 0.70, 0.08)
 _TARPAULIN = Material(tint=(0.47, 0.48, 0.49))
+
+_UNDERSIDE = 0.45
+"""What faces down below this height is not drawn [m]."""
 
 _AGED = 0.97
 """Factor on the tints of all that is not paint: materials of the traffic bear no snow."""
@@ -128,7 +132,7 @@ def _levels(kind: ParkedKind) -> Levels:
     wheels = wheel_levels(car.wheel_radius, car.axles[0].width, 0.0, kind.rims)
     fine, middle, coarse = _bodies(car, kind)
     return (
-        _painted(concatenate([fine, *_wheels(car, wheels[0], kind.steer)]), kind),
+        _painted(concatenate([_above(fine), *_wheels(car, wheels[0], kind.steer)]), kind),
         _painted(concatenate([middle, *_wheels(car, wheels[1], kind.steer)]), kind),
         _painted(coarse, kind),
     )
@@ -165,8 +169,29 @@ def _wheels(car: CarType, wheel: Mesh, steer: float) -> list[Mesh]:
 def _outer(wheel: Mesh, side: float) -> Mesh:
     """Return a wheel without the side that faces the middle of the car, where nobody looks."""
     y = side * wheel.positions[wheel.triangles, 1].astype(np.float64).mean(axis=1)
-    shown = y > 0.5 * float(y.min())
-    return replace(wheel, triangles=wheel.triangles[shown], materials=wheel.materials[shown])
+    return _some(wheel, y > 0.5 * float(y.min()))
+
+
+def _above(body: Mesh) -> Mesh:
+    """Return a body without its underside, which is never seen."""
+    corners = body.positions[body.triangles].astype(np.float64)
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    below = corners[..., 2].max(axis=1) < _UNDERSIDE
+    return _some(body, ~below | (face[:, 2] > -0.7 * np.sqrt(exact.dot(face, face))))
+
+
+def _some(mesh: Mesh, shown: NDArray[np.bool_]) -> Mesh:
+    """Return some triangles of a mesh, and their corners."""
+    triangles = mesh.triangles[shown]
+    used, inverse = np.unique(triangles, return_inverse=True)
+    return replace(
+        mesh,
+        positions=mesh.positions[used],
+        normals=mesh.normals[used],
+        uvs=mesh.uvs[used],
+        triangles=inverse.reshape(-1, 3).astype(np.int32),
+        materials=mesh.materials[shown],
+    )
 
 
 def _painted(mesh: Mesh, kind: ParkedKind) -> Mesh:

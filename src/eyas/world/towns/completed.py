@@ -396,7 +396,7 @@ def _parked(town: Town, rng: np.random.Generator) -> tuple[list[shapely.Polygon]
         lines += paint
         for x, y, turn in bays.tolist():
             if rng.random() < _OCCUPIED:
-                way = turn + np.pi * float(rng.random() < 0.4) + exact.normal(rng, 0, 0.015)
+                way = turn + np.pi * float(rng.random() < 0.4) + exact.normal(rng, 0, 0.028)
                 car = CARS[int(rng.integers(len(CARS)))]
                 east, north = x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06)
                 made.append(Placed(car, east, north, 0.0, way, float(rng.uniform(0.94, 1.04))))

@@ -267,7 +267,7 @@ def parked(plan: CityLayout, trees: Sequence[str], rng: np.random.Generator) -> 
             elif rng.random() < _OCCUPIED:
                 ahead = np.pi * float(rng.random() < 0.35)
                 east, north = x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06)
-                way = turn + ahead + exact.normal(rng, 0, 0.015)
+                way = turn + ahead + exact.normal(rng, 0, 0.028)
                 car = CARS[int(rng.integers(len(CARS)))]
                 made.append(Placed(car, east, north, 0.0, way, rng.uniform(0.94, 1.04)))
     return made

@@ -144,7 +144,7 @@ def _parked(row: shapely.LineString, count: int, rng: np.random.Generator) -> li
         here = rng.random() < _OCCUPIED
         shift = (k + 0.5) * _BAY_LENGTH + rng.uniform(-0.35, 0.35)
         place = start + shift * along + (1.18 + rng.uniform(-0.1, 0.1)) * across
-        turn = heading + rng.uniform(-0.03, 0.03)
+        turn = heading + rng.uniform(-0.055, 0.055)
         if here:
             cars.append([*rounded(place), float(turn)])
     return cars

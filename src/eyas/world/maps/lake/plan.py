@@ -241,6 +241,6 @@ def _parked(district: LakeLayout, rng: np.random.Generator) -> Sequence[Placed]:
     for park in district.car_parks:
         for x, y, turn in park.bays.tolist():
             if rng.random() < _OCCUPIED:
-                way = turn + np.pi * float(rng.random() < 0.35) + exact.normal(rng, 0, 0.015)
+                way = turn + np.pi * float(rng.random() < 0.35) + exact.normal(rng, 0, 0.028)
                 made.append(Placed(CARS[int(rng.integers(len(CARS)))], x, y, 0.0, way))
     return made
