@@ -8,6 +8,8 @@ import pytest
 from eyas.mesh.flat import quads
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.land import land_map
+from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
+from eyas.render.pack.light import tone_table
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Material
 from eyas.state.scene import ObjectClass
@@ -44,6 +46,21 @@ def test_mist_hides_more_the_flatter_one_looks_through_it(seen):
         how = {"pitch": pitch, "fov": 0.1}
         change.append(np.abs(seen(MISTY, **how) - seen(CLEAR, **how)).mean())
     assert 0 < change[0] < change[1] < change[2]
+
+
+def test_fog_lies_in_banks_and_is_as_thick_on_average_as_it_is_set(drawn, renderer_of):
+    """Over black ground, seen from 14 m: the middle of the way is as high as the mean."""
+    corners = [[(-900, -900, 0), (900, -900, 0), (900, 900, 0), (-900, 900, 0)]]
+    black = Material("plain", (0.0, 0.0, 0.0))
+    scene = scene_of([quads(corners, np.zeros((1, 4, 2)), black)], [0])
+    foggy = dataclasses.replace(CLEAR, fog_density=1 / 40, foggy=True)
+    places = [(x, y, 14.0) for x in range(-600, 600, 60) for y in range(-600, 600, 60)]
+    views = looking(places, pitch=1.5707, fov=0.05)
+    seen = drawn(renderer_of(scene, lighting=foggy), views, size=(4, 4)).rgb[..., 1]
+    light = np.searchsorted(tone_table(), seen) * (TONE_TOP / TONE_STEPS)
+    hidden = light.mean(axis=(1, 2)) / foggy.fog_colour[1]
+    assert hidden.mean() == pytest.approx(1.0 - np.exp(-14 / 40), rel=0.06)
+    assert hidden.std() > 0.08 * hidden.mean()
 
 
 def test_mist_lies_below_what_stands_out_of_it(seen):

@@ -137,6 +137,35 @@ def test_cars_throw_white_light_ahead_and_red_behind(drawn, renderer_of):
     assert drawn(off, views, cars, (9, 9)).rgb.max() <= 1
 
 
+def test_lamps_that_face_the_camera_have_halos_where_nothing_hides_them(drawn, renderer_of):
+    """Their light lies over the dark sky beside the car; from the side there is none."""
+    cars = DrawList.create(1, 6)
+    put_car(cars, 0, 0, 0, 0.0, 0.0, 0.0)
+    dark = dataclasses.replace(
+        DARK, zenith_colour=(0.0, 0.0, 0.0), horizon_colour=(0.0, 0.0, 0.0), fog_colour=(0.0,) * 3,
+        stars=0.0,
+    )  # fmt: skip
+    sides = [((18.0, 0.0), np.pi), ((-14.0, 0.0), 0.0), ((0.0, 16.0), -np.pi / 2)]
+
+    def beside_it(*meshes):
+        scene = scene_of([floor(1.0), *meshes], [0] * (1 + len(meshes)))
+        renderer = renderer_of(scene, car_parts(), dark)
+        made = []
+        for (x, y), yaw in sides:
+            picture = drawn(
+                renderer, looking([(x, y, 0.9)], yaw=yaw, pitch=0.0, fov=0.3), cars, (48, 64)
+            )
+            near = (picture.depth[0] > 0.0) & (picture.depth[0] < 50.0)
+            made.append(np.where(near, 0, picture.rgb[0].max(axis=2)).max())
+        return made
+
+    front, rear, side = beside_it()
+    assert front > 2 * rear > 0
+    assert side <= 1
+    hidden, *_ = beside_it(tower(9.0, 0.0, 6.0, 8.0))
+    assert hidden <= 1
+
+
 def test_light_of_cars_does_not_depend_on_where_a_picture_begins(drawn, renderer_of):
     """Eight samples are lit at once; none of them twice, wherever the first of them is."""
     cars = DrawList.create(1, 12)

@@ -46,7 +46,8 @@ class Lighting:
     fog_power: int = 1
     """1: exponential, 2: exponential squared."""
     foggy: bool = False
-    """Whether the visibility range may be set (`light.visibility`); in clear air it is fixed."""
+    """Whether it is fog, which lies in banks; its visibility range may be set (`light.visibility`),
+    in clear air it is fixed."""
     exposure: float = 1.0
     """Factor on all radiance before it is converted to a picture."""
     luminance: float = 30_000.0

@@ -289,7 +289,7 @@ def with_veil(light: Light, lit: Illumination, eye: NDArray[np.float64]) -> Illu
             air.flakes, air.rain, air.leaves, air.wet, air.litter, air.mist, air.per_mist_depth,
             air.glare, sunlit(light, x, y, z), air.daytime_lamps, air.stars, air.star_cosine,
             air.star_sine, air.moon_lit, air.limb_x, air.limb_y, air.limb_z, air.longest_shadow,
-            air.windy, air.spray,
+            air.windy, air.spray, air.banks,
         ),
         lit.wind,
     )  # fmt: skip

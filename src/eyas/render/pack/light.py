@@ -147,6 +147,7 @@ def _weather(
         longest_shadow=_float(lighting.longest_shadow),
         windy=_float(lighting.windy),
         spray=_float(lighting.spray),
+        banks=_float(lighting.foggy),
     )
     return Illumination(
         sun=_direction(sun),

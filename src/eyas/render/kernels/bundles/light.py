@@ -59,6 +59,8 @@ class Air(NamedTuple):
     """1: the wind of each view moves plants and what falls, 0: what falls has its own."""
     spray: float
     """See `eyas.state.lighting.Lighting`."""
+    banks: float
+    """1: fog lies in banks; 0: the air is the same all over."""
 
 
 class Wind(NamedTuple):

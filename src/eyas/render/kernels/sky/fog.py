@@ -16,9 +16,6 @@ the hills matches the end of the land, however high the viewer is."""
 
 _FARTHEST = f4(1000.0 * HAZE_END)
 
-_BANKS = f4(1.0 / 1200.0)
-"""Density of the air from which it is fog, in banks [1/m]."""
-
 
 @kernel(inline=True)
 def hidden_at(lit: Illumination, distance: float) -> float:
@@ -56,7 +53,7 @@ def land_fog(light: Light, lit: Illumination, eye: Colour, point: Colour, away: 
         away: Distance between them [m].
     """
     away = lesser(away, _FARTHEST)
-    if lit.fog_density < _BANKS:
+    if lit.air.banks == f4(0.0):
         return hidden_at(lit, away)
     one, third = f4(1.0), f4(0.33)
     x, y = point[0] - eye[0], point[1] - eye[1]
