@@ -51,7 +51,7 @@ def main() -> None:
         ]
         rows += [np.concatenate(tiles[first : first + 8], axis=1) for first in range(0, 24, 8)]
     sheet = Image.fromarray(np.concatenate(rows))
-    sheet.save(Path(sys.argv[1]), quality=88)
+    sheet.save(Path(sys.argv[1]), quality=82)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ __all__ = ["LOOKS", "PEOPLE"]
 LOOKS = 112
 """Number of people."""
 
-Any = TypeVar("Any")
+Thing = TypeVar("Thing")
 
 _BLACK, _BROWN, _DARK_BROWN, _BLOND, _GREY, _RED, _WHITE_HAIR = (
     (0.08, 0.07, 0.07), (0.28, 0.18, 0.11), (0.17, 0.11, 0.08), (0.72, 0.56, 0.33),
@@ -86,7 +86,7 @@ _GARMENTS = {
 }  # fmt: skip
 _HEADS = {
     Build.MAN: ((Head.SHORT, 62), (Head.BALD, 10), (Head.CAP, 10), (Head.BEANIE, 6), (Head.HAT, 4),
-                (Head.HOOD, 4), (Head.TAIL, 2), (Head.BOB, 2)),
+                (Head.TAIL, 2), (Head.BOB, 2)),
     Build.WOMAN: ((Head.LONG, 34), (Head.TAIL, 18), (Head.BOB, 20), (Head.BUN, 10),
                   (Head.SHORT, 8), (Head.BEANIE, 5), (Head.HAT, 3), (Head.CAP, 2)),
     Build.CHILD: ((Head.SHORT, 40), (Head.TAIL, 15), (Head.BOB, 15), (Head.LONG, 10),
@@ -133,6 +133,8 @@ _HEIGHTS = {
 }  # fmt: skip
 _INNER = ((_WHITE, 60), ((0.20, 0.20, 0.22), 40))
 _OVER = (Garment.OPEN_JACKET, Garment.JACKET, Garment.COAT)
+_HOODS = 0.3
+"""Share of hoods that are up."""
 _HAIRY = (Head.SHORT, Head.LONG, Head.BUN, Head.TAIL, Head.BOB, Head.BALD)
 
 
@@ -149,7 +151,7 @@ class _Dice:
             word = _mixed(word ^ letter)
         return word / 4294967296.0
 
-    def one(self, what: str, of: Sequence[tuple[Any, int]]) -> Any:
+    def one(self, what: str, of: Sequence[tuple[Thing, int]]) -> Thing:
         """Return one of some things with weights."""
         left = self.share(what) * sum(weight for _, weight in of)
         for thing, weight in of:
@@ -177,8 +179,8 @@ def _person(number: int) -> Person:
     garment = dice.one("garment", _GARMENTS[form])
     lower = _lower(dice, form, garment)
     head = dice.one("head", _HEADS[form])
-    if head is Head.HOOD and garment not in (Garment.HOODIE, Garment.JACKET, Garment.DOWN_JACKET):
-        head = Head.SHORT
+    if garment is Garment.HOODIE and dice.share("hood") < _HOODS:
+        head = Head.HOOD
     shoes = dice.one("shoes", _SHOES) if build is not Build.CHILD else Shoes.TRAINERS
     posture, carried = _carrying(dice, build, garment)
     tone = dice.one("skin", _SKINS)

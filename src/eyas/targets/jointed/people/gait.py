@@ -111,14 +111,18 @@ def _held(carried: Carried, dress: Dress) -> Joint:
     return Joint(name="carried", shape=dress.carried, parent="torso")
 
 
-class _Arms:
-    """Angles at rest and their swings, of upper arm and forearm, see `Swing`."""
+_ARMS = {
+    Posture.FREE: ((0.04, 0.0, 0.36), (-0.22, -0.16, 0.18)),
+    Posture.POCKETS: ((0.24, 0.0, 0.05), (-0.62, 0.0, 0.03)),
+    Posture.PHONE: ((-0.42, 0.0, 0.03), (-1.45, 0.0, 0.02)),
+    Posture.LADEN: ((0.02, 0.0, 0.1), (-0.05, 0.0, 0.02)),
+    Posture.PUSHES: ((-0.42, 0.0, 0.02), (-0.75, 0.0, 0.02)),
+}
+"""Pitch of upper arm and forearm: `rest`, `lean` and `size` of its `Swing`. Whoever is not here has
+free arms."""
 
-    free = ((0.04, 0.0, 0.36), (-0.22, -0.16, 0.18))
-    pockets = ((0.24, 0.0, 0.05), (-0.62, 0.0, 0.03))
-    phone = ((-0.42, 0.0, 0.03), (-1.45, 0.0, 0.02))
-    laden = ((0.02, 0.0, 0.1), (-0.05, 0.0, 0.02))
-    pushes = ((-0.42, 0.0, 0.02), (-0.75, 0.0, 0.02))
+_ONE_HANDED = (Posture.PHONE, Posture.LADEN)
+"""Postures of the right arm only."""
 
 
 def _arm(person: Person, dress: Dress, side: float) -> tuple[Joint, Joint]:
@@ -126,16 +130,9 @@ def _arm(person: Person, dress: Dress, side: float) -> tuple[Joint, Joint]:
     left = side > 0
     name = "left" if left else "right"
     phase = 0.25 if left else 0.75
-    posture = person.posture
-    upper, lower = _Arms.free
-    if posture is Posture.POCKETS:
-        upper, lower = _Arms.pockets
-    elif posture is Posture.PUSHES:
-        upper, lower = _Arms.pushes
-    elif posture is Posture.PHONE and not left:
-        upper, lower = _Arms.phone
-    elif posture is Posture.LADEN and not left:
-        upper, lower = _Arms.laden
+    free = left and person.posture in _ONE_HANDED
+    posture = Posture.FREE if free else person.posture
+    upper, lower = _ARMS.get(posture, _ARMS[Posture.FREE])
     turned = 0.35 if posture is Posture.POCKETS else 0.1
     return (
         Joint(

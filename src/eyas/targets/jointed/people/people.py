@@ -1,6 +1,6 @@
 """The people of the catalogue: their words and what they are as models."""
 
-from eyas.targets.colour_names import colour_name
+from eyas.targets.colour_names import colour_name, with_article
 from eyas.targets.config import TargetName
 from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.model import JointedModel
@@ -43,14 +43,17 @@ _HEADS = {
     Head.SHORT: "short {} hair",
     Head.LONG: "long {} hair",
     Head.BUN: "a bun of {} hair",
-    Head.TAIL: "a {} ponytail",
+    Head.TAIL: "{} ponytail",
     Head.BOB: "a bob of {} hair",
-    Head.CAP: "a {} cap",
-    Head.HAT: "a {} hat",
-    Head.BEANIE: "a {} beanie",
+    Head.CAP: "{} cap",
+    Head.HAT: "{} hat",
+    Head.BEANIE: "{} beanie",
     Head.HOOD: "the hood up",
     Head.BALD: "a bald crown",
 }
+
+_SINGLE = (Head.TAIL, Head.CAP, Head.HAT, Head.BEANIE)
+"""What has an article before it."""
 
 _HAIR = {"beige": "blond", "ochre": "blond"}
 """Colours that have another name on a head."""
@@ -62,16 +65,13 @@ def _words(person: Person) -> tuple[str, ...]:
     if person.garment is Garment.OPEN_JACKET:
         worn = "a pedestrian in a {} jacket"
     hair = colour_name(person.hair_colour)
-    head = f"with {_HEADS[person.head].format(_HAIR.get(hair, hair))}"
-    head = head.replace("with a orange", "with an orange").replace("with a olive", "with an olive")
+    head = _HEADS[person.head].format(_HAIR.get(hair, hair))
+    head = f"with {with_article(head) if person.head in _SINGLE else head}"
     if person.lower is Lower.NONE:
         return worn, f"{worn}, {head}"
     below = "trousers" if person.lower is Lower.WIDE else person.lower.value
-    colour = colour_name(person.lower_colour)
-    clothed = f"{worn} and {'a ' if person.lower is Lower.SKIRT else ''}{colour} {below}"
-    clothed = clothed.replace("and a olive", "and an olive").replace(
-        "and a orange", "and an orange"
-    )
+    below = f"{colour_name(person.lower_colour)} {below}"
+    clothed = f"{worn} and {with_article(below) if person.lower is Lower.SKIRT else below}"
     return worn, clothed, f"{clothed}, {head}"
 
 
