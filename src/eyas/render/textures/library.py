@@ -15,8 +15,16 @@ def _plain() -> NDArray[np.uint8]:
     return np.full((256, 256, 4), 255, np.uint8)
 
 
+def _cloth() -> NDArray[np.uint8]:
+    """Return white; alpha 0 takes the gloss from paint."""
+    cloth = _plain()
+    cloth[..., 3] = 0
+    return cloth
+
+
 PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "plain": _plain,
+    "cloth": _cloth,
     "asphalt": ground.asphalt,
     "asphalt_light": ground.asphalt_light,
     "paving": ground.paving,
@@ -76,6 +84,6 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
 
     Each is sRGB and alpha, shape (256, 256, 4), and repeats without a seam. Row 0 of an array is
     the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
-    except for the holes of `leaves`, the glass of facades, and people, where it is 0.
+    except for the holes of `leaves`, the glass of facades, people and `cloth`, where it is 0.
     """
     return {name: PAINTERS[name]() for name in TEXTURES}

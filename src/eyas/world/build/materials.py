@@ -27,6 +27,7 @@ GROUND_FLOORS = ("ground_shop", "ground_lobby")
 
 TEXTURES: dict[str, float] = {
     "plain": 1.0,
+    "cloth": 1.0,
     "asphalt": 8.0,
     "asphalt_light": 8.0,
     "paving": 4.0,
