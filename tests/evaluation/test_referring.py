@@ -238,8 +238,8 @@ def test_a_network_may_have_the_attributes_as_an_input(tmp_path):
 def test_a_servo_that_listens_has_a_gap_and_its_twin_has_none():
     pytest.importorskip("cv2")
     seeds = range(FIRST, FIRST + 26)
-    assert gap(flown("attribute-servo", seeds)) > 0.3
-    assert gap(flown("salient-servo", seeds[:6])) == 0.0
+    assert gap(flown("attribute-servo", seeds, SHORT)) > 0.3
+    assert gap(flown("salient-servo", seeds[:6], SHORT)) == 0.0
 
 
 def test_switches_go_from_the_target_to_another_for_a_while():
