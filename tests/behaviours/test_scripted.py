@@ -3,10 +3,12 @@ import math
 import numpy as np
 import pytest
 import shapely
+import shapely.ops
 
 from eyas.behaviours import places
 from eyas.behaviours.ground import Ground
 from eyas.behaviours.scripted import STROLL
+from eyas.behaviours.waiting import waiting_spots
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.scenes import load_scene
@@ -250,3 +252,32 @@ def test_who_walks_along_a_verge_keeps_near_the_road_and_off_it(hills):
     assert 0.7 < away.min() < 1.1
     assert np.median(away) < 2.0
     assert away.max() < 5.5
+
+
+def test_who_rides_keeps_by_the_kerb_with_the_traffic(city):
+    rows = table_of(city, group("Cyclist", breadth=0.72, behaviour=Behaviour.RIDE))[::50]
+    road = road_area(city.scene.network)
+    places = shapely.points(rows["x"], rows["y"])
+    away = shapely.distance(road, places)
+    assert away.min() > 0.35
+    assert np.median(away) < 0.6
+    near = shapely.get_coordinates(shapely.ops.nearest_points(road, places[0, 0])[0])[0]
+    aside = near - [rows["x"][0, 0], rows["y"][0, 0]]
+    left = np.array([-np.sin(rows["yaw"][0, 0]), np.cos(rows["yaw"][0, 0])])
+    assert aside @ left > 0.0  # the road is on the left of those who drive on the right
+    speed = np.hypot(rows["velocity_x"], rows["velocity_y"])
+    assert 2.0 < speed.mean() < 5.0
+
+
+def test_people_wait_at_bus_stops_and_cafes(city):
+    rows = table_of(city, group("Pedestrian", count=30, behaviour=Behaviour.WAIT))
+    assert not np.ptp(rows["x"], axis=0).any()
+    assert not rows["velocity_x"].any()
+    assert len({*zip(rows["x"][0].tolist(), rows["y"][0].tolist(), strict=True)}) == 30
+    fixtures = city.scene.fixtures
+    wanted = [name.startswith(("shelter", "cafe")) for name in fixtures.names]
+    feet = fixtures.pose[np.array(wanted)[fixtures.prototype], :2, 3]
+    away = np.hypot(rows["x"][0][:, None] - feet[:, 0], rows["y"][0][:, None] - feet[:, 1])
+    assert away.min(axis=1).max() < 2.6
+    with pytest.raises(SpawnError, match=r"'wait': 'citystreet' has [0-9]+ places at bus stops"):
+        waiting_spots(city.scene, 1000, np.random.default_rng(0))

@@ -122,6 +122,7 @@ def along_kerbs(
     grounds: Mapping[str, Ground],
     rules: Sequence[_Rule],
     rng: np.random.Generator,
+    apart: float = 1.0,
 ) -> list[Placed]:
     """Return things along the kerbs of all streets.
 
@@ -130,13 +131,14 @@ def along_kerbs(
         grounds: Where things may stand, by the names in the rules; prepared.
         rules: What stands there, the largest first.
         rng: Random numbers of the clutter.
+        apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []
     for rule in rules:
         ground = grounds[rule.where]
         for street in streets(network):
             kerb = shapely.LineString(street.right)
-            for along in _spread(kerb.length, rule, rng):
+            for along in _spread(kerb.length, rule, rng, apart, rule.from_end):
                 pair = (kerb.interpolate(s) for s in (along, along + 0.1))
                 here, there = (shapely.get_coordinates(point)[0] for point in pair)
                 onwards = unit(there - here)
@@ -151,6 +153,7 @@ def at_fronts(
     ground: Ground,
     rules: Sequence[_Rule],
     rng: np.random.Generator,
+    apart: float = 1.0,
 ) -> list[Placed]:
     """Return things before the walls of houses, with their backs to them.
 
@@ -159,6 +162,7 @@ def at_fronts(
         ground: Where things may stand; prepared.
         rules: What stands there, the largest first.
         rng: Random numbers of the clutter.
+        apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []
     for rule in rules:
@@ -166,7 +170,7 @@ def at_fronts(
             for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
                 onwards, long = unit(end - start), length(end - start)
                 outwards = np.array([onwards[1], -onwards[0]])
-                for along in _spread(long, rule, rng, _FROM_CORNER):
+                for along in _spread(long, rule, rng, apart, _FROM_CORNER):
                     away = _FROM_WALL + rule.beyond
                     place = start + along * onwards + away * outwards
                     made += _row(rule, place, outwards, ground, standing, rng)
@@ -174,11 +178,10 @@ def at_fronts(
 
 
 def _spread(
-    long: float, rule: _Rule, rng: np.random.Generator, from_end: float | None = None
+    long: float, rule: _Rule, rng: np.random.Generator, apart: float, low: float
 ) -> list[float]:
-    """Return positions along a line of a length [m]."""
-    low = rule.from_end if from_end is None else from_end
-    count = rng.poisson(max(long - 2.0 * low, 0.0) / rule.every)
+    """Return positions along a line of a length, at least `low` from its ends [m]."""
+    count = rng.poisson(max(long - 2.0 * low, 0.0) / (apart * rule.every))
     return sorted(rng.uniform(low, max(long - low, low), count).tolist())
 
 

@@ -62,6 +62,8 @@ _LIGHT = LampLight(axis=(0.3, 0.0, -0.954), intensity=96.0)
 """Three times the usual intensity: one lamp has to light a whole crossing."""
 _ENTRANCES = 0.3
 """Share of the ends of wide roads with an entrance of the subway."""
+_APART = 2.2
+"""Factor on the distances in the clutter of a city with so many streets."""
 _FROM_END, _BEYOND = 9.0, 2.3
 """From the end of the road, and from the kerb, to its middle [m]."""
 
@@ -164,8 +166,8 @@ def _clutter(
         shapely.prepare(area)
     behind = Ground(back, KERB_HEIGHT)
     grounds = {"road": Ground(asphalt, 0.0), "pavement": Ground(paved, KERB_HEIGHT)}
-    beside = along_kerbs(network, {**grounds, "behind": behind}, CITY_KERBS, rng)
-    return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng)]
+    beside = along_kerbs(network, {**grounds, "behind": behind}, CITY_KERBS, rng, _APART)
+    return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng, _APART)]
 
 
 def _entrances(
