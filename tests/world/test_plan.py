@@ -30,8 +30,8 @@ from eyas.world.weather import Season
 HASHES = {
     ("citystreet", "summer"): "6f03667946f01dd6",
     ("downtown", "summer"): "edcd2313e07acbb7",
-    ("lake", "summer"): "5b978e5944deedf9",
-    ("lake", "winter"): "42e66610376ddbdc",
+    ("lake", "summer"): "dfd2a6bf4c0c1cf7",
+    ("lake", "winter"): "2a6cc97da1963f44",
     ("village", "summer"): "d0a5a6c1231a480f",
     ("village-bare", "summer"): "8781879bc1872abc",
     ("desert", "summer"): "261bf82acaeb8f56",
