@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.sensors.obstacles import solids_of
 from eyas.sim.scenes import load_network, load_scene
 from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
@@ -255,3 +256,9 @@ def test_another_seed_is_another_desert_of_the_same_kind():
     other = lay_out(network, 3)
     assert (len(other.drifts), len(other.houses)) == (11, 7)
     assert len(other.dunes) >= 46
+
+
+def test_stones_and_plants_are_ground_for_lidar_and_bodies(desert):
+    wild = desert.fixtures.object_id[desert.object_class[desert.fixtures.object_id] == 0]
+    assert len(wild) > 1500
+    assert not set(solids_of(desert).thing.tolist()) & set(wild.tolist())

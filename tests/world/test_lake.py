@@ -176,3 +176,22 @@ def test_building_again_gives_the_same_bytes(scene, network):
     assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
     for one, other in zip(again.fixtures.levels[-1], scene.fixtures.levels[-1], strict=True):
         assert one.positions.tobytes() == other.positions.tobytes()
+
+
+def test_shores_are_uneven_within_their_basins_and_jetties_reach_the_water(plan, scene):
+    wet = scene.object_class[scene.static_object] == ObjectClass.WATER
+    corners = scene.static.positions[scene.static.triangles[wet]][..., :2]
+    water = shapely.union_all(shapely.polygons(corners.astype(float)))
+    basins = shapely.union_all([*plan.ponds, *plan.lakes])
+    assert water.difference(shapely.buffer(basins, 0.01)).area < 1.0
+    assert 0.85 < water.area / basins.area < 0.99
+    names = np.array(scene.fixtures.names)[scene.fixtures.prototype]
+    jetties = scene.fixtures.pose[names == "jetty"]
+    assert 8 <= len(jetties) <= 25
+    for pose in jetties:
+        foot, end = (shapely.Point(pose[:2, 3] + out * pose[:2, 0]) for out in (-1.9, 6.5))
+        assert water.contains(end)
+        assert not water.contains(foot)
+    reeds = scene.fixtures.pose[np.char.startswith(names, "reeds")][:, :2, 3]
+    assert len(reeds) > 1000
+    assert shapely.distance(shapely.points(reeds), plan.roads).min() > 3.0

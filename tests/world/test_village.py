@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 from eyas.sim.scenes import load_network, load_scene
+from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
 from eyas.state.terrain import reliefs
 from eyas.traffic.recording_file import load
@@ -192,3 +193,24 @@ def test_another_seed_is_another_village_of_the_same_kind():
     assert len(other.cottages) == 24
     assert len(other.trees) == 41
     assert other.lake.area > 25_000
+
+
+def test_paths_and_what_grows_beside_them_are_off_the_roads_and_low(village, plan):
+    looks = np.array([look.surface for look in village.static.palette])[village.static.materials]
+    path = village.static.triangles[looks == Surface.HILLSIDE_PATH]
+    corners = village.static.positions[path]
+    made = shapely.union_all(shapely.polygons(corners[..., :2].astype(float)))
+    assert 800 < made.area < 8000
+    assert made.intersection(plan.roads).area < 0.1
+    # u is the distance from the edge.
+    inside = village.static.uvs[path, 0]
+    assert inside.min() == 0.0
+    assert 0.3 < inside.max() < 0.6
+    names = np.array(village.fixtures.names)[village.fixtures.prototype]
+    for start, highest in (("green tuft", 0.8), ("stones", 0.6), ("boulder", 1.3)):
+        some = np.char.startswith(names, start)
+        assert some.sum() > 100
+        places = shapely.points(village.fixtures.pose[some][:, :2, 3])
+        assert shapely.distance(places, plan.roads).min() > 1.5
+        levels = [village.fixtures.levels[k] for k in np.unique(village.fixtures.prototype[some])]
+        assert max(mesh[0].positions[:, 2].max() for mesh in levels) < highest

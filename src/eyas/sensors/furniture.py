@@ -105,15 +105,17 @@ class Furniture:
 
 def furniture(scene: Scene) -> Furniture:
     """Return solids for the copies of a scene: crowns for all trees, and for what has no collider a
-    box around it. Small parts of objects with a collider, such as those on roofs, get none.
+    box around it. Small parts of objects with a collider, such as those on roofs, get none, nor do
+    stones and tufts, which are ground.
     """
     made, fixtures = Furniture([], []), scene.fixtures
     solid = {*scene.colliders.prism_object.tolist(), *scene.colliders.cylinder_object.tolist()}
     spans: dict[tuple[int, bool], _Span | None] = {}
     pairs = zip(fixtures.prototype.tolist(), fixtures.object_id.tolist(), strict=True)
     for copy, (prototype, thing) in enumerate(pairs):
-        tree = scene.object_class[thing] == ObjectClass.TREE
-        if not tree and thing in solid:
+        kind = scene.object_class[thing]
+        tree = kind == ObjectClass.TREE
+        if kind == ObjectClass.GROUND or (not tree and thing in solid):
             continue
         if (prototype, tree) not in spans:
             spans[prototype, tree] = _span(fixtures.levels[prototype][0], leaves=tree)

@@ -99,7 +99,6 @@ def _reeds(rng: np.random.Generator) -> Levels:
     return (
         _blades(170, 0.7, BED, (0.6, 1.45), 0.05, _REEDS, rng),
         _blades(60, 0.65, BED, (0.7, 1.35), 0.13, _REEDS, rng),
-        _blades(20, 0.55, BED, (0.7, 1.25), 0.36, _REEDS, rng),
         Mesh.none(),
     )
 

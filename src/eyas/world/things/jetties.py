@@ -48,7 +48,7 @@ def jetty_levels() -> Levels:
         for y in (-_WIDE / 2 - 0.05, _WIDE / 2 + 0.05)
     ]
     # Gaps between planks are seen from above near by.
-    gaps = [box((0.02, _WIDE, 0.01), (x, 0.0, _DECK + 0.042), _POSTS, 2.0) for x in _gaps()]
+    gaps = [box((0.02, _WIDE, 0.03), (x, 0.0, _DECK + 0.04), _POSTS, 2.0) for x in _gaps()]
     return concatenate([deck, *beams, *posts, *gaps]), concatenate([deck, *posts]), deck
 
 
