@@ -48,13 +48,14 @@ class JointedRig:
 
     Args:
         models: All models of a kind.
-        layout: Their `layout_of`.
+        layout: Their `layout_of`, if it has been made.
     """
 
     slots: int
 
-    def __init__(self, models: Sequence[JointedModel], layout: Layout) -> None:
-        self._models, self._place, table = models, *layout
+    def __init__(self, models: Sequence[JointedModel], layout: Layout | None = None) -> None:
+        self._models = models
+        self._place, table = layout or layout_of(models)
         self.slots = table.part.shape[1]
         self._far = _farthest(table)
         self._scale = np.linalg.norm(table.rest[:, :, 0].astype(np.float64), axis=-1)

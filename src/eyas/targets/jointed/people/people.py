@@ -6,7 +6,7 @@ from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.people.crowd import PEOPLE
 from eyas.targets.jointed.people.gait import figure_of
-from eyas.targets.jointed.people.person import Garment, Head, Lower, Person
+from eyas.targets.jointed.people.person import Carried, Garment, Head, Lower, Person, Shoes
 from eyas.targets.jointed.people.wardrobe import colours_of, dress_of
 from eyas.targets.kind import Colour
 
@@ -24,15 +24,11 @@ _COLOURS: tuple[Colour, ...] = (
     (0.55, 0.56, 0.58),
     (0.12, 0.50, 0.52),
     (0.11, 0.15, 0.33),
-    (0.09, 0.09, 0.10),
     (0.28, 0.29, 0.31),
     (0.70, 0.62, 0.50),
     (0.34, 0.23, 0.15),
     (0.41, 0.12, 0.12),
     (0.34, 0.36, 0.21),
-    (0.13, 0.16, 0.30),
-    (0.62, 0.62, 0.61),
-    (0.92, 0.91, 0.89),
 )
 """Colours of shirts and coats, sRGB; the first is the original's green. Most people wear muted
 ones."""
@@ -68,11 +64,23 @@ def _words(person: Person) -> tuple[str, ...]:
     head = _HEADS[person.head].format(_HAIR.get(hair, hair))
     head = f"with {with_article(head) if person.head in _SINGLE else head}"
     if person.lower is Lower.NONE:
-        return worn, f"{worn}, {head}"
+        return worn, f"{worn}, {head}", f"{worn}, {head}{_rest(person)}"
     below = "trousers" if person.lower is Lower.WIDE else person.lower.value
     below = f"{colour_name(person.lower_colour)} {below}"
     clothed = f"{worn} and {with_article(below) if person.lower is Lower.SKIRT else below}"
-    return worn, clothed, f"{clothed}, {head}"
+    return worn, clothed, f"{clothed}, {head}", f"{clothed}, {head}{_rest(person)}"
+
+
+def _rest(person: Person) -> str:
+    """Return what is on the feet and in the hands, as the end of a phrase."""
+    shoes = "boots" if person.shoes is Shoes.BOOTS else "shoes"
+    said = f" and {colour_name(person.shoe_colour)} {shoes}"
+    if person.carried is not Carried.NOTHING:
+        thing = f"{colour_name(person.carried_colour)} {person.carried.value}"
+        said += (
+            f", {'pushing' if person.carried is Carried.PRAM else 'carrying'} {with_article(thing)}"
+        )
+    return said
 
 
 def _pedestrian(person: Person) -> JointedModel:
