@@ -116,7 +116,7 @@ def _held(carried: Carried, dress: Dress) -> Joint:
 _ARMS = {
     Posture.FREE: ((0.04, 0.0, 0.36), (-0.22, -0.16, 0.18)),
     Posture.POCKETS: ((0.24, 0.0, 0.05), (-0.62, 0.0, 0.03)),
-    Posture.PHONE: ((-0.42, 0.0, 0.03), (-1.45, 0.0, 0.02)),
+    Posture.PHONE: ((-0.3, 0.0, 0.03), (-1.55, 0.0, 0.02)),
     Posture.LADEN: ((0.02, 0.0, 0.1), (-0.05, 0.0, 0.02)),
     Posture.PUSHES: ((-0.42, 0.0, 0.02), (-0.75, 0.0, 0.02)),
 }
