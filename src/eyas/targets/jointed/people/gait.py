@@ -47,21 +47,23 @@ def figure_of(person: Person, dress: Dress) -> Figure:
         scale=person.scale,
         joints=_joints(person, dress, stooped),
         legs=tuple(_leg(person.build, dress, side) for side in (1.0, -1.0)),
-        gait=_gait(STRIDE * (0.8 if stooped else 1.0)),
+        gait=_gait(0.8 if stooped else 1.0),
     )
 
 
 @cache
-def _gait(stride: float) -> Gait:
+def _gait(share: float) -> Gait:
+    """Return a gait whose strides are a share of `STRIDE`; short ones lower the hips less."""
+    sinking = 1.0 if share == 1.0 else 0.5
     return Gait(
-        stride=stride,
+        stride=STRIDE * share,
         duty=0.6,
         lift=0.035,
         shift=-0.045,
         slowest=0.4,
         y=Swing(size=0.015, phase=-0.04),
         # The body is lowest when both feet are on the ground.
-        z=Swing(lean=-0.029, size=0.03, phase=-0.33, beats=2),
+        z=Swing(lean=-0.029 * sinking, size=0.03 * sinking, phase=-0.33, beats=2),
     )
 
 
@@ -114,7 +116,7 @@ def _held(carried: Carried, dress: Dress) -> Joint:
 _ARMS = {
     Posture.FREE: ((0.04, 0.0, 0.36), (-0.22, -0.16, 0.18)),
     Posture.POCKETS: ((0.24, 0.0, 0.05), (-0.62, 0.0, 0.03)),
-    Posture.PHONE: ((-0.42, 0.0, 0.03), (-1.45, 0.0, 0.02)),
+    Posture.PHONE: ((-0.3, 0.0, 0.03), (-1.55, 0.0, 0.02)),
     Posture.LADEN: ((0.02, 0.0, 0.1), (-0.05, 0.0, 0.02)),
     Posture.PUSHES: ((-0.42, 0.0, 0.02), (-0.75, 0.0, 0.02)),
 }

@@ -174,7 +174,7 @@ class Person:
             return 0.4, 0.6, 1.8
         ahead, back = 0.235, 0.145
         if self.posture is Posture.PHONE:
-            ahead = 0.5
+            ahead = 0.46
         if self.carried is Carried.PRAM:
             ahead = 1.25
         if self.garment is Garment.HOODIE or self.posture is Posture.STOOPED:
