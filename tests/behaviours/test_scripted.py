@@ -89,7 +89,7 @@ def test_samples_tell_how_their_places_change(hills):
     speed, rise = np.hypot(table["velocity_x"], table["velocity_y"]), np.tan(table["slope"])
     climbing = (speed > 1.0) & (np.abs(rise) > 0.05)
     off = np.abs(rise * speed - table["velocity_z"])[climbing]
-    assert np.median(off) < 0.06 < 0.1 < np.median(np.abs(table["velocity_z"][climbing]))
+    assert np.median(off) < 0.07 < 0.1 < np.median(np.abs(table["velocity_z"][climbing]))
 
 
 def test_pavements_are_higher_than_roads_and_lawns_lower(city):

@@ -55,14 +55,12 @@ def land_fog(light: Light, lit: Illumination, eye: Colour, point: Colour, away: 
     away = lesser(away, _FARTHEST)
     if lit.air.banks == f4(0.0):
         return hidden_at(lit, away)
-    one, third = f4(1.0), f4(0.33)
-    x, y = point[0] - eye[0], point[1] - eye[1]
-    near_x, near_y = eye[0] + third * x, eye[1] + third * y
-    far_x, far_y = point[0] - f4(0.15) * x, point[1] - f4(0.15) * y
+    one, share = f4(1.0), f4(0.6)
+    x = eye[0] + share * (point[0] - eye[0])
+    y = eye[1] + share * (point[1] - eye[1])
     cell, turn = f4(0.034), f4(0.013)
-    bank = noise(cell * near_x + turn * near_y, cell * near_y - turn * near_x)
-    bank += noise(cell * far_x + turn * far_y, cell * far_y - turn * far_x)
-    uneven = f4(0.85) * (bank - one) / (one + f4(0.006) * away)
+    bank = noise(cell * x + turn * y, cell * y - turn * x)
+    uneven = f4(1.2) * (bank - f4(0.5)) / (one + f4(0.006) * away)
     high = f4(0.5) * (eye[2] + point[2]) - light.ambient_frame.ground
     low = greater(lesser(f4(1.14) - f4(0.02) * high, f4(1.14)), f4(0.8))
     return hidden_at(lit, away * low * (one + uneven))

@@ -33,6 +33,9 @@ _HIPS = {Build.MAN: 0.088, Build.WOMAN: 0.088, Build.STOUT: 0.098, Build.CHILD: 
 _SHOULDER = 0.452
 """Height of the shoulders above the hips [m]."""
 
+_BEHIND = 0.51
+"""How far who pushes a pram is behind the middle of both [m]."""
+
 
 def figure_of(person: Person, dress: Dress) -> Figure:
     """Return a person who walks.
@@ -42,18 +45,22 @@ def figure_of(person: Person, dress: Dress) -> Figure:
         dress: The shapes of the parts.
     """
     stooped = person.posture is Posture.STOOPED
+    behind = _BEHIND if person.carried is Carried.PRAM else 0.0
     return Figure(
         upright=True,
         scale=person.scale,
         joints=_joints(person, dress, stooped),
-        legs=tuple(_leg(person.build, dress, side) for side in (1.0, -1.0)),
-        gait=_gait(0.8 if stooped else 1.0),
+        legs=tuple(_leg(person.build, dress, side, behind) for side in (1.0, -1.0)),
+        gait=_gait(0.8 if stooped else 1.0, behind),
     )
 
 
 @cache
-def _gait(share: float) -> Gait:
-    """Return a gait whose strides are a share of `STRIDE`; short ones lower the hips less."""
+def _gait(share: float, behind: float) -> Gait:
+    """Return a gait whose strides are a share of `STRIDE`; short ones lower the hips less.
+
+    The trunk is `behind` the origin [m].
+    """
     sinking = 1.0 if share == 1.0 else 0.5
     return Gait(
         stride=STRIDE * share,
@@ -61,6 +68,7 @@ def _gait(share: float) -> Gait:
         lift=0.035,
         shift=-0.045,
         slowest=0.4,
+        x=Swing(rest=-behind),
         y=Swing(size=0.015, phase=-0.04),
         # The body is lowest when both feet are on the ground.
         z=Swing(lean=-0.029 * sinking, size=0.03 * sinking, phase=-0.33, beats=2),
@@ -109,7 +117,9 @@ def _held(carried: Carried, dress: Dress) -> Joint:
     if carried is Carried.SHOPPING_BAG:
         return Joint(name="carried", shape=dress.carried, parent="right forearm")
     if carried is Carried.PRAM:
-        return Joint(name="carried", shape=dress.carried, parent="ground", pivot=(0.82, 0.0, 0.0))
+        return Joint(
+            name="carried", shape=dress.carried, parent="ground", pivot=(0.82 - _BEHIND, 0.0, 0.0)
+        )
     return Joint(name="carried", shape=dress.carried, parent="torso")
 
 
@@ -156,12 +166,12 @@ def _arm(person: Person, dress: Dress, side: float) -> tuple[Joint, Joint]:
     )
 
 
-def _leg(build: Build, dress: Dress, side: float) -> Leg:
+def _leg(build: Build, dress: Dress, side: float, behind: float) -> Leg:
     hip, at = _HIPS[build] * side, 0 if side > 0 else 1
     # One foot stands a little ahead of the other.
     return Leg(
         hip=(-0.008, hip, HIP),
-        foot=(0.045 * side, 0.85 * hip, ANKLE),
+        foot=(0.045 * side - behind, 0.85 * hip, ANKLE),
         bones=(THIGH, SHANK),
         knee=(1.0, 0.1 * side, 0.0),
         phase=0.0 if side > 0 else 0.5,
