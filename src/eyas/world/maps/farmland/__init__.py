@@ -73,5 +73,7 @@ FARMLAND_BARE = replace(
     without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=4.45),
+    strollers=0,
+    cyclists=0,
 )
 """The layout `farmlandS` of the original."""

@@ -87,5 +87,8 @@ VILLAGE_BARE = replace(
     without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=3.59),
+    strollers=0,
+    waiting=0,
+    cyclists=0,
 )
 """The layout `villageS` of the original."""
