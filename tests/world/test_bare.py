@@ -15,6 +15,7 @@ def test_a_bare_layout_has_the_roads_of_its_map_and_nothing_else(whole):
     assert recipe.roads(5) == MAPS.get(whole).roads(5)
     assert recipe.shipped_traffic() == MAPS.get(whole).shipped_traffic()
     assert bare.name == recipe.name
+    assert not any((recipe.pedestrians, recipe.strollers, recipe.waiting, recipe.cyclists))
     assert recipe.weathers == ("day", "rain", "dusk", "overcast", "dust", "autumn")
     assert len(bare.fixtures.pose) == len(bare.lamps.position) == len(bare.colliders.prism_top) == 0
     assert bare.terrain.relief.size == 0
