@@ -105,7 +105,8 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
     video = {"fps": 9, "jpeg_quality": 100, "flight": "exact"}
-    changed = {"video": video, "tracker": {"flight": "original"}}
+    traffic = {"signals": "amber", "lamps": "dark"}
+    changed = {"video": video, "tracker": {"flight": "original"}, "traffic": traffic}
     meant = EyasConfig(**changed, start={"velocity": "rest"}, extras=[], original={})
     assert EyasConfig(**json.loads(native.read_text())) == meant
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0

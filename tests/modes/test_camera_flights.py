@@ -21,6 +21,7 @@ MAPS = ("citystreet", "downtown", "village")
 def flown(map_name, name, count, steps, seed=0, start=None):
     """Fly episodes; return the states after each step: bodies, cameras, and whether one crashed."""
     settings = {"world": {"map": map_name}, "start": start or WILD, "video": {"flight": name}}
+    settings["traffic"] = {"signals": "amber"}  # so that nobody stands, and all go their own way
     config = updated(EyasConfig(seed=seed), settings)
     config = updated(recording_rules(config), {"done": {"total_steps": steps, "crash": "contact"}})
     sim = build_simulation(config, each_alone(count))

@@ -163,7 +163,7 @@ def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(still):
     scale = np.linalg.norm(still.scene.fixtures.pose[:, 0, :3], axis=1)  # a tree's height
     crowns = crowns[scale > 17.0]
     apart = np.linalg.norm((cars.position - back)[:, None] - crowns[None], axis=2).min(axis=1)
-    assert (apart < 6.0).sum() > 3
+    assert (apart < 6.0).sum() > 1
     assert not list(stop(still, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
 
 

@@ -34,6 +34,8 @@ from eyas.task.direction import TargetDirection
 # Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
 CONFIG = EyasConfig(
     seed=3,
+    extras=[],  # else labels are larger than pictures
+    traffic={"signals": "amber"},  # who stands goes in no direction
     camera=CameraConfig(width=96, height=72),
     done=DoneConfig(total_steps=100, grace_steps=20),
     video=VideoConfig(
