@@ -65,7 +65,9 @@ def test_shares_are_reached(tmp_path, asked):
     size = {"width": 160, "height": 120}
     settings = {"channels": 4, "fps": 12.5, "episode_frames": 125, "writers": ["labels"], **asked}
     start = {"pitch": {"uniform": [0.3, 1.0]}}
-    config = updated(EyasConfig(seed=2), {"camera": size, "start": start, "video": settings})
+    moving = {"signals": "amber"}  # who waits at a red light is not hidden for long
+    asks = {"camera": size, "start": start, "traffic": moving, "video": settings}
+    config = updated(EyasConfig(seed=2), asks)
     video.run(config, tmp_path, quiet=True)
     paths = tmp_path.glob("DRONE*/episode0/labels.jsonl")
     labels = [label for path in paths for label in read_labels(path)]
@@ -142,7 +144,8 @@ def test_a_policy_flies_as_in_an_evaluation(tmp_path, policy):
     settings = {"policy": policy, "channels": 2, "writers": ["labels"], "episode_frames": 200}
     config = load_settings(None, ["start.pitch=1.37", "start.height=22", "start.velocity=rest"])
     settings |= {"fps": 500.0, "warm_up_steps": 0, "start_time": 0.0}
-    video.run(updated(config, {**SMALL, "video": settings}), tmp_path, quiet=True)
+    moving = {"traffic": {"signals": "amber"}}  # beside who stands, a policy may do nothing
+    video.run(updated(config, {**SMALL, **moving, "video": settings}), tmp_path, quiet=True)
     for path in tmp_path.glob("DRONE*/episode*/labels.jsonl"):
         labels = read_labels(path)
         assert all(label["reward"] > 0.3 for label in labels)
