@@ -19,7 +19,7 @@ from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
-simulation = build_simulation(SimConfig(), each_alone(1))
+simulation = build_simulation(SimConfig(traffic={"signals": "amber"}), each_alone(1))
 simulation.reset()
 simulation.draw(np.zeros(1, np.int32), Picture.create(1, 8, 8))
 """

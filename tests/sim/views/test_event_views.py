@@ -19,7 +19,13 @@ TURN = np.array([[0.0, 0.0, 0.0, 1.0]])
 
 def simulation_of(count=1, **events):
     camera = CameraConfig(width=SIZE, height=SIZE, events=EventsConfig(enabled=True, **events))
-    config = SimConfig(camera=camera, start=StartConfig(height=10.0, pitch=0.8))
+    # Nobody walks or waits: what is told comes from the camera's own motion.
+    config = SimConfig(
+        camera=camera,
+        start=StartConfig(height=10.0, pitch=0.8),
+        traffic={"signals": "amber"},
+        extras=[],
+    )
     simulation = build_simulation(config, each_alone(count))
     simulation.reset()
     return simulation

@@ -118,7 +118,7 @@ def test_actors_of_several_kinds_are_posed_by_their_own_rigs(config, assets):
     names = ("bus", "passenger", "motorcycle")
     kind = np.array([kind_index(names[a % 3]) for a in range(assets.traffic.actors)], np.int32)
     motion = motion._replace(kind=kind)
-    rigs, looks, times = Rigs(kind), looks_of(motion, 1), np.array([20.0])
+    rigs, looks, times = Rigs(kind), looks_of(motion, 1), np.array([120.0])
     actors, expected = ActorState.create(1, len(kind)), rigs.draw_list(1)
     assets.traffic.at(times, actors)
     rigs.pose(actors, looks, expected)
