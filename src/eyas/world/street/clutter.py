@@ -24,6 +24,9 @@ __all__ = ["CLUTTER"]
 _ABOVE: Final = 0.02
 """Height of flat things above the ground, which keeps two surfaces apart [m]."""
 
+_LAYER: Final = 0.003
+"""Height between scraps of different colours, of which one may lie on another [m]."""
+
 _IRON = material("plain", (0.16, 0.17, 0.18))
 _STEEL = material("plain", (0.58, 0.60, 0.62))
 _WOOD = material("bark", (0.70, 0.54, 0.42))
@@ -80,8 +83,10 @@ def _scraps(
         ahead = half[k] * np.array([exact.cos(turn), exact.sin(turn)])
         aside = aspect * np.array([-ahead[1], ahead[0]])
         corners = [ahead + aside, aside - ahead, -ahead - aside, ahead - aside]
-        flat = np.array([[*(place[k] + corner), _ABOVE] for corner in corners])
-        cover = material("plain", tints[int(rng.integers(len(tints)))])
+        tint = int(rng.integers(len(tints)))
+        height = _ABOVE + (5 + tint) * _LAYER  # over the bars of a drain, too
+        flat = np.array([[*(place[k] + corner), height] for corner in corners])
+        cover = material("plain", tints[tint])
         made.append(quads([flat], np.zeros((1, 4, 2)), cover))
     return concatenate(made), concatenate(made[: count // 3])
 

@@ -94,8 +94,10 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     # Slightly below the feet of the dunes, so that rounding leaves no gap between them.
     rest = shapely.buffer(ground.area, -0.4, join_style="mitre")
     level = shapely.difference(EXTENT, shapely.union(desert.roads, rest))
+    # Ruts end where dunes begin, not below their feet, which look different.
+    driven = shapely.difference(level, ground.area)
     tracks = snapped(
-        shapely.intersection(wheel_tracks(desert, stream(seed, "desert tracks")), level)
+        shapely.intersection(wheel_tracks(desert, stream(seed, "desert tracks")), driven)
     )
     sand = Flat(area=shapely.difference(level, tracks), cover=SAND)
     far = Far(rule="plain", covers=(SAND,), beyond=(2 * HALF, 2 * HALF))

@@ -198,7 +198,8 @@ def _ground(
     # Slightly below the hills' feet, so that rounding leaves no gap between them.
     rest = shapely.buffer(hills, -0.4, join_style="mitre")
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
-    paths = trodden(valley, lawn, stream(seed, "village paths"))
+    # Paths end where hills begin, not below their feet, which look different.
+    paths = trodden(valley, shapely.difference(lawn, hills), stream(seed, "village paths"))
     beaten = snapped(shapely.union_all(paths))
     pieces: tuple[Flat | Far, ...] = (
         Flat(area=shapely.difference(lawn, beaten), cover=GRASS),
