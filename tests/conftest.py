@@ -64,6 +64,23 @@ def pytest_runtest_makereport(item, call):
         report.longrepr = f"skipped, which is not allowed here: {report.longrepr}"
 
 
+def pytest_assertrepr_compare(op, left, right):
+    """Where folders differ, names of files are printed instead of megabytes of contents."""
+    folders = all(
+        isinstance(side, dict) and any(isinstance(v, bytes) for v in side.values())
+        for side in (left, right)
+    )
+    if op != "==" or not folders:
+        return None
+    names = sorted(
+        str(name) for name in left.keys() | right.keys() if left.get(name) != right.get(name)
+    )
+    return [
+        f"the same {len(left)} files",
+        f"{len(names)} differ or are missing: {', '.join(names[:9])}",
+    ]
+
+
 @pytest.fixture(scope="session")
 def around():
     """Build trackers among a few solids, see `solid_worlds.build`."""
