@@ -7,11 +7,14 @@ from eyas.modes.video.config import VideoConfig
 from eyas.sensors.config import CameraConfig
 from eyas.settings.config import EyasConfig
 from eyas.task.config import DoneConfig
-from eyas.traffic.config import Source, TrafficConfig
+from eyas.traffic.config import Lamps, Source, TrafficConfig
 
-# Without pedestrians, who cross roads only where it is known in advance where vehicles will be.
+# Without pedestrians, who cross roads only where it is known in advance where vehicles will be, and
+# without brake lamps: a recording has them from what a vehicle does next, SUMO from its driver.
+DARK = TrafficConfig(lamps=Lamps.DARK)
 RECORDED = EyasConfig(
     extras=(),
+    traffic=DARK,
     camera=CameraConfig(width=48, height=36),
     done=DoneConfig(total_steps=400),
     video=VideoConfig(
@@ -23,7 +26,7 @@ RECORDED = EyasConfig(
         writers=("jpeg", "labels"),
     ),
 )
-LIVE = RECORDED.model_copy(update={"traffic": TrafficConfig(source=Source.LIVE)})
+LIVE = RECORDED.model_copy(update={"traffic": DARK.model_copy(update={"source": Source.LIVE})})
 
 
 def files_of(config, folder) -> dict:
