@@ -72,9 +72,9 @@ class Served:
         return self.process.wait(20)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def serve(tmp_path_factory):
-    """Starts `eyas demo` with options; all are stopped at the end."""
+    """Starts `eyas demo` with options; all are stopped at the end of the file."""
     with contextlib.ExitStack() as stack:
 
         def start(*options):
