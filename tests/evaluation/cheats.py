@@ -44,12 +44,14 @@ class Fast(TrueState):
 
 
 class Peeper:
-    """Sees nothing, but looks for the simulator in the memory of its process."""
+    """Sees nothing, but looks for the simulator in the memory of its process, at first."""
 
     env_settings = {"observation": {"parts": ["sensors"]}, "actions": "velocity"}
+    looks = 0
 
     def act(self, readings):
-        for found in gc.get_objects():
+        self.looks += 1
+        for found in gc.get_objects() if self.looks <= 20 else ():
             if type(found).__name__ == "BatchFlight":
                 snapshot = found._batch.snapshot()
                 (row,) = range(1)
