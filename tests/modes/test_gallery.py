@@ -31,6 +31,7 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 
 SUN = CITYSTREET.light("day").sun_direction
+WEATHERS = ("day", "foggy")
 
 
 class Pictures(HTMLParser):
@@ -60,7 +61,7 @@ def views(still):
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory):
     out = tmp_path_factory.mktemp("drawn") / "gallery"
-    gallery.run(out, ["citystreet"])
+    gallery.run(out, ["citystreet"], WEATHERS)
     return out
 
 
@@ -73,9 +74,9 @@ def test_the_page_shows_each_viewpoint_and_says_what_it_is(drawn, views):
     shown = Pictures(text)
     sources = [image["src"] for image in shown.images]
     assert sources == [
-        f"citystreet-{weather}/{view.name}.png" for weather in CITYSTREET.weathers for view in views
+        f"citystreet-{weather}/{view.name}.png" for weather in WEATHERS for view in views
     ]
-    every = views * len(CITYSTREET.weathers)
+    every = views * len(WEATHERS)
     for image, view in zip(shown.images, every, strict=True):
         assert view.caption in image["alt"]
         assert view.caption in text
@@ -202,7 +203,7 @@ def test_all_streets_are_in_the_horizon_view(still, views):
 @pytest.mark.slow
 def test_a_second_run_replaces_the_first_with_the_same_bytes(drawn):
     before = files(drawn)
-    gallery.run(drawn, ["citystreet"])
+    gallery.run(drawn, ["citystreet"], WEATHERS)
     assert files(drawn) == before
 
 
@@ -233,7 +234,7 @@ def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatc
 
     monkeypatch.setattr(gallery, "contact_sheet", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        gallery.run(tmp_path, ["citystreet"])
+        gallery.run(tmp_path, ["citystreet"], WEATHERS)
     assert not (tmp_path / gallery.INDEX).exists()
     with Image.open(tmp_path / "citystreet-day" / "horizon.png") as picture:
         assert picture.size == (640, 480)
