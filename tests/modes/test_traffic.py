@@ -52,7 +52,7 @@ def test_info_tells_origin_and_figures():
     assert lines[0].startswith("map: citystreet, seed 0 (roads ")
     assert lines[1] == (
         'traffic: demand=keep_alive vehicle_type={"passenger": 0.7, "bus": 0.1, "truck": 0.1, '
-        '"trailer": 0.05, "motorcycle": 0.05} seed=1'
+        '"trailer": 0.05, "motorcycle": 0.05} seed=1 signals="amber"'
     )
     assert "SUMO 1." in lines[2]
     assert lines[3].startswith("duration: 1260 s at 10 Hz")
