@@ -43,7 +43,7 @@ def test_the_filter_finds_a_velocity_and_goes_on_with_it():
     motion, velocity = started(), np.array([[10.0, -4.0], [1.0, 0.5]])
     for look in range(1, 101):
         motion.predict(ROWS, STEP)
-        motion.update(ROWS, look * 0.032 * velocity, np.full(2, 0.01))
+        motion.update(ROWS, look * 0.032 * velocity, np.full(2, 0.01), np.ones(2))
     np.testing.assert_allclose(motion.velocity, velocity, atol=0.01)
     seen = motion.spread(ROWS)
     motion.predict(ROWS, np.full(2, 1.0))
@@ -59,9 +59,20 @@ def test_what_is_seen_counts_by_its_variance_and_is_near_or_far():
     motion = started()
     distance = motion.distance(ROWS, np.array([[3.0, 4.0], [0.0, 0.0]]), np.full(2, 0.75))
     np.testing.assert_allclose(distance, [5.0, 0.0])  # 0.5^2 + 0.75 = 1
-    motion.update(ROWS, np.full((2, 2), 1.0), np.array([0.25, 1e6]))
+    motion.update(ROWS, np.full((2, 2), 1.0), np.array([0.25, 1e6]), np.ones(2))
     np.testing.assert_allclose(motion.place[0], 0.5)
     np.testing.assert_allclose(motion.place[1], 0.0, atol=1e-5)
+
+
+def test_what_is_half_believed_moves_the_filter_half_as_far_and_leaves_it_unsure():
+    sure, unsure = started(), started()
+    seen, variance = np.full((2, 2), 1.0), np.full(2, 0.25)
+    sure.update(ROWS, seen, variance, np.ones(2))
+    unsure.update(ROWS, seen, variance, np.full(2, 0.5))
+    np.testing.assert_allclose(unsure.place, 0.5 * sure.place)
+    assert (unsure.spread(ROWS) > sure.spread(ROWS)).all()
+    # Half of the gain, and the distance of both cases: 0.25 - 0.5 * 0.125 + 0.25 * 0.5^2.
+    np.testing.assert_allclose(unsure.spread(ROWS) ** 2, 0.25)
 
 
 def test_rows_are_independent():

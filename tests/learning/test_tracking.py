@@ -12,7 +12,7 @@ from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.policies.tracker.detector import OUTPUTS
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import FIXED
+from eyas.evaluation.policies.tracker.tracker import OBSERVED
 from eyas.evaluation.protocols import protocol_named
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.lessons import loss_of, taught
@@ -23,7 +23,11 @@ from eyas.learning.tracking.shots import Shots, load, save
 
 SIZE = 24, 32
 ENV = env_config(
-    {**FIXED, "observation": {**FIXED["observation"], "width": SIZE[1], "height": SIZE[0]}}
+    {
+        "actions": "velocity",
+        "action_repeat": 4,
+        "observation": {**OBSERVED, "width": SIZE[1], "height": SIZE[0]},
+    }
 )
 
 

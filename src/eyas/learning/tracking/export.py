@@ -49,9 +49,17 @@ def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, 
     graph.nodes.append(helper.make_node("Split", [rows[1], sizes], parts, axis=2))
     _places(graph, network)
     _scores(graph, network, rows[0])
-    inputs = {"image": ["n", 3, height, width], "expected": ["n", 2], "spread": ["n", 1]}
+    inputs: dict[str, list[str | int]] = {
+        "image": ["n", 3, height, width],
+        "expected": ["n", 2],
+        "spread": ["n", 1],
+    }
     inputs |= {"key": ["n", keys], "known": ["n", 1]}
-    outputs = {"scores": ["n", cells + 1], "places": ["n", cells, 3], "keys": ["n", cells, keys]}
+    outputs: dict[str, list[str | int]] = {
+        "scores": ["n", cells + 1],
+        "places": ["n", cells, 3],
+        "keys": ["n", cells, keys],
+    }
     body = helper.make_graph(
         graph.nodes,
         "eyas",
@@ -130,7 +138,7 @@ def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
     inside = graph.node("ReduceLogSumExp", [prior], "inside", axes=[1], keepdims=1)
     parts = [near, graph.node("Log", ["spread"], "spread.log"), "known", inside]
     value = graph.node("Concat", parts, "unseen.seen", axis=1)
-    first, last = network.unseen[0], network.unseen[2]
+    first, last = network.unseen_first, network.unseen_last
     value = graph.linear("unseen.first", value, first.weight, first.bias)
     value = graph.node("Relu", [value], "unseen.relu")
     unseen = graph.linear("unseen", value, last.weight, last.bias)

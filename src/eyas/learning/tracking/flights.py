@@ -16,14 +16,14 @@ from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.shots import Shots
 from eyas.targets.config import TargetName
 
-__all__ = ["MAPS", "Pilot", "flown"]
+__all__ = ["MAPS", "WEATHERS", "Pilot", "flown"]
 
 Pilot = Oracle | Pupil
 
 MAPS = ("citystreet", "downtown", "village", "lake", "desert", "farmland")
 """The first three are flown twice as often: there is more to hide behind."""
 
-_WEATHERS = ("day", "night", "foggy", "snow")
+WEATHERS = ("day", "night", "foggy", "snow")
 
 _TURN = (MAPS[0], MAPS[1], MAPS[2], MAPS[3], MAPS[0], MAPS[1], MAPS[2], MAPS[4], MAPS[5])
 
@@ -94,7 +94,7 @@ def _protocol(rng: np.random.Generator, *, varied: bool) -> Protocol:
 def _episodes(rng: np.random.Generator, number: int) -> list[EpisodeSpec]:
     """Return the episodes of a batch, on one map in all weathers."""
     episodes = []
-    for weather in _WEATHERS:
+    for weather in WEATHERS:
         walks = rng.random() < _WALKING
         target = str(rng.choice(_WALKERS)) if walks else TargetName.SUMO_VEHICLE.value
         place = Place(_TURN[number % len(_TURN)], weather, target)

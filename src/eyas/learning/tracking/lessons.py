@@ -1,6 +1,5 @@
 """What the network is taught: in which cell the target is, or that it is not seen, and where."""
 
-import time
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -12,10 +11,13 @@ from eyas.evaluation.policies.tracker.detector import STRIDE
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.samples import GROUP, Sample, Samples
 
-__all__ = ["Loss", "loss_of", "taught"]
+__all__ = ["BATCH", "Loss", "Progress", "loss_of", "taught"]
 
 _GROUPS = 32
 """In a step."""
+
+BATCH = _GROUPS * GROUP
+"""Pictures in a step."""
 
 _SHOWN = 0.6
 """Share of the other pictures of a group whose keys make the target's."""
@@ -28,6 +30,16 @@ _PLACE = 0.3
 
 _WARM_UP = 200
 """Steps in which the rate of learning rises, at most a quarter of all."""
+
+
+class Progress(NamedTuple):
+    """How well a network has learned since the last progress."""
+
+    step: int
+    loss: float
+    """Cross entropy."""
+    right: float
+    """Share of the pictures whose most probable answer is right, within a cell."""
 
 
 class Loss(NamedTuple):
@@ -75,8 +87,8 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
 
 def taught(
     network: DetectorNetwork, samples: Samples, steps: int, rate: float, rng: np.random.Generator
-) -> Iterator[str]:
-    """Teach a network; yield a line of progress ten times.
+) -> Iterator[Progress]:
+    """Teach a network; yield its progress ten times.
 
     Args:
         network: The network.
@@ -86,7 +98,7 @@ def taught(
         rng: See `loss_of`.
     """
     optimiser = torch.optim.AdamW(network.parameters(), rate, weight_decay=1e-4)
-    begun, recent = time.process_time(), []
+    recent = []
     for step in range(steps):
         share = min(1.0, (step + 1) / min(_WARM_UP, max(steps // 4, 1))) * (
             1.0 - 0.98 * step / steps
@@ -95,15 +107,14 @@ def taught(
         sample = samples.draw(_GROUPS)
         loss = loss_of(network, sample, rng)
         optimiser.zero_grad()
-        loss.total.backward()
+        loss.total.backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
         optimiser.step()
         clear = ~sample.unclear
         recent.append((loss.cells.item(), loss.right[clear].float().mean().item()))
         if (step + 1) % max(steps // 10, 1) == 0:
             cells, right = np.mean(recent, axis=0)
-            spent = time.process_time() - begun
-            yield f"step {step + 1}: loss {cells:.3f}, right {right:.4f}, CPU {spent:.0f} s"
+            yield Progress(step + 1, float(cells), float(right))
             recent.clear()
 
 

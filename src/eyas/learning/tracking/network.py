@@ -46,10 +46,10 @@ class DetectorNetwork(nn.Module):
         self.third = nn.Conv2d(32, width, 3, 1, 1)
         self.fourth = nn.Conv2d(width, width, 3, 1, 2, 2)
         self.head = nn.Conv2d(width, 4 + 2 * keys, 1)
-        self.unseen = nn.Sequential(nn.Linear(width + 3, 32), nn.ReLU(), nn.Linear(32, 1))
+        self.unseen_first, self.unseen_last = nn.Linear(width + 3, 32), nn.Linear(32, 1)
         down, across = (torch.arange(length // STRIDE) for length in size)
         cells = torch.stack(torch.meshgrid(across, down, indexing="xy"), -1).reshape(-1, 2)
-        self.register_buffer("cells", (cells + 0.5) * STRIDE)
+        self.cells: Tensor = (cells + 0.5) * STRIDE
         """Middles of the cells, column and row [pixels], shape (C, 2)."""
 
     def see(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
@@ -91,7 +91,8 @@ class DetectorNetwork(nn.Module):
         prior = -away / (2.0 * variance) - variance.log()
         near = (torch.softmax(prior, 1)[..., None] * features).sum(1)
         inside = prior.logsumexp(1, keepdim=True)
-        unseen = self.unseen(torch.cat((near, spread.log(), known, inside), 1))
+        around = torch.cat((near, spread.log(), known, inside), 1)
+        unseen = self.unseen_last(torch.relu(self.unseen_first(around)))
         return torch.cat((answers[..., 0] + alike + prior, unseen), 1)
 
 

@@ -100,7 +100,8 @@ class Pupil:
     def _correct(self, sight: PolicyInput) -> None:
         """Set the filters of lost ones right."""
         targets, motion = sight.snapshot().targets, self._tracker.motion
-        off = exact.hypot(*(motion.place - targets.centre[:, :2]).T)
+        away = motion.place - targets.centre[:, :2]
+        off = np.asarray(exact.hypot(away[:, 0], away[:, 1]))
         self._lost = np.where(off > _LOST, self._lost + PERIOD, 0.0)
         back = (self._lost > _PATIENCE) | (self._rng.random(len(off)) < _AT_RANDOM)
         rows = np.flatnonzero(back & sight.deciding)
@@ -112,7 +113,9 @@ class Pupil:
         motion.begin(rows, place + noise[0], velocity + noise[1], wrong, speed)
 
 
-def _shot(env: EnvConfig, sight: PolicyInput, clue: tuple[Floats, Floats]) -> Shots:
+def _shot(
+    env: EnvConfig, sight: PolicyInput, clue: tuple[NDArray[np.floating], NDArray[np.floating]]
+) -> Shots:
     image = env.observation
     return Shots(
         sight.observation["image"].copy(),

@@ -102,7 +102,9 @@ class Samples:
     ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return expected places, those of a tracker where one flew, and their deviations."""
         shots, rng = self._shots, self._rng
-        spread = np.exp(rng.uniform(*np.log(_SPREADS), rows.shape)).astype(np.float32)
+        spread = np.exp(rng.uniform(np.log(_SPREADS[0]), np.log(_SPREADS[1]), rows.shape)).astype(
+            np.float32
+        )
         noise = rng.standard_normal((*rows.shape, 2)).astype(np.float32)
         expected = shots.place[rows, times] + spread[..., None] * noise
         own = ~np.isnan(shots.spread[rows, times]) & (rng.random(rows.shape) < _OWN)

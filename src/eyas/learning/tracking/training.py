@@ -5,7 +5,10 @@ no-regret online learning" (AISTATS 2011): what the tracker sees when it flies b
 must learn.
 """
 
+import io
+import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +22,7 @@ from eyas.core.rng import stream
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import FIXED, Tracker
+from eyas.evaluation.policies.tracker.tracker import OBSERVED, Tracker
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.flights import Pilot, flown
 from eyas.learning.tracking.lessons import taught
@@ -36,8 +39,8 @@ Count = Annotated[int, Field(ge=1, le=100_000_000)]
 class Round(Config):
     """Flights, then steps of learning from all pictures there are."""
 
-    batches: Count
-    """Batches of flights, of 32 flights each."""
+    batches: Annotated[int, Field(ge=0, le=100_000)]
+    """Batches of flights, of 32 flights each; the first round needs some."""
     steps: Count
     """Steps of learning, of 128 pictures each."""
 
@@ -50,7 +53,8 @@ class TrackingConfig(Config):
     """Of the pictures [pixels], a multiple of 4; their height is three quarters of it."""
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
         Round(batches=18, steps=800),
-        Round(batches=12, steps=1800),
+        Round(batches=12, steps=700),
+        Round(batches=0, steps=900),
     )
     """The first has flights of the oracle, later ones add flights of what was learned before."""
     rate: Annotated[float, Field(gt=0.0, le=1.0)] = 2e-3
@@ -59,10 +63,10 @@ class TrackingConfig(Config):
 
 
 def train(config: TrackingConfig, folder: Path) -> Iterator[str]:
-    """Train, yielding lines of progress; `policy.onnx` is then in the folder.
+    """Train, yielding lines of progress with the CPU time; `policy.onnx` is then in the folder.
 
-    Pictures are kept in the folder, each batch when it is whole, and taken from there when the same
-    training is begun again.
+    A training that was interrupted goes on with the next batch of flights or round of lessons when
+    it is begun again: pictures and what was learned are kept in the folder.
 
     Args:
         config: The settings.
@@ -73,28 +77,46 @@ def train(config: TrackingConfig, folder: Path) -> Iterator[str]:
     torch.set_num_threads(1)
     torch.manual_seed(config.seed)
     height = config.width * 3 // 4
-    image = {**FIXED["observation"], "width": config.width, "height": height}
-    env = env_config({**FIXED, "observation": image, "action_repeat": 4})
-    network = DetectorNetwork((height, config.width)).to(memory_format=torch.channels_last)
-    policy, shots = folder / "policy.onnx", list[Shots]()
+    image = {**OBSERVED, "width": config.width, "height": height}
+    env = env_config({"actions": "velocity", "observation": image, "action_repeat": 4})
+    network = DetectorNetwork((height, config.width))
+    network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+    shots: list[Shots] = []
     for number, each in enumerate(config.rounds):
-        make: Callable[[np.random.Generator], Pilot] = lambda rng: Oracle(env, rng)  # noqa: E731
-        if number > 0:
-            make = lambda rng: Pupil(_tracker(policy), rng)  # noqa: E731
+        make = partial(Oracle, env) if number == 0 else partial(_pupil, folder / "policy.onnx")
         for batch in range(len(shots), len(shots) + each.batches):
             shots.append(_kept(folder / f"shots-{batch:03d}.npz", make, batch, config.seed))
             yield f"round {number}: batch {batch}, {shots[-1].flown.sum()} pictures"
-        rng = stream(config.seed, "tracking lessons", number)
-        samples = Samples(Shots.joined(shots), rng)
-        for line in taught(network, samples, each.steps, config.rate, rng):
-            yield f"round {number}: {line}"
-        export(network, env, config.tracker, policy)
+        learned = folder / f"round-{number}.pt"
+        if learned.is_file():
+            network.load_state_dict(torch.load(learned))
+            continue
+        yield from _lessons(config, number, network, Shots.joined(shots), folder)
+        export(network, env, config.tracker, folder / "policy.onnx")
+        content = io.BytesIO()
+        torch.save(network.state_dict(), content)
+        write_atomic(learned, content.getvalue())
 
 
-def _tracker(path: Path) -> Tracker:
-    policy = open_policy(str(path), {})
-    assert isinstance(policy, Tracker)
-    return policy
+def _lessons(
+    config: TrackingConfig, number: int, network: DetectorNetwork, shots: Shots, folder: Path
+) -> Iterator[str]:
+    """Teach in a round; yield lines of progress, and add them to `curve.csv`."""
+    rng = stream(config.seed, "tracking lessons", number)
+    path, begun = folder / "curve.csv", time.process_time()
+    curve = path.read_text() if number > 0 else "round,step,loss,right\n"
+    lessons = taught(network, Samples(shots, rng), config.rounds[number].steps, config.rate, rng)
+    for step, loss, right in lessons:
+        curve += f"{number},{step},{loss:.4f},{right:.4f}\n"
+        spent = time.process_time() - begun
+        yield f"round {number}: step {step}: loss {loss:.3f}, right {right:.3f}, CPU {spent:.0f} s"
+    write_atomic(path, curve.encode())
+
+
+def _pupil(policy: Path, rng: np.random.Generator) -> Pupil:
+    tracker = open_policy(str(policy), {})
+    assert isinstance(tracker, Tracker)
+    return Pupil(tracker, rng)
 
 
 def _kept(path: Path, make: Callable[[np.random.Generator], Pilot], batch: int, seed: int) -> Shots:

@@ -56,7 +56,8 @@ class MotionFilter:
 
     def spread(self, rows: Rows) -> Floats:
         """Return the standard deviation of places [m], shape (K,)."""
-        return np.sqrt(self._variance[rows, 0])
+        spread: Floats = np.sqrt(self._variance[rows, 0])
+        return spread
 
     def predict(self, rows: Rows, time: Floats) -> None:
         """Let time pass [s], shape (K,)."""
@@ -78,16 +79,27 @@ class MotionFilter:
             variance: Of that in each axis [m^2], shape (K,).
         """
         away = np.square(place - self.place[rows]).sum(axis=1)
-        return np.sqrt(away / (self._variance[rows, 0] + variance))
+        distance: Floats = np.sqrt(away / (self._variance[rows, 0] + variance))
+        return distance
 
-    def update(self, rows: Rows, place: Floats, variance: Floats) -> None:
-        """Take what is seen; see `distance`."""
+    def update(self, rows: Rows, place: Floats, variance: Floats, belief: Floats) -> None:
+        """Take what is seen, as far as it is believed to be the target: probabilistic data
+        association with one candidate (Bar-Shalom, Daum, Huang 2009, "The probabilistic data
+        association filter", equations 38 to 44).
+
+        Args:
+            rows: As in `distance`.
+            place: As in `distance`.
+            variance: As in `distance`.
+            belief: Probability that it is the target, shape (K,).
+        """
         own, both, speed = self._variance[rows].T
         gain = np.stack((own, both), axis=-1) / (own + variance)[:, None]
         away = place - self.place[rows]
-        self.place[rows] += gain[:, :1] * away
-        self.velocity[rows] += gain[:, 1:] * away
-        self._variance[rows] = np.stack(
-            ((1.0 - gain[:, 0]) * own, (1.0 - gain[:, 0]) * both, speed - gain[:, 1] * both),
-            axis=-1,
-        )
+        self.place[rows] += belief[:, None] * gain[:, :1] * away
+        self.velocity[rows] += belief[:, None] * gain[:, 1:] * away
+        # What is gained where it is the target, and how far apart both cases are.
+        doubt = 0.5 * belief * (1.0 - belief) * np.square(away).sum(axis=1)
+        pairs = np.stack((gain[:, 0] ** 2, gain[:, 0] * gain[:, 1], gain[:, 1] ** 2), axis=-1)
+        gained = np.stack((gain[:, 0] * own, gain[:, 0] * both, gain[:, 1] * both), axis=-1)
+        self._variance[rows] += doubt[:, None] * pairs - belief[:, None] * gained

@@ -28,14 +28,14 @@ from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 
-__all__ = ["FIXED", "Tracker"]
+__all__ = ["OBSERVED", "Tracker"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
-FIXED = {"actions": "velocity", "observation": {"parts": ["image", "sensors"], "layout": "chw"}}
-"""Settings of `env` that it cannot do without."""
+OBSERVED = {"parts": ["image", "sensors"], "layout": "chw"}
+"""Settings of `env.observation` that it cannot do without; its actions are velocities."""
 
 _NO_BOX = Failure(
     "the tracker needs the target's first box: the protocol does not tell it, or the target starts "
@@ -89,7 +89,7 @@ class Tracker:
                 "env: the tracker sees and acts as it was trained: only env.action_repeat and "
                 "env.speeds may be changed"
             )
-        if not set(FIXED["observation"]["parts"]) <= set(made.observation.parts):
+        if not set(OBSERVED["parts"]) <= set(made.observation.parts):
             raise DataFileError(f"{path}: the tracker needs the parts 'image' and 'sensors'")
         size = made.observation.height, made.observation.width
         self.detector, self.ground = Detector(session, size), Ground(self.settings, size)
@@ -152,7 +152,7 @@ class Tracker:
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         taken = near & (found.belief > self.settings.believed)
         self.sees[rows] = taken
-        self.motion.update(rows[taken], where[taken], variance[taken])
+        self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
 
     def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
