@@ -17,6 +17,7 @@ import torch
 from pydantic import Field
 
 from eyas.core.config import Config
+from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.core.rng import stream
 from eyas.evaluation.policies.policy import env_config
@@ -49,8 +50,8 @@ class TrackingConfig(Config):
     """How a tracker is trained."""
 
     seed: Annotated[int, Field(ge=0)] = 0
-    width: Annotated[int, Field(ge=16, le=640)] = 80
-    """Of the pictures [pixels], a multiple of 4; their height is three quarters of it."""
+    width: Annotated[int, Field(ge=16, le=640, multiple_of=16)] = 80
+    """Of the pictures [pixels]; their height is three quarters of it."""
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
         Round(batches=18, steps=800),
         Round(batches=12, steps=700),
@@ -71,9 +72,15 @@ def train(config: TrackingConfig, folder: Path) -> Iterator[str]:
     Args:
         config: The settings.
         folder: Is made if it does not exist.
+
+    Raises:
+        DataFileError: A training with other settings is there.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    write_atomic(folder / "tracking.json", config.model_dump_json(indent=1).encode())
+    said, settings = folder / "tracking.json", config.model_dump_json(indent=1).encode()
+    if said.is_file() and said.read_bytes() != settings:
+        raise DataFileError(f"{said}: a training with other settings is in this folder")
+    write_atomic(said, settings)
     torch.set_num_threads(1)
     torch.manual_seed(config.seed)
     height = config.width * 3 // 4
