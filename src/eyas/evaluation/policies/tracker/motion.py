@@ -93,7 +93,7 @@ class MotionFilter:
             variance: As in `distance`.
             belief: Probability that it is the target, shape (K,).
         """
-        own, both, speed = self._variance[rows].T
+        own, both = self._variance[rows, :2].T
         gain = np.stack((own, both), axis=-1) / (own + variance)[:, None]
         away = place - self.place[rows]
         self.place[rows] += belief[:, None] * gain[:, :1] * away
