@@ -53,9 +53,9 @@ class TrackingConfig(Config):
     width: Annotated[int, Field(ge=16, le=640, multiple_of=16)] = 80
     """Of the pictures [pixels]; their height is three quarters of it."""
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
-        Round(batches=18, steps=800),
-        Round(batches=12, steps=700),
-        Round(batches=0, steps=900),
+        Round(batches=18, steps=1000),
+        Round(batches=12, steps=900),
+        Round(batches=0, steps=1600),
     )
     """The first has flights of the oracle, later ones add flights of what was learned before."""
     rate: Annotated[float, Field(gt=0.0, le=1.0)] = 2e-3
