@@ -1,10 +1,12 @@
 """Put a trained policy into the package, with its curve and what it reaches.
 
     python tools/ship_policy.py runs/fast fast "citystreet by day" --trained-on "..." --limit "..."
+    python tools/ship_policy.py runs/eyas eyas "..." ...  # of `python -m eyas.learning.tracking`
     python tools/ship_policy.py --measure fast robust    # flies them again, for new scores
 
 The card's rows: `paper` on each map and in each weather that it has learned, and `long` on
-citystreet by day. If the run teaches another run's network further, the card has both commands.
+citystreet by day; of the tracker also look-alikes, people, robots, and late actions. If the run
+teaches another run's network further, the card has both commands.
 """
 
 import argparse
@@ -12,15 +14,30 @@ import csv
 import json
 import shutil
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from eyas import __version__
+from eyas.core.config import validated
 from eyas.envs.choice import settings_of_kinds
 from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 from eyas.evaluation.policies.shipped import TRAINED, Card, Score, card_of, file_of
+from eyas.learning.tracking.flights import MAPS, WEATHERS
+from eyas.learning.tracking.lessons import BATCH
+from eyas.learning.tracking.training import TrackingConfig
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
+
+
+class Flown(NamedTuple):
+    """A row of a card."""
+
+    protocol: str
+    map: str
+    weather: str
+    target: str = "SUMO_VEHICLE"
+    latency: str = "0"
 
 
 def main() -> None:
@@ -40,23 +57,42 @@ def main() -> None:
     if None in (asked.run, asked.name, asked.title, asked.trained_on) or not asked.limit:
         parser.error("RUN, NAME, TITLE, --trained-on and --limit, or --measure, must be given")
     TRAINED.mkdir(exist_ok=True)
-    config = load_settings(asked.run / "config.json")
     policy = shutil.copy(asked.run / "policy.onnx", TRAINED / f"{asked.name}.onnx")
     curve = shutil.copy(asked.run / "curve.csv", TRAINED / f"{asked.name}.csv")
-    learned = [(kind.world.map, kind.world.weather) for kind in settings_of_kinds(config)]
-    flown = [("paper", *place) for place in learned] + [("long", "citystreet", "day")]
-    with curve.open() as file:
-        decisions = int(list(csv.DictReader(file))[-1]["decisions"])
+    tracker = asked.run / "tracking.json"
+    trained, flown = of_tracker(tracker) if tracker.is_file() else of_network(asked.run, curve)
     card = Card(
         title=asked.title,
-        command=command(asked.run, config),
-        decisions=decisions,
         version=__version__,
         trained_on=asked.trained_on,
         limits=tuple(asked.limit),
-        scores=tuple(score(policy, *each) for each in flown),
+        scores=tuple(score(policy, each) for each in flown),
+        **trained,
     )
     write(asked.name, card)
+
+
+def of_network(run: Path, curve: Path) -> tuple[dict[str, Any], list[Flown]]:
+    """Return what a card says of a run of `eyas train`, and what is flown."""
+    config = load_settings(run / "config.json")
+    learned = [(kind.world.map, kind.world.weather) for kind in settings_of_kinds(config)]
+    with curve.open() as file:
+        decisions = int(list(csv.DictReader(file))[-1]["decisions"])
+    flown = [Flown("paper", *place) for place in learned] + [Flown("long", "citystreet", "day")]
+    return {"command": command(run, config), "decisions": decisions}, flown
+
+
+def of_tracker(path: Path) -> tuple[dict[str, Any], list[Flown]]:
+    """Return what a card says of a run of `python -m eyas.learning.tracking`, and what is flown."""
+    config = validated(TrackingConfig, json.loads(path.read_text()), str(path))
+    command = f"python -m eyas.learning.tracking --seed {config.seed} --out {path.parent}"
+    shown = BATCH * sum(each.steps for each in config.rounds)
+    flown = [Flown("paper", place, weather) for place in MAPS for weather in WEATHERS]
+    flown += [Flown("long", place, "day") for place in MAPS[:2]]
+    flown += [Flown("distractor", MAPS[0], "day")]
+    flown += [Flown("paper", MAPS[0], "day", target=name) for name in ("Pedestrian", "GhostDog")]
+    flown += [Flown("paper", MAPS[0], "day", latency="80")]
+    return {"command": command, "decisions": shown, "entry_class": "box"}, flown
 
 
 def write(name: str, card: Card) -> None:
@@ -69,7 +105,8 @@ def write(name: str, card: Card) -> None:
 def measure(name: str) -> None:
     """Fly what a card tells of again."""
     card = card_of(name)
-    flown = [score(file_of(name), row.protocol, row.map, row.weather) for row in card.scores]
+    rows = [Flown(*(getattr(row, field) for field in Flown._fields)) for row in card.scores]
+    flown = [score(file_of(name), row) for row in rows]
     write(name, card.model_copy(update={"scores": tuple(flown)}))
 
 
@@ -83,19 +120,22 @@ def command(run: Path, config: EyasConfig) -> str:
     return f"{first} && {own} --set train.begin_from={before}"
 
 
-def score(policy: Path, protocol: str, map_name: str, weather: str) -> Score:
+def score(policy: Path, flown: Flown) -> Score:
     """Fly the protocol's episodes at one place."""
     plan = EvaluationPlan(
-        policy=str(policy), protocol=protocol, maps=(map_name,), weathers=(weather,)
+        policy=str(policy),
+        protocol=flown.protocol,
+        maps=(flown.map,),
+        weathers=(flown.weather,),
+        targets=(flown.target,),
+        latency=flown.latency,
     )
     records = [
         record for batch in batches(plan) for ended in fly_batch(plan, batch) for record in ended
     ]
     cr, tsr = (float(np.mean([getattr(each, name) for each in records])) for name in ("cr", "tsr"))
     return Score(
-        protocol=protocol,
-        map=map_name,
-        weather=weather,
+        **flown._asdict(),
         n=len(records),
         cr=round(cr, 1),
         tsr=round(tsr, 4),

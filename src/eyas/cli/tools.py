@@ -181,6 +181,8 @@ def list_policies() -> None:
             typer.echo(
                 f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
                 f"CR {score.cr:.1f}  n {score.n}"
+                f"{'' if score.latency == '0' else f'  {score.latency} ms late'}"
+                f"{'' if score.target == 'SUMO_VEHICLE' else f'  {score.target}'}"
             )
 
 

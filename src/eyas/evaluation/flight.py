@@ -136,6 +136,7 @@ class BatchFlight:
         sight = PolicyInput(
             *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
             heard=heard,
+            clock=step * self._protocol.period,
         )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))

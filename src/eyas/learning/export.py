@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 import onnx
 from onnx import TensorProto, helper, numpy_helper
-from torch import Tensor
+from torch import Tensor, nn
 
 from eyas import __version__
 from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
-__all__ = ["export"]
+__all__ = ["OPSET", "Graph", "export"]
 
-_OPSET = 17
+OPSET = 17
 
 
-class _Graph:
+class Graph:
     """Nodes and weights of a graph that is being written."""
 
     def __init__(self) -> None:
@@ -42,6 +42,27 @@ class _Graph:
         parts = [source, self.weight(f"{name}.w", weight), self.weight(f"{name}.b", bias)]
         return self.node("Gemm", parts, name, transB=1)
 
+    def number(self, name: str, value: float) -> str:
+        """Add a number; return its name."""
+        return self.weight(name, np.float32(value))
+
+    def convolution(self, name: str, source: str, layer: nn.Conv2d) -> str:
+        """Add a convolution."""
+        parts = [
+            source,
+            self.weight(f"{name}.w", layer.weight),
+            self.weight(f"{name}.b", layer.bias),
+        ]
+        padding = [int(side) for side in layer.padding]
+        return self.node(
+            "Conv",
+            parts,
+            name,
+            strides=list(layer.stride),
+            pads=[*padding, *padding],
+            dilations=list(layer.dilation),
+        )
+
 
 def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     """Write a network.
@@ -56,7 +77,7 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
         env: What it sees and chooses from.
         path: The file.
     """
-    graph, shape = _Graph(), network.shape
+    graph, shape = Graph(), network.shape
     picture = ["n", shape.channels, shape.height, shape.width]
     inputs = [
         helper.make_tensor_value_info("image", TensorProto.UINT8, picture),
@@ -73,7 +94,7 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     body = helper.make_graph(graph.nodes, "eyas", inputs, outputs, graph.weights)
     model = helper.make_model(
         body,
-        opset_imports=[helper.make_opsetid("", _OPSET)],
+        opset_imports=[helper.make_opsetid("", OPSET)],
         ir_version=8,
         producer_name="eyas",
         producer_version=__version__,
@@ -84,7 +105,7 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     write_atomic(path, model.SerializeToString())
 
 
-def _features(graph: _Graph, network: TrackingNetwork) -> str:
+def _features(graph: Graph, network: TrackingNetwork) -> str:
     """Add the convolutions and the layer behind them."""
     value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
     later = [(layer.weight, layer.bias) for layer in (network.second, network.third)]
@@ -104,7 +125,7 @@ def _features(graph: _Graph, network: TrackingNetwork) -> str:
     return graph.node("Relu", [value], "features")
 
 
-def _memory(graph: _Graph, network: TrackingNetwork, features: str) -> str:
+def _memory(graph: Graph, network: TrackingNetwork, features: str) -> str:
     """Add a step of the gated recurrent unit, as in `torch.nn.GRUCell`."""
     cell = network.memory
     assert cell is not None

@@ -16,27 +16,32 @@ _USE = (
 
 _HARM = (
     "Following vehicles and people can serve rescue, film and traffic research, and also "
-    "surveillance. The policy follows what is in the middle of its first picture; it knows no "
-    "person, no number plate and no real place."
+    "surveillance. The policy follows what is {shown}; it knows no person, no number plate and no "
+    "real place."
 )
+
+_SHOWN = {"pixels": "in the middle of its first picture", "box": "in its first box"}
+"""What a policy follows, by its class."""
 
 
 def model_card(name: str) -> str:
     """Return the card of a shipped policy as Markdown."""
     card = card_of(name)
     digest = sha256(file_of(name).read_bytes()).hexdigest()
+    harm = _HARM.format(shown=_SHOWN[card.entry_class])
     return "\n\n".join(
         (
             f"# Model card: `{name}`",
             f"A network that follows a target with a drone. It has learned {card.title}.",
-            f"| | |\n|---|---|\n| class of entry | `pixels` |\n| trained by | `{card.command}` |\n"
+            f"| | |\n|---|---|\n| class of entry | `{card.entry_class}` |\n"
+            f"| trained by | `{card.command}` |\n"
             f"| decisions in training | {card.decisions:,} |\n| Eyas | {card.version} |\n"
             f"| file | `{file_of(name).name}`, SHA-256 `{digest}` |\n| licence | MIT, as Eyas |",
             f"## Intended use\n\n{_USE}",
             f"## Trained on\n\n{card.trained_on}",
             f"## What it reaches\n\n{_scores(card)}",
             "## Limits\n\n" + "\n".join(f"- {limit}" for limit in card.limits),
-            f"## What it could be used for besides\n\n{_HARM}",
+            f"## What it could be used for besides\n\n{harm}",
         )
     )
 
@@ -50,5 +55,8 @@ def _scores(card: Card) -> str:
 
 
 def _row(score: Score) -> str:
-    cells = (score.protocol, score.map, score.weather, str(score.n))
+    changed = score.target if score.target != "SUMO_VEHICLE" else ""
+    late = f"{score.latency} ms late" if score.latency != "0" else ""
+    protocol = ", ".join(filter(None, (score.protocol, changed, late)))
+    cells = (protocol, score.map, score.weather, str(score.n))
     return f"| {' | '.join(cells)} | {score.cr:.1f} | {score.tsr:.3f} |"

@@ -12,9 +12,10 @@ Inputs and outputs, by name, all with a leading axis of N episodes:
 
 The metadata `eyas` holds JSON: changes of the defaults of `env`, such as `{"observation": {"width":
 48, "height": 48, "layout": "chw", "frames": 1}, "actions": "discrete", "action_repeat": 4}`.
+
+A network with the input `expected` is that of a tracker, see `eyas.evaluation.policies.tracker`.
 """
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,17 +23,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 from eyas.evaluation.policies.simple import ACTIONS, HOVER
+from eyas.evaluation.policies.tracker.detector import Detector
+from eyas.evaluation.policies.tracker.metadata import METADATA, TRACKER, metadata
+from eyas.evaluation.policies.tracker.tracker import Tracker
 from eyas.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
-
-METADATA = "eyas"
-"""Key of the metadata."""
 
 _IMAGE, _LAST, _TOLD, _NEXT = "image", "last_action", "attributes", "next_"
 
@@ -41,23 +42,25 @@ class OnnxPolicy:
     """A network.
 
     Args:
-        path: The file.
+        path: The file, for messages.
+        session: The network, as onnxruntime runs it.
         changes: Changes of `env`.
         sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file does not hold such a network.
-        MissingExtraError: onnxruntime is not installed.
     """
 
-    def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
-        self._session = _session(path)
-        described = self._session.get_modelmeta().custom_metadata_map.get(METADATA, "{}")
-        try:
-            said = json.loads(described)
-        except (ValueError, RecursionError) as error:
-            raise DataFileError(f"{path}: metadata '{METADATA}': not valid JSON") from error
-        settings = settings_in(path, f"metadata '{METADATA}'", said)
+    def __init__(
+        self,
+        path: Path,
+        session: Any,  # noqa: ANN401  # onnxruntime has no types
+        changes: Mapping[str, Any],
+        *,
+        sampled: bool,
+    ) -> None:
+        self._session = session
+        settings = settings_in(path, f"metadata '{METADATA}'", metadata(path, session, METADATA))
         self.env = env_config({"observation": {"layout": "chw"}, **settings}, changes)
         self.sampled = sampled
         self._chooser = Chooser(sampled=sampled)
@@ -110,9 +113,19 @@ class OnnxPolicy:
         return Decision(actions)
 
 
-def load_onnx(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> OnnxPolicy:
-    """Return the policy in a file, see `OnnxPolicy`."""
-    return OnnxPolicy(path, changes, sampled=sampled)
+def load_onnx(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> OnnxPolicy | Tracker:
+    """Return the policy in a file, see `OnnxPolicy` and `Tracker`.
+
+    Raises:
+        EyasError: The file does not hold one, or changes do not fit it.
+    """
+    session = _session(path)
+    if not Detector.fits(session):
+        return OnnxPolicy(path, session, changes, sampled=sampled)
+    if sampled:
+        raise ConfigError(f"--sample: not allowed for '{path.stem}': it has no scores of actions")
+    said, own = (metadata(path, session, name) for name in (METADATA, TRACKER))
+    return Tracker(path, session, settings_in(path, f"metadata '{METADATA}'", said), own, changes)
 
 
 def _session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types

@@ -72,6 +72,9 @@ class PolicyInput(NamedTuple):
     heard: NDArray[np.float64] | None = None
     """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
     None where drones fly alone."""
+    clock: float | None = None
+    """Time since the start of the flight [s], as any drone's computer knows it; None: one action
+    lasts from one look to the next."""
 
 
 class Failure(NamedTuple):

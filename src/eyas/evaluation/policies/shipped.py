@@ -22,6 +22,9 @@ class Score(Config):
     protocol: str
     map: str = "citystreet"
     weather: str
+    target: str = "SUMO_VEHICLE"
+    latency: str = "0"
+    """[ms]"""
     n: int
     """Number of episodes."""
     cr: float
@@ -35,8 +38,10 @@ class Card(Config):
     """What it has learned, in a few words."""
     command: str
     """The command that trained it."""
+    entry_class: str = "pixels"
+    """What it knows, see `eyas.evaluation.entry.EntryClass`."""
     decisions: int
-    """Of all environments, in training."""
+    """Of all environments, in training; of the tracker, pictures that it was shown."""
     version: str
     """Of Eyas, when it was trained."""
     trained_on: str

@@ -1,0 +1,107 @@
+"""The network of the tracker: where in a picture is this target, if it is seen at all?
+
+An ONNX file with the inputs
+
+- `image`, uint8, (N, 3, H, W);
+- `expected`, float32, (N, 2): where the target should be, column and row [pixels];
+- `spread`, float32, (N, 1): standard deviation of that [pixels];
+- `key`, float32, (N, K): how the target looked, 0 if that is unknown; `known`, (N, 1): 1 or 0
+
+and the outputs, of C cells of the picture,
+
+- `scores`, float32, (N, C + 1): logarithms of unnormalised probabilities that the target is in a
+  cell, and last that it is not seen;
+- `places`, float32, (N, C, 3): where in the picture it is then, column, row, and the logarithm of
+  the standard deviation of both [pixels];
+- `keys`, float32, (N, C, K): how it looks then.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
+
+Floats = NDArray[np.float64]
+
+OUTPUTS = ("scores", "places", "keys")
+
+STRIDE = 4
+"""Side of a cell [pixels]."""
+
+_NEAR = 1
+"""Cells around the best one that are the same place."""
+
+
+class Clue(NamedTuple):
+    """What is known of N targets before a picture is seen."""
+
+    expected: Floats
+    """Column and row [pixels], shape (N, 2)."""
+    spread: Floats
+    """Standard deviation of both [pixels], shape (N,)."""
+    key: NDArray[np.float32]
+    """Shape (N, K)."""
+    known: NDArray[np.bool_]
+    """Whether there is a key, shape (N,)."""
+
+
+class Found(NamedTuple):
+    """What N pictures show."""
+
+    place: Floats
+    """Most probable place if the target is seen, column and row [pixels], shape (N, 2)."""
+    spread: Floats
+    """Standard deviation of both [pixels], shape (N,)."""
+    belief: Floats
+    """Probability that it is there, shape (N,)."""
+    key: NDArray[np.float32]
+    """How it looks, shape (N, K)."""
+
+
+class Detector:
+    """The network.
+
+    Args:
+        session: Of onnxruntime.
+        size: Height and width of the pictures [pixels].
+    """
+
+    def __init__(self, session: Any, size: tuple[int, int]) -> None:  # noqa: ANN401  # no types
+        self._session = session
+        shapes = {each.name: each.shape for each in session.get_inputs()}
+        self.keys: int = shapes["key"][1]
+        down, across = np.indices((-(-size[0] // STRIDE), -(-size[1] // STRIDE)))
+        self._cells = np.stack((across.ravel(), down.ravel()), axis=-1)
+
+    @staticmethod
+    def fits(session: Any) -> bool:  # noqa: ANN401  # the same
+        """Return whether a session is one of such a network."""
+        return "expected" in {each.name for each in session.get_inputs()}
+
+    def find(self, pictures: NDArray[np.uint8], clue: Clue) -> Found:
+        """Find targets.
+
+        Args:
+            pictures: Shape (N, 3, H, W).
+            clue: What is known of them.
+        """
+        feed = {
+            "image": pictures,
+            "expected": clue.expected.astype(np.float32),
+            "spread": clue.spread.astype(np.float32)[:, None],
+            "key": clue.key,
+            "known": clue.known.astype(np.float32)[:, None],
+        }
+        scores, places, keys = self._session.run(OUTPUTS, feed)
+        scores = scores.astype(np.float64)
+        shares = np.exp(scores - scores.max(axis=1, keepdims=True))
+        shares /= shares.sum(axis=1, keepdims=True)
+        best = shares[:, :-1].argmax(axis=1)
+        # A second candidate elsewhere takes from the belief in the best one.
+        apart = np.abs(self._cells[None] - self._cells[best][:, None]).max(axis=-1)
+        belief = (shares[:, :-1] * (apart <= _NEAR)).sum(axis=1)
+        rows = np.arange(len(best))
+        place = places[rows, best].astype(np.float64)
+        return Found(place[:, :2], np.exp(place[:, 2]), belief, keys[rows, best])

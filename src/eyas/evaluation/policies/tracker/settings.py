@@ -1,0 +1,45 @@
+"""Settings of the tracker; they stand in the file of its network."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from eyas.core.config import Config
+
+__all__ = ["TrackerSettings"]
+
+Positive = Annotated[float, Field(gt=0.0, le=1e3)]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class TrackerSettings(Config):
+    """Where the camera is, how targets move, and when the network is believed."""
+
+    height: Positive = 22.0
+    """Of the drone above the target's centre at the start [m]."""
+    pitch: Annotated[float, Field(gt=0.0, le=1.6)] = 1.37
+    """Of the camera, positive down [rad]."""
+    small: Positive = 1.0
+    """A target whose first box has a smaller area than the square of this walks [m]."""
+    acceleration: Positive = 12.0
+    """Of a vehicle, standard deviation in each direction [m/s^2]."""
+    speed: Positive = 8.0
+    """Of a vehicle at the start, standard deviation in each direction [m/s]."""
+    walking_acceleration: Positive = 2.0
+    """Of what walks [m/s^2]."""
+    walking_speed: Positive = 1.5
+    """Of what walks, at the start [m/s]."""
+    widest: Positive = 8.0
+    """Largest standard deviation of a place [m]."""
+    floor: Positive = 1.0
+    """Standard deviation of what the filter does not know of, which the network is told too [m]."""
+    noise: Positive = 0.3
+    """Of a place that the network finds, besides what it says itself [m]."""
+    believed: Share = 0.5
+    """Least probability of one place, with those around it, at which the filter takes it."""
+    remembered: Share = 0.9
+    """Least probability at which the memory of the target is renewed."""
+    gate: Positive = 3.0
+    """Largest distance of a place from the expected one, in standard deviations."""
+    gain: Share = 0.6
+    """Share of the distance from the middle that an action makes up for."""

@@ -1,0 +1,216 @@
+"""A tracker that is shown its target once, and follows it through pictures in which it is hidden.
+
+A network finds it near the place that a filter expects; the drone flies to what the filter says,
+also while nothing is seen. What it knows besides its pictures is the first box, and what its own
+sensors say: its position and heading.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.core.config import validated
+from eyas.core.errors import ConfigError, DataFileError
+from eyas.evaluation.policies.policy import (
+    Decision,
+    Failure,
+    PolicyInput,
+    Start,
+    env_config,
+)
+from eyas.evaluation.policies.tracker.detector import Clue, Detector, Found
+from eyas.evaluation.policies.tracker.ground import Ground
+from eyas.evaluation.policies.tracker.metadata import TRACKER
+from eyas.evaluation.policies.tracker.motion import MotionFilter
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+
+__all__ = ["OBSERVED", "Tracker"]
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+
+OBSERVED = {"parts": ["image", "sensors"], "layout": "chw"}
+"""Settings of `env.observation` that it cannot do without; its actions are velocities."""
+
+_NO_BOX = Failure(
+    "the tracker needs the target's first box: the protocol does not tell it, or the target starts "
+    "out of the picture",
+    None,
+)
+
+_CONTROL_STEP = 0.008
+"""Of all protocols [s]."""
+
+_LEAST_RENEWAL = 0.02
+"""Share of the latest look in the memory of how the target looks, after many looks."""
+
+_SURE_PIXELS = 8.0
+"""Largest standard deviation of the expected place at which that memory is renewed [pixels]."""
+
+_FIRST_SPREAD = 0.5
+"""Of the place that the first box tells [m]."""
+
+
+class Tracker:
+    """Follows N targets, each from its first box on.
+
+    Args:
+        path: The file of the network, for messages.
+        session: The network, as onnxruntime runs it.
+        own: Changes of the defaults of `env` that belong to the file.
+        said: `TrackerSettings` of the file.
+        changes: Changes of `env`.
+
+    Raises:
+        EyasError: The settings are wrong, or changes ask for what the network does not see.
+    """
+
+    sampled = False
+    told = frozenset({"box"})
+
+    def __init__(
+        self,
+        path: Path,
+        session: Any,  # noqa: ANN401  # onnxruntime has no types
+        own: Mapping[str, Any],
+        said: Mapping[str, Any],
+        changes: Mapping[str, Any],
+    ) -> None:
+        self.settings = validated(TrackerSettings, said, f"{path}: {TRACKER}")
+        made = env_config(own)
+        self.env = env_config(own, changes)
+        if self.env.actions is not made.actions or self.env.observation != made.observation:
+            raise ConfigError(
+                "env: the tracker sees and acts as it was trained: only env.action_repeat and "
+                "env.speeds may be changed"
+            )
+        if not set(OBSERVED["parts"]) <= set(made.observation.parts):
+            raise DataFileError(f"{path}: the tracker needs the parts 'image' and 'sensors'")
+        size = made.observation.height, made.observation.width
+        self.detector, self.ground = Detector(session, size), Ground(self.settings, size)
+        self._period = _CONTROL_STEP * self.env.action_repeat
+
+    def begin(self, start: Start) -> None:
+        """Take the first boxes: N episodes begin."""
+        count = len(start.seeds)
+        self.motion = MotionFilter(count, self.settings.widest)
+        self.boxes = start.boxes().astype(np.float64)
+        self.expected, self.spread = np.zeros((count, 2)), np.ones(count)
+        """What the network was told last, see `Clue`."""
+        self.sees = np.zeros(count, np.bool_)
+        """Whether each target was seen in the last look."""
+        self._key = np.zeros((count, self.detector.keys), np.float32)
+        self._renewed = np.zeros(count)
+        """How often each memory of how the target looks was renewed."""
+        self._looked = np.full(count, np.nan)
+        """When each looked last [s]; NaN: not yet."""
+        self._command = np.zeros((count, 2))
+        """Latest command of each, east and north [m/s]."""
+
+    def act(self, sight: PolicyInput) -> Decision:
+        """Look, and fly to where the targets should be when the action takes effect."""
+        boxless = self.boxes[:, 2] <= self.boxes[:, 0]
+        rows = np.flatnonzero(sight.deciding & ~boxless)
+        actions = np.zeros((len(boxless), 4))
+        failed = dict.fromkeys(np.flatnonzero(sight.deciding & boxless).tolist(), _NO_BOX)
+        if len(rows):
+            seen: Any = sight.observation
+            sensed = seen["sensors"][rows].astype(np.float64)
+            place, yaw = sensed[:, :2], sensed[:, -1]
+            since = self._time_since(rows, sight.clock)
+            self.look(rows, seen["image"][rows], place, yaw, since)
+            actions[rows, :2] = self._steer(rows, place, yaw, since)
+        return Decision(actions, failed)
+
+    def look(
+        self, rows: Rows, pictures: NDArray[np.uint8], place: Floats, yaw: Floats, since: Floats
+    ) -> None:
+        """Take what K drones see.
+
+        Args:
+            rows: Which they are, shape (K,).
+            pictures: What they see, shape (K, 3, H, W).
+            place: Where they are, east and north [m], shape (K, 2).
+            yaw: Their heading [rad], shape (K,).
+            since: Time since their last look [s], shape (K,); NaN: there was none.
+        """
+        new = np.isnan(since)
+        if new.any():
+            self._show(rows[new], place[new], yaw[new])
+        self.motion.predict(rows, np.where(new, 0.0, since))
+        clue = self._clue(rows, place, yaw)
+        self.expected[rows], self.spread[rows] = clue.expected, clue.spread
+        found = self.detector.find(pictures, clue)
+        where = place + _turned(self.ground.offsets(found.place), yaw)
+        noise = found.spread / self.ground.pixels_per_metre
+        variance = np.square(noise) + self.settings.noise**2
+        near = self.motion.distance(rows, where, variance) < self.settings.gate
+        taken = near & (found.belief > self.settings.believed)
+        self.sees[rows] = taken
+        self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
+        self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
+
+    def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
+        """Return what the network is told about targets, see `look`."""
+        expected = self.ground.pixels(_turned(self.motion.place[rows] - place, -yaw))
+        spread = np.sqrt(np.square(self.motion.spread(rows)) + self.settings.floor**2)
+        known = self._renewed[rows] > 0
+        return Clue(expected, spread * self.ground.pixels_per_metre, self._key[rows], known)
+
+    def _show(self, rows: Rows, place: Floats, yaw: Floats) -> None:
+        """Begin with the first boxes: where the targets are, and what can move how."""
+        box, own = self.boxes[rows], self.settings
+        middle = 0.5 * (box[:, :2] + box[:, 2:])
+        sides = (box[:, 2:] - box[:, :2]) / self.ground.pixels_per_metre
+        walks = sides[:, 0] * sides[:, 1] < own.small**2
+        speed = np.where(walks, own.walking_speed, own.speed)
+        self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
+        where = place + _turned(self.ground.offsets(middle), yaw)
+        self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
+
+    def _remember(self, rows: Rows, found: Found, sure: Mask) -> None:
+        """Renew the memory of how targets look, by those that are surely seen."""
+        sure = sure & (found.belief > self.settings.remembered)
+        rows = rows[sure]
+        share = np.maximum(1.0 / (self._renewed[rows] + 1.0), _LEAST_RENEWAL)[:, None]
+        self._key[rows] += (share * (found.key[sure] - self._key[rows])).astype(np.float32)
+        self._renewed[rows] += 1.0
+
+    def _time_since(self, rows: Rows, clock: float | None) -> Floats:
+        """Return the time since the last look of each [s], shape (K,); NaN: there was none."""
+        before = self._looked[rows]
+        now = np.where(np.isnan(before), 0.0, before + self._period) if clock is None else clock
+        self._looked[rows] = now
+        since: Floats = now - before
+        return since
+
+    def _steer(self, rows: Rows, place: Floats, yaw: Floats, since: Floats) -> Floats:
+        """Return commands ahead and to the left [m/s], shape (K, 2).
+
+        Looks that are farther apart than an action lasts show how late actions are: the drone then
+        flies on as it was told before, and the action lasts as long.
+        """
+        late = np.where(since > 1.5 * self._period, since, 0.0)[:, None]
+        lasts = np.maximum(late, self._period)
+        velocity = self.motion.velocity[rows]
+        away = self.motion.place[rows] - place + late * (velocity - self._command[rows])
+        away = away - _turned(np.tile(self.ground.middle, (len(rows), 1)), yaw)
+        self._command[rows] = velocity + self.settings.gain * away / lasts
+        ahead = _turned(self._command[rows], -yaw)
+        fastest = self.env.speeds.forward_speed
+        ahead = np.clip(ahead, -fastest, fastest)
+        self._command[rows] = _turned(ahead, yaw)
+        return ahead
+
+
+def _turned(vectors: Floats, angle: Floats) -> Floats:
+    """Return vectors turned counter-clockwise, shape (K, 2)."""
+    sine, cosine = exact.sin(angle), exact.cos(angle)
+    east = cosine * vectors[:, 0] - sine * vectors[:, 1]
+    north = sine * vectors[:, 0] + cosine * vectors[:, 1]
+    return np.stack((east, north), axis=-1)

@@ -1,0 +1,165 @@
+"""The network of the tracker as an ONNX file, see `eyas.evaluation.policies.tracker.detector`."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import onnx
+from onnx import TensorProto, helper
+
+from eyas import __version__
+from eyas.core.files import write_atomic
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.policies.tracker.metadata import METADATA, TRACKER
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.learning.export import OPSET, Graph
+from eyas.learning.tracking.network import (
+    ALIKE,
+    CELL,
+    MEAN,
+    OFFSET,
+    SPREAD,
+    SURE,
+    UNSURE,
+    DetectorNetwork,
+)
+
+__all__ = ["export"]
+
+
+def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, path: Path) -> None:
+    """Write a network.
+
+    Args:
+        network: The network.
+        env: What the tracker sees and chooses from.
+        settings: Of the tracker.
+        path: The file.
+    """
+    graph = Graph()
+    cells, keys, (height, width) = len(network.cells), network.keys, network.size
+    features = _trunk(graph, network)
+    answers = graph.convolution("answers", features, network.head)
+    rows = [
+        _by_cell(graph, value, (cells, n))
+        for value, n in ((features, network.width), (answers, 4 + 2 * keys))
+    ]
+    parts = ["objectness", "offset", "sureness", "query", "keys"]
+    sizes = graph.weight("parts", np.array([1, 2, 1, keys, keys]))
+    graph.nodes.append(helper.make_node("Split", [rows[1], sizes], parts, axis=2))
+    _places(graph, network)
+    _scores(graph, network, rows[0])
+    inputs: dict[str, list[str | int]] = {
+        "image": ["n", 3, height, width],
+        "expected": ["n", 2],
+        "spread": ["n", 1],
+    }
+    inputs |= {"key": ["n", keys], "known": ["n", 1]}
+    outputs: dict[str, list[str | int]] = {
+        "scores": ["n", cells + 1],
+        "places": ["n", cells, 3],
+        "keys": ["n", cells, keys],
+    }
+    body = helper.make_graph(
+        graph.nodes,
+        "eyas",
+        [_value(name, shape) for name, shape in inputs.items()],
+        [_value(name, shape) for name, shape in outputs.items()],
+        graph.weights,
+    )
+    model = helper.make_model(
+        body,
+        opset_imports=[helper.make_opsetid("", OPSET)],
+        ir_version=8,
+        producer_name="eyas",
+        producer_version=__version__,
+    )
+    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
+    own = settings.model_dump(mode="json")
+    helper.set_model_props(model, {METADATA: json.dumps(said), TRACKER: json.dumps(own)})
+    onnx.checker.check_model(model, full_check=True)
+    write_atomic(path, model.SerializeToString())
+
+
+def _value(name: str, shape: list[str | int]) -> onnx.ValueInfoProto:
+    kind = TensorProto.UINT8 if name == "image" else TensorProto.FLOAT
+    return helper.make_tensor_value_info(name, kind, shape)
+
+
+def _trunk(graph: Graph, network: DetectorNetwork) -> str:
+    """Add the convolutions; return their last output."""
+    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
+    value = graph.node("Sub", [value, graph.number("mean", MEAN)], "image.centred")
+    value = graph.node("Div", [value, graph.number("spread.of.pixels", SPREAD)], "image.scaled")
+    layers = network.first, network.second, network.third, network.fourth
+    for number, layer in enumerate(layers):
+        before = value
+        value = graph.convolution(f"convolution.{number}", value, layer)
+        value = graph.node("Relu", [value], f"convolution.{number}.relu")
+    return graph.node("Add", [before, value], "features")
+
+
+def _by_cell(graph: Graph, source: str, shape: tuple[int, int]) -> str:
+    """Add the change from (N, K, H, W) to (N, cells, K)."""
+    turned = graph.node("Transpose", [source], f"{source}.last", perm=[0, 2, 3, 1])
+    return graph.node(
+        "Reshape",
+        [turned, graph.weight(f"{source}.shape", np.array([0, *shape]))],
+        f"{source}.rows",
+    )
+
+
+def _places(graph: Graph, network: DetectorNetwork) -> None:
+    """Add the output `places`."""
+    cells = graph.weight("cells", network.cells[None])
+    scaled = graph.node("Mul", ["offset", graph.number("offset.scale", OFFSET)], "offset.pixels")
+    where = graph.node("Add", [scaled, cells], "where")
+    limits = [graph.number("sure", SURE), graph.number("unsure", UNSURE)]
+    sureness = graph.node("Clip", ["sureness", *limits], "sureness.limited")
+    graph.node("Concat", [where, sureness], "places", axis=2)
+
+
+def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
+    """Add the output `scores`."""
+    cells = len(network.cells)
+    key = graph.node("Mul", ["key", "known"], "key.known")
+    key = graph.node("Unsqueeze", [key, graph.weight("last", np.array([2]))], "key.column")
+    alike = graph.node("MatMul", ["query", key], "alike.product")
+    alike = graph.node("Mul", [alike, graph.number("alike.scale", ALIKE)], "alike")
+    looks = graph.node("Add", ["objectness", alike], "looks")
+    flat = graph.weight("flat", np.array([0, cells]))
+    looks = graph.node("Reshape", [looks, flat], "looks.flat")
+    prior = _prior(graph)
+    share = graph.node("Softmax", [prior], "share", axis=1)
+    share = graph.node("Unsqueeze", [share, graph.weight("middle", np.array([1]))], "share.row")
+    near = graph.node("MatMul", [share, features], "near.row")
+    wide = graph.weight("near.shape", np.array([0, network.width]))
+    near = graph.node("Reshape", [near, wide], "near")
+    inside = graph.node("ReduceLogSumExp", [prior], "inside", axes=[1], keepdims=1)
+    parts = [near, graph.node("Log", ["spread"], "spread.log"), "known", inside]
+    value = graph.node("Concat", parts, "unseen.seen", axis=1)
+    first, last = network.unseen_first, network.unseen_last
+    value = graph.linear("unseen.first", value, first.weight, first.bias)
+    value = graph.node("Relu", [value], "unseen.relu")
+    unseen = graph.linear("unseen", value, last.weight, last.bias)
+    seen = graph.node("Add", [looks, prior], "seen")
+    graph.node("Concat", [seen, unseen], "scores", axis=1)
+
+
+def _prior(graph: Graph) -> str:
+    """Add the logarithm of the probability that the target is in each cell, shape (N, C)."""
+    square = graph.node("Mul", ["spread", "spread"], "spread.square")
+    variance = graph.node("Add", [square, graph.number("cell", CELL)], "variance")
+    expected = graph.node(
+        "Unsqueeze", ["expected", graph.weight("second", np.array([1]))], "expected.row"
+    )
+    away = graph.node("Sub", ["cells", expected], "away")
+    away = graph.node("Mul", [away, away], "away.square")
+    away = graph.node(
+        "ReduceSum", [away, graph.weight("axis", np.array([2]))], "away.sum", keepdims=0
+    )
+    double = graph.node("Add", [variance, variance], "variance.double")
+    far = graph.node("Div", [away, double], "away.relative")
+    wide = graph.node("Log", [variance], "variance.log")
+    minus = graph.node("Add", [far, wide], "prior.minus")
+    return graph.node("Neg", [minus], "prior")

@@ -1,0 +1,132 @@
+"""What the network is taught: in which cell the target is, or that it is not seen, and where."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from eyas.evaluation.policies.tracker.detector import STRIDE
+from eyas.learning.tracking.network import DetectorNetwork
+from eyas.learning.tracking.samples import GROUP, Sample, Samples
+
+__all__ = ["BATCH", "Loss", "Progress", "loss_of", "taught"]
+
+_GROUPS = 32
+"""In a step."""
+
+BATCH = _GROUPS * GROUP
+"""Pictures in a step."""
+
+_SHOWN = 0.6
+"""Share of the other pictures of a group whose keys make the target's."""
+
+_UNKNOWN = 0.15
+"""Share of the pictures without any key."""
+
+_PLACE = 0.3
+"""Weight of the place within a cell."""
+
+_WARM_UP = 200
+"""Steps in which the rate of learning rises, at most a quarter of all."""
+
+
+class Progress(NamedTuple):
+    """How well a network has learned since the last progress."""
+
+    step: int
+    loss: float
+    """Cross entropy."""
+    right: float
+    """Share of the pictures whose most probable answer is right, within a cell."""
+
+
+class Loss(NamedTuple):
+    """How wrong a network is in a sample."""
+
+    total: Tensor
+    cells: Tensor
+    """Cross entropy of the cells and "not seen"."""
+    right: Tensor
+    """Whether the most probable answer is right, within a cell, shape (B,)."""
+    off: Tensor
+    """Distance of the place in the true cell [pixels], shape (B,)."""
+
+
+def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> Loss:
+    """Return how wrong a network is.
+
+    Args:
+        network: The network.
+        sample: Groups of pictures.
+        rng: Chooses the pictures whose keys are shown.
+    """
+    features, answers = network.see(sample.picture)
+    height, width = (length // STRIDE for length in network.size)
+    column, row = (sample.place / STRIDE).long().unbind(1)
+    cell = row.clamp(0, height - 1) * width + column.clamp(0, width - 1)
+    rows = torch.arange(len(cell))
+    key, known = _keys(network.keys_of(answers)[rows, cell], sample.seen, rng)
+    clue = sample.expected, sample.spread[:, None], key, known
+    chance = torch.log_softmax(network.scores(features, answers, clue), 1)
+    label = torch.where(sample.seen, cell, height * width)
+    clear = (~sample.unclear).float()
+    cells = -(chance[rows, label] * clear).sum() / clear.sum()
+    places = network.places(answers)[rows, cell]
+    off = (places[:, :2] - sample.place).square().sum(1)
+    sure = places[:, 2]
+    wrong = (off / (2.0 * torch.exp(2.0 * sure)) + 2.0 * sure) * sample.seen
+    best = chance.argmax(1)
+    cells_of = network.cells[best.clamp(max=height * width - 1)]
+    near = (cells_of - sample.place).abs().amax(1) <= 1.5 * STRIDE
+    right = torch.where(sample.seen, (best < height * width) & near, best == height * width)
+    total = cells + _PLACE * wrong.sum() / sample.seen.sum().clamp(min=1)
+    return Loss(total, cells, right, off.sqrt())
+
+
+def taught(
+    network: DetectorNetwork, samples: Samples, steps: int, rate: float, rng: np.random.Generator
+) -> Iterator[Progress]:
+    """Teach a network; yield its progress ten times.
+
+    Args:
+        network: The network.
+        samples: What it sees.
+        steps: Number of steps.
+        rate: Largest rate of learning.
+        rng: See `loss_of`.
+    """
+    optimiser = torch.optim.AdamW(network.parameters(), rate, weight_decay=1e-4)
+    recent = []
+    for step in range(steps):
+        share = min(1.0, (step + 1) / min(_WARM_UP, max(steps // 4, 1))) * (
+            1.0 - 0.98 * step / steps
+        )
+        optimiser.param_groups[0]["lr"] = rate * share
+        sample = samples.draw(_GROUPS)
+        loss = loss_of(network, sample, rng)
+        optimiser.zero_grad()
+        loss.total.backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
+        optimiser.step()
+        clear = ~sample.unclear
+        recent.append((loss.cells.item(), loss.right[clear].float().mean().item()))
+        if (step + 1) % max(steps // 10, 1) == 0:
+            cells, right = np.mean(recent, axis=0)
+            yield Progress(step + 1, float(cells), float(right))
+            recent.clear()
+
+
+def _keys(keys: Tensor, seen: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+    """Return the key of each target from other pictures of its group, (B, K), and whether there is
+    one, (B, 1).
+    """
+    groups = len(keys) // GROUP
+    shown = rng.random((groups, GROUP, GROUP)) < _SHOWN
+    shown &= rng.random((groups, GROUP, 1)) >= _UNKNOWN
+    shown &= ~np.eye(GROUP, dtype=bool)
+    weight = torch.from_numpy(shown.astype(np.float32)) * seen.view(groups, 1, GROUP)
+    count = weight.sum(-1, keepdim=True)
+    key = (weight @ keys.view(groups, GROUP, -1)) / count.clamp(min=1.0)
+    return key.view(len(keys), -1), (count > 0).float().view(-1, 1)

@@ -1,0 +1,165 @@
+"""The tracker that is shown its target once: its geometry, its filter, and what it knows."""
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.evaluation.delay import delay_from
+from eyas.evaluation.entry import EntryClass, entry_class
+from eyas.evaluation.episode import Place
+from eyas.evaluation.flight import BatchFlight
+from eyas.evaluation.policies.policy import PolicyInput, Start
+from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.ground import Ground
+from eyas.evaluation.policies.tracker.motion import MotionFilter
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.evaluation.protocols import protocol_named
+
+ROWS = np.arange(2)
+STEP = np.full(2, 0.032)
+
+
+def test_pixels_and_offsets_are_inverse():
+    ground = Ground(TrackerSettings(), (60, 80))
+    pixels = np.array([[1.0, 2.0], [40.0, 30.0], [79.0, 59.0]])
+    offsets = ground.offsets(pixels)
+    np.testing.assert_allclose(ground.pixels(offsets), pixels, atol=1e-9)
+    np.testing.assert_allclose(offsets[1], ground.middle, atol=1e-9)
+    assert offsets[0, 0] > ground.middle[0]  # the upper rows are ahead
+    assert offsets[0, 1] > 0.0 > offsets[2, 1]  # and the first columns to the left
+    further = ground.pixels(offsets[1:2] + np.array([[0.0, 1.0]]))
+    assert pixels[1, 0] - further[0, 0] == pytest.approx(ground.pixels_per_metre, rel=1e-9)
+
+
+def started():
+    motion = MotionFilter(2, widest=8.0)
+    motion.acceleration[:] = 12.0, 2.0
+    still = np.zeros((2, 2))
+    motion.begin(ROWS, still, still, 0.5, np.array([8.0, 1.5]))
+    return motion
+
+
+def test_the_filter_finds_a_velocity_and_goes_on_with_it():
+    motion, velocity = started(), np.array([[10.0, -4.0], [1.0, 0.5]])
+    for look in range(1, 101):
+        motion.predict(ROWS, STEP)
+        motion.update(ROWS, look * 0.032 * velocity, np.full(2, 0.01), np.ones(2))
+    np.testing.assert_allclose(motion.velocity, velocity, atol=0.01)
+    seen = motion.spread(ROWS)
+    motion.predict(ROWS, np.full(2, 1.0))
+    np.testing.assert_allclose(motion.place, (3.2 + 1.0) * velocity, atol=0.02)
+    hidden = motion.spread(ROWS)
+    assert (hidden > seen).all()
+    assert hidden[0] > 2.0 * hidden[1]  # what walks is not far
+    motion.predict(ROWS, np.full(2, 60.0))
+    assert (motion.spread(ROWS) <= 8.0).all()
+
+
+def test_what_is_seen_counts_by_its_variance_and_is_near_or_far():
+    motion = started()
+    distance = motion.distance(ROWS, np.array([[3.0, 4.0], [0.0, 0.0]]), np.full(2, 0.75))
+    np.testing.assert_allclose(distance, [5.0, 0.0])  # 0.5^2 + 0.75 = 1
+    motion.update(ROWS, np.full((2, 2), 1.0), np.array([0.25, 1e6]), np.ones(2))
+    np.testing.assert_allclose(motion.place[0], 0.5)
+    np.testing.assert_allclose(motion.place[1], 0.0, atol=1e-5)
+
+
+def test_what_is_half_believed_moves_the_filter_half_as_far_and_leaves_it_unsure():
+    sure, unsure = started(), started()
+    seen, variance = np.full((2, 2), 1.0), np.full(2, 0.25)
+    sure.update(ROWS, seen, variance, np.ones(2))
+    unsure.update(ROWS, seen, variance, np.full(2, 0.5))
+    np.testing.assert_allclose(unsure.place, 0.5 * sure.place)
+    assert (unsure.spread(ROWS) > sure.spread(ROWS)).all()
+    # Half of the gain, and the distance of both cases: 0.25 - 0.5 * 0.125 + 0.25 * 0.5^2.
+    np.testing.assert_allclose(unsure.spread(ROWS) ** 2, 0.25)
+
+
+def test_rows_are_independent():
+    one, both = started(), started()
+    alone = np.array([1])
+    one.predict(alone, STEP[:1])
+    both.predict(ROWS, STEP)
+    assert one.place[0].tolist() == [0.0, 0.0]
+    assert one.spread(alone) == both.spread(alone)
+    assert one.spread(np.array([0])) == 0.5
+
+
+class Recorder:
+    """Flies a policy, and keeps what it sees and answers."""
+
+    def __init__(self, policy):
+        self.policy, self.env, self.told, self.sampled = policy, policy.env, policy.told, False
+        self.seen, self.answers = [], []
+
+    def begin(self, start):
+        self.boxes = start.boxes()
+        self.policy.begin(start)
+
+    def act(self, sight):
+        decision = self.policy.act(sight)
+        kept = {name: part.copy() for name, part in sight.observation.items()}
+        self.seen.append((kept, sight.deciding.copy(), sight.clock))
+        self.answers.append(decision.actions.copy())
+        return decision
+
+
+@pytest.fixture(scope="module")
+def flown():
+    recorder = Recorder(open_policy("eyas", {}))
+    protocol = protocol_named("paper").changed({"done": {"total_steps": 400}})
+    episodes = protocol.choose(
+        [Place("citystreet", "day", "SUMO_VEHICLE")], protocol, 1, 60_000_000
+    )
+    for _ in BatchFlight(episodes, protocol, recorder, delay_from("40")).fly():
+        pass
+    return recorder
+
+
+def unknown():
+    raise AssertionError("it looks at the truth")
+
+
+def replayed(recorder, row=None):
+    """Show what was recorded again, without any truth; one drone alone, or all."""
+    rows = slice(None) if row is None else slice(row, row + 1)
+    policy = open_policy("eyas", {})
+    count = len(recorder.boxes[rows])
+    policy.begin(Start(np.zeros(count, np.int64), lambda: recorder.boxes[rows]))
+    answers = []
+    for seen, deciding, clock in recorder.seen:
+        own = {name: part[rows] for name, part in seen.items()}
+        covered = np.zeros(count, np.bool_)
+        sight = PolicyInput(own, deciding[rows], unknown, unknown, covered, clock=clock)
+        answers.append(policy.act(sight).actions)
+    return np.array(answers)
+
+
+def test_it_answers_the_same_without_the_truth(flown):
+    assert entry_class(flown.policy) is EntryClass.BOX
+    assert (replayed(flown) == np.array(flown.answers)).all()
+    assert np.abs(flown.answers).max() > 1.0
+
+
+@pytest.mark.parametrize("row", range(4))
+def test_one_drone_alone_flies_as_in_a_batch(flown, row):
+    """To the last bits of the network, whose sums depend on the batch."""
+    alone, together = replayed(flown, row), np.array(flown.answers)[:, row : row + 1]
+    np.testing.assert_allclose(alone, together, atol=2e-3)
+
+
+def test_without_a_first_box_it_fails_in_one_line(fly):
+    (record,) = {record.error for record in fly("eyas", protocol="search")}
+    assert "first box" in record
+    assert "\n" not in record
+
+
+def test_it_follows_a_target_with_a_latency(fly):
+    assert np.mean([record.tsr for record in fly("eyas", latency="80", episodes=2)]) > 0.8
+
+
+def test_it_sees_as_it_was_trained():
+    with pytest.raises(ConfigError, match="as it was trained"):
+        open_policy("eyas", {"observation": {"width": 48}})
+    with pytest.raises(ConfigError, match="--sample"):
+        open_policy("eyas", {}, sampled=True)

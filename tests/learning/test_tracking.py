@@ -1,0 +1,149 @@
+"""Teaching the tracker's network: pictures, samples, lessons, its file."""
+
+from itertools import islice
+
+import numpy as np
+import onnxruntime
+import pytest
+import torch
+
+from eyas.core.errors import DataFileError
+from eyas.evaluation.delay import delay_from
+from eyas.evaluation.episode import Place
+from eyas.evaluation.flight import BatchFlight
+from eyas.evaluation.policies.policy import env_config
+from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.detector import OUTPUTS
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.evaluation.policies.tracker.tracker import OBSERVED
+from eyas.evaluation.protocols import protocol_named
+from eyas.learning.tracking.export import export
+from eyas.learning.tracking.lessons import loss_of, taught
+from eyas.learning.tracking.network import DetectorNetwork
+from eyas.learning.tracking.pilots import Oracle, Pupil
+from eyas.learning.tracking.samples import GROUP, Samples
+from eyas.learning.tracking.shots import Shots, load, save
+from eyas.learning.tracking.training import Round, TrackingConfig, train
+
+SIZE = 24, 32
+ENV = env_config(
+    {
+        "actions": "velocity",
+        "action_repeat": 4,
+        "observation": {**OBSERVED, "width": SIZE[1], "height": SIZE[0]},
+    }
+)
+
+
+def network():
+    torch.manual_seed(3)
+    return DetectorNetwork(SIZE, width=16, keys=8)
+
+
+def spots(flights=12, times=8):
+    """Pictures with one white spot, which is the target, or none."""
+    rng = np.random.default_rng(5)
+    picture = rng.integers(0, 60, (flights, times, 3, *SIZE)).astype(np.uint8)
+    place = rng.uniform(2.0, (SIZE[1] - 2, SIZE[0] - 2), (flights, times, 2)).astype(np.float32)
+    share = (rng.random((flights, times)) < 0.7).astype(np.float32)
+    for flight, time in np.argwhere(share > 0):
+        column, row = place[flight, time].astype(int)
+        picture[flight, time, :, row - 1 : row + 2, column - 1 : column + 2] = 250
+    nan = np.full_like(place, np.nan)
+    return Shots(picture, place, share, nan, nan[..., 0], np.ones_like(share, bool))
+
+
+def test_it_learns_to_find_spots():
+    learner, rng = network(), np.random.default_rng(7)
+    assert len(list(taught(learner, Samples(spots(), rng), 40, 8e-3, rng))) == 10
+    rng = np.random.default_rng(9)
+    sample = Samples(spots(), rng).draw(32)
+    with torch.no_grad():
+        before, after = (
+            loss_of(each, sample, np.random.default_rng(0)) for each in (network(), learner)
+        )
+    assert after.cells < 0.7 * before.cells
+
+
+def test_a_sample_keeps_place_and_picture_together():
+    sample = Samples(spots(), np.random.default_rng(2)).draw(64)
+    assert len(sample.picture) == 64 * GROUP
+    assert sample.seen.any()
+    for picture, place in zip(sample.picture[sample.seen], sample.place[sample.seen], strict=True):
+        row, column = divmod(int(picture.mean(0).argmax()), SIZE[1])
+        assert abs(column + 0.5 - float(place[0])) < 2.6
+        assert abs(row + 0.5 - float(place[1])) < 2.6
+
+
+def test_the_file_answers_as_the_network(tmp_path):
+    learner = network()
+    export(learner, ENV, TrackerSettings(gate=2.5), tmp_path / "policy.onnx")
+    sample = Samples(spots(), np.random.default_rng(2)).draw(2)
+    picture = sample.picture.to(torch.uint8)
+    known = (torch.arange(len(picture)) % 2).float()[:, None]
+    key, spread = torch.randn(len(picture), learner.keys), sample.spread[:, None]
+    with torch.no_grad():
+        features, answers = learner.see(picture)
+        scores = learner.scores(features, answers, (sample.expected, spread, key, known))
+        wanted = scores, learner.places(answers), learner.keys_of(answers)
+    feed = {"image": picture, "expected": sample.expected, "spread": spread}
+    feed |= {"key": key, "known": known}
+    session = onnxruntime.InferenceSession(tmp_path / "policy.onnx")
+    found = session.run(OUTPUTS, {name: part.numpy() for name, part in feed.items()})
+    for one, other in zip(found, wanted, strict=True):
+        np.testing.assert_allclose(one, other.numpy(), atol=1e-3)
+    assert open_policy(str(tmp_path / "policy.onnx"), {}).settings.gate == 2.5
+
+
+@pytest.fixture(scope="module")
+def policy(tmp_path_factory):
+    path = tmp_path_factory.mktemp("tracker") / "policy.onnx"
+    export(network(), ENV, TrackerSettings(), path)
+    return path
+
+
+@pytest.mark.parametrize("who", ["oracle", "pupil"])
+def test_pictures_of_flights(policy, who, tmp_path):
+    rng = np.random.default_rng(1)
+    pilot = Oracle(ENV, rng) if who == "oracle" else Pupil(open_policy(str(policy), {}), rng)
+    protocol = protocol_named("paper").changed({"done": {"total_steps": 400}})
+    episodes = protocol.choose(
+        [Place("citystreet", "day", "SUMO_VEHICLE")], protocol, 1, 60_000_000
+    )
+    for _ in BatchFlight(episodes, protocol, pilot, delay_from("0")).fly():
+        pass
+    save(Shots.of(pilot.shots), tmp_path / "shots.npz")
+    shots = load(tmp_path / "shots.npz")
+    assert shots.picture.shape == (4, 7, 3, *SIZE)
+    assert shots.flown.all()
+    np.testing.assert_allclose(shots.place[:, 0], np.tile((16.0, 12.0), (4, 1)), atol=4.0)
+    assert np.isnan(shots.spread).all() == (who == "oracle")
+    if who == "pupil":  # the first box tells the place
+        np.testing.assert_allclose(shots.expected[:, 0], shots.place[:, 0], atol=1.5)
+
+
+def trained(folder, lines=None, seed=0):
+    """Train on pictures that are there already; stop after some lines."""
+    folder.mkdir(exist_ok=True)
+    save(spots(), folder / "shots-000.npz")
+    rounds = Round(batches=1, steps=10), Round(batches=0, steps=10)
+    config = TrackingConfig(seed=seed, width=SIZE[1], rounds=rounds)
+    for _ in islice(train(config, folder), lines):
+        pass
+    return {name: (folder / name).read_bytes() for name in ("policy.onnx", "curve.csv")}
+
+
+def test_an_interrupted_training_goes_on_to_the_same_bytes(tmp_path):
+    whole = trained(tmp_path / "whole")
+    assert len(whole["curve.csv"].splitlines()) == 21
+    first = trained(tmp_path / "cut", lines=15)  # in the second round
+    assert first["policy.onnx"] != whole["policy.onnx"]
+    assert trained(tmp_path / "cut") == whole
+    with pytest.raises(DataFileError, match="other settings"):
+        trained(tmp_path / "cut", seed=1)
+
+
+def test_batches_of_other_lengths_are_joined():
+    joined = Shots.joined([spots(2, 8), spots(3, 5)])
+    assert joined.picture.shape[:2] == (5, 8)
+    assert joined.flown.sum() == 16 + 15
