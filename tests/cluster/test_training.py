@@ -19,6 +19,8 @@ SMALL = validated(
     {
         "env": {"observation": {"width": 24, "height": 24, "layout": "chw"}},
         "train": {
+            "method": "dagger+ppo",
+            "imitation": {"total_timesteps": 96, "guided_timesteps": 64, "minibatches": 2},
             "environments": 4,
             "shards": 2,
             "n_steps": 8,
@@ -29,6 +31,7 @@ SMALL = validated(
         },
     },
 )
+"""A block by a teacher, and one by rewards."""
 
 
 def quiet(line):

@@ -1,12 +1,14 @@
 """Teaching by a teacher: what it tells, whether that is learned, and the same bytes however run."""
 
 import math
+import sys
 
 import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch")
 
+from eyas.cli.main import main
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError
 from eyas.envs.batch import Truth
@@ -19,6 +21,7 @@ from eyas.learning.shards import TorchThreads
 from eyas.learning.teacher import Teacher
 from eyas.learning.trainer import train
 from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
 
 SMALL = validated(
     EyasConfig,
@@ -263,3 +266,15 @@ def test_stages_keep_their_shares_of_other_decisions():
     assert [stage.total_timesteps for stage in stages] == [64, 32]
     assert stages[1].settings == {"world": {"weather": "night"}}
     assert [each["total_timesteps"] for each in SMALL.train.scaled_stages(1)] == [1, 1]
+
+
+def test_method_and_steps_are_chosen_on_the_command_line(monkeypatch, tmp_path):
+    (tmp_path / "mine.json").write_text(SMALL.model_dump_json())
+    given = ["--config", f"{tmp_path}/mine.json", "--out", f"{tmp_path}/run", "--quiet"]
+    monkeypatch.setattr(sys, "argv", ["eyas", "train", *given, "--method", "ppo", "--steps", "96"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code in (0, None)
+    kept = load_settings(tmp_path / "run" / "config.json").train
+    assert kept.method is Method.PPO
+    assert [stage.total_timesteps for stage in kept.stages] == [64, 32]

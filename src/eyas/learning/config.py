@@ -77,7 +77,8 @@ class Imitation(Config):
     """An action told when the target has been out of sight for this time counts 1/e [s]."""
     buffer: Count = 65_536
     """Latest decisions of a block that are kept, rounded up to whole updates. A block begins with
-    an empty one, so that a run that is resumed gives the same as one that never stopped."""
+    an empty one, so that a run that is resumed gives the same as one that never stopped. Each takes
+    the bytes of its picture: 7 kB at 48x48."""
     replay: Annotated[float, Field(ge=0, le=100)] = 1.0
     """Decisions drawn from what is kept for each new one that is learned from."""
     minibatches: Annotated[int, Field(ge=1, le=4096)] = 32

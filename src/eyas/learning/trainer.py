@@ -127,7 +127,8 @@ class _Run:
         rng = stream(self.config.seed, "learning", progress.block)
         shards.begin(rng.spawn(config.shards))
         generator = torch.Generator().manual_seed(int(rng.integers(2**62)))
-        updates, teach = self._updates(stage), self._teaching(generator)
+        updates = self._updates(stage)
+        teach = self._teaching(generator, updates)
         for number in range(1, updates + 1):
             self._set_rate()
             columns = teach(shards)
@@ -160,11 +161,11 @@ class _Run:
         taught = (config.taught_decisions - progress.decisions) // config.update_decisions
         return min(left, config.updates_per_block, taught if taught > 0 else left)
 
-    def _teaching(self, generator: torch.Generator) -> Callable[[Shards], Columns]:
+    def _teaching(self, generator: torch.Generator, updates: int) -> Callable[[Shards], Columns]:
         """Return what does an update of the next block, and returns columns of the curve."""
         config, network, optimiser = self.config.train, self.network, self.optimiser
         threads, progress, imitation = self._threads, self.progress, self.config.train.imitation
-        buffer = dagger.Buffer(-(-imitation.buffer // config.update_decisions))
+        buffer = dagger.Buffer(min(-(-imitation.buffer // config.update_decisions), updates))
 
         def by_rewards(shards: Shards) -> Columns:
             data = shards.roll()
