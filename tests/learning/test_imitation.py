@@ -1,5 +1,6 @@
 """Teaching by a teacher: what it tells, whether that is learned, and the same bytes however run."""
 
+import copy
 import math
 import sys
 
@@ -109,12 +110,11 @@ def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monke
 
 def test_what_a_teacher_tells_is_learned():
     """The loss falls on flights that the network has not learned from."""
-    made, network, _ = roller({"n_steps": 48, "imitation": {"minibatches": 4}})
+    made, network, _ = roller({"n_steps": 32})
     config = updated(SMALL.train, {"imitation": {"minibatches": 4}})
     optimiser, threads = torch.optim.Adam(network.parameters(), 3e-3), TorchThreads(1)
     generator, buffer = torch.Generator().manual_seed(0), dagger.Buffer(1)
-    held = [each.clone() for each in vars(made.roll(1.0)).values()]
-    held = type(made.roll(1.0))(*held)
+    held = copy.deepcopy(made.roll(1.0))
     made.begin(np.random.default_rng(1))
 
     def loss():
@@ -174,7 +174,8 @@ def test_an_exact_teacher_knows_a_hidden_target():
     """It asks for the same whether or not the target is seen."""
     made, *_ = roller()
     blind, seeing = (Teacher(made_config(teacher="exact"), 4) for _ in range(2))
-    blind.begin(), seeing.begin()
+    for teacher in (blind, seeing):
+        teacher.begin()
     for _ in range(12):
         snapshot = made.env.truth().snapshot
         one, weights = blind.lesson(Truth(snapshot, np.zeros(4)))
