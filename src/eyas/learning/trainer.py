@@ -76,6 +76,12 @@ def train(
             )
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
+    if run.progress.stage < len(config.train.stages):  # environments take a while to be made
+        left, each = (
+            config.train.run_decisions - run.progress.decisions,
+            config.train.update_decisions,
+        )
+        say(f"{left:,} decisions by {config.train.method}, in updates of {each:,}")
     while run.progress.stage < len(config.train.stages):
         run.stage()
     return run.files.policy
