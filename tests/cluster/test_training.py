@@ -19,6 +19,8 @@ SMALL = validated(
     {
         "env": {"observation": {"width": 24, "height": 24, "layout": "chw"}},
         "train": {
+            "method": "dagger+ppo",
+            "imitation": {"total_timesteps": 96, "guided_timesteps": 64, "minibatches": 2},
             "environments": 4,
             "shards": 2,
             "n_steps": 8,
@@ -29,6 +31,7 @@ SMALL = validated(
         },
     },
 )
+"""A block by a teacher, and one by rewards."""
 
 
 def quiet(line):
@@ -56,12 +59,12 @@ def test_a_worker_that_is_killed_is_replaced_and_no_byte_differs(ray, whole, tmp
     class Deadly(RayShards):
         rolled = 0
 
-        def roll(self):
+        def roll(self, guided=None):
             Deadly.rolled += 1
             if Deadly.rolled in (2, 5):  # in the middle of a block
                 pid = ray.get(self._workers[1].__ray_call__.remote(lambda _: os.getpid()))
                 os.kill(pid, signal.SIGKILL)
-            return super().roll()
+            return super().roll(guided)
 
     train(SMALL, tmp_path, say=quiet, make_shards=lambda *made: Deadly(ray, *made))
     assert files(tmp_path) == whole

@@ -24,6 +24,8 @@ def rollout(steps, count, shape=None, seed=0):
         rewards=torch.from_numpy(rng.normal(size=size)).float(),
         values=torch.from_numpy(rng.normal(size=(steps + 1, count))).float(),
         ended=torch.from_numpy(rng.random(size) < 0.2).float(),
+        labels=torch.zeros(size, dtype=torch.long),
+        weights=torch.zeros(size),
     )
 
 

@@ -98,7 +98,7 @@ def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_pa
     assert lines[0] == "stage 0: 70 decisions are rounded up to 3 updates of 32: 96"
     curve = (tmp_path / "run" / "curve.csv").read_text().splitlines()
     assert [row.split(",")[1] for row in curve[1:]] == ["64", "96"]
-    assert [line.split()[:4] for line in lines[2:]] == [
+    assert [line.split()[:4] for line in lines[3:]] == [
         ["64", "of", "96", "decisions"],
         ["96", "of", "96", "decisions"],
     ]
@@ -107,9 +107,10 @@ def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_pa
 def test_how_far_it_is_is_told_after_the_first_update(tmp_path):
     lines = []
     train(SMALL, tmp_path / "run", say=lines.append)
-    assert lines[0].split()[:4] == ["32", "of", "192", "decisions"]
-    assert lines[0].endswith("min left")
-    assert "return" in lines[1]
+    assert lines[0] == "192 decisions by ppo, in updates of 32"
+    assert lines[1].split()[:4] == ["32", "of", "192", "decisions"]
+    assert lines[1].endswith("min left")
+    assert "return" in lines[2]
 
 
 def test_the_default_folder_is_numbered(tmp_path, monkeypatch):

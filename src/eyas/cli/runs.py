@@ -19,6 +19,7 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
+from eyas.core.config import updated
 from eyas.core.errors import ConfigError
 
 __all__ = ["demo", "serve", "train", "video"]
@@ -129,6 +130,16 @@ def train(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     trust: Trust = False,
+    method: Annotated[
+        str | None,
+        typer.Option("--method", help="How to teach: ppo, dagger or dagger+ppo (train.method)."),
+    ] = None,
+    steps: Annotated[
+        int | None,
+        typer.Option(
+            "--steps", min=1, help="Decisions of the whole run; stages keep their shares of it."
+        ),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
     ray: Annotated[
         bool,
@@ -141,7 +152,11 @@ def train(  # noqa: PLR0913  # one parameter for each option
 
     preset = preset or (None if config else "fast")
     overrides = gathered(set_, map_name, weather, seed)
+    if method is not None:
+        overrides.append(f"train.method={json.dumps(method)}")
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if steps is not None:
+        settings = updated(settings, {"train": {"stages": settings.train.scaled_stages(steps)}})
     from eyas.modes.train import run
 
     policy = run(

@@ -34,13 +34,14 @@ from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
+from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Terrain
 from eyas.targets.looks import LookTable
 from eyas.task.done import DoneReason
 from eyas.task.journal import Journal
 from eyas.task.step_line import step_line
 
-__all__ = ["Batch", "Outcome", "Seeds"]
+__all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
@@ -79,6 +80,15 @@ class Outcome(NamedTuple):
     """`eyas.task.done.DoneReason` of its end, shape (N,)."""
 
 
+class Truth(NamedTuple):
+    """What is true of N agents and their targets, for teachers; later steps change it."""
+
+    snapshot: Snapshot
+    """Their state."""
+    visible: NDArray[np.float64]
+    """Share of each target that the latest picture shows, shape (N,); 0 if nothing is measured."""
+
+
 class Batch:
     """N trackers of the same settings.
 
@@ -92,6 +102,7 @@ class Batch:
         count: N.
         shared: Whether all are in one world, where they see each other; its time goes on for all.
         numbers: Number of each, for logs, shape (N,); None: 0, 1, ...
+        measures: Whether targets are measured in the pictures, see `truth`.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
@@ -104,14 +115,15 @@ class Batch:
         *,
         shared: bool = False,
         numbers: Sequence[int] | None = None,
+        measures: bool = False,
     ) -> None:
         self.config = config
-        self._made = config, count, shared, numbers
+        self._made = config, count, shared, numbers, measures
         self._shared, self._seed = shared, config.seed
         with originals_named(config):
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
         self.actions = make_actions(config.env.actions, config.env.speeds)
-        self.observer = Observer(config.env.observation, self._simulation)
+        self.observer = Observer(config.env.observation, self._simulation, measures=measures)
         self._steps = physics_steps(config.control.frequency)
         self._all = np.arange(count, dtype=np.int32)
         self._picture: Picture | None = None
@@ -219,6 +231,10 @@ class Batch:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
         return information(self._simulation)
 
+    def truth(self) -> Truth:
+        """Return what is true now."""
+        return Truth(self._simulation.snapshot, self.observer.visible)
+
     def words_of(self, tracker: int) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
         camera = self.config.camera
@@ -243,9 +259,10 @@ def _again(
     count: int,
     shared: bool,  # as pickle calls it
     numbers: Sequence[int] | None,
+    measures: bool,
     memento: Memento,
 ) -> Batch:
     """Return a copy of a batch."""
-    batch = Batch(config, count, shared=shared, numbers=numbers)
+    batch = Batch(config, count, shared=shared, numbers=numbers, measures=measures)
     recall(batch, memento)
     return batch

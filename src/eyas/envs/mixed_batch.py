@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
-from eyas.envs.batch import Batch, Outcome, Seeds
+from eyas.envs.batch import Batch, Outcome, Seeds, Truth
 from eyas.envs.choice import kinds_of, settings_of_kinds
 from eyas.envs.information import Info
 from eyas.envs.observation import Observation
@@ -34,18 +34,19 @@ class MixedBatch:
     Args:
         config: The settings.
         count: N.
+        measures: Whether targets are measured in the pictures, see `truth`.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int) -> None:
+    def __init__(self, config: EyasConfig, count: int, *, measures: bool = False) -> None:
         kinds = settings_of_kinds(config)
         kind_of = np.array(kinds_of(config, count))
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
         self._groups = [
-            _Group(Batch(kind, len(rows), numbers=rows.tolist()), rows)
+            _Group(Batch(kind, len(rows), numbers=rows.tolist(), measures=measures), rows)
             for kind, rows in zip(kinds, rows_of, strict=True)
             if len(rows)
         ]
@@ -72,7 +73,8 @@ class MixedBatch:
         if len(self._groups) > 1:
             self._actions.commands(array)  # refuses before any environment has moved
         outcomes = [batch.step(array[rows], active[rows]) for batch, rows in self._groups]
-        return Outcome(*(joined(parts, self._rows) for parts in zip(*outcomes, strict=True)))
+        outcome: Outcome = joined(outcomes, self._rows)
+        return outcome
 
     def look(self, chosen: Mask, begun: Mask) -> None:
         """Observe some trackers; `begun` tells whose episode has just begun, shapes (N,)."""
@@ -93,6 +95,11 @@ class MixedBatch:
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
         told: Info = joined([batch.info() for batch, _ in self._groups], self._rows)
+        return told
+
+    def truth(self) -> Truth:
+        """Return what is true now of all, see `Batch.truth`."""
+        told: Truth = joined([batch.truth() for batch, _ in self._groups], self._rows)
         return told
 
     @property
@@ -147,7 +154,8 @@ def joined(parts: Sequence[Any], rows: Sequence[Any]) -> Any:  # noqa: ANN401  #
     """Return results of groups of environments as one, in the order of the environments.
 
     Args:
-        parts: An array of each group, or a dictionary of arrays; what one lacks is 0.
+        parts: An array of each group, or a dictionary, whose missing parts are 0, or a named tuple
+            of such.
         rows: The indices of each group's environments.
     """
     if len(parts) == 1:
@@ -155,6 +163,8 @@ def joined(parts: Sequence[Any], rows: Sequence[Any]) -> Any:  # noqa: ANN401  #
     if isinstance(parts[0], Mapping):
         names = dict.fromkeys(name for part in parts for name in part)
         return {name: joined([part.get(name, 0.0) for part in parts], rows) for name in names}
+    if isinstance(parts[0], tuple):
+        return type(parts[0])(*(joined(each, rows) for each in zip(*parts, strict=True)))
     count = sum(len(own) if isinstance(own, np.ndarray) else own.stop - own.start for own in rows)
     whole = max(map(np.asarray, parts), key=np.ndim)  # what a part lacks is a single 0
     result = np.empty((count, *whole.shape[1:]), whole.dtype)

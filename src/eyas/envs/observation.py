@@ -115,16 +115,20 @@ class Observer:
 
     Attributes:
         space: The space of one observation.
+        visible: Share of each target that the latest picture shows, if it is measured, shape (N,).
 
     Args:
         config: What is observed.
         simulation: The N trackers.
+        measures: Whether targets are measured in the pictures, for teachers.
 
     Raises:
         ConfigError: As `observation_space`.
     """
 
-    def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
+    def __init__(
+        self, config: ObservationConfig, simulation: Simulation, *, measures: bool = False
+    ) -> None:
         sim = simulation.config
         self.space = observation_space(config, sim)
         self._simulation = simulation
@@ -136,7 +140,9 @@ class Observer:
             rgb=_Parts.IMAGE in wanted,
             depth=_Parts.DEPTH in wanted,
             class_id=_Parts.CLASSES in wanted,
+            subject=measures,
         )
+        self.visible = np.zeros(count)
         self._draws = bool(wanted & {_Parts.IMAGE, _Parts.DEPTH, _Parts.CLASSES})
         self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
         self._latest: dict[ObservationPart, Array] = {}
@@ -222,6 +228,8 @@ class Observer:
             _cover(picture, covered)
         if picture.rgb is not None:
             self._stack.add(picture.rgb, chosen, begun)
+        if (pixels := picture.subject_pixels) is not None:
+            self.visible[chosen] = pixels[:, 0] / np.maximum(pixels[:, 1], 1)
         for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
             if plane is not None:
                 latest = self._latest[part]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.rng import checked_seed
-from eyas.envs.batch import Outcome
+from eyas.envs.batch import Outcome, Truth
 from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.mixed_batch import MixedBatch
@@ -41,6 +41,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         copy: Whether each step returns new arrays; False: they are written again two steps later.
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
+        measures: Whether targets are measured in the pictures, see `truth`.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:
@@ -53,7 +54,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(  # one for each choice
+    def __init__(  # noqa: PLR0913  # one for each choice
         self,
         num_envs: int = 1,
         config: Source = None,
@@ -62,6 +63,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         copy: bool = True,
         render_mode: str | None = None,
         overlay: bool = False,
+        measures: bool = False,
         **choices: Unpack[EnvChoices],
     ) -> None:
         if num_envs < 1:
@@ -69,7 +71,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = chosen_settings(config, **choices)
-        self._batch = MixedBatch(self.config, num_envs)
+        self._batch = MixedBatch(self.config, num_envs, measures=measures)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.single_action_space = self._batch.action_space
@@ -189,6 +191,10 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def sub_env(self, index: int) -> SubEnv:
         """Return what libraries see of one environment."""
         return self._sub_envs[index]
+
+    def truth(self) -> Truth:
+        """Return what is true now, for teachers; an observation shows none of it."""
+        return self._batch.truth()
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one environment."""

@@ -1,5 +1,6 @@
 """Settings of learning."""
 
+from enum import StrEnum
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -7,10 +8,31 @@ from pydantic import Field, model_validator
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
-__all__ = ["Evaluation", "Stage", "TrainConfig"]
+__all__ = ["Evaluation", "Imitation", "Method", "Stage", "TeacherKind", "TrainConfig"]
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
+
+
+class Method(StrEnum):
+    """How a network is taught."""
+
+    PPO = "ppo"
+    """By rewards: proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
+    DAGGER = "dagger"
+    """By a teacher: dataset aggregation (Ross et al. 2011, arXiv:1011.0686)."""
+    DAGGER_PPO = "dagger+ppo"
+    """By a teacher at first, then by rewards."""
+
+
+class TeacherKind(StrEnum):
+    """Who tells the right actions."""
+
+    SIGHTED = "sighted"
+    """An oracle that is told where the target is only while the picture shows at least 15 % of it,
+    and goes on at its last velocity."""
+    EXACT = "exact"
+    """An oracle that always knows where the target is."""
 
 
 class Stage(Config):
@@ -39,9 +61,40 @@ class Evaluation(Config):
     """Of the first episode: far from those of training and of `eyas evaluate`."""
 
 
-class TrainConfig(Config):
-    """Proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
+class Imitation(Config):
+    """How a teacher teaches: the network flies, the teacher tells the action that it would choose,
+    and the network learns that from these views and from earlier ones of the block.
+    """
 
+    total_timesteps: Count = 100_000
+    """Decisions after which PPO goes on, with `dagger+ppo`; rounded up to whole updates."""
+    teacher: TeacherKind = TeacherKind.SIGHTED
+    """Who tells the right actions."""
+    guided_timesteps: Annotated[int, Field(ge=0, le=2**40)] = 12_000
+    """Over these decisions the share of environments that the teacher flies falls from all to none;
+    0: the network flies all from the start."""
+    fade: Annotated[float, Field(gt=0, le=1e6)] = 0.5
+    """An action told when the target has been out of sight for this time counts 1/e [s]."""
+    buffer: Count = 65_536
+    """Latest decisions of a block that are kept, rounded up to whole updates. A block begins with
+    an empty one, so that a run that is resumed gives the same as one that never stopped. Each takes
+    the bytes of its picture: 7 kB at 48x48."""
+    replay: Annotated[float, Field(ge=0, le=100)] = 1.0
+    """Decisions drawn from what is kept for each new one that is learned from."""
+    minibatches: Annotated[int, Field(ge=1, le=4096)] = 32
+    """Parts of the new decisions of an update; each, with its share of old ones, is a step of the
+    optimiser."""
+    learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
+    """Of Adam; it falls linearly to `train.final_rate` of this while the teacher teaches."""
+
+
+class TrainConfig(Config):
+    """How a network is taught; see `Method`."""
+
+    method: Method = Method.PPO
+    """By rewards, by a teacher, or first by a teacher."""
+    imitation: Imitation = Imitation()
+    """How a teacher teaches."""
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
@@ -83,6 +136,9 @@ class TrainConfig(Config):
     parts: Annotated[int, Field(ge=1, le=1024)] = 2
     """Parts of a minibatch whose gradients are found side by side, each in a thread. The result
     depends on their number in the last digits, but not on that of processors."""
+    channels_last: bool = False
+    """Whether pictures and weights have their channels last in memory: a third faster on
+    processors with AVX2, with other last digits."""
     shards: Annotated[int, Field(ge=1, le=1024)] = 1
     """Parts into which the environments are split, with random numbers of their own. One is fastest
     in one process; the result does not depend on where the shards run."""
@@ -95,6 +151,32 @@ class TrainConfig(Config):
     def updates_of(self, stage: Stage) -> int:
         """Return the updates of a stage: as many as have at least its decisions."""
         return -(-stage.total_timesteps // self.update_decisions)
+
+    @property
+    def taught_decisions(self) -> int:
+        """Decisions at the beginning of a run in which a teacher teaches."""
+        match self.method:
+            case Method.PPO:
+                return 0
+            case Method.DAGGER:
+                return self.run_decisions
+            case Method.DAGGER_PPO:
+                updates = -(-self.imitation.total_timesteps // self.update_decisions)
+                return min(updates * self.update_decisions, self.run_decisions)
+
+    @property
+    def run_decisions(self) -> int:
+        """Decisions of all stages."""
+        return sum(map(self.updates_of, self.stages)) * self.update_decisions
+
+    def scaled_stages(self, total: int) -> list[dict[str, Any]]:
+        """Return the stages with `total` decisions together, each with its share, at least 1."""
+        factor = total / sum(stage.total_timesteps for stage in self.stages)
+        counts = [max(round(stage.total_timesteps * factor), 1) for stage in self.stages]
+        return [
+            {**stage.model_dump(mode="json"), "total_timesteps": count}
+            for stage, count in zip(self.stages, counts, strict=True)
+        ]
 
     @model_validator(mode="after")
     def _check_stages(self) -> Self:

@@ -46,11 +46,16 @@ class TrackingNetwork(nn.Module):
 
     Attributes:
         shape: What it is made for.
+
+    Args:
+        shape: What it is made for.
+        channels_last: Whether pictures and weights have their channels last in memory.
     """
 
-    def __init__(self, shape: NetworkShape) -> None:
+    def __init__(self, shape: NetworkShape, *, channels_last: bool = False) -> None:
         super().__init__()
         self.shape = shape
+        self._layout = torch.channels_last if channels_last else torch.contiguous_format
         self.first = nn.Conv2d(shape.channels, 16, 5, STRIDE)
         self.second = nn.Conv2d(16, 32, 3, STRIDE)
         self.third = nn.Conv2d(32, 64, 3, STRIDE)
@@ -61,6 +66,10 @@ class TrackingNetwork(nn.Module):
         self.memory = nn.GRUCell(shape.hidden, shape.hidden) if shape.memory else None
         self.policy = nn.Linear(shape.hidden, ACTIONS)
         self.value = nn.Linear(shape.hidden, 1)
+        for layer in (self.first, self.second, self.third):
+            layer.weight = nn.Parameter(
+                layer.weight.detach().contiguous(memory_format=self._layout)
+            )
 
     def forward(self, picture: Tensor, state: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Return logits (B, 7), values (B,) and the memory that follows (B, hidden or 0).
@@ -87,8 +96,11 @@ class TrackingNetwork(nn.Module):
     def _seen(self, picture: Tensor) -> Tensor:
         """Return what the convolutions make of pictures, shape (B, K)."""
         weight, bias = self.first_convolution()
-        seen = torch.relu(nn.functional.conv2d(picture.float(), weight, bias, STRIDE))
+        seen = torch.relu(nn.functional.conv2d(self._floats(picture), weight, bias, STRIDE))
         return torch.relu(self.third(torch.relu(self.second(seen)))).flatten(1)
+
+    def _floats(self, picture: Tensor) -> Tensor:
+        return picture.to(torch.float32, memory_format=self._layout)
 
     def first_convolution(self) -> tuple[Tensor, Tensor]:
         """Return weights and biases for pixels of 0 to 255: the network learns those for pixels
@@ -118,7 +130,10 @@ class TrackingNetwork(nn.Module):
         for module in self.modules():
             if isinstance(module, nn.Conv2d | nn.Linear):
                 gain = gains.get(module, 2**0.5)
-                nn.init.orthogonal_(module.weight, gain, generator)
+                drawn = torch.empty(module.weight.shape)  # channels first, as it must be there
+                nn.init.orthogonal_(drawn, gain, generator)
+                with torch.no_grad():
+                    module.weight.copy_(drawn)
                 assert module.bias is not None
                 nn.init.zeros_(module.bias)
         if self.memory is not None:

@@ -1,13 +1,13 @@
 """The update of proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
 
-from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from eyas.learning.config import TrainConfig
-from eyas.learning.network import ACTIONS, TrackingNetwork
+from eyas.learning.minibatch import descend, outputs, taken
+from eyas.learning.network import TrackingNetwork
 from eyas.learning.rollout import Rollout
 from eyas.learning.shards import TorchThreads
 
@@ -17,8 +17,8 @@ __all__ = ["Losses", "advantages", "update"]
 class Losses(NamedTuple):
     """Of the last minibatch of an update."""
 
-    policy: float
-    value: float
+    policy_loss: float
+    value_loss: float
     entropy: float
     divergence: float
     """Estimate of the Kullback-Leibler divergence between the policies before and after."""
@@ -57,8 +57,6 @@ def update(
     estimates = advantages(data, config.gamma, config.gae_lambda)
     gains = (estimates - estimates.mean()) / (estimates.std() + 1e-8)
     lesson = _Lesson(data, gains, estimates + data.values[:-1])
-    # Minibatches are of environments if there is a memory, which needs whole sequences, else of
-    # single decisions.
     count = gains.shape[1] if network.shape.memory else gains.numel()
     losses = torch.zeros(len(Losses._fields))
     for _ in range(config.n_epochs):
@@ -66,7 +64,7 @@ def update(
             parts = [(part, len(part) / len(chosen)) for part in chosen.chunk(config.parts)]
             found = threads.each(lambda job: _gradients(network, lesson, *job, config), parts)
             losses = torch.stack([loss for loss, _ in found]).sum(0)
-            _step(network, optimiser, [gradients for _, gradients in found], config)
+            descend(network, optimiser, [gradients for _, gradients in found], config.max_grad_norm)
     return Losses(*losses.tolist())
 
 
@@ -80,19 +78,6 @@ class _Lesson(NamedTuple):
     """Of the values, shape (T, N)."""
 
 
-def _step(
-    network: TrackingNetwork,
-    optimiser: torch.optim.Optimizer,
-    gradients: Sequence[Sequence[Tensor]],
-    config: TrainConfig,
-) -> None:
-    """Take a step of the optimiser with the sum of the parts' gradients."""
-    for parameter, parts in zip(network.parameters(), zip(*gradients, strict=True), strict=True):
-        parameter.grad = torch.stack(parts).sum(0)
-    nn.utils.clip_grad_norm_(network.parameters(), config.max_grad_norm)
-    optimiser.step()
-
-
 def _gradients(
     network: TrackingNetwork, lesson: _Lesson, part: Tensor, share: float, config: TrainConfig
 ) -> tuple[Tensor, tuple[Tensor, ...]]:
@@ -102,9 +87,9 @@ def _gradients(
     data = lesson.data
 
     def of(array: Tensor) -> Tensor:
-        return array[:, part].flatten(0, 1) if network.shape.memory else array.flatten(0, 1)[part]
+        return taken(array, part, network)
 
-    logits, values = _outputs(network, data, part, of)
+    logits, values = outputs(network, data, part)
     all_log = logits.log_softmax(1)
     change = all_log.gather(1, of(data.actions)[:, None])[:, 0] - of(data.log_probability)
     ratio, gain = change.exp(), of(lesson.gains)
@@ -117,19 +102,3 @@ def _gradients(
     divergence = (ratio - 1.0 - change).mean()
     losses = torch.stack([policy_loss, value_loss, entropy, divergence])
     return share * losses.detach(), gradients
-
-
-def _outputs(
-    network: TrackingNetwork, data: Rollout, part: Tensor, of: Callable[[Tensor], Tensor]
-) -> tuple[Tensor, Tensor]:
-    """Return logits (B, 7) and values (B,) of a minibatch."""
-    states = of(data.states)
-    features = network.features(of(data.pictures), states[:, : ACTIONS - 1])
-    if network.memory is not None:
-        memory, kept = data.states[0, part, ACTIONS - 1 :], []
-        for step, seen in enumerate(features.view(len(data.rewards), len(part), -1)):
-            memory = network.memory(seen, memory)
-            kept.append(memory)
-            memory = torch.where(data.ended[step, part, None] > 0.0, 0.0, memory)
-        features = torch.cat(kept)
-    return network.heads(features)

@@ -9,7 +9,9 @@ from gymnasium.vector import AutoresetMode
 from torch import Tensor
 
 from eyas.envs.vector_env import EyasVectorEnv
+from eyas.learning.config import Method
 from eyas.learning.network import TrackingNetwork
+from eyas.learning.teacher import Teacher
 from eyas.settings.config import EyasConfig
 
 __all__ = ["Finished", "Roller", "Rollout"]
@@ -33,6 +35,10 @@ class Rollout:
     """Shape (T + 1, N)."""
     ended: Tensor
     """Whether the episode ended with each decision, shape (T, N)."""
+    labels: Tensor
+    """What a teacher would have done, if there is one, shape (T, N)."""
+    weights: Tensor
+    """Of the labels, shape (T, N)."""
 
     @staticmethod
     def joined(shards: Sequence["Rollout"]) -> "Rollout":
@@ -67,7 +73,15 @@ class Roller:
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
         count, rollout = config.train.environments // config.train.shards, config.train.n_steps
-        self.env = EyasVectorEnv(count, config, autoreset_mode=AutoresetMode.SAME_STEP, copy=False)
+        taught = config.train.method is not Method.PPO
+        self._teacher = Teacher(config, count) if taught else None
+        self.env = EyasVectorEnv(
+            count,
+            config,
+            autoreset_mode=AutoresetMode.SAME_STEP,
+            copy=False,
+            measures=taught,
+        )
         self.finished = Finished()
         self._network = network
         self._config = config.train
@@ -82,6 +96,8 @@ class Roller:
             rewards=torch.zeros(rollout, count),
             values=torch.zeros(rollout + 1, count),
             ended=torch.zeros(rollout, count),
+            labels=torch.zeros(rollout, count, dtype=torch.long),
+            weights=torch.zeros(rollout, count),
         )
         self._picture = torch.zeros(0)
         self._state = torch.zeros(count, shape.state)
@@ -97,14 +113,22 @@ class Roller:
         self._state = torch.zeros_like(self._state)
         self._return[:], self._length[:] = 0.0, 0
         self.finished = Finished()
+        if self._teacher is not None:
+            self._teacher.begin()
 
     @torch.no_grad()
-    def roll(self) -> Rollout:
-        """Return the next T decisions; the arrays are overwritten by the next call."""
+    def roll(self, guided: float | None = None) -> Rollout:
+        """Return the next T decisions; the arrays are overwritten by the next call.
+
+        Args:
+            guided: Share of the environments that the teacher flies; None: it is not asked.
+        """
         data = self._data
         for step in range(self._config.n_steps):
             logits, value, memory = self._network(self._picture, self._state)
             action = torch.multinomial(logits.softmax(1), 1, generator=self._generator)[:, 0]
+            if guided is not None:
+                action = self._taught(step, action, guided)
             chosen = logits.log_softmax(1).gather(1, action[:, None])[:, 0]
             data.pictures[step], data.states[step] = self._picture, self._state
             data.actions[step], data.log_probability[step] = action, chosen
@@ -115,12 +139,22 @@ class Roller:
         data.values[-1] = self._network(self._picture, self._state)[1]
         return data
 
+    def _taught(self, step: int, action: Tensor, guided: float) -> Tensor:
+        """Keep what the teacher tells; return the actions, its own where it flies."""
+        assert self._teacher is not None
+        labels, self._data.weights[step] = self._teacher.lesson(self.env.truth())
+        self._data.labels[step] = labels
+        flown = torch.arange(len(action)) < round(guided * len(action))
+        return torch.where(flown, labels, action)
+
     def _step(self, step: int, action: Tensor, state: Tensor) -> Tensor:
         """Take a step in the environments; return which episodes have ended."""
         observation, reward, terminated, truncated, info = self.env.step(action.numpy())
         assert isinstance(observation, np.ndarray)
         self._picture = torch.from_numpy(observation)
         ended = terminated | truncated
+        if self._teacher is not None:
+            self._teacher.forget(ended)
         self._count(reward, ended)
         scaled = torch.from_numpy(reward * self._config.reward_scale).float()
         cut = np.flatnonzero(truncated)

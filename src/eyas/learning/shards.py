@@ -47,9 +47,9 @@ class Shards(Protocol):
     def begin(self, streams: Sequence[np.random.Generator]) -> None:
         """Begin new episodes, each shard with random numbers of its own."""
 
-    def roll(self) -> Rollout:
+    def roll(self, guided: float | None = None) -> Rollout:
         """Return what the environments do next with the network as it is now; the arrays are
-        overwritten by the next call.
+        overwritten by the next call. `guided`: see `Roller.roll`.
         """
 
     def finished(self) -> list[Finished]:
@@ -75,9 +75,9 @@ class LocalShards:
         for roller, own in zip(self._rollers, streams, strict=True):
             roller.begin(own)
 
-    def roll(self) -> Rollout:
+    def roll(self, guided: float | None = None) -> Rollout:
         """See `Shards.roll`."""
-        return Rollout.joined(self._threads.each(Roller.roll, self._rollers))
+        return Rollout.joined(self._threads.each(lambda own: own.roll(guided), self._rollers))
 
     def finished(self) -> list[Finished]:
         """See `Shards.finished`."""
@@ -127,22 +127,23 @@ class RayShards:
         self._worker = ray.remote(num_cpus=1)(_Worker)
         self._workers = [self._started() for _ in range(config.train.shards)]
         self._streams: Sequence[np.random.Generator] = ()
-        self._weights: list[Any] = []  # of the rollouts since the block began
+        self._rolls: list[tuple[Any, float | None]] = []  # weights and `guided`, since it began
         self._finished = [Finished() for _ in self._workers]
         self._lost = [0 for _ in self._workers]
 
     def begin(self, streams: Sequence[np.random.Generator]) -> None:
         """See `Shards.begin`."""
-        self._streams, self._weights = streams, []
+        self._streams, self._rolls = streams, []
         self._lost = [0 for _ in self._workers]
         for worker, own in zip(self._workers, streams, strict=True):
             worker.begin.remote(own)
 
-    def roll(self) -> Rollout:
+    def roll(self, guided: float | None = None) -> Rollout:
         """See `Shards.roll`."""
         state = self._network.state_dict()
-        self._weights.append(self._ray.put({name: each.numpy() for name, each in state.items()}))
-        rolling = [worker.roll.remote(self._weights[-1]) for worker in self._workers]
+        weights = self._ray.put({name: each.numpy() for name, each in state.items()})
+        self._rolls.append((weights, guided))
+        rolling = [worker.roll.remote(*self._rolls[-1]) for worker in self._workers]
         rolled = [self._got(number, each) for number, each in enumerate(rolling)]
         self._finished = [finished for _, finished in rolled]
         return Rollout.joined([rollout for rollout, _ in rolled])
@@ -179,7 +180,7 @@ class RayShards:
         """Return the last rollout of a shard, made once more."""
         worker = self._workers[number] = self._started()
         worker.begin.remote(self._streams[number])
-        return [worker.roll.remote(weights) for weights in self._weights][-1]
+        return [worker.roll.remote(*each) for each in self._rolls][-1]
 
 
 class _Worker:
@@ -188,21 +189,22 @@ class _Worker:
     def __init__(self, config: EyasConfig, shape: NetworkShape) -> None:
         limit_threads(1)
         torch.set_num_threads(1)
-        self._config, self._network = config, TrackingNetwork(shape)
+        self._config = config
+        self._network = TrackingNetwork(shape, channels_last=config.train.channels_last)
         self._roller: Roller | None = None
         self._streams: np.random.Generator | None = None
 
     def begin(self, streams: np.random.Generator) -> None:
         self._streams = streams
 
-    def roll(self, weights: Weights) -> tuple[Rollout, Finished]:
+    def roll(self, weights: Weights, guided: float | None) -> tuple[Rollout, Finished]:
         state = {name: torch.from_numpy(each.copy()) for name, each in weights.items()}
         self._network.load_state_dict(state)
         try:
             roller = self._ready()
         except EyasError as error:
             raise EyasError(str(error)) from None  # one that can be pickled
-        return roller.roll(), roller.finished
+        return roller.roll(guided), roller.finished
 
     def _ready(self) -> Roller:
         """Return the environments, which begin here: nobody waits for the answer of `begin`, so an

@@ -14,8 +14,9 @@ from eyas.core.rng import TEST_SEEDS, stream
 from eyas.envs.choice import steps_per_action
 from eyas.envs.config import ActionKind, ObservationPart
 from eyas.envs.observation import observation_space
+from eyas.learning import dagger, ppo
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
-from eyas.learning.config import Stage
+from eyas.learning.config import Method, Stage
 from eyas.learning.export import export
 from eyas.learning.monitoring import (
     NO_SCORES,
@@ -25,7 +26,6 @@ from eyas.learning.monitoring import (
     evaluation_episodes,
 )
 from eyas.learning.network import NetworkShape, TrackingNetwork
-from eyas.learning.ppo import Losses, update
 from eyas.learning.rollout import Finished
 from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 from eyas.sensors.config import ColourLayout
@@ -37,6 +37,9 @@ _SILENCE = 10.0
 """Longest time without a line [s]."""
 
 Say = Callable[[str], None]
+
+Columns = dict[str, float]
+"""Numbers of a block, by the names of the curve's columns."""
 
 
 def train(
@@ -73,6 +76,12 @@ def train(
             )
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
+    if run.progress.stage < len(config.train.stages):  # environments take a while to be made
+        left, each = (
+            config.train.run_decisions - run.progress.decisions,
+            config.train.update_decisions,
+        )
+        say(f"{left:,} decisions by {config.train.method}, in updates of {each:,}")
     while run.progress.stage < len(config.train.stages):
         run.stage()
     return run.files.policy
@@ -89,7 +98,8 @@ class _Run:
         _refuse_later_errors(config)
         # Before the network is made, because it sets PyTorch's threads.
         self._threads = TorchThreads(config.train.parts)
-        self.network = TrackingNetwork(_shape(config))
+        layout = config.train.channels_last
+        self.network = TrackingNetwork(_shape(config), channels_last=layout)
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
         if config.train.begin_from is not None:
@@ -98,8 +108,7 @@ class _Run:
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = TrainingProgress()
         self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
-        updates = map(config.train.updates_of, config.train.stages)
-        self._total = sum(updates) * config.train.update_decisions
+        self._total = config.train.run_decisions
         self._told = -math.inf
         """When it was last told how it goes [s]."""
 
@@ -124,21 +133,20 @@ class _Run:
         rng = stream(self.config.seed, "learning", progress.block)
         shards.begin(rng.spawn(config.shards))
         generator = torch.Generator().manual_seed(int(rng.integers(2**62)))
-        left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
-        updates = min(left, config.updates_per_block)
+        updates = self._updates(stage)
+        teach = self._teaching(generator, updates)
         for number in range(1, updates + 1):
             self._set_rate()
-            data = shards.roll()
-            losses = update(self.network, self.optimiser, data, config, generator, self._threads)
-            progress.decisions += data.rewards.numel()
-            progress.stage_decisions += data.rewards.numel()
+            columns = teach(shards)
+            progress.decisions += config.update_decisions
+            progress.stage_decisions += config.update_decisions
             self._tell_meanwhile(number * config.update_decisions / (time.monotonic() - start))
         seconds = time.monotonic() - start
         rate = updates * config.update_decisions / seconds
         progress.block += 1
         scores = self._evaluated(stage)
         progress.seconds += time.monotonic() - start
-        row = self._row(shards.finished(), losses) | scores._asdict()
+        row = self._row(shards.finished(), columns) | scores._asdict()
         progress.rows.append(row)
         self._tell(row, rate)
         good = stage.until_tsr is not None and scores.tsr >= stage.until_tsr
@@ -152,14 +160,46 @@ class _Run:
             return evaluated(self.network, self.config)
         return NO_SCORES
 
-    def _set_rate(self) -> None:
-        config = self.config.train
-        left = max(1.0 - self.progress.decisions / self._total, config.final_rate)
-        for group in self.optimiser.param_groups:
-            group["lr"] = config.learning_rate * left
+    def _updates(self, stage: Stage) -> int:
+        """Return the updates of the next block, all of one method."""
+        config, progress = self.config.train, self.progress
+        left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
+        taught = (config.taught_decisions - progress.decisions) // config.update_decisions
+        return min(left, config.updates_per_block, taught if taught > 0 else left)
 
-    def _row(self, shards: list[Finished], losses: Losses) -> dict[str, float]:
-        """Return the curve's row of a block."""
+    def _teaching(self, generator: torch.Generator, updates: int) -> Callable[[Shards], Columns]:
+        """Return what does an update of the next block, and returns columns of the curve."""
+        config, network, optimiser = self.config.train, self.network, self.optimiser
+        threads, progress, imitation = self._threads, self.progress, self.config.train.imitation
+        buffer = dagger.Buffer(min(-(-imitation.buffer // config.update_decisions), updates))
+
+        def by_rewards(shards: Shards) -> Columns:
+            data = shards.roll()
+            return ppo.update(network, optimiser, data, config, generator, threads)._asdict()
+
+        def by_teacher(shards: Shards) -> Columns:
+            guided = max(1.0 - progress.decisions / max(imitation.guided_timesteps, 1), 0.0)
+            data = shards.roll(guided if imitation.guided_timesteps else 0.0)
+            ahead = ppo.advantages(data, config.gamma, config.gae_lambda)
+            buffer.add(data, ahead + data.values[:-1])
+            losses = dagger.update(network, optimiser, buffer, config, generator, threads)
+            return losses._asdict()
+
+        return by_teacher if progress.decisions < config.taught_decisions else by_rewards
+
+    def _set_rate(self) -> None:
+        config, done = self.config.train, self.progress.decisions
+        rate, total = config.learning_rate, self._total
+        if done < config.taught_decisions:
+            rate, total = config.imitation.learning_rate, config.taught_decisions
+        for group in self.optimiser.param_groups:
+            group["lr"] = rate * max(1.0 - done / total, config.final_rate)
+
+    def _row(self, shards: list[Finished], columns: Columns) -> Columns:
+        """Return the curve's row of a block; all rows of a run have the same columns."""
+        names = dict.fromkeys(ppo.Losses._fields)
+        if self.config.train.method is not Method.PPO:
+            names = dict.fromkeys((*dagger.ImitationLosses._fields, *names))
         returns = [each for finished in shards for each in finished.returns]
         lengths = [each for finished in shards for each in finished.lengths]
         return {
@@ -168,10 +208,7 @@ class _Run:
             "episodes": len(returns),
             "return": round(float(np.mean(returns or [np.nan])), 6),
             "length": round(float(np.mean(lengths or [np.nan])), 6),
-            "policy_loss": losses.policy,
-            "value_loss": losses.value,
-            "entropy": losses.entropy,
-            "divergence": losses.divergence,
+            **{name: columns.get(name, math.nan) for name in names},
         }
 
     def _tell_meanwhile(self, rate: float) -> None:

@@ -77,6 +77,9 @@ class Predictor(Protocol):
 class SightOracle:
     """Flies to the target's true place while enough of it is visible, else to where it should be.
 
+    Attributes:
+        clue: What it knew when it last acted.
+
     Args:
         changes: Changes of `env`.
         predictor: Says where a hidden target is.
@@ -100,6 +103,11 @@ class SightOracle:
         self._looked_at = np.full(count, -_LOOK_TICKS)
         self._predictor.begin(start)
 
+    def forget(self, ended: Mask) -> None:
+        """Forget the targets of episodes that have ended, shape (N,)."""
+        self._known[ended] = self._sees[ended] = False
+        self._seen_at[ended], self._looked_at[ended] = -1, -_LOOK_TICKS
+
     def act(self, sight: PolicyInput) -> Decision:
         """Fly along the axis with the larger error."""
         trackers, _, _, episodes, _ = sight.snapshot()
@@ -107,7 +115,7 @@ class SightOracle:
         new = self._seen_at < 0
         self._last.place[new], self._seen_at[new] = middle[new], tick[new]
         self._look(sight)
-        clue = Clue(
+        self.clue = clue = Clue(
             self._last,
             (tick - self._seen_at) * PHYSICS_STEP,
             self._known,

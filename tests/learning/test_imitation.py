@@ -1,0 +1,281 @@
+"""Teaching by a teacher: what it tells, whether that is learned, and the same bytes however run."""
+
+import copy
+import math
+import sys
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from eyas.cli.main import main
+from eyas.core.config import updated, validated
+from eyas.core.errors import EyasError
+from eyas.envs.batch import Truth
+from eyas.evaluation.steering import towards
+from eyas.learning import dagger, ppo
+from eyas.learning.config import Method, TrainConfig
+from eyas.learning.network import NetworkShape, TrackingNetwork
+from eyas.learning.rollout import Roller
+from eyas.learning.shards import TorchThreads
+from eyas.learning.teacher import Teacher
+from eyas.learning.trainer import train
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+
+SMALL = validated(
+    EyasConfig,
+    {
+        "env": {"action_repeat": 4, "observation": {"width": 24, "height": 24, "layout": "chw"}},
+        "train": {
+            "method": "dagger+ppo",
+            "environments": 4,
+            "n_steps": 8,
+            "updates_per_block": 2,
+            "hidden": 16,
+            "evaluation": {"every": 0},
+            "imitation": {
+                "total_timesteps": 96,
+                "guided_timesteps": 64,
+                "buffer": 64,
+                "minibatches": 2,
+            },
+            "stages": [
+                {"total_timesteps": 128},
+                {"total_timesteps": 64, "settings": {"world": {"weather": "night"}}},
+            ],
+        },
+    },
+)
+"""Blocks of 64 and 32 decisions by a teacher, of 32 and 64 by rewards, the last one at night."""
+
+SHAPE = NetworkShape(3, 24, 24, 16, memory=False)
+
+
+def files(folder):
+    return {name: (folder / name).read_bytes() for name in ("curve.csv", "policy.onnx")}
+
+
+def quiet(line):
+    pass
+
+
+def roller(changes=None, shape=SHAPE):
+    config = updated(SMALL, {"train": changes or {}})
+    network = TrackingNetwork(shape)
+    network.initialise(torch.Generator().manual_seed(0))
+    made = Roller(config, network)
+    made.begin(np.random.default_rng(0))
+    return made, network, config.train
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    train(SMALL, folder, say=quiet)
+    return files(folder)
+
+
+def test_the_method_changes_at_its_decision_within_a_stage(whole):
+    head, *rows = (row.split(",") for row in whole["curve.csv"].decode().splitlines())
+    rows = [dict(zip(head, row, strict=True)) for row in rows]
+    told = [(row["stage"], row["decisions"], row["imitation_loss"] != "nan") for row in rows]
+    assert told == [("0", "64", True), ("0", "96", True), ("0", "128", False), ("1", "192", False)]
+    assert [row["policy_loss"] == "nan" for row in rows] == [True, True, False, False]
+
+
+@pytest.mark.parametrize("at", [1, 2, 3])
+def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, at, tmp_path):
+    lines = []
+
+    def stop(line):
+        lines.extend([line] if "return" in line else [])  # of blocks
+        if len(lines) == at:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train(SMALL, tmp_path / "run", say=stop)
+    train(SMALL, tmp_path / "run", resume=True, say=quiet)
+    assert files(tmp_path / "run") == whole
+
+
+def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monkeypatch):
+    config = updated(SMALL, {"train": {"shards": 2, "parts": 3}})
+    train(config, tmp_path / "side by side", say=quiet)
+    monkeypatch.setattr(TorchThreads, "each", lambda self, do, jobs: [do(job) for job in jobs])
+    train(config, tmp_path / "in turn", say=quiet)
+    assert files(tmp_path / "side by side") == files(tmp_path / "in turn")
+
+
+def test_what_a_teacher_tells_is_learned():
+    """The loss falls on flights that the network has not learned from."""
+    made, network, _ = roller({"n_steps": 32})
+    config = updated(SMALL.train, {"imitation": {"minibatches": 4}})
+    optimiser, threads = torch.optim.Adam(network.parameters(), 3e-3), TorchThreads(1)
+    generator, buffer = torch.Generator().manual_seed(0), dagger.Buffer(1)
+    held = copy.deepcopy(made.roll(1.0))
+    made.begin(np.random.default_rng(1))
+
+    def loss():
+        with torch.no_grad():
+            logits, _, _ = network(held.pictures.flatten(0, 1), held.states.flatten(0, 1))
+        return float(torch.nn.functional.cross_entropy(logits, held.labels.flatten()))
+
+    before = loss()
+    for _ in range(3):
+        data = made.roll(1.0)
+        buffer.add(data, ppo.advantages(data, 0.9, 0.9) + data.values[:-1])
+        for _ in range(8):
+            dagger.update(network, optimiser, buffer, config, generator, threads)
+    assert loss() < 0.75 * before
+
+
+def test_the_share_of_guided_environments_is_flown_by_the_teacher():
+    made, *_ = roller()
+    for guided, flown in [(1.0, 4), (0.5, 2), (0.0, 0)]:
+        data = made.roll(guided)
+        same = (data.actions == data.labels).all(0)
+        assert same[:flown].all()
+        assert not same[flown:].all() or flown == 4
+        assert (data.weights > 0.0).all()
+
+
+def test_a_teacher_goes_on_where_it_has_seen_the_target_and_counts_less_each_moment():
+    made, *_ = roller()
+    teacher, env = Teacher(made_config(), 4), made.env
+    teacher.begin()
+    snapshot, seen = env.truth()
+    assert (seen > 0.15).all()
+    actions, weights = teacher.lesson(Truth(snapshot, seen))
+    assert torch.equal(weights, torch.ones(4))
+    place, velocity = snapshot.targets.centre.copy(), snapshot.targets.velocity.copy()
+    for count in (1, 2, 3):
+        env.step(np.full(4, 6))
+        actions, weights = teacher.lesson(Truth(env.truth().snapshot, np.zeros(4)))
+        age = 0.032 * count
+        assert weights.tolist() == pytest.approx([math.exp(-age / 0.5)] * 4)
+        gone = (place + velocity * age)[:, :2] - env.truth().snapshot.episodes.view_centre[:, :2]
+        yaw = env.truth().snapshot.trackers.euler[:, 2]
+        ahead = np.cos(yaw) * gone[:, 0] + np.sin(yaw) * gone[:, 1]
+        left = -np.sin(yaw) * gone[:, 0] + np.cos(yaw) * gone[:, 1]
+        assert actions.tolist() == towards(np.stack((ahead, left), -1), SMALL.env).tolist()
+    teacher.forget(np.array([True, False, False, False]))
+    _, weights = teacher.lesson(Truth(env.truth().snapshot, np.zeros(4)))
+    assert weights[0] == 1.0, "a new episode begins: the target is in the middle"
+    assert (weights[1:] < 1.0).all()
+
+
+def made_config(**imitation):
+    return updated(SMALL, {"train": {"imitation": imitation}})
+
+
+def test_an_exact_teacher_knows_a_hidden_target():
+    """It asks for the same whether or not the target is seen."""
+    made, *_ = roller()
+    blind, seeing = (Teacher(made_config(teacher="exact"), 4) for _ in range(2))
+    for teacher in (blind, seeing):
+        teacher.begin()
+    for _ in range(12):
+        snapshot = made.env.truth().snapshot
+        one, weights = blind.lesson(Truth(snapshot, np.zeros(4)))
+        other, _ = seeing.lesson(Truth(snapshot, np.ones(4)))
+        assert torch.equal(one, other)
+        made.env.step(np.full(4, 6))
+    assert (weights < 1.0).all()
+
+
+def test_the_oldest_rollout_gives_way_and_no_empty_place_is_learned_from():
+    made, network, config = roller()
+    buffer, generator = dagger.Buffer(2), torch.Generator().manual_seed(0)
+    for number in range(3):
+        data = made.roll(0.0)
+        buffer.add(data, torch.full((8, 4), float(number)))
+        for chosen in dagger._minibatches(network, buffer, config, generator):
+            assert (chosen % 8 < buffer.filled).all()
+    assert buffer.lessons.targets[0].tolist() == [2.0] * 4 + [1.0] * 4
+    assert torch.equal(buffer.lessons.pictures[:, :4], data.pictures)
+
+
+def test_each_new_decision_is_learned_from_once_in_an_update():
+    made, network, config = roller({"imitation": {"replay": 0.0}})
+    buffer, generator = dagger.Buffer(2), torch.Generator().manual_seed(0)
+    for _ in range(2):
+        buffer.add(made.roll(0.0), torch.zeros(8, 4))
+    got = torch.cat(list(dagger._minibatches(network, buffer, config, generator)))
+    assert sorted(got.tolist()) == [row * 8 + column for row in range(8) for column in range(4, 8)]
+
+
+def test_a_network_with_memory_learns_whole_sequences(tmp_path):
+    config = updated(SMALL, {"train": {"method": "dagger", "memory": True}})
+    train(config, tmp_path / "run", say=quiet)
+    head, *rows = ((tmp_path / "run" / "curve.csv").read_text()).splitlines()
+    assert all("nan" not in row.split(",")[head.split(",").index("agreement")] for row in rows)
+
+
+def test_the_memory_of_a_minibatch_is_that_of_the_flight():
+    """Outputs of the unchanged network are those that it had in flight."""
+    made, network, config = roller({"memory": True}, NetworkShape(3, 24, 24, 16, memory=True))
+    buffer = dagger.Buffer(1)
+    data = made.roll(0.0)
+    buffer.add(data, data.values[:-1])
+    chosen = torch.arange(4)
+    part = dagger._Part(chosen, 1.0, torch.ones(()))
+    losses, _ = dagger._gradients(network, buffer.lessons, part, config)
+    assert float(losses[2]) == pytest.approx(0.0, abs=1e-9), "values are those of the flight"
+
+
+def test_channels_last_answers_the_same_but_for_rounding(tmp_path):
+    plain, other = TrackingNetwork(SHAPE), TrackingNetwork(SHAPE, channels_last=True)
+    for network in (plain, other):
+        network.initialise(torch.Generator().manual_seed(3))
+    pictures = torch.randint(0, 256, (5, 3, 24, 24), dtype=torch.uint8)
+    state = torch.zeros(5, SHAPE.state)
+    for one, two in zip(plain(pictures, state), other(pictures, state), strict=True):
+        assert torch.allclose(one, two, atol=1e-4)
+    config = updated(SMALL, {"train": {"channels_last": True, "stages": [{"total_timesteps": 64}]}})
+    train(config, tmp_path / "run", say=quiet)
+    saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)["network"]
+    assert saved["second.weight"].is_contiguous(memory_format=torch.channels_last)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"method": "dager"}, r"^train\.method: 'dager' is not allowed; .*'dagger'"),
+        ({"imitation": {"teacher": "x"}}, r"^train\.imitation\.teacher: 'x' .*sighted"),
+        ({"imitation": {"fade": 0}}, r"^train\.imitation\.fade: 0 is not allowed"),
+        ({"imitation": {"minibatch": 4}}, r"minibatch.*minibatches"),
+    ],
+)
+def test_bad_values_are_one_line(changes, message):
+    with pytest.raises(EyasError, match=message) as caught:
+        updated(SMALL, {"train": changes})
+    assert "\n" not in str(caught.value)
+
+
+def test_how_long_a_teacher_teaches():
+    config = updated(SMALL.train, {"imitation": {"total_timesteps": 70}})
+    assert config.taught_decisions == 96, "whole updates of 32"
+    assert updated(config, {"method": "ppo"}).taught_decisions == 0
+    assert updated(config, {"method": "dagger"}).taught_decisions == config.run_decisions == 192
+    assert TrainConfig().method is Method.PPO
+
+
+def test_stages_keep_their_shares_of_other_decisions():
+    stages = updated(SMALL.train, {"stages": SMALL.train.scaled_stages(96)}).stages
+    assert [stage.total_timesteps for stage in stages] == [64, 32]
+    assert stages[1].settings == {"world": {"weather": "night"}}
+    assert [each["total_timesteps"] for each in SMALL.train.scaled_stages(1)] == [1, 1]
+
+
+def test_method_and_steps_are_chosen_on_the_command_line(monkeypatch, tmp_path):
+    (tmp_path / "mine.json").write_text(SMALL.model_dump_json())
+    given = ["--config", f"{tmp_path}/mine.json", "--out", f"{tmp_path}/run", "--quiet"]
+    monkeypatch.setattr(sys, "argv", ["eyas", "train", *given, "--method", "ppo", "--steps", "96"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code in (0, None)
+    kept = load_settings(tmp_path / "run" / "config.json").train
+    assert kept.method is Method.PPO
+    assert [stage.total_timesteps for stage in kept.stages] == [64, 32]
