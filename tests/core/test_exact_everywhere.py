@@ -36,6 +36,7 @@ ELSEWHERE = ("cli", "modes", "learning")
 ALLOWED = {
     "core/exact.py": "takes their place",
     "evaluation/policies/choice.py": "chances of actions from scores of networks, which BLAS made",
+    "evaluation/policies/tracker/detector.py: np.exp": "the same of places",
     "render/textures/fields.py: np.fft.rfft2": "not by processor; becomes bytes of textures",
     "render/textures/fields.py: np.fft.irfft2": "the same",
 }

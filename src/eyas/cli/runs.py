@@ -19,7 +19,6 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
-from eyas.core.config import updated
 from eyas.core.errors import ConfigError
 
 __all__ = ["demo", "serve", "train", "video"]
@@ -156,6 +155,8 @@ def train(  # noqa: PLR0913  # one parameter for each option
         overrides.append(f"train.method={json.dumps(method)}")
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if steps is not None:
+        from eyas.core.config import updated
+
         settings = updated(settings, {"train": {"stages": settings.train.scaled_stages(steps)}})
     from eyas.modes.train import run
 

@@ -100,6 +100,8 @@ class MotionFilter:
         self.velocity[rows] += belief[:, None] * gain[:, 1:] * away
         # What is gained where it is the target, and how far apart both cases are.
         doubt = 0.5 * belief * (1.0 - belief) * np.square(away).sum(axis=1)
-        pairs = np.stack((gain[:, 0] ** 2, gain[:, 0] * gain[:, 1], gain[:, 1] ** 2), axis=-1)
+        pairs = np.stack(
+            (np.square(gain[:, 0]), gain[:, 0] * gain[:, 1], np.square(gain[:, 1])), axis=-1
+        )
         gained = np.stack((gain[:, 0] * own, gain[:, 0] * both, gain[:, 1] * both), axis=-1)
         self._variance[rows] += doubt[:, None] * pairs - belief[:, None] * gained

@@ -148,7 +148,7 @@ class Tracker:
         found = self.detector.find(pictures, clue)
         where = place + _turned(self.ground.offsets(found.place), yaw)
         noise = found.spread / self.ground.pixels_per_metre
-        variance = np.square(noise) + self.settings.noise**2
+        variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         taken = near & (found.belief > self.settings.believed)
         self.sees[rows] = taken
@@ -158,7 +158,9 @@ class Tracker:
     def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
         """Return what the network is told about targets, see `look`."""
         expected = self.ground.pixels(_turned(self.motion.place[rows] - place, -yaw))
-        spread = np.sqrt(np.square(self.motion.spread(rows)) + self.settings.floor**2)
+        spread = np.sqrt(
+            np.square(self.motion.spread(rows)) + self.settings.floor * self.settings.floor
+        )
         known = self._renewed[rows] > 0
         return Clue(expected, spread * self.ground.pixels_per_metre, self._key[rows], known)
 
@@ -167,7 +169,7 @@ class Tracker:
         box, own = self.boxes[rows], self.settings
         middle = 0.5 * (box[:, :2] + box[:, 2:])
         sides = (box[:, 2:] - box[:, :2]) / self.ground.pixels_per_metre
-        walks = sides[:, 0] * sides[:, 1] < own.small**2
+        walks = sides[:, 0] * sides[:, 1] < own.small * own.small
         speed = np.where(walks, own.walking_speed, own.speed)
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
         where = place + _turned(self.ground.offsets(middle), yaw)
