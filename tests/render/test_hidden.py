@@ -21,7 +21,7 @@ def view(rows: int = SIDE - TOP) -> View:
     ahead, left, up = Point(1.0, 0.0, 0.0), Point(0.0, 1.0, 0.0), Point(0.0, 0.0, 1.0)
     planes = Planes(nothing, nothing, nothing, nothing, nothing)
     return View(
-        Point(0.0, 0.0, 0.0), ahead, left, up, FOCAL, FOCAL, FOCAL, SIDE, SIDE, TOP, rows, 1,
+        Point(0.0, 0.0, 0.0), ahead, left, up, FOCAL, FOCAL, FOCAL, SIDE, SIDE, TOP, rows, 1, 1,
         screen, planes,
     )  # fmt: skip
 
