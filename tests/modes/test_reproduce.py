@@ -88,5 +88,6 @@ def test_a_policy_has_a_model_card_with_what_a_reader_needs(name):
     for chapter in ("Intended use", "Trained on", "What it reaches", "Limits", "besides"):
         assert chapter in card
     assert "SHA-256 `" in card
-    assert "| class of entry | `pixels` |" in card
+    seen = check(EvaluationPlan(policy=name)).entry_class
+    assert f"| class of entry | `{seen}` |" in card
     assert card.count("\n- ") >= 3
