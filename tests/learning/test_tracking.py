@@ -143,6 +143,24 @@ def test_an_interrupted_training_goes_on_to_the_same_bytes(tmp_path):
         trained(tmp_path / "cut", seed=1)
 
 
+class Opens:
+    """Unpickled, it makes a file."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __reduce__(self):
+        return open, (self.path, "w")
+
+
+def test_a_network_of_others_runs_no_code(tmp_path):
+    trained(tmp_path)
+    torch.save(Opens(str(tmp_path / "run")), tmp_path / "round-0.pt")
+    with pytest.raises(DataFileError, match=r"round-0\.pt: not a checkpoint"):
+        trained(tmp_path)
+    assert not (tmp_path / "run").exists()
+
+
 def test_batches_of_other_lengths_are_joined():
     joined = Shots.joined([spots(2, 8), spots(3, 5)])
     assert joined.picture.shape[:2] == (5, 8)

@@ -16,7 +16,7 @@ from eyas.core.files import refusals, write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings, save_settings
 
-__all__ = ["RunFolder", "TrainingProgress"]
+__all__ = ["RunFolder", "TrainingProgress", "readable"]
 
 Row = dict[str, float]
 
@@ -106,7 +106,7 @@ class RunFolder:
         """
         if not self._checkpoint.exists():
             return TrainingProgress()
-        with _readable(self._checkpoint):
+        with readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
             build = Build(**saved["build"])
             network.load_state_dict(saved["network"])
@@ -126,12 +126,12 @@ class RunFolder:
         Raises:
             DataFileError: There is no checkpoint, or one of another network.
         """
-        with _readable(self._checkpoint):
+        with readable(self._checkpoint):
             network.load_state_dict(torch.load(self._checkpoint, weights_only=True)["network"])
 
 
 @contextmanager
-def _readable(path: Path) -> Iterator[None]:
+def readable(path: Path) -> Iterator[None]:
     """Say in one line what is wrong with a checkpoint.
 
     Raises:
