@@ -1,9 +1,10 @@
 """A graphics processor of NVIDIA as a device for kernels, by its driver alone.
 
-Import it only where one is wanted: nothing else needs it.
+Nothing else in this room imports it: it is for those who want such a device.
 """
 
-from eyas.lanes.cuda.device import CudaDevice, cuda_device, gpu_line
+from eyas.lanes.cuda.cards import gpu_line
+from eyas.lanes.cuda.device import CudaDevice, cuda_device
 from eyas.lanes.cuda.driver import CudaError
 from eyas.lanes.cuda.memory import CudaArray
 

@@ -2,8 +2,19 @@
 
 import atexit
 import ctypes
-from ctypes import POINTER, Structure, c_char_p, c_int32, c_int64, c_uint8, c_uint16, c_void_p
-from ctypes import c_uint64, py_object, pythonapi
+from ctypes import (
+    POINTER,
+    Structure,
+    c_char_p,
+    c_int32,
+    c_int64,
+    c_uint8,
+    c_uint16,
+    c_uint64,
+    c_void_p,
+    py_object,
+    pythonapi,
+)
 from typing import TYPE_CHECKING, Any
 
 import numpy as np

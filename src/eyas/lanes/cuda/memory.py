@@ -1,37 +1,20 @@
 """Arrays in the memory of a graphics processor, which other libraries can share."""
 
 import math
-import weakref
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.lanes.cuda.context import Context, Memory
 from eyas.lanes.cuda.dlpack import capsule_of
+from eyas.lanes.cuda.order import CudaEvent
 
-if TYPE_CHECKING:
-    from eyas.lanes.cuda.device import CudaDevice
-
-__all__ = ["CudaArray", "Memory"]
+__all__ = ["CudaArray"]
 
 _LEGACY_STREAM = 1
 """The legacy default stream, as `__cuda_array_interface__` and DLPack number it."""
-
-
-class Memory:
-    """A piece of the device's memory, freed when nothing refers to it any more.
-
-    Attributes:
-        device: Where it is.
-        address: Its address there.
-    """
-
-    def __init__(self, device: "CudaDevice", size: int) -> None:
-        self.device = device
-        self.address = device.allocated(size)
-        # What is left when the interpreter ends goes with the process.
-        weakref.finalize(self, device.free, self.address).atexit = False
 
 
 class CudaArray:
@@ -56,9 +39,9 @@ class CudaArray:
         self._stand_in: NDArray[Any] | None = None
 
     @property
-    def device(self) -> "CudaDevice":
+    def context(self) -> Context:
         """Where it is."""
-        return self.memory.device
+        return self.memory.context
 
     @property
     def ndim(self) -> int:
@@ -94,7 +77,7 @@ class CudaArray:
         return len(self.stand_in)
 
     def __repr__(self) -> str:
-        return f"CudaArray({self.shape}, {self.dtype}, on {self.device.name})"
+        return f"CudaArray({self.shape}, {self.dtype}, on {self.context.name})"
 
     def __getitem__(self, rows: slice) -> "CudaArray":
         if not isinstance(rows, slice) or rows.step not in (None, 1):
@@ -122,7 +105,7 @@ class CudaArray:
         }
 
     def __dlpack_device__(self) -> tuple[int, int]:
-        return 2, self.device.ordinal  # kDLCUDA
+        return 2, self.context.ordinal  # kDLCUDA
 
     def __dlpack__(
         self,
@@ -147,7 +130,7 @@ class CudaArray:
         if copy or dl_device not in (None, self.__dlpack_device__()):
             raise BufferError("an array on a graphics processor is shared as it is")
         if stream not in (None, -1, _LEGACY_STREAM):
-            self.device.let_wait(int(stream))  # type: ignore[arg-type]
+            CudaEvent(self.context).holds(stream)
         return capsule_of(self, self.__dlpack_device__())
 
 
