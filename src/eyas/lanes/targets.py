@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
+from numba.core import types
 from numba.core.cpu import CPUContext
 from numba.core.datamodel import default_manager
 from numba.core.datamodel.manager import DataModelManager
@@ -29,6 +30,20 @@ class _ThreadContext(CPUContext):  # type: ignore[misc]  # numba has no types
         own = DataModelManager()
         own.register(Lanes, ThreadModel)
         self.data_model_manager = own.chain(default_manager)
+
+    def get_function(self, fn: Any, sig: Any, _firstcall: bool = True) -> Any:  # noqa: ANN401, FBT001, FBT002
+        """Return what makes code of a function; numba's own, such as `max`, are for numbers only,
+        and are found where numba puts them.
+        """
+        try:
+            return super().get_function(fn, sig, _firstcall)
+        except NotImplementedError:
+            key = fn.get_impl_key(sig) if isinstance(fn, types.Callable) else fn
+            of_processor = cpu_target.target_context._defns
+            if key not in of_processor or self._defns.get(key) is of_processor[key]:
+                raise
+            self._defns[key] = of_processor[key]
+            return self.get_function(fn, sig, _firstcall)
 
 
 @cache

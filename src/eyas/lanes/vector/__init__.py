@@ -35,6 +35,7 @@ __all__ = [
     "select",
     "splat",
     "store",
+    "store_greater",
     "store_triples",
     "store_where",
     "store_words",
@@ -59,6 +60,7 @@ gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
 load_words = Intrinsic(_MEMORY, "load_words")
 store = Intrinsic(_MEMORY, "store")
+store_greater = Intrinsic(_MEMORY, "store_greater")
 store_triples = Intrinsic(_MEMORY, "store_triples")
 store_where = Intrinsic(_MEMORY, "store_where")
 store_words = Intrinsic(_MEMORY, "store_words")

@@ -12,7 +12,7 @@ from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_
 
 __all__ = [
     "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
-    "store_triples", "store_where", "store_words", "transposed",
+    "store_greater", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -216,6 +216,26 @@ def _storing(size: int) -> Any:
 def store(typing_context, array, at, value):
     """Write eight elements in a row, from index `at` on."""
     return types.void(array, at, value), _storing(array.dtype.bitwidth // 8)
+
+
+@intrinsic
+def store_greater(typing_context, array, at, value, old):
+    """Write eight int64 in a row where they are greater than the old ones, which were loaded there.
+
+    Threads of a graphics processor do so in one step, since other workers may write there too.
+    """
+
+    def generate(context, builder, sig, args):
+        pointer, align = _place(context, builder, sig, args, args[2].type, 8)
+        greater = builder.icmp_signed(">", args[2], args[3])
+        if not lanes_are_threads(context):
+            chosen = builder.select(greater, args[2], args[3])
+            return _store(context, builder, chosen, pointer, align)
+        with builder.if_then(greater):
+            builder.atomic_rmw("max", pointer, args[2], "monotonic")
+        return context.get_dummy_value()
+
+    return types.void(array, at, value, old), generate
 
 
 @intrinsic

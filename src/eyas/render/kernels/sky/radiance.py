@@ -348,7 +348,7 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """
     view, light, lit, width = band.camera, band.light, band.lit, band.columns
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
-    for row in range(band.lines):
+    for row in range(band.member, band.lines, band.members):
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:

@@ -310,24 +310,25 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
+    rays, view, width = rays_of(band.camera), band.camera, band.columns
+    rows, member, members = band.lines, band.member, band.members
     if view.down == 1:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_one(band, rays, canvas, width, row, first)
     elif len(canvas.red) > 0:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 if view.across == 1:
                     _mean_of_several(band, rays, canvas, row, first, 1)
                 else:
                     _mean_of_several(band, rays, canvas, row, first, 2)
     elif view.across == 1:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_several(band, rays, canvas.pixels, row, first, 1)
     else:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_several(band, rays, canvas.pixels, row, first, 2)
 

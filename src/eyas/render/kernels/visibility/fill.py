@@ -18,6 +18,7 @@ from eyas.lanes.vector import (
     load,
     select,
     store,
+    store_greater,
     to_f4,
     to_f8,
     to_i4,
@@ -139,7 +140,7 @@ def _show(
 ) -> None:
     """Write eight keys where they are wanted and larger than the old ones."""
     # A key below 0 is smaller than all others.
-    store(key, at, greater(key_of(select(wanted, inverse, f4(-1.0)), tag), old))
+    store_greater(key, at, key_of(select(wanted, inverse, f4(-1.0)), tag), old)
 
 
 @kernel(inline=True)
