@@ -2,8 +2,8 @@
 
 import threading
 import weakref
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from eyas.lanes.cuda.context import Context
 from eyas.lanes.cuda.memory import CudaArray
 from eyas.lanes.held import _NOTHING, _flatten, _layout, _layouts
 
-__all__ = ["Blocks", "CudaBundle", "laid", "mapped", "types_of"]
+__all__ = ["Blocks", "CudaBundle"]
 
 _SLAB = 1 << 20
 """Memory for bundles is allocated in pieces of this size [bytes]; a bundle takes some kilobytes."""
@@ -62,59 +62,67 @@ class CudaBundle:
     """A bundle in the memory of a graphics processor.
 
     Args:
-        bundle: The tuple; its arrays are all there.
-        blocks: Where it is laid out.
+        bundle: The tuple.
+        on_card: Puts its arrays there; it is called for all that is no tuple.
+        blocks: Where the bundle is laid out.
         nothing: Address there for empty arrays, see `eyas.lanes.held`.
 
     Attributes:
+        bundle: The tuple with its arrays there.
         address: Its address there.
-        kind: Identifies its type, see `eyas.lanes.held.Held`.
+        kind: Identifies its type, see `eyas.lanes.held.Held`; the same as there, if all its arrays
+            are writable and C-contiguous.
     """
 
-    def __init__(self, bundle: Any, blocks: Blocks, nothing: int) -> None:  # noqa: ANN401
-        self.bundle = bundle
-        content, self.kind = laid(bundle, nothing)
-        self.address = blocks.filled(content, self)
+    def __init__(
+        self,
+        bundle: Any,  # noqa: ANN401
+        on_card: Callable[[Any], Any],
+        blocks: Blocks,
+        nothing: int,
+    ) -> None:
+        words: list[Any] = []
+        key: list[object] = []
+
+        def add(value: Any) -> Any:  # noqa: ANN401  # anything in a bundle
+            """Append what `eyas.lanes.held` would; its words of an array are asked for once."""
+            if isinstance(value, tuple):
+                key.extend((type(value), len(value)))
+                return _like(value, map(add, value))
+            part = on_card(value)
+            if isinstance(part, CudaArray):
+                if part.words is None:
+                    own: tuple[list[Any], list[object]] = [], []
+                    _flatten(part.stand_in, *own)
+                    part.words = own
+                words.extend(part.words[0])
+                key.extend(part.words[1])
+            else:
+                _flatten(part, words, key)
+            return part
+
+        self.bundle = add(bundle)
+        layout = _layouts.get(tuple(key)) or _layouts.setdefault(
+            tuple(key), _layout(_mapped(self.bundle, lambda array: array.stand_in))
+        )
+        # Empty arrays have the very object for their address.
+        words = [nothing if word is _NOTHING else word for word in words]
+        self.kind = layout.kind
+        self.address = blocks.filled(layout.format.pack(*words), self)
+
+    @property
+    def types(self) -> Any:  # noqa: ANN401
+        """A bundle of the same types, whose arrays are small ones of numpy."""
+        return _mapped(self.bundle, lambda array: np.empty((1,) * array.ndim, array.dtype))
 
 
-class Laid(NamedTuple):
-    """A bundle as it is to lie in the device's memory."""
-
-    content: bytes
-    kind: str
-    """See `eyas.lanes.held.Held`; the same as there, if the arrays are writable and C-contiguous.
-    """
+def _like(bundle: Any, parts: Iterable[Any]) -> Any:  # noqa: ANN401  # a tuple
+    """Return a tuple of the type of another."""
+    return type(bundle)(*parts) if hasattr(bundle, "_fields") else tuple(parts)
 
 
-def mapped(value: Any, change: Callable[[Any], Any]) -> Any:  # noqa: ANN401  # any bundle
-    """Return a bundle with each array and number changed, in tuples of the same types."""
-    if not isinstance(value, tuple):
-        return change(value)
-    parts = [mapped(part, change) for part in value]
-    return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
-
-
-def laid(bundle: Any, nothing: int) -> Laid:  # noqa: ANN401  # any bundle
-    """Lay a bundle out.
-
-    Args:
-        bundle: Its arrays are all in the device's memory.
-        nothing: Address there for empty arrays, see `eyas.lanes.held`.
-    """
-    stand_in = mapped(bundle, lambda part: part.stand_in if isinstance(part, CudaArray) else part)
-    words: list[Any] = []
-    key: list[object] = []
-    _flatten(stand_in, words, key)
-    layout = _layouts.get(tuple(key)) or _layouts.setdefault(tuple(key), _layout(stand_in))
-    # Empty arrays have the very object for their address.
-    words = [nothing if word is _NOTHING else word for word in words]
-    return Laid(layout.format.pack(*words), layout.kind)
-
-
-def types_of(bundle: Any) -> Any:  # noqa: ANN401  # any bundle
-    """Return a bundle of the same types, whose arrays are small ones of numpy."""
-
-    def small(part: Any) -> Any:  # noqa: ANN401
-        return np.empty((1,) * part.ndim, part.dtype) if isinstance(part, CudaArray) else part
-
-    return mapped(bundle, small)
+def _mapped(value: Any, change: Callable[[CudaArray], Any]) -> Any:  # noqa: ANN401
+    """Return a bundle with others in the places of its arrays."""
+    if isinstance(value, tuple):
+        return _like(value, [_mapped(part, change) for part in value])
+    return change(value) if isinstance(value, CudaArray) else value

@@ -50,8 +50,11 @@ class Context:
 
     def call(self, name: str, *arguments: Any, doing: str = "") -> None:  # noqa: ANN401
         """Call a function of the driver in this context, see `Driver.call`."""
-        with self.current() as call:
-            call(name, *arguments, doing=doing)
+        self._driver.call("cuCtxPushCurrent_v2", self._handle)  # `current` takes twice the time
+        try:
+            self._driver.call(name, *arguments, doing=doing)
+        finally:
+            self._driver.call("cuCtxPopCurrent_v2", byref(c_void_p()))
 
     def destroyed_with(self, owner: object, function: str, handle: Any) -> None:  # noqa: ANN401
         """Have the driver destroy something when nothing refers to its owner any more.

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from eyas.lanes.calls import ParallelCall
-from eyas.lanes.cuda.bundles import Blocks, CudaBundle, mapped
+from eyas.lanes.cuda.bundles import Blocks, CudaBundle
 from eyas.lanes.cuda.context import Context, Memory
 from eyas.lanes.cuda.driver import driver
 from eyas.lanes.cuda.kernels import Function, Functions
@@ -107,16 +107,17 @@ class CudaDevice:
         kernels write there back: that is for a `CudaArray`. All arrays are C-contiguous and may be
         written to on the card, whatever those of numpy are.
         """
-        whole = mapped(bundle, self._on_card)
-        made = CudaBundle(whole, self._blocks, self._nothing.address)
+        made = CudaBundle(bundle, self._on_card, self._blocks, self._nothing.address)
         if self._used is not None:
             self._used.append(made)
         return made
 
     def _on_card(self, part: Any) -> Any:  # noqa: ANN401  # anything in a bundle
-        if isinstance(part, CudaArray) and part.context is not self.context:
+        if isinstance(part, np.ndarray):
+            return self._upload_once(part)
+        if isinstance(part, CudaArray) and part.memory.context is not self.context:
             raise ValueError(f"{part} is not on this graphics processor")
-        return self._upload_once(part) if isinstance(part, np.ndarray) else part
+        return part
 
     def _upload_once(self, array: NDArray[Any]) -> CudaArray:
         """Return the copy of an array; it is kept as long as the array, or a bundle with it."""

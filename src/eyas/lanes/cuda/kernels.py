@@ -7,7 +7,7 @@ from ctypes import byref, c_int, c_void_p
 from typing import Any, NamedTuple
 
 from eyas.lanes.calls import ParallelCall
-from eyas.lanes.cuda.bundles import CudaBundle, types_of
+from eyas.lanes.cuda.bundles import CudaBundle
 from eyas.lanes.cuda.code import Ptx, ptx_code
 from eyas.lanes.cuda.context import Context
 from eyas.lanes.cuda.driver import CudaError
@@ -55,7 +55,7 @@ class Functions:
         found = None if known is None else known.get((kinds, threads))
         if found is not None:
             return found
-        types = tuple([types_of(bundle.bundle) for bundle in bundles])
+        types = tuple([bundle.types for bundle in bundles])
         ptx = ptx_code(call, types, kinds, threads)
         with self._lock:
             if ptx not in self._loaded:

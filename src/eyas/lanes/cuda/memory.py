@@ -28,15 +28,17 @@ class CudaArray:
         address: Of its first element, in the memory of the device.
         shape: Its shape.
         dtype: Type of its elements.
+        words: What `eyas.lanes.cuda.bundles` knows of it.
     """
 
-    __slots__ = ("__weakref__", "_stand_in", "address", "dtype", "memory", "shape")
+    __slots__ = ("_stand_in", "address", "dtype", "memory", "shape", "words")
 
     def __init__(
         self, memory: Memory, address: int, shape: tuple[int, ...], dtype: np.dtype[Any]
     ) -> None:
         self.memory, self.address, self.shape, self.dtype = memory, address, shape, dtype
         self._stand_in: NDArray[Any] | None = None
+        self.words: tuple[list[Any], list[object]] | None = None
 
     @property
     def context(self) -> Context:
