@@ -157,6 +157,8 @@ def test_numbers_are_written_as_numpy_would_and_shapes_must_fit(card):
             card.write(array, values, first)
     with pytest.raises(TypeError, match="rows only"):
         array[0]
+    with pytest.raises(TypeError, match=r"device\.read\(array\)"):
+        np.asarray(array)
     with pytest.raises(TypeError, match="objects"):
         card.empty(3, object)
 
@@ -325,7 +327,7 @@ def test_ptx_is_kept_and_found_again_in_the_folder_or_in_what_ships(
 def test_errors_say_what_was_attempted_and_what_the_driver_says(fake, card):
     held = card.held(1)
     card.launch(nothing, 1, held)
-    illegal = "error 700, CUDA_ERROR_ILLEGAL_ADDRESS: an illegal memory access was encountered"
+    illegal = "error 700, CUDA_ERROR_ILLEGAL_ADDRESS: an illegal memory access was encountered: .*"
     array = card.zeros(3, np.float64)
     for function, work, text in (
         ("cuLaunchKernel", lambda: card.launch(nothing, 3, held), "launching nothing for 3 w.*"),
@@ -526,9 +528,22 @@ else:
 ENDS = """
 import numpy as np
 from eyas.lanes.cuda import cuda_device
+from eyas.lanes.cuda.dlpack import capsule_of
+
+class OnHost:
+    def __init__(self, array): self.array = array
+    def __dlpack_device__(self): return 1, 0
+    def __dlpack__(self, **_): return capsule_of(self.array, (1, 0))
+
+try:
+    import torch as library
+except ImportError:
+    library = np
 device = cuda_device()
 kept, held = device.zeros(1000, np.float32), device.held((1, np.ones(3)))
 capsule = kept.__dlpack__()
+np.shared = np.from_dlpack(OnHost(device.zeros(5, np.float32)))
+library.shared = library.from_dlpack(OnHost(device.zeros(5, np.float32)))
 class Cycle: pass
 cycle = Cycle()
 cycle.own, cycle.kept, cycle.event = cycle, device.zeros(5, np.float64), device.event()

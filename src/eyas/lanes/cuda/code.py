@@ -35,6 +35,9 @@ SUFFIX = ".eyp"
 
 _ROOM = Path(eyas.lanes.__file__).parent
 
+_MAKERS = ("ptx.py", "targets.py")
+"""Files that decide what kernels become, beside the language of kernels."""
+
 ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
 
@@ -81,7 +84,7 @@ def ptx_code(
 @cache
 def _made_of() -> str:
     """Return a digest of what turns kernels into PTX."""
-    return digest((language_hash(), syntax_of(_ROOM / "ptx.py")[""].digest))
+    return digest((language_hash(), *(syntax_of(_ROOM / name)[""].digest for name in _MAKERS)))
 
 
 def _made_by() -> tuple[str, ...]:

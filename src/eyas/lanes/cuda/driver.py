@@ -22,6 +22,9 @@ OUT_OF_MEMORY = 2
 
 _NOT_INITIALIZED, _NO_DEVICE = 3, 100
 
+_BY_KERNELS = frozenset({700, 702, *range(714, 720)})
+"""Errors of kernels, such as CUDA_ERROR_ILLEGAL_ADDRESS, told at whatever is called later."""
+
 _ADDRESS = c_uint64
 """CUdeviceptr. Contexts, modules, functions, streams, events and graphs are pointers."""
 
@@ -148,6 +151,8 @@ class Driver:
             parts.append((text.value or b"?").decode())
         if code == _NOT_INITIALIZED:
             parts.append("was this process forked from one that uses a graphics processor?")
+        if code in _BY_KERNELS:
+            parts.append("a kernel did that; CUDA_LAUNCH_BLOCKING=1 tells which")
         return f"error {code}, " + ": ".join(parts)
 
 

@@ -86,6 +86,11 @@ class CudaArray:
             raise TypeError("an array on a graphics processor gives rows only: array[first:last]")
         return self._like(self.stand_in[rows])
 
+    def __array__(self, *_: object, **__: object) -> NDArray[Any]:
+        raise TypeError(
+            "an array on a graphics processor is read by its device: device.read(array)"
+        )
+
     def reshape(self, *shape: Any) -> "CudaArray":  # noqa: ANN401  # as numpy has it
         """Return the same elements in another shape, given as to numpy's `reshape`."""
         return self._like(self.stand_in.reshape(*shape))
