@@ -270,8 +270,19 @@ def test_a_kernel_is_compiled_once_for_the_kinds_of_its_bundles(fake, card):
     for number in (1, 2, 3.0, np.float32(4.0), 5.0):
         card.launch(nothing, 1, card.held(number))
     card.launch(nothing, 1, card.held(1), threads=8)
+    card.launch(parallel(nothing.function), 1, card.held(1))
     assert len(fake.told("cuModuleLoad")) == 4
+    handles = [card.function(nothing, card.held(1), threads=n).handle.value for n in (8, 1)]
+    assert len(set(handles)) == 2
     assert card.function(nothing, card.held(1)).registers == 40
+
+
+def test_a_launch_that_is_repeated_uploads_nothing(fake, card):
+    bundles = card.held(outer_of(card, np.arange(6.0))), card.held(2.0), card.held(np.zeros(6))
+    card.launch(add, 1, *bundles)
+    fake.told()
+    card.launch(add, 2, *bundles)
+    assert len(fake.told()) == 1
 
 
 def test_kernels_that_differ_by_what_they_close_over_are_not_mixed_up(fake, card):
@@ -471,10 +482,10 @@ def test_the_interface_of_cuda_arrays_tells_where_they_are(card):
 
 
 def test_recorded_work_goes_to_a_graph_that_keeps_what_it_uses(fake, card):
-    array = card.zeros(4, np.float64)
     card.launch(nothing, 1, card.held(1))
+    before = fake.pieces
+    array = card.zeros(4, np.float64)
     fake.told()
-
     used = []
 
     def work():
@@ -493,8 +504,10 @@ def test_recorded_work_goes_to_a_graph_that_keeps_what_it_uses(fake, card):
     graph()
     card.clear(array)
     assert fake.told() == ["cuGraphLaunch 0x67 (nil)", "cuMemsetD8Async 32 stream (nil)"]
+    del array, work
+    assert fake.pieces == before + 1
     del graph
-    assert fake.told() == ["cuGraphExecDestroy 0x67"]
+    assert sorted(fake.told()) == ["cuGraphExecDestroy 0x67", "cuMemFree "]
     assert card.held(1).address in used
     fake.told()
     with pytest.raises(ZeroDivisionError):
@@ -526,8 +539,9 @@ else:
 """
 
 ENDS = """
+import atexit, gc, sys
 import numpy as np
-from eyas.lanes.cuda import cuda_device
+from eyas.lanes.cuda import cuda_device, dlpack
 from eyas.lanes.cuda.dlpack import capsule_of
 
 class OnHost:
@@ -535,10 +549,12 @@ class OnHost:
     def __dlpack_device__(self): return 1, 0
     def __dlpack__(self, **_): return capsule_of(self.array, (1, 0))
 
+library = np
 try:
-    import torch as library
+    if not sys.argv[1:]:
+        import torch as library
 except ImportError:
-    library = np
+    pass
 device = cuda_device()
 kept, held = device.zeros(1000, np.float32), device.held((1, np.ones(3)))
 capsule = kept.__dlpack__()
@@ -547,12 +563,25 @@ library.shared = library.from_dlpack(OnHost(device.zeros(5, np.float32)))
 class Cycle: pass
 cycle = Cycle()
 cycle.own, cycle.kept, cycle.event = cycle, device.zeros(5, np.float64), device.event()
+if sys.argv[1:] == ["names first"]:
+    numbers, given = np.from_dlpack(OnHost(device.zeros(5, np.float32))), dlpack._given
+    before = len(given)
+    atexit.unregister(dlpack._let_go)
+    vars(dlpack).clear()
+    gc.collect()
+    del numbers, capsule
+    print(before - len(given))
+if sys.argv[1:] == ["libraries last"]:
+    numbers, before = np.from_dlpack(OnHost(device.zeros(5, np.float32))), len(dlpack._given)
+    dlpack._let_go()
+    del numbers
+    print(before - len(dlpack._given))
 """
 
 
-def run(program, library):
+def run(program, library, *arguments):
     environment = {**os.environ, VARIABLE: str(library)}
-    command = [sys.executable, "-c", program]
+    command = [sys.executable, "-c", program, *arguments]
     found = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60)
     assert (found.returncode, found.stderr) == (0, "")
     return found.stdout.splitlines()
@@ -565,5 +594,8 @@ def test_a_forked_process_is_told_that_it_cannot_use_the_card(library):
     assert parent == "0.0"
 
 
-def test_a_process_ends_quietly(library):
-    assert run(ENDS, library) == []
+@pytest.mark.parametrize(
+    ("how", "expected"), [((), []), (("names first",), ["2"]), (("libraries last",), ["0"])]
+)
+def test_a_process_ends_quietly(library, how, expected):
+    assert run(ENDS, library, *how) == expected

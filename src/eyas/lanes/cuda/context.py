@@ -64,9 +64,8 @@ class Context:
         weakref.finalize(owner, self._destroy, function, handle).atexit = False
 
     def _destroy(self, function: str, handle: Any) -> None:  # noqa: ANN401
-        if self._driver.usable:
-            with suppress(CudaError):  # after the error of a kernel nothing can be destroyed
-                self.call(function, handle)
+        with suppress(CudaError):  # after the error of a kernel, and in a forked process
+            self.call(function, handle)
 
     def allocated(self, size: int) -> int:
         """Return the address of so many bytes of new memory.

@@ -97,6 +97,7 @@ class CudaDevice:
     def clear(self, array: CudaArray) -> None:
         """See `Device`."""
         size = array.nbytes
+        self._use(array)
         if size:
             self.context.call("cuMemsetD8Async", array.address, 0, size, self._stream)
 
@@ -107,10 +108,7 @@ class CudaDevice:
         kernels write there back: that is for a `CudaArray`. All arrays are C-contiguous and may be
         written to on the card, whatever those of numpy are.
         """
-        made = CudaBundle(bundle, self._on_card, self._blocks, self._nothing.address)
-        if self._used is not None:
-            self._used.append(made)
-        return made
+        return CudaBundle(bundle, self._on_card, self._blocks, self._nothing.address)
 
     def _on_card(self, part: Any) -> Any:  # noqa: ANN401  # anything in a bundle
         if isinstance(part, np.ndarray):
@@ -123,17 +121,10 @@ class CudaDevice:
         """Return the copy of an array; it is kept as long as the array, or a bundle with it."""
         name, kept = id(array), self._uploaded
         with self._lock:
-            found = kept.get(name)
-            if found is not None and found[0]() is array:
-                return found[1]
-
-            def forget(reference: object) -> None:
-                if name in kept and kept[name][0] is reference:
-                    del kept[name]
-
-            copy = self.upload(array)
-            kept[name] = weakref.ref(array, forget), copy
-            return copy
+            if name not in kept:
+                copy = self.upload(array)
+                kept[name] = weakref.ref(array, lambda _: kept.pop(name, None)), copy
+            return kept[name][1]
 
     def launch(
         self,
@@ -160,6 +151,7 @@ class CudaDevice:
         if not workers:
             return
         function = self.function(call, *bundles, threads=threads)
+        self._use(bundles)
         numbers = (c_uint64 * 3)(self._table(bundles), 0, workers)
         first = ctypes.addressof(numbers)
         given = (c_void_p * 3)(first, first + 8, first + 16)
@@ -178,13 +170,16 @@ class CudaDevice:
     def _table(self, bundles: tuple[CudaBundle, ...]) -> int:
         """Return the address of a table of the bundles' addresses; what is in it stays true."""
         addresses = tuple([bundle.address for bundle in bundles])
-        if self._used is not None:
-            self._used.append(bundles)
         with self._lock:
             if addresses not in self._tables:
                 content = np.array(addresses, np.uint64).tobytes()
                 self._tables[addresses] = self._blocks.filled(content)
             return self._tables[addresses]
+
+    def _use(self, what: object) -> None:
+        """Keep what recorded work uses."""
+        if self._used is not None:
+            self._used.append(what)
 
     def synchronise(self) -> None:
         """See `Device`."""

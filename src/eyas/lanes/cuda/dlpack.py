@@ -52,31 +52,42 @@ class _Tensor(Structure):
 _given: dict[int, tuple[Any, ...]] = {}
 """What was handed to others, by the address of its structure, with all that this needs."""
 
-pythonapi.Py_IncRef(py_object(_given))  # others may look into it when the interpreter has ended
+_is_valid = ctypes.PYFUNCTYPE(ctypes.c_int, c_void_p, c_char_p)(("PyCapsule_IsValid", pythonapi))
+_pointer = ctypes.PYFUNCTYPE(c_void_p, c_void_p, c_char_p)(("PyCapsule_GetPointer", pythonapi))
+_new = ctypes.PYFUNCTYPE(py_object, c_void_p, c_char_p, c_void_p)(("PyCapsule_New", pythonapi))
+
+
+# At the end of the interpreter others may let go when this module has no names any more, so these
+# two bring all that they need, and stay.
 
 
 @ctypes.PYFUNCTYPE(None, c_void_p)
-def _delete(tensor: int) -> None:
-    _given.pop(tensor, None)
+def _delete(tensor: int, given: dict[int, Any] = _given) -> None:
+    given.pop(tensor, None)
 
 
 @ctypes.PYFUNCTYPE(None, c_void_p)
-def _drop(capsule: int) -> None:
+def _drop(
+    capsule: int,
+    given: dict[int, Any] = _given,
+    name: bytes = _NAME,
+    is_valid: Any = _is_valid,  # noqa: ANN401
+    pointer: Any = _pointer,  # noqa: ANN401
+) -> None:
     """Let go of an array whose capsule nobody has opened."""
-    if _is_valid(capsule, _NAME):
-        _given.pop(_pointer(capsule, _NAME), None)
+    if is_valid(capsule, name):
+        given.pop(pointer(capsule, name), None)
+
+
+for _kept in (_delete, _drop):
+    pythonapi.Py_IncRef(py_object(_kept))
 
 
 @atexit.register
 def _let_go() -> None:
-    """Have others delete nothing more: soon there is no Python to call."""
+    """Have others call nothing that is in Python: libraries may end after it."""
     for tensor, *_ in _given.values():
         tensor.deleter = None
-
-
-_is_valid = ctypes.PYFUNCTYPE(ctypes.c_int, c_void_p, c_char_p)(("PyCapsule_IsValid", pythonapi))
-_pointer = ctypes.PYFUNCTYPE(c_void_p, c_void_p, c_char_p)(("PyCapsule_GetPointer", pythonapi))
-_new = ctypes.PYFUNCTYPE(py_object, c_void_p, c_char_p, c_void_p)(("PyCapsule_New", pythonapi))
 
 
 def capsule_of(array: "CudaArray", device: tuple[int, int]) -> Any:  # noqa: ANN401

@@ -107,14 +107,9 @@ class Driver:
         self._process = os.getpid()
         self.call("cuInit", 0)
 
-    @property
-    def usable(self) -> bool:
-        """Whether this is the process that began to use the driver, and not one forked from it."""
-        return os.getpid() == self._process
-
     def check(self) -> None:
         """Raise a `CudaError` unless this process may use the driver."""
-        if not self.usable:
+        if os.getpid() != self._process:
             raise CudaError(
                 "a process forked from one that uses a graphics processor cannot use it; start "
                 'processes with multiprocessing\'s method "spawn"'
