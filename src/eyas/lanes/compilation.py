@@ -34,7 +34,7 @@ from eyas.lanes.modules import (
     module_name,
     module_of,
 )
-from eyas.lanes.targets import current_context, target_name
+from eyas.lanes.targets import current_context, for_threads, target_name
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
 __all__ = [
@@ -127,8 +127,9 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         *,
         inline: bool | None,
         double: bool,
+        threads: Callable[..., Any] | None,
     ) -> None:
-        self._function, self._made_of = function, made_of
+        self._function, self._made_of, self._threads = function, made_of, threads
         self._inline, self._double = inline, double
         self._parameters = inspect.signature(function)
         self._overloads: dict[tuple[str, tuple[Kind, ...]], _Overload] = {}
@@ -147,7 +148,8 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         )
         key = target_name(), kinds
         if key not in self._overloads:
-            made = _overload(self._function, kinds, self._inline, self._made_of)
+            function = self._threads if self._threads and for_threads() else self._function
+            made = _overload(function, kinds, self._inline, self._made_of)
             current_context().insert_user_function(made, made.described, (made.module,))
             self._overloads[key] = made
         return self._overloads[key].signature.replace(pysig=self._parameters)

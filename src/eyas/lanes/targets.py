@@ -17,7 +17,7 @@ from numba.core.registry import cpu_target
 
 from eyas.lanes.vector.kinds import Lanes, ThreadModel
 
-__all__ = ["current_context", "lanes_as_threads", "target_name"]
+__all__ = ["current_context", "for_threads", "lanes_as_threads", "target_name"]
 
 
 class _ThreadContext(CPUContext):  # type: ignore[misc]  # numba has no types
@@ -68,6 +68,11 @@ def lanes_as_threads() -> Iterator[None]:
 def current_context() -> Any:  # noqa: ANN401
     """Return numba's context of what is compiled for now."""
     return _thread_context() if _threads else cpu_target.target_context
+
+
+def for_threads() -> bool:
+    """Return whether that is a graphics processor."""
+    return _threads
 
 
 def target_name() -> str:

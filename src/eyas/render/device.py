@@ -59,7 +59,16 @@ class DeviceRenderer:
         self._held = device.held(geometry), device.held(light)
         self._scratch: dict[tuple[PictureSize, int], Any] = {}
 
-    def draw(self, size: PictureSize, job: Job, movers: Movers, output: Output, **how: int) -> None:
+    def draw(
+        self,
+        size: PictureSize,
+        job: Job,
+        movers: Movers,
+        output: Output,
+        *,
+        falls: int = 0,
+        until: DrawStage = DrawStage.SHADING,
+    ) -> None:
         """Draw views into the arrays of `output` that are not empty, all on the device.
 
         Args:
@@ -67,7 +76,8 @@ class DeviceRenderer:
             job: The cameras; `band` is `whole_views`.
             movers: The moving things.
             output: Where to.
-            how: `falls` (0 or 1), see `Task`.
+            falls: See `Task`.
+            until: Last stage to run, to measure the cost of each.
         """
         device, slots = self._device, movers.part.shape[1]
         key = size, slots
@@ -80,14 +90,14 @@ class DeviceRenderer:
             }
         scratch, held, shared, alone = self._scratch[key]
         task = Task(
-            size.across, size.down, size.width, size.height, how.get("falls", 0),
-            int(DrawStage.SHADING), job,
-        )  # fmt: skip
+            size.across, size.down, size.width, size.height, falls, int(until), job
+        )
         bundles = (*self._held, held, device.held(movers), device.held(output), device.held(task))
         workers = size.views * MEMBERS
         device.clear(scratch.key)
         device.launch(find_triangles, workers, shared, *bundles, threads=WIDTH)
-        if len(output.rgb) > 0 or len(output.radiance) > 0:
+        coloured = len(output.rgb) > 0 or len(output.radiance) > 0
+        if coloured and until > DrawStage.RASTERISING:
             device.launch(cast_lights, workers, shared, *bundles, threads=WIDTH)
             device.launch(shade, workers, shared, *bundles, threads=WIDTH)
         measured = len(output.subject) + len(output.actor) > 0

@@ -11,8 +11,8 @@ from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
-    "store_greater", "store_triples", "store_where", "store_words", "transposed",
+    "agree", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -236,6 +236,30 @@ def store_greater(typing_context, array, at, value, old):
         return context.get_dummy_value()
 
     return types.void(array, at, value, old), generate
+
+
+@intrinsic
+def store_largest(typing_context, array, at, value):
+    """Write an int64 if it is greater than what is there, atomically."""
+
+    def generate(context, builder, sig, args):
+        index = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, array, args[0], index)
+        builder.atomic_rmw("max", pointer, args[2], "monotonic")
+        return context.get_dummy_value()
+
+    return types.void(array, at, value), generate
+
+
+@intrinsic
+def agree(typing_context):
+    """Let all lanes see what each has written; for kernels of threads only."""
+
+    def generate(context, builder, sig, args):
+        threads.agree(builder)
+        return context.get_dummy_value()
+
+    return types.void(), generate
 
 
 @intrinsic

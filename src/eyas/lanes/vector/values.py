@@ -13,7 +13,7 @@ from eyas.lanes.vector.kinds import I4, Lanes, as_lanes, element_of, ir_type, la
 
 __all__ = [
     "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "first_bit", "from_bits", "greater",
-    "lane", "lane_numbers", "lesser", "like", "magnitude", "root", "select", "splat", "to_f4",
+    "lane", "lane_numbers", "lesser", "like", "magnitude", "own", "root", "select", "splat", "to_f4",
     "to_f8", "to_i4", "to_i8", "to_u4", "whole",
 ]  # fmt: skip
 
@@ -254,3 +254,15 @@ def lane(typing_context, lanes, number):
         return builder.extract_element(args[0], index)
 
     return lanes.element(lanes, number), generate
+
+
+@intrinsic
+def own(typing_context, lanes):
+    """Return the number in the thread's own lane; for kernels of threads only."""
+
+    def generate(context, builder, sig, args):
+        if not lanes_are_threads(context):
+            raise NotImplementedError("own: lanes are threads on graphics processors only")
+        return args[0]
+
+    return lanes.element(lanes), generate

@@ -30,7 +30,7 @@ SMALLEST_DETAIL = 0.35
 def draw_scene(band: Band) -> int:
     """Draw everything that a band shows; return how many instances there are in `Band.drawn`.
 
-    Its keys must be 0. Workers that share a band each list all, and draw some of it.
+    Its keys must be 0. Workers that share a band each list all of it.
     They are numbered fixtures first, in the order of the arrays that hold them, so that the order
     of their tags does not depend on the band.
     """
@@ -55,8 +55,8 @@ def draw_slots(band: Band, first: int, last: int, count: int) -> int:
 
 @kernel
 def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
-    """Draw what is listed in `Band.order`, the nearest first; workers that share a band draw what
-    is theirs as it comes.
+    """Draw what is listed in `Band.order`, the nearest first; workers that share a band draw some
+    clusters of each mesh, as it comes.
     """
     if band.until <= CULLING:
         return
@@ -66,7 +66,7 @@ def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
     alone, measured = band.members == 1, i8(MEASURED_EVERY)
     if alone:
         _shell_sort(order, listed)
-    for k in range(band.member, listed, band.members):
+    for k in range(listed):
         item = order[k] & i8(0xFFFFFFFF)
         if alone and k >= MEASURED_EVERY:
             if k == measured:
