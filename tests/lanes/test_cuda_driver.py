@@ -484,12 +484,12 @@ def test_the_interface_of_cuda_arrays_tells_where_they_are(card):
 def test_recorded_work_goes_to_a_graph_that_keeps_what_it_uses(fake, card):
     card.launch(nothing, 1, card.held(1))
     before = fake.pieces
-    array = card.zeros(4, np.float64)
+    arrays = [card.zeros(4, np.float64)]
     fake.told()
     used = []
 
     def work():
-        card.clear(array)
+        card.clear(arrays[0])
         used.append((bundle := card.held(1)).address)
         card.launch(nothing, 1, bundle)
 
@@ -502,9 +502,9 @@ def test_recorded_work_goes_to_a_graph_that_keeps_what_it_uses(fake, card):
         "cuGraphDestroy 0x66", "cuStreamDestroy 0x55",
     ]  # fmt: skip
     graph()
-    card.clear(array)
+    card.clear(arrays[0])
     assert fake.told() == ["cuGraphLaunch 0x67 (nil)", "cuMemsetD8Async 32 stream (nil)"]
-    del array, work
+    arrays.clear()
     assert fake.pieces == before + 1
     del graph
     assert sorted(fake.told()) == ["cuGraphExecDestroy 0x67", "cuMemFree "]
