@@ -17,6 +17,7 @@ __all__ = [
     "any_of",
     "bit_pattern",
     "bits_of",
+    "claim_some",
     "ceiling",
     "first_bit",
     "from_bits",
@@ -57,6 +58,7 @@ WIDTH = 8
 _MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
 
 agree = Intrinsic(_MEMORY, "agree")
+claim_some = Intrinsic(_MEMORY, "claim_some")
 gather = Intrinsic(_MEMORY, "gather")
 gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")

@@ -4,14 +4,14 @@ from collections.abc import Iterable
 from typing import Any
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "agree", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
     "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
@@ -249,6 +249,26 @@ def store_largest(typing_context, array, at, value):
         return context.get_dummy_value()
 
     return types.void(array, at, value), generate
+
+
+@intrinsic
+def claim_some(typing_context, counter, count):
+    """Return the first number of an array of int64 and add a count to it, atomically, once for all
+    lanes.
+    """
+
+    def generate(context, builder, sig, args):
+        count = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = context.make_array(counter)(context, builder, args[0]).data
+        if not lanes_are_threads(context):
+            return builder.atomic_rmw("add", pointer, count, "monotonic")
+        found = cgutils.alloca_once_value(builder, _I64(0))
+        first = builder.icmp_unsigned("==", threads.lane_number(builder), _I32(0))
+        with builder.if_then(first):
+            builder.store(builder.atomic_rmw("add", pointer, count, "monotonic"), found)
+        return threads.from_lane(builder, builder.load(found), _I32(0))
+
+    return types.int64(counter, count), generate
 
 
 @intrinsic
