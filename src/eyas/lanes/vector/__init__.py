@@ -35,6 +35,7 @@ __all__ = [
     "magnitude",
     "own",
     "root",
+    "scatter",
     "select",
     "splat",
     "store",
@@ -65,6 +66,7 @@ gather_pair = Intrinsic(_MEMORY, "gather_pair")
 gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
 load_words = Intrinsic(_MEMORY, "load_words")
+scatter = Intrinsic(_MEMORY, "scatter")
 store = Intrinsic(_MEMORY, "store")
 store_greater = Intrinsic(_MEMORY, "store_greater")
 store_largest = Intrinsic(_MEMORY, "store_largest")

@@ -11,7 +11,8 @@ from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "scatter",
+    "store",
     "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
@@ -283,6 +284,22 @@ def agree(typing_context):
 
 
 @intrinsic
+def scatter(typing_context, array, index, mask, value):
+    """Write elements at some indices, none negative, where the mask is set."""
+
+    def generate(context, builder, sig, args):
+        number = not isinstance(index, Lanes) or lanes_are_threads(context)
+        for k, at in enumerate(_each(context, builder, index, args[1])):
+            wanted = args[2] if number else builder.extract_element(args[2], _I32(k))
+            element = args[3] if number else builder.extract_element(args[3], _I32(k))
+            with builder.if_then(wanted):
+                builder.store(element, _pointer(context, builder, array, args[0], at))
+        return context.get_dummy_value()
+
+    return types.void(array, index, mask, value), generate
+
+
+@intrinsic
 def store_words(typing_context, array, at, value):
     """Write eight uint32 into an array of bytes, from byte `at` on."""
     return types.void(array, at, value), _storing(4)
@@ -298,6 +315,11 @@ def store_where(typing_context, array, at, mask, value):
         held = ir_type(kind, threads=lanes_are_threads(context))
         pointer, align = _place(context, builder, sig, args, held, size)
         new = as_lanes(context, builder, sig.args[3], args[3], kind)
+        if lanes_are_threads(context):  # others may write beside what is wanted
+            with builder.if_then(args[2]):
+                builder.store(new, pointer).align = align
+            threads.agree(builder)
+            return context.get_dummy_value()
         chosen = builder.select(args[2], new, _load(builder, pointer, align))
         return _store(context, builder, chosen, pointer, align)
 

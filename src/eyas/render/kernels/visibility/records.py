@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import WIDTH, claim_some, gather, lane_numbers, splat, store_where
+from eyas.lanes.vector import WIDTH, claim_some, gather, lane_numbers, scatter, select, splat, store_where
 from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.fill import fill, fill_rows, slopes_of
@@ -60,9 +60,12 @@ def _record(band: Band, column: int, tag: int, layer: int, holes: Holes) -> bool
         store_where(unit, at, numbers < i4(min(begin + passes, len(unit)) - at), kept)
     if not room:
         return False
-    into = record[number // WIDTH]
-    for row in range(TRIANGLE_ROWS):
-        into[row, number % WIDTH] = gather(triangle, row * WIDTH + column)
+    into, place = record[number // WIDTH], number % WIDTH
+    for row in range(0, TRIANGLE_ROWS, WIDTH):
+        rows = numbers + i4(row)
+        wanted = rows < i4(TRIANGLE_ROWS)
+        at = select(wanted, rows, i4(0)) * i4(WIDTH)
+        scatter(into, at + i4(place), wanted, gather(triangle, at + i4(column)))
     shown[number, 0] = tag
     shown[number, 1] = layer * 16 + holes.level if holes.level >= 0 else i8(-1)
     return True
