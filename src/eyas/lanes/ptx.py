@@ -112,13 +112,14 @@ def _with_shared_records(text: str) -> str:
     def shared(found: re.Match[str]) -> str:
         record, kind = found[1], found[2]
         name = f"@shared.{len(globals_)}"
-        every = f"[{BLOCK // WIDTH} x {kind}]"
-        globals_.append(f"{name} = internal addrspace(3) global {every} undef, align 8\n")
+        # LLVM may have aligned the record to 16 bytes; the second part gives all places that.
+        every = f"[{BLOCK // WIDTH} x {{ {kind}, i128 }}]"
+        globals_.append(f"{name} = internal addrspace(3) global {every} undef, align 16\n")
         return (
             f"  {record}.thread = call i32 @llvm.nvvm.read.ptx.sreg.tid.x()\n"
             f"  {record}.worker = lshr i32 {record}.thread, {WIDTH.bit_length() - 1}\n"
             f"  {record}.place = getelementptr {every}, ptr addrspace(3) {name}, i32 0, "
-            f"i32 {record}.worker\n"
+            f"i32 {record}.worker, i32 0\n"
             f"  {record} = addrspacecast ptr addrspace(3) {record}.place to ptr\n"
         )
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
+    agree,
     any_of,
     bits_of,
     ceiling,
@@ -235,6 +236,7 @@ def _fill_own_row(
         begin = i8(own(first))
         at, length = (line - top) * key.shape[1] + begin, i8(own(last)) - begin
         _fill_span(key, at, length, own(value), (own(u), own(v)), slopes, tag, holes)
+    agree()
 
 
 @kernel(inline=True, threads=_fill_own_row)
