@@ -128,9 +128,10 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         inline: bool | None,
         double: bool,
         threads: Callable[..., Any] | None,
+        apart: bool,
     ) -> None:
         self._function, self._made_of, self._threads = function, made_of, threads
-        self._inline, self._double = inline, double
+        self._inline, self._double, self._apart = inline, double, apart
         self._parameters = inspect.signature(function)
         self._overloads: dict[tuple[str, tuple[Kind, ...]], _Overload] = {}
         name = f"{function.__module__}.{function.__qualname__}"
@@ -148,8 +149,10 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         )
         key = target_name(), kinds
         if key not in self._overloads:
-            function = self._threads if self._threads and for_threads() else self._function
-            made = _overload(function, kinds, self._inline, self._made_of)
+            function, inline = self._function, self._inline
+            if for_threads():
+                function, inline = self._threads or function, False if self._apart else inline
+            made = _overload(function, kinds, inline, self._made_of)
             current_context().insert_user_function(made, made.described, (made.module,))
             self._overloads[key] = made
         return self._overloads[key].signature.replace(pysig=self._parameters)

@@ -41,6 +41,7 @@ class Kernel:
     Attributes:
         py_func: The function.
         threads: What takes its place on graphics processors, None: the same.
+        apart: Whether it is never inlined there.
     """
 
     def __init__(
@@ -50,10 +51,11 @@ class Kernel:
         inline: bool | None = None,
         double: bool = False,
         threads: Callable[..., Any] | None = None,
+        apart: bool = False,
     ) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
-        self.threads = threads
+        self.threads, self.apart = threads, apart
         self._inline, self._double = inline, double
 
     @functools.cached_property
@@ -64,8 +66,9 @@ class Kernel:
         made_of = identity(self) if self.py_func.__closure__ is None else None
         threads = None if self.threads is None else getattr(self.threads, "py_func", self.threads)
         return KernelType(
-            self.py_func, made_of, inline=self._inline, double=self._double, threads=threads
-        )
+            self.py_func, made_of, inline=self._inline, double=self._double, threads=threads,
+            apart=self.apart,
+        )  # fmt: skip
 
     @functools.cached_property
     def _compiled(self) -> Callable[..., Any]:
@@ -90,6 +93,7 @@ def kernel(
     inline: bool | None = None,
     double: bool = False,
     threads: Callable[..., Any] | None = None,
+    apart: bool = False,
 ) -> Callable[[Function], Function]: ...
 def kernel(
     function: Function | None = None,
@@ -98,6 +102,7 @@ def kernel(
     inline: bool | None = None,
     double: bool = False,
     threads: Callable[..., Any] | None = None,
+    apart: bool = False,
 ) -> Function | Callable[[Function], Function]:
     """Compile a function that allocates nothing, so that a graphics processor can run it too.
 
@@ -110,10 +115,12 @@ def kernel(
         threads: A kernel that does the same where each lane is a thread of a graphics processor,
             and may go its own way (`eyas.lanes.vector.own`). For loops; what they compute is
             written once, in kernels that both call.
+        apart: Whether it is never inlined there: for what loops seldom call. A loop that does not
+            fit into the small memory for instructions waits for most of them.
     """
 
     def made(function: Function) -> Function:
-        made = Kernel(function, inline=inline, double=double, threads=threads)
+        made = Kernel(function, inline=inline, double=double, threads=threads, apart=apart)
         return cast("Function", made)
 
     return made if function is None else made(function)

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eyas.core.errors import ConfigError
+from eyas.lanes import ParallelCall
 from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Task
@@ -27,14 +28,20 @@ from eyas.state.lighting import LightState
 __all__ = ["DeviceRenderer", "PictureSize"]
 
 MEMBERS = 4
-"""Workers that share a view: a warp of a graphics processor is four times `WIDTH` threads."""
+"""Workers that share a view at least: a warp of a graphics processor is four times `WIDTH` threads.
+"""
 
 FILLERS = 32
 """Workers that share the rows of its triangles."""
 
-RECORDS, UNITS = 2048, 4096
-"""Triangles, and eights of their rows, that are kept for them; more are filled where they are found.
-"""
+BUSY = 8192
+"""Warps that keep a card busy while some wait: fewer views are shared by more workers."""
+
+RECORDS = 2560
+"""Triangles of a view that are kept for the fillers; more are filled where they are found."""
+
+UNITS_PER_ROW = 64
+"""Eights of their rows that are kept, for each row of samples."""
 
 _INSTANCES = 2048
 """Instances that a view shows at most."""
@@ -54,6 +61,11 @@ class PictureSize(NamedTuple):
     """Samples along a column of each pixel."""
     measured: bool = False
     """Whether subjects or actors are measured."""
+
+    @property
+    def members(self) -> tuple[int, int]:
+        """Workers that share the finding of triangles in a view, and its rows."""
+        return _members(self.views, 32), _members(self.views, self.height * self.down)
 
 
 class DeviceRenderer:
@@ -98,32 +110,36 @@ class DeviceRenderer:
         if key not in self._scratch:
             scratch = self._new_scratch(size, slots)
             shares = Shares(size.views, MEMBERS, device.zeros(size.views, np.int32))
-            shared = [device.held(shares._replace(members=n)) for n in (1, MEMBERS, FILLERS)]
-            self._scratch = {key: (scratch, device.held(scratch), shared)}
-        scratch, held, (alone, shared, many) = self._scratch[key]
+            of = {n: device.held(shares._replace(members=n)) for n in (1, *_powers())}
+            self._scratch = {key: (scratch, device.held(scratch), of)}
+        scratch, held, of = self._scratch[key]
         task = Task(
             size.across, size.down, size.width, size.height, falls, int(until), job
         )
         bundles = (*self._held, held, device.held(movers), device.held(output), device.held(task))
-        workers = size.views * MEMBERS
+        few, many = size.members
         device.clear(scratch.key)
         device.clear(scratch.recorded)
-        device.launch(find_triangles, workers, shared, *bundles, threads=WIDTH)
-        device.launch(fill_triangles, size.views * FILLERS, many, *bundles, threads=WIDTH)
+
+        def launch(stage: ParallelCall, members: int) -> None:
+            device.launch(stage, size.views * members, of[members], *bundles, threads=WIDTH)
+
+        launch(find_triangles, few)
+        launch(fill_triangles, max(FILLERS, many))
         coloured = len(output.rgb) > 0 or len(output.radiance) > 0
         if coloured and until > DrawStage.RASTERISING:
-            device.launch(cast_lights, workers, shared, *bundles, threads=WIDTH)
-            device.launch(shade, workers, shared, *bundles, threads=WIDTH)
+            launch(cast_lights, many)
+            launch(shade, many)
         measured = len(output.subject) + len(output.actor) > 0
         if measured:
             device.clear(scratch.alone)
-            device.launch(tell_facts, size.views, alone, *bundles, threads=WIDTH)
+            launch(tell_facts, 1)
         elif any(map(len, (output.depth, output.object_id, output.class_id, output.normal))):
-            device.launch(tell_facts, workers, shared, *bundles, threads=WIDTH)
+            launch(tell_facts, many)
 
     def _new_scratch(self, size: PictureSize, slots: int) -> Scratch:
         """Return working memory for all views."""
-        device, views = self._device, size.views
+        device, views, (few, many) = self._device, size.views, size.members
         chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
         instances = min(fixtures + slots * (2 if size.measured else 1), _INSTANCES)
         if instances > MOST_INSTANCES:
@@ -144,16 +160,32 @@ class DeviceRenderer:
             mesh=device.empty((views, instances), np.int32),
             tiles=device.empty((views, 1, 1), np.float32),
             order=device.empty((views, chunks + instances), np.int64),
-            triangle=device.empty((views * FILLERS, TRIANGLE_ROWS, CLUSTER), np.float64),
-            polygon=device.zeros((views * FILLERS, 15, CLUSTER), np.float64),
-            span=device.empty((views * FILLERS, SPAN_ROWS, WIDTH), np.int32),
+            triangle=device.empty((views * few, TRIANGLE_ROWS, CLUSTER), np.float64),
+            polygon=device.zeros((views * few, 15, CLUSTER), np.float64),
+            span=device.empty((views * max(FILLERS, many), SPAN_ROWS, WIDTH), np.int32),
             word=device.empty(none, np.uint32),
             bent_key=device.empty(none, np.int64),
             bent_shade=device.empty((*none, 4), np.uint8),
             leaning=device.empty((views, swaying, 3, 4), np.float32),
             record=device.empty((views, RECORDS // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
             record_shown=device.empty((views, RECORDS, 2), np.int64),
-            unit=device.empty((views, UNITS), np.int32),
+            unit=device.empty((views, max(UNITS_PER_ROW * plane[1], 2 * RECORDS)), np.int32),
             recorded=device.zeros((views, 1), np.int64),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )
+
+
+MOST = 128
+"""Workers that share a view at most."""
+
+
+def _powers() -> list[int]:
+    return [1 << k for k in range(MEMBERS.bit_length() - 1, MOST.bit_length())]
+
+
+def _members(views: int, most: int) -> int:
+    """Return how many workers share a view, a power of two, so that a card is busy."""
+    members = MEMBERS
+    while 2 * members <= min(most, MOST) and views * members < BUSY * MEMBERS:
+        members *= 2
+    return members

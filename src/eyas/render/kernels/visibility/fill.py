@@ -298,7 +298,7 @@ def fill_rows(
             columns += i4(WIDTH)
 
 
-@kernel(inline=True)
+@kernel(inline=True, apart=True)
 def fill(
     triangle: NDArray[np.float64],
     number: int,

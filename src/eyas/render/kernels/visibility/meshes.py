@@ -59,8 +59,11 @@ def level_of_detail(
 
 @kernel(inline=True)
 def own_share(band: Band) -> int:
-    """Return which of eight things are a worker's own, a bit each; 1, 2, 4 or 8 share a band."""
-    return (255 // ((1 << band.members) - 1)) << band.member
+    """Return which of the eight clusters in a row of `Geometry.bounds` are a worker's own, a bit
+    each; as many as a power of two share a band.
+    """
+    several = min(band.members, CLUSTER)
+    return (255 // ((1 << several) - 1)) << (band.member % CLUSTER)
 
 
 @kernel(inline=True)
@@ -91,7 +94,9 @@ def draw_mesh(
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
     first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
     share = own_share(band)
-    for start in range(0, clusters, CLUSTER):
+    # More than eight workers share rows.
+    begin, step = band.member // CLUSTER, max(band.members // CLUSTER, 1)
+    for start in range(begin * CLUSTER, clusters, step * CLUSTER):
         row = mesh[2] + start // CLUSTER
         left = clusters_seen(geometry.bounds, row, planes, eye, smallest) & share
         while left != 0:
@@ -162,7 +167,7 @@ def _tiles(geometry: Geometry, cluster: int, number: int) -> float:
     return gather(geometry.cluster, (cluster * CLUSTER_ROWS + LEAVES) * CLUSTER + number)
 
 
-@kernel(inline=True)
+@kernel(inline=True, apart=True)
 def _cut_triangle(band: Band, cluster: int, number: int, screen: Projection) -> int:
     """Prepare what the near plane leaves of a triangle: one or two, a bit each."""
     geometry, view, triangle, polygon = band.geometry, band.camera, band.triangle, band.polygon

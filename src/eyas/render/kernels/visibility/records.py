@@ -36,7 +36,10 @@ def fill_or_record(
         holes: Its holes.
     """
     view, triangle = band.camera, band.triangle
-    if band.members == 1 or not _record(band, column, tag, layer, holes):
+    recorded = False
+    if band.members > 1:
+        recorded = _record(band, column, tag, layer, holes)
+    if not recorded:
         fill(triangle, column, view.top, view.width, key, tag, holes, band.span)
 
 
