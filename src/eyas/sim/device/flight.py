@@ -13,7 +13,7 @@ from eyas.sim.step import Orders, StepKernels, StepState, begin_one, fly_one
 from eyas.targets.kind import Looks
 from eyas.task.done import DoneReason
 
-__all__ = ["START", "FlightCalls", "Flown", "Starts", "flight_calls"]
+__all__ = ["START", "FlightCalls", "Flown", "Focal", "Starts", "flight_calls"]
 
 _STEP_LIMIT: Final = int(DoneReason.STEP_LIMIT)
 
@@ -52,6 +52,13 @@ class Flown(NamedTuple):
     """1: it has ended by it, shape (N,)."""
 
 
+class Focal(NamedTuple):
+    """The pictures of N trackers."""
+
+    length: NDArray[np.float64]
+    """Focal length along rows and along columns [pixels], shape (N, 2)."""
+
+
 class Starts(NamedTuple):
     """K episodes to begin, in the first of N rows."""
 
@@ -69,7 +76,7 @@ class FlightCalls(NamedTuple):
     act: ParallelCall
     """`StepState`, `Orders`, `Flown`: moves all active trackers by an action."""
     begin: ParallelCall
-    """`StepState`, `ModelTable`, `Looks`, focal lengths (N, 2), `Starts`: begins episodes."""
+    """`StepState`, `ModelTable`, `Looks`, `Focal`, `Starts`: begins episodes."""
 
 
 def flight_calls(kernels: StepKernels) -> FlightCalls:
@@ -108,7 +115,7 @@ def _begin(  # the records that it writes
     state: StepState,
     models: ModelTable,
     looks: Looks,
-    focal: NDArray[np.float64],
+    focal: Focal,
     starts: Starts,
 ) -> None:
     """Begin the episodes that have been drawn; each tracker has a world of its own."""
@@ -120,7 +127,7 @@ def _begin(  # the records that it writes
         offset = episodes.start_offset[n]
         offset[0], offset[1], offset[2], offset[3] = row.ahead, row.left, row.up, row.heading
         cameras.field_of_view[n] = row.field_of_view
-        focal[n, 0], focal[n, 1] = row.focal_x, row.focal_y
+        focal.length[n, 0], focal.length[n, 1] = row.focal_x, row.focal_y
         light.sky[n], light.sun[n], light.fog_density[n] = row.sky, row.sun, row.fog_density
         light.wind_x[n], light.wind_y[n] = row.wind_x, row.wind_y
         for actor in range(looks.model.shape[1]):

@@ -9,7 +9,7 @@ from eyas.core.pinhole import field_along, focal_length
 from eyas.lanes.device import Device
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.device.flight import START, Flown, Starts, flight_calls
+from eyas.sim.device.flight import START, Flown, Focal, Starts, flight_calls
 from eyas.sim.device.records import uploaded
 from eyas.sim.device.refusals import check_device
 from eyas.sim.episodes import Episodes
@@ -39,8 +39,7 @@ class DeviceSimulation:
         assets: Map, traffic and renderer.
         snapshot: The state, a `Snapshot` of arrays on the device.
         looks: Models and colours of all actors in the N worlds, on the device.
-        focal: Focal lengths of the pictures along rows and columns [pixels], on the device,
-            shape (N, 2).
+        held_focal: The `Focal` of the pictures, held by the device.
         flown: How the trackers have done in the last action, on the device.
         commands: Commands of the trackers, see `eyas.trackers.tracker.Tracker.advance`, on the
             device, shape (N, 4).
@@ -82,7 +81,7 @@ class DeviceSimulation:
         self._models = self._episodes.models
         self.snapshot: Snapshot = uploaded(device, host)
         self.looks: Looks = uploaded(device, worlds.looks)
-        self.focal = device.zeros((count, 2), np.float64)
+        self.held_focal = device.held(Focal(device.zeros((count, 2), np.float64)))
         terrain = assets.scene.terrain
         memory = uploaded(device, tracker.memory(count, terrain))
         around = StepSurroundings(traffic.motion, terrain)
@@ -97,8 +96,7 @@ class DeviceSimulation:
         self._act = state, device.held(orders), device.held(self.flown)
         self._starts: Starts = uploaded(device, _starts(count, traffic.actors))
         models, starts = device.held(self._models), device.held(self._starts)
-        focal = device.held(self.focal)
-        self._begin = state, models, device.held(self.looks), focal, starts
+        self._begin = state, models, device.held(self.looks), self.held_focal, starts
 
     def reseed_alone(self, trackers: NDArray[np.integer], seeds: NDArray[np.integer]) -> None:
         """See `eyas.sim.simulation.Simulation.reseed_alone`."""
