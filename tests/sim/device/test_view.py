@@ -29,7 +29,7 @@ CASES = {
         "light": {"background": {"uniform": [-0.2, 0.2]}},
     },
     "person": {"target": "Pedestrian"},
-    "robot": {"target": "AiboErs7"},
+    "robot": {"target": "BB-8"},
 }
 
 

@@ -3,10 +3,11 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.lanes.device import Device
 
-__all__ = ["uploaded"]
+__all__ = ["Mirrored", "uploaded"]
 
 
 def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, an array or a number
@@ -19,3 +20,26 @@ def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, a
         return record
     parts = [uploaded(device, part) for part in record]
     return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+class Mirrored:
+    """An array on a device that only the host writes: what does not change is not uploaded again.
+
+    Attributes:
+        array: The array on the device.
+
+    Args:
+        device: The device.
+        content: What is in it at first.
+    """
+
+    def __init__(self, device: Device, content: NDArray[Any]) -> None:
+        self.array = device.upload(content)
+        self._device, self._content = device, content.copy()
+
+    def write(self, values: NDArray[Any]) -> None:
+        """Write the first rows."""
+        known = self._content[: len(values)]
+        if not np.array_equal(known, values):
+            known[:] = values
+            self._device.write(self.array, known)

@@ -10,7 +10,7 @@ from eyas.lanes.device import Device
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.device.flight import START, Flown, Focal, Starts, flight_calls
-from eyas.sim.device.records import uploaded
+from eyas.sim.device.records import Mirrored, uploaded
 from eyas.sim.device.refusals import check_device
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
@@ -89,8 +89,9 @@ class DeviceSimulation:
         state = device.held(step_state(config, tracker, self.snapshot, memory, around, rules))
         orders = Orders.create(count)
         orders.steps[0] = steps
-        orders = uploaded(device, orders)
-        self.commands, self._active = orders.commands, orders.active
+        self._active = Mirrored(device, orders.active)
+        orders = uploaded(device, orders)._replace(active=self._active.array)
+        self.commands = orders.commands
         self.flown: Flown = uploaded(device, _flown(count, repeat, config.reward.weight))
         self._calls = flight_calls(step_kernels(config, tracker))
         self._act = state, device.held(orders), device.held(self.flown)
@@ -120,7 +121,7 @@ class DeviceSimulation:
         """Let trackers follow their commands for an action, or until their episodes end; time
         stands still for those that are not active, shape (N,). `flown` tells how they have done.
         """
-        self.device.write(self._active, active)
+        self._active.write(active)
         self.device.launch(self._calls.act, self.count, *self._act)
 
     def ended(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -18,7 +18,7 @@ from eyas.sim.device.near import (
     list_actors,
     pose_call,
 )
-from eyas.sim.device.records import uploaded
+from eyas.sim.device.records import Mirrored, uploaded
 from eyas.sim.device.signals import signal_times
 from eyas.sim.device.simulation import DeviceSimulation
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, make_rows
@@ -64,7 +64,11 @@ class DeviceView:
         around = Surroundings(motion, _bounds(assets), kinds, simulation.looks)
         aspect = config.camera.height / config.camera.width
         timed, self._falling = is_timed(config), config.light.flakes
-        self._query: ViewQuery = uploaded(device, _query(count, aspect))
+        query = _query(count, aspect)
+        self._chosen, self._count = Mirrored(device, query.world), Mirrored(device, query.worlds)
+        self._query: ViewQuery = uploaded(device, query)._replace(
+            world=self._chosen.array, worlds=self._count.array
+        )
         self._shown: Shown = uploaded(device, _shown(count, timed=timed))
         self._world = device.upload(np.arange(count, dtype=np.int32))
         last = round(assets.traffic.duration / PHYSICS_STEP)
@@ -77,7 +81,7 @@ class DeviceView:
             device.held(self._query),
             device.held(self._shown),
         )
-        self._views = np.zeros(0, np.int64)
+        self._views = 0
         self._grow(_ENTRIES, _SLOTS)
 
     def draw(self, trackers: NDArray[np.int64], rgb: Any) -> None:  # noqa: ANN401  # a device array
@@ -95,16 +99,15 @@ class DeviceView:
     def cameras(self) -> DeviceViews:
         """The cameras of the last pictures, on the device."""
         query, shown, falling = self._query, self._shown, self._falling
-        return DeviceViews(len(self._views), query.eye, world=self._world, falling=falling,
+        return DeviceViews(self._views, query.eye, world=self._world, falling=falling,
                            **shown._asdict())  # fmt: skip
 
     def _list(self, trackers: NDArray[np.int64]) -> None:
         """Write cameras and lists of some trackers, without parts and poses."""
         device, count = self._device, len(trackers)
-        if not np.array_equal(trackers, self._views):
-            self._views = trackers.copy()
-            device.write(self._query.worlds, np.array([count], np.int64))
-            device.write(self._query.world, self._views)
+        self._views = count
+        self._count.write(np.array([count]))
+        self._chosen.write(trackers)
         device.clear(self._counts.short)
         device.launch(list_actors, count, *self._looking, *self._lists)
         if device.read(self._counts.short)[0]:
@@ -114,7 +117,7 @@ class DeviceView:
 
     def _pose(self) -> None:
         """Write the parts and poses of what is listed."""
-        device, views = self._device, len(self._views)
+        device, views = self._device, self._views
         cells = views * self.movers.part.shape[1]
         held = self._snapshot, self._looking[3], *self._lists, self._signals
         device.launch(empty_slots, cells, *held)
