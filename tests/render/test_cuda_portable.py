@@ -12,7 +12,7 @@ from eyas.lanes import address_of, parallel
 from eyas.lanes.ptx import ptx_of
 from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Movers
-from eyas.render.kernels.draw import band_of, view_light
+from eyas.render.kernels.draw import band_of, no_glass, view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.sensors.config import CameraConfig, MountConfig
@@ -48,7 +48,10 @@ def shade_thread(row, column, geometry, light, scratch, movers, task, found):
     job = task.job
     view = address_of(view_of(task, 0))
     lit = address_of(view_light(light.weather, job.light, 0))
-    band = address_of(band_of(geometry, light, lit, movers, 0, view, task.until, scratch, 0))
+    glass = address_of(no_glass(scratch, 0))
+    band = address_of(
+        band_of(geometry, light, lit, movers, 0, view, glass, task.until, scratch, 0, 0, 1)
+    )
     key, shade = band.key[row, column], u4(band.shade[row, column, 0])
     found[row, column] = shade_pixel(band, key, shade, row, column)
 

@@ -5,7 +5,7 @@ import pytest
 
 from eyas.lanes import address_of, compiled
 from eyas.render import renderer as module
-from eyas.render.kernels.draw import band_of, view_light
+from eyas.render.kernels.draw import band_of, no_glass, view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import Picture
@@ -36,7 +36,10 @@ def one_by_one(geometry, light, scratch, movers, _output, task, _tables, places,
     job = task.job
     view = address_of(view_of(task, 0))
     lit = address_of(view_light(light.weather, job.light, 0))
-    band = address_of(band_of(geometry, light, lit, movers, 0, view, task.until, scratch, 0))
+    glass = address_of(no_glass(scratch, 0))
+    band = address_of(
+        band_of(geometry, light, lit, movers, 0, view, glass, task.until, scratch, 0, 0, 1)
+    )
     for k in range(len(places)):
         row, column = places[k, 0], places[k, 1]
         shade = band.shade[row, column]

@@ -34,6 +34,7 @@ from eyas.lanes.modules import (
     module_name,
     module_of,
 )
+from eyas.lanes.targets import current_context, for_threads, target_name
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
 __all__ = [
@@ -96,7 +97,7 @@ def _overload(
 def _compile(
     function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None, name: str | None
 ) -> _Overload:
-    target = cpu_target.target_context
+    target = current_context()
     library = Library(target.codegen(), function.__qualname__, name and name.split("-")[1])
     made = compile_extra(
         typing(),
@@ -126,15 +127,16 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         *,
         inline: bool | None,
         double: bool,
+        threads: Callable[..., Any] | None,
     ) -> None:
-        self._function, self._made_of = function, made_of
+        self._function, self._made_of, self._threads = function, made_of, threads
         self._inline, self._double = inline, double
         self._parameters = inspect.signature(function)
-        self._overloads: dict[tuple[Kind, ...], _Overload] = {}
+        self._overloads: dict[tuple[str, tuple[Kind, ...]], _Overload] = {}
         name = f"{function.__module__}.{function.__qualname__}"
         super().__init__(f"kernel({name} at {id(function):#x})")
 
-    def get_call_type(self, context: object, args: Iterable[Kind], kws: dict[str, Kind]) -> object:
+    def get_call_type(self, typing_context: object, args: Iterable[Kind], kws: dict[str, Kind]) -> object:
         """Return the signature of a call, after compiling the kernel for it."""
         let_in()
         given = self._parameters.bind(*args, **dict(kws)).arguments
@@ -144,11 +146,13 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
             else numba.types.Omitted(parameter.default)
             for name, parameter in self._parameters.parameters.items()
         )
-        if kinds not in self._overloads:
-            made = _overload(self._function, kinds, self._inline, self._made_of)
-            cpu_target.target_context.insert_user_function(made, made.described, (made.module,))
-            self._overloads[kinds] = made
-        return self._overloads[kinds].signature.replace(pysig=self._parameters)
+        key = target_name(), kinds
+        if key not in self._overloads:
+            function = self._threads if self._threads and for_threads() else self._function
+            made = _overload(function, kinds, self._inline, self._made_of)
+            current_context().insert_user_function(made, made.described, (made.module,))
+            self._overloads[key] = made
+        return self._overloads[key].signature.replace(pysig=self._parameters)
 
     def get_call_signatures(self) -> tuple[list[object], bool]:
         """Return the signatures compiled so far, and that there may be others."""
@@ -156,7 +160,7 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
 
     def get_impl_key(self, signature: Any) -> object:  # noqa: ANN401  # numba's signature
         """Return what identifies the compiled function."""
-        return self._overloads[signature.args]
+        return self._overloads[target_name(), signature.args]
 
 
 register_model(KernelType)(models.OpaqueModel)
@@ -212,10 +216,10 @@ def _passed(bundle: Kind) -> Kind:
 
 def _entry(made: _Overload, entry: str, numbers: int) -> Library:
     """Return the function that C can call; `numbers` of its own are handed on before bundles."""
-    context = cpu_target.target_context
-    library = Library(context.codegen(), entry)
-    module = context.create_module(entry)
-    described, convention = made.described, context.call_conv
+    target = current_context()
+    library = Library(target.codegen(), entry)
+    module = target.create_module(entry)
+    described, convention = made.described, target.call_conv
     kind = convention.get_function_type(described.restype, described.argtypes)
     callee = ir.Function(module, kind, described.llvm_func_name)
     number, address = ir.IntType(64), ir.IntType(8).as_pointer()
@@ -225,7 +229,7 @@ def _entry(made: _Overload, entry: str, numbers: int) -> Library:
     given = list(called.args[1 : 1 + numbers])
     for place, bundle in enumerate(described.argtypes[numbers:]):
         slot = builder.load(builder.gep(called.args[0], [number(place)]))
-        model = context.data_model_manager[bundle]
+        model = target.data_model_manager[bundle]
         if isinstance(bundle, numba.types.CPointer):
             given.append(builder.bitcast(slot, model.get_value_type()))
         else:

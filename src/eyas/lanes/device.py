@@ -18,7 +18,7 @@ __all__ = ["Device", "DeviceArray", "HostDevice"]
 
 
 class DeviceArray(Protocol):
-    """A contiguous array in the memory of a device; numpy's arrays are those of `HostDevice`."""
+    """A C-contiguous array in the memory of a device; numpy's arrays are those of `HostDevice`."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -33,6 +33,14 @@ class DeviceArray(Protocol):
     @property
     def nbytes(self) -> int:
         """Its size [bytes]."""
+        ...
+
+    def __getitem__(self, rows: slice) -> Any:  # noqa: ANN401
+        """Return some rows, `array[first:last]`, as a `DeviceArray` of the same memory."""
+        ...
+
+    def reshape(self, *shape: Any) -> Any:  # noqa: ANN401
+        """Return the same memory as a `DeviceArray` of another shape, given as to numpy's."""
         ...
 
 
@@ -72,11 +80,19 @@ class Device(Protocol):
 
     def held(self, bundle: Any) -> Any:  # noqa: ANN401
         """Return a bundle laid out for `launch`: a named tuple, also with others in it, of numbers
-        and arrays. Those of numpy are uploaded, once each; a `DeviceArray` is used as it is.
+        and arrays. Those of numpy are uploaded, once each, so what is written into them later may
+        not be seen, nor what kernels write; a `DeviceArray` is used as it is.
         """
         ...
 
-    def launch(self, call: ParallelCall, workers: int, *bundles: Any, threads: int = 1) -> None:  # noqa: ANN401
+    def launch(
+        self,
+        call: ParallelCall,
+        workers: int,
+        *bundles: Any,  # noqa: ANN401
+        threads: int = 1,
+        block: int = 128,
+    ) -> None:
         """Run a kernel for all workers.
 
         Args:
@@ -86,6 +102,7 @@ class Device(Protocol):
             bundles: From `held`.
             threads: Threads of a graphics processor that are one worker: 1, or, if the kernel
                 works on lanes, one for each lane, `eyas.lanes.vector.WIDTH`.
+            block: Threads that a graphics processor starts together, a multiple of 32.
         """
         ...
 
@@ -135,9 +152,16 @@ class HostDevice:
         """See `Device`."""
         return Held(bundle)
 
-    def launch(self, call: ParallelCall, workers: int, *bundles: Held[Any], threads: int = 1) -> None:
+    def launch(
+        self,
+        call: ParallelCall,
+        workers: int,
+        *bundles: Held[Any],
+        threads: int = 1,
+        block: int = 128,
+    ) -> None:
         """See `Device`."""
-        del threads
+        del threads, block
         call(min(workers, self._workers), *bundles)
 
     def synchronise(self) -> None:

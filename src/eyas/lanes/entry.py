@@ -25,11 +25,12 @@ from eyas.lanes.machine_code import (
 )
 from eyas.lanes.shipped import is_shipped, shipped_code
 
-__all__ = ["entry_address", "nothing_compiled"]
+__all__ = ["LOCK", "entry_address", "nothing_compiled"]
 
 _LOG = logging.getLogger(OWNER)
 
-_LOCK = threading.RLock()
+LOCK = threading.RLock()
+"""Held while numba and LLVM compile."""
 
 
 def entry_address(
@@ -48,7 +49,7 @@ def entry_address(
     path = code_file(kernel_folder(), _name_of(function), kinds, made_by)
     keeps = function.__closure__ is None  # or what it depends on is not all in the name
     # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
-    with _LOCK, shielded():
+    with LOCK, shielded():
         address = _kept(path) if keeps else None
         if address is None:
             start = time.perf_counter()

@@ -64,6 +64,8 @@ class _Closure:
             function = getattr(kernel, "py_func", kernel)
             yield f"{function.__module__}.{function.__qualname__} {_compiled_as(kernel)}"
             yield self._described(function.__defaults__)
+            if getattr(kernel, "threads", None) is not None:
+                yield f"threads {self._described(kernel.threads)}"
             yield from self._own(function)
 
     def _number(self, function: Any) -> int:  # noqa: ANN401  # a kernel or a function

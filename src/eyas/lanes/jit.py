@@ -40,13 +40,20 @@ class Kernel:
 
     Attributes:
         py_func: The function.
+        threads: What takes its place on graphics processors, None: the same.
     """
 
     def __init__(
-        self, function: Callable[..., Any], *, inline: bool | None = None, double: bool = False
+        self,
+        function: Callable[..., Any],
+        *,
+        inline: bool | None = None,
+        double: bool = False,
+        threads: Callable[..., Any] | None = None,
     ) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
+        self.threads = threads
         self._inline, self._double = inline, double
 
     @functools.cached_property
@@ -55,7 +62,10 @@ class Kernel:
         from eyas.lanes.compilation import KernelType
 
         made_of = identity(self) if self.py_func.__closure__ is None else None
-        return KernelType(self.py_func, made_of, inline=self._inline, double=self._double)
+        threads = None if self.threads is None else getattr(self.threads, "py_func", self.threads)
+        return KernelType(
+            self.py_func, made_of, inline=self._inline, double=self._double, threads=threads
+        )
 
     @functools.cached_property
     def _compiled(self) -> Callable[..., Any]:
@@ -76,10 +86,18 @@ class Kernel:
 def kernel(function: Function, /) -> Function: ...
 @overload
 def kernel(
-    *, inline: bool | None = None, double: bool = False
+    *,
+    inline: bool | None = None,
+    double: bool = False,
+    threads: Callable[..., Any] | None = None,
 ) -> Callable[[Function], Function]: ...
 def kernel(
-    function: Function | None = None, /, *, inline: bool | None = None, double: bool = False
+    function: Function | None = None,
+    /,
+    *,
+    inline: bool | None = None,
+    double: bool = False,
+    threads: Callable[..., Any] | None = None,
 ) -> Function | Callable[[Function], Function]:
     """Compile a function that allocates nothing, so that a graphics processor can run it too.
 
@@ -89,10 +107,14 @@ def kernel(
             pixel, and for those whose arguments are records of dozens of arrays, which would
             otherwise be copied at each call. False: never. None: as LLVM thinks best.
         double: Whether numbers of any kind are given to it as float64.
+        threads: A kernel that does the same where each lane is a thread of a graphics processor,
+            and may go its own way (`eyas.lanes.vector.own`). For loops; what they compute is
+            written once, in kernels that both call.
     """
 
     def made(function: Function) -> Function:
-        return cast("Function", Kernel(function, inline=inline, double=double))
+        made = Kernel(function, inline=inline, double=double, threads=threads)
+        return cast("Function", made)
 
     return made if function is None else made(function)
 

@@ -25,6 +25,7 @@ from eyas.lanes.folder import OWNER, kernel_folder, read_trusted, refusal, touch
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import cpu, digest
 from eyas.lanes.shipped import wanted
+from eyas.lanes.targets import target_name
 from eyas.lanes.vector.kinds import Lanes
 
 __all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]
@@ -89,7 +90,7 @@ def module_name(
     told = [_told(kind) for kind in kinds]
     if made_of is None or any(" at 0x" in text for text in told):
         return None
-    made_by = numba.__version__, llvmlite.__version__, cpu().triple, language_hash()
+    made_by = numba.__version__, llvmlite.__version__, cpu().triple, language_hash(), target_name()
     return f"{function.__name__}-{digest((made_of, *told))}-{digest(made_by)}"
 
 

@@ -6,6 +6,7 @@ would give other bytes. Neither CUDA nor a graphics processor is needed for it.
 """
 
 import re
+from contextlib import nullcontext
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -14,6 +15,7 @@ import numba
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.compilation import entry_module
 from eyas.lanes.machine_code import improve
+from eyas.lanes.targets import lanes_as_threads
 
 __all__ = ["ptx_of"]
 
@@ -34,31 +36,41 @@ def ptx_of(
     call: CompiledCall,
     bundles: tuple[tuple[Any, ...], ...],
     name: str,
-    processor: str = "sm_90",
+    processor: str = "sm_80",
+    *,
+    threads: int = 1,
 ) -> str:
     """Return the PTX of a compiled function and of all that it calls.
 
     Args:
         call: The function.
         bundles: What it is called with; only their types count.
-        name: Of the entry, which takes the address of the table of pointers and two numbers.
+        name: Of the entry. It takes the address of the table of pointers, the number of the first
+            worker, and how many there are; threads beyond the last worker do nothing.
         processor: LLVM's name of the oldest graphics processor to serve.
+        threads: Threads that are one worker, see `eyas.lanes.device.Device.launch`.
     """
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     target = llvm.Target.from_triple(_TRIPLE)
     machine = target.create_target_machine(cpu=processor, features="+ptx80", opt=3)
     kinds = [numba.typeof(bundle) for bundle in bundles]
-    module = entry_module(call.function, kinds, f"{name}_status", over_workers=call.over_workers)
-    module = llvm.parse_assembly(_retargeted(str(module), name, str(machine.target_data)))
+    with lanes_as_threads() if threads > 1 else nullcontext():
+        module = entry_module(
+            call.function, kinds, f"{name}_status", over_workers=call.over_workers
+        )
+    text = _retargeted(str(module), name, str(machine.target_data), threads)
+    module = llvm.parse_assembly(text)
     module.verify()
+    for function in module.functions:  # what threads do together may not be moved into branches
+        function.add_function_attribute("convergent")
     # Loops that do several turns at once need more registers, which all threads share.
     improve(module, name, machine, loops=False)
-    text: str = machine.emit_assembly(module)
+    text = machine.emit_assembly(module)
     return text
 
 
-def _retargeted(text: str, name: str, layout: str) -> str:
+def _retargeted(text: str, name: str, layout: str, threads: int) -> str:
     """Return a module's text for the graphics processor, with its entry."""
     text = re.sub(r'target triple = "[^"]*"', f'target triple = "{_TRIPLE}"', text)
     text = re.sub(r'target datalayout = "[^"]*"', f'target datalayout = "{layout}"', text)
@@ -73,8 +85,33 @@ def _retargeted(text: str, name: str, layout: str) -> str:
                 f"define {kind} @{function}({kind} %x) alwaysinline {{\n"
                 f"  %y = call {kind} @{instruction}({kind} %x)\n  ret {kind} %y\n}}"
             )
-    parts.append(
-        f"define ptx_kernel void @{name}(ptr %parts, i64 %a, i64 %b) {{\n"
-        f"  %status = call i32 @{name}_status(ptr %parts, i64 %a, i64 %b)\n  ret void\n}}\n"
-    )
+    for register in ("tid", "ntid", "ctaid"):
+        special = f"@llvm.nvvm.read.ptx.sreg.{register}.x("
+        if special not in text:
+            parts.append(f"declare i32 {special})")
+    parts.append(_ENTRY.format(name=name, shift=threads.bit_length() - 1))
     return "\n".join([text, *parts])
+
+
+_ENTRY = """
+define ptx_kernel void @{name}(ptr %parts, i64 %first, i64 %workers) {{
+  %thread = call i32 @llvm.nvvm.read.ptx.sreg.tid.x()
+  %threads = call i32 @llvm.nvvm.read.ptx.sreg.ntid.x()
+  %block = call i32 @llvm.nvvm.read.ptx.sreg.ctaid.x()
+  %a = zext i32 %thread to i64
+  %b = zext i32 %threads to i64
+  %c = zext i32 %block to i64
+  %d = mul i64 %b, %c
+  %number = add i64 %a, %d
+  %group = lshr i64 %number, {shift}
+  %worker = add i64 %group, %first
+  %in = icmp ult i64 %worker, %workers
+  br i1 %in, label %work, label %end
+work:
+  %status = call i32 @{name}_status(ptr %parts, i64 %worker, i64 %workers)
+  br label %end
+end:
+  ret void
+}}
+"""
+"""The entry, in LLVM's language; `threads` of a worker is two to the power of `shift`."""

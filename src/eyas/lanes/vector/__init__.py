@@ -12,6 +12,7 @@ from eyas.lanes.intrinsics import Intrinsic
 
 __all__ = [
     "WIDTH",
+    "agree",
     "all_of",
     "any_of",
     "bit_pattern",
@@ -31,10 +32,13 @@ __all__ = [
     "load",
     "load_words",
     "magnitude",
+    "own",
     "root",
     "select",
     "splat",
     "store",
+    "store_greater",
+    "store_largest",
     "store_triples",
     "store_where",
     "store_words",
@@ -52,6 +56,7 @@ WIDTH = 8
 
 _MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
 
+agree = Intrinsic(_MEMORY, "agree")
 gather = Intrinsic(_MEMORY, "gather")
 gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")
@@ -59,6 +64,8 @@ gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
 load_words = Intrinsic(_MEMORY, "load_words")
 store = Intrinsic(_MEMORY, "store")
+store_greater = Intrinsic(_MEMORY, "store_greater")
+store_largest = Intrinsic(_MEMORY, "store_largest")
 store_triples = Intrinsic(_MEMORY, "store_triples")
 store_where = Intrinsic(_MEMORY, "store_where")
 store_words = Intrinsic(_MEMORY, "store_words")
@@ -77,6 +84,7 @@ lane_numbers = Intrinsic(_VALUES, "lane_numbers")
 lesser = Intrinsic(_VALUES, "lesser")
 like = Intrinsic(_VALUES, "like")
 magnitude = Intrinsic(_VALUES, "magnitude")
+own = Intrinsic(_VALUES, "own")
 root = Intrinsic(_VALUES, "root")
 select = Intrinsic(_VALUES, "select")
 splat = Intrinsic(_VALUES, "splat")

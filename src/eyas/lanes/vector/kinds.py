@@ -1,4 +1,9 @@
-"""The type of lanes: eight numbers that one instruction handles at once."""
+"""The type of lanes: eight numbers that one instruction handles at once.
+
+On a processor they are a vector. On a graphics processor they are eight threads of a warp, each of
+which holds its own number: what is one number for all lanes is computed by each of them, and what
+combines lanes is an instruction between threads.
+"""
 
 from typing import Any
 
@@ -8,7 +13,19 @@ from numba.extending import models, register_model
 
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["F4", "I4", "I8", "MASK", "U4", "Lanes", "as_lanes", "element_of", "ir_type"]
+__all__ = [
+    "F4",
+    "I4",
+    "I8",
+    "MASK",
+    "U4",
+    "Lanes",
+    "ThreadModel",
+    "as_lanes",
+    "element_of",
+    "ir_type",
+    "lanes_are_threads",
+]
 
 
 class Lanes(types.Type):
@@ -34,8 +51,18 @@ def element_of(*kinds: types.Type) -> types.Type:
     return types.unliteral(kinds[0])
 
 
-def ir_type(kind: types.Type) -> ir.Type:
-    """Return LLVM's type of lanes, or of a number as the kernels hold it."""
+def lanes_are_threads(context: Any) -> bool:  # noqa: ANN401  # numba has no types
+    """Return whether code is made for a graphics processor, where each lane is a thread."""
+    return getattr(context, "lanes_are_threads", False)
+
+
+def ir_type(kind: types.Type, *, threads: bool) -> ir.Type:
+    """Return LLVM's type of lanes, or of a number as the kernels hold it.
+
+    Args:
+        kind: The type.
+        threads: See `lanes_are_threads`.
+    """
     element = element_of(kind)
     if isinstance(element, types.Boolean):
         single: ir.Type = ir.IntType(1)
@@ -43,13 +70,20 @@ def ir_type(kind: types.Type) -> ir.Type:
         single = ir.FloatType() if element.bitwidth == 32 else ir.DoubleType()
     else:
         single = ir.IntType(element.bitwidth)
-    return ir.VectorType(single, WIDTH) if isinstance(kind, Lanes) else single
+    return ir.VectorType(single, WIDTH) if isinstance(kind, Lanes) and not threads else single
 
 
 @register_model(Lanes)
 class _LanesModel(models.PrimitiveModel):
-    def __init__(self, manager: Any, kind: Lanes) -> None:  # noqa: ANN401  # numba has no types
-        super().__init__(manager, kind, ir_type(kind))
+    def __init__(self, manager: Any, kind: Lanes) -> None:  # noqa: ANN401
+        super().__init__(manager, kind, ir_type(kind, threads=False))
+
+
+class ThreadModel(models.PrimitiveModel):
+    """How a thread of a graphics processor holds lanes: its own number."""
+
+    def __init__(self, manager: Any, kind: Lanes) -> None:  # noqa: ANN401
+        super().__init__(manager, kind, ir_type(kind, threads=True))
 
 
 def as_lanes(
@@ -64,7 +98,7 @@ def as_lanes(
         return value
     element = element_of(wanted)
     number = context.cast(builder, value, kind, element)
-    if not isinstance(wanted, Lanes):
+    if not isinstance(wanted, Lanes) or lanes_are_threads(context):
         return number
     vector = ir.VectorType(number.type, WIDTH)
     nothing = ir.Constant(vector, ir.Undefined)

@@ -7,12 +7,12 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 
-from eyas.lanes.vector import WIDTH
-from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type
+from eyas.lanes.vector import WIDTH, threads
+from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
-    "store_triples", "store_where", "store_words", "transposed",
+    "agree", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -29,18 +29,21 @@ def _load(builder: Any, pointer: Any, align: int) -> ir.Value:
     return value
 
 
-def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:
-    """Return the indices in the lanes, or the one index, as 64 bits; none is negative."""
-    if not isinstance(kind, Lanes):
+def _each(context: Any, builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:
+    """Return the indices in the lanes, or the one index, as 64 bits; none is negative.
+
+    A thread has one: its own.
+    """
+    if not isinstance(kind, Lanes) or lanes_are_threads(context):
         return [index if index.type == _I64 else builder.zext(index, _I64)]
     items = [builder.extract_element(index, _I32(k)) for k in range(WIDTH)]
     return [builder.zext(item, _I64) for item in items]
 
 
 def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:
-    if not isinstance(kind, Lanes):
+    if len(items) == 1:
         return items[0]
-    value = ir.Constant(ir_type(kind), ir.Undefined)
+    value = ir.Constant(ir_type(kind, threads=False), ir.Undefined)
     for k, item in enumerate(items):
         value = builder.insert_element(value, item, _I32(k))
     return value
@@ -58,7 +61,7 @@ def gather(typing_context, array, index):
 
     def generate(context, builder, sig, args):
         items = []
-        for at in _each(builder, index, args[1]):
+        for at in _each(context, builder, index, args[1]):
             item = builder.load(_pointer(context, builder, array, args[0], at))
             if array.dtype.bitwidth < 32:
                 item = builder.zext(item, _I32)
@@ -75,7 +78,7 @@ def gather_pair(typing_context, array, index):
 
     def generate(context, builder, sig, args):
         items = []
-        for at in _each(builder, index, args[1]):
+        for at in _each(context, builder, index, args[1]):
             pointer = _pointer(context, builder, array, args[0], at)
             items.append(_load(builder, builder.bitcast(pointer, _I32.as_pointer()), 2))
         return _collected(builder, result, items)
@@ -94,7 +97,7 @@ def gather_pair_after(typing_context, array, index, step):
     def generate(context, builder, sig, args):
         step = context.cast(builder, args[2], sig.args[2], types.int64)
         items = []
-        for at in _each(builder, index, args[1]):
+        for at in _each(context, builder, index, args[1]):
             pointer = _pointer(context, builder, array, args[0], at)
             pointer = builder.bitcast(builder.gep(pointer, [step]), _I32.as_pointer())
             items.append(_load(builder, pointer, 2))
@@ -112,7 +115,7 @@ def gather_column(typing_context, array, index, column, width):
         offset = context.cast(builder, args[2], sig.args[2], types.int64)
         step = context.cast(builder, args[3], sig.args[3], types.int64)
         items = []
-        for row in _each(builder, index, args[1]):
+        for row in _each(context, builder, index, args[1]):
             at = builder.add(builder.mul(row, step), offset)
             items.append(builder.load(_pointer(context, builder, array, args[0], at)))
         return _collected(builder, result, items)
@@ -131,27 +134,49 @@ def transposed(typing_context, array, index, first, width):
     def generate(context, builder, sig, args):
         offset = context.cast(builder, args[2], sig.args[2], types.int64)
         step = context.cast(builder, args[3], sig.args[3], types.int64)
-        rows = []
-        for row in _each(builder, index, args[1]):
+        rows, vectors = [], isinstance(index, Lanes) and not lanes_are_threads(context)
+        for row in _each(context, builder, index, args[1]):
             at = builder.add(builder.mul(row, step), offset)
             pointer = _pointer(context, builder, array, args[0], at)
-            if isinstance(index, Lanes):
-                pointer = builder.bitcast(pointer, ir_type(F4).as_pointer())
+            if vectors:
+                pointer = builder.bitcast(pointer, ir_type(F4, threads=False).as_pointer())
                 rows.append(_load(builder, pointer, 4))
             else:
                 rows = [builder.load(builder.gep(pointer, [_I64(k)])) for k in range(8)]
-        columns = _columns_of(builder, rows) if isinstance(index, Lanes) else rows
+        columns = _columns_of(builder, rows) if vectors else rows
         return context.make_tuple(builder, result, columns)
 
     return result(array, index, first, width), generate
 
 
-def _loading(result: types.Type, align: int) -> Any:
+def _place(
+    context: Any, builder: Any, sig: Any, args: Any, kind: ir.Type, size: int
+) -> tuple[ir.Value, int]:
+    """Return where lanes of a type are read or written, and how that is aligned [bytes].
+
+    Args:
+        context: numba's.
+        builder: numba's.
+        sig: Signature of an operation on an array and an index.
+        args: Its arguments.
+        kind: LLVM's type of what lies there.
+        size: That of one lane, and of an element of the array if that is smaller [bytes].
+    """
+    at = context.cast(builder, args[1], sig.args[1], types.int64)
+    element = sig.args[0].dtype.bitwidth // 8
+    if lanes_are_threads(context):
+        lane = builder.zext(threads.lane_number(builder), _I64)
+        at = builder.add(at, builder.mul(lane, _I64(size // element)))
+    pointer = _pointer(context, builder, sig.args[0], args[0], at)
+    align = size if lanes_are_threads(context) else element
+    return builder.bitcast(pointer, kind.as_pointer()), align
+
+
+def _loading(result: types.Type) -> Any:
     def generate(context, builder, sig, args):
-        at = context.cast(builder, args[1], sig.args[1], types.int64)
-        pointer = _pointer(context, builder, sig.args[0], args[0], at)
-        pointer = builder.bitcast(pointer, ir_type(result).as_pointer())
-        return _load(builder, pointer, align)
+        kind = ir_type(result, threads=lanes_are_threads(context))
+        size = max(result.element.bitwidth // 8, 1)
+        return _load(builder, *_place(context, builder, sig, args, kind, size))
 
     return generate
 
@@ -160,22 +185,29 @@ def _loading(result: types.Type, align: int) -> Any:
 def load(typing_context, array, at):
     """Return eight elements in a row, from index `at` on."""
     result = Lanes(array.dtype)
-    return result(array, at), _loading(result, array.dtype.bitwidth // 8)
+    return result(array, at), _loading(result)
 
 
 @intrinsic
 def load_words(typing_context, array, at):
     """Return eight uint32 from an array of bytes, from byte `at` on."""
-    return U4(array, at), _loading(U4, 1)
+    return U4(array, at), _loading(U4)
 
 
-def _storing(align: int) -> Any:
+def _store(context: Any, builder: Any, value: ir.Value, pointer: ir.Value, align: int) -> ir.Value:
+    """Write lanes; where they are threads, all see it, and none before it is done with the old."""
+    if lanes_are_threads(context):
+        threads.agree(builder)
+    builder.store(value, pointer).align = align
+    if lanes_are_threads(context):
+        threads.agree(builder)
+    return context.get_dummy_value()
+
+
+def _storing(size: int) -> Any:
     def generate(context, builder, sig, args):
-        at = context.cast(builder, args[1], sig.args[1], types.int64)
-        pointer = _pointer(context, builder, sig.args[0], args[0], at)
-        pointer = builder.bitcast(pointer, args[2].type.as_pointer())
-        builder.store(args[2], pointer).align = align
-        return context.get_dummy_value()
+        pointer, align = _place(context, builder, sig, args, args[2].type, size)
+        return _store(context, builder, args[2], pointer, align)
 
     return generate
 
@@ -187,9 +219,53 @@ def store(typing_context, array, at, value):
 
 
 @intrinsic
+def store_greater(typing_context, array, at, value, old):
+    """Write eight int64 in a row where they are greater than the old ones, which were loaded there.
+
+    Threads of a graphics processor do so in one step, since other workers may write there too.
+    """
+
+    def generate(context, builder, sig, args):
+        pointer, align = _place(context, builder, sig, args, args[2].type, 8)
+        greater = builder.icmp_signed(">", args[2], args[3])
+        if not lanes_are_threads(context):
+            chosen = builder.select(greater, args[2], args[3])
+            return _store(context, builder, chosen, pointer, align)
+        with builder.if_then(greater):
+            builder.atomic_rmw("max", pointer, args[2], "monotonic")
+        return context.get_dummy_value()
+
+    return types.void(array, at, value, old), generate
+
+
+@intrinsic
+def store_largest(typing_context, array, at, value):
+    """Write an int64 if it is greater than what is there, atomically."""
+
+    def generate(context, builder, sig, args):
+        index = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, array, args[0], index)
+        builder.atomic_rmw("max", pointer, args[2], "monotonic")
+        return context.get_dummy_value()
+
+    return types.void(array, at, value), generate
+
+
+@intrinsic
+def agree(typing_context):
+    """Let all lanes see what each has written; for kernels of threads only."""
+
+    def generate(context, builder, sig, args):
+        threads.agree(builder)
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@intrinsic
 def store_words(typing_context, array, at, value):
     """Write eight uint32 into an array of bytes, from byte `at` on."""
-    return types.void(array, at, value), _storing(1)
+    return types.void(array, at, value), _storing(4)
 
 
 @intrinsic
@@ -198,14 +274,12 @@ def store_where(typing_context, array, at, mask, value):
     kind = Lanes(array.dtype)
 
     def generate(context, builder, sig, args):
-        index = context.cast(builder, args[1], sig.args[1], types.int64)
-        pointer = _pointer(context, builder, array, args[0], index)
-        pointer = builder.bitcast(pointer, ir_type(kind).as_pointer())
-        align = array.dtype.bitwidth // 8
+        size = array.dtype.bitwidth // 8
+        held = ir_type(kind, threads=lanes_are_threads(context))
+        pointer, align = _place(context, builder, sig, args, held, size)
         new = as_lanes(context, builder, sig.args[3], args[3], kind)
         chosen = builder.select(args[2], new, _load(builder, pointer, align))
-        builder.store(chosen, pointer).align = align
-        return context.get_dummy_value()
+        return _store(context, builder, chosen, pointer, align)
 
     return types.void(array, at, mask, value), generate
 
@@ -216,6 +290,9 @@ def store_triples(typing_context, array, at, packed):
 
     def generate(context, builder, sig, args):
         index = context.cast(builder, args[1], sig.args[1], types.int64)
+        if lanes_are_threads(context):
+            _store_triple(context, builder, (array, args[0]), index, args[2])
+            return context.get_dummy_value()
         pointer = _pointer(context, builder, array, args[0], index)
         bytes_ = builder.bitcast(args[2], ir.VectorType(ir.IntType(8), 4 * WIDTH))
         order = _order_of(4 * (k // 3) + k % 3 for k in range(3 * WIDTH))
@@ -224,6 +301,22 @@ def store_triples(typing_context, array, at, packed):
         return context.get_dummy_value()
 
     return types.void(array, at, packed), generate
+
+
+def _store_triple(
+    context: Any,
+    builder: Any,
+    array: tuple[types.Type, ir.Value],
+    index: ir.Value,
+    packed: ir.Value,
+) -> None:
+    """Write a thread's own three bytes of `store_triples`."""
+    lane = builder.zext(threads.lane_number(builder), _I64)
+    first = builder.add(index, builder.mul(lane, _I64(3)))
+    for k in range(3):
+        byte = builder.trunc(builder.lshr(packed, _I32(8 * k)), ir.IntType(8))
+        builder.store(byte, _pointer(context, builder, *array, builder.add(first, _I64(k))))
+    threads.agree(builder)
 
 
 def _order_of(numbers: Iterable[int]) -> ir.Constant:

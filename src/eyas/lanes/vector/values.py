@@ -8,12 +8,12 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from eyas.lanes.vector import WIDTH
-from eyas.lanes.vector.kinds import I4, Lanes, as_lanes, element_of, ir_type
+from eyas.lanes.vector import WIDTH, threads
+from eyas.lanes.vector.kinds import I4, Lanes, as_lanes, element_of, ir_type, lanes_are_threads
 
 __all__ = [
     "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "first_bit", "from_bits", "greater",
-    "lane", "lane_numbers", "lesser", "like", "magnitude", "root", "select", "splat", "to_f4",
+    "lane", "lane_numbers", "lesser", "like", "magnitude", "own", "root", "select", "splat", "to_f4",
     "to_f8", "to_i4", "to_i8", "to_u4", "whole",
 ]  # fmt: skip
 
@@ -70,8 +70,12 @@ lesser = intrinsic(_extreme("<"))
 greater = intrinsic(_extreme(">"))
 
 
-def _bits(builder: Any, mask: ir.Value) -> ir.Value:
-    return builder.bitcast(mask, ir.IntType(WIDTH if isinstance(mask.type, ir.VectorType) else 1))
+def _bits(context: Any, builder: Any, kind: types.Type, mask: ir.Value) -> ir.Value:
+    if not isinstance(kind, Lanes):
+        return mask
+    if lanes_are_threads(context):
+        return threads.ballot(builder, mask)
+    return builder.bitcast(mask, ir.IntType(WIDTH))
 
 
 @intrinsic
@@ -79,7 +83,7 @@ def any_of(typing_context, mask):
     """Return whether the mask is set in any lane."""
 
     def generate(context, builder, sig, args):
-        bits = _bits(builder, args[0])
+        bits = _bits(context, builder, mask, args[0])
         return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
 
     return types.boolean(mask), generate
@@ -90,7 +94,7 @@ def all_of(typing_context, mask):
     """Return whether the mask is set in every lane."""
 
     def generate(context, builder, sig, args):
-        bits = _bits(builder, args[0])
+        bits = _bits(context, builder, mask, args[0])
         return builder.icmp_unsigned("==", bits, ir.Constant(bits.type, -1))
 
     return types.boolean(mask), generate
@@ -101,7 +105,7 @@ def bits_of(typing_context, mask):
     """Return the mask as a number, lane 0 in its lowest bit."""
 
     def generate(context, builder, sig, args):
-        return builder.zext(_bits(builder, args[0]), ir.IntType(64))
+        return builder.zext(_bits(context, builder, mask, args[0]), ir.IntType(64))
 
     return types.int64(mask), generate
 
@@ -123,7 +127,8 @@ def _unary(name: str, of_number: Callable[..., Any], *, gives_integers: bool = F
         def generate(context, builder, sig, args):
             kind = args[0].type
             if isinstance(a, Lanes):
-                overload = f"llvm.{name}.v{WIDTH}f{a.element.bitwidth}"
+                width = "" if lanes_are_threads(context) else f"v{WIDTH}"
+                overload = f"llvm.{name}.{width}f{a.element.bitwidth}"
                 function = cgutils.get_or_insert_function(
                     builder.module, ir.FunctionType(kind, [kind]), overload
                 )
@@ -146,11 +151,10 @@ whole = _unary("floor", math.floor, gives_integers=True)
 
 def _converting(element: types.Type) -> Callable[..., Any]:
     def typed(typing_context, a):
-        result = _of(a, element)
-        source, target = element_of(a), ir_type(result)
+        result, source = _of(a, element), element_of(a)
 
         def generate(context, builder, sig, args):
-            value = args[0]
+            value, target = args[0], ir_type(result, threads=lanes_are_threads(context))
             if not isinstance(a, Lanes):
                 return context.cast(builder, value, source, element)
             if isinstance(element, types.Float):
@@ -186,7 +190,7 @@ def bit_pattern(typing_context, a):
     result = _of(a, types.int32)
 
     def generate(context, builder, sig, args):
-        return builder.bitcast(args[0], ir_type(result))
+        return builder.bitcast(args[0], ir_type(result, threads=lanes_are_threads(context)))
 
     return result(a), generate
 
@@ -198,7 +202,8 @@ def from_bits(typing_context, a):
 
     def generate(context, builder, sig, args):
         number = context.cast(builder, args[0], a, types.int32) if result is types.float32 else None
-        return builder.bitcast(args[0] if number is None else number, ir_type(result))
+        bits = args[0] if number is None else number
+        return builder.bitcast(bits, ir_type(result, threads=lanes_are_threads(context)))
 
     return result(a), generate
 
@@ -230,8 +235,10 @@ def lane_numbers(typing_context):
     """Return 0, 1, ... in the lanes."""
 
     def generate(context, builder, sig, args):
+        if lanes_are_threads(context):
+            return threads.lane_number(builder)
         numbers = [ir.IntType(32)(k) for k in range(WIDTH)]
-        return ir.Constant(ir_type(I4), numbers)
+        return ir.Constant(ir_type(I4, threads=False), numbers)
 
     return I4(), generate
 
@@ -242,6 +249,20 @@ def lane(typing_context, lanes, number):
 
     def generate(context, builder, sig, args):
         index = context.cast(builder, args[1], sig.args[1], types.int32)
+        if lanes_are_threads(context):
+            return threads.from_lane(builder, args[0], index)
         return builder.extract_element(args[0], index)
 
     return lanes.element(lanes, number), generate
+
+
+@intrinsic
+def own(typing_context, lanes):
+    """Return the number in the thread's own lane; for kernels of threads only."""
+
+    def generate(context, builder, sig, args):
+        if not lanes_are_threads(context):
+            raise NotImplementedError("own: lanes are threads on graphics processors only")
+        return args[0]
+
+    return lanes.element(lanes), generate

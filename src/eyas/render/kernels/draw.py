@@ -41,7 +41,7 @@ from eyas.render.kernels.wind import in_wind
 from eyas.state.draw import DrawStage
 from eyas.state.lighting import LightState
 
-__all__ = ["band_of", "draw_views", "view_light", "with_veil"]
+__all__ = ["band_of", "draw_views", "light_at", "no_glass", "view_light", "with_veil", "write_colours", "write_facts"]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
@@ -87,14 +87,18 @@ def _draw_band(
     job, until = task.job, task.until
     number = job.band[index, 0]
     view = address_of(view_of(task, index))
-    lit = address_of(_light_at(light, job, number))
+    lit = address_of(light_at(light, job, number))
     world = i8(job.world[number])
-    band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
+    glass = address_of(no_glass(scratch, worker))
+    band = address_of(
+        band_of(geometry, light, lit, movers, world, view, glass, until, scratch, worker, 0, 1)
+    )
+    band.key[:] = 0
     count = draw_scene(band)
-    _write_facts(band, band, count, output, task, index)
+    write_facts(band, band, count, output, task, index)
     if until > RASTERISING and _coloured(output):
         cast_light(band)
-    _write_colours(band, output, task, index)
+    write_colours(band, output, task, index)
 
 
 @kernel
@@ -113,7 +117,7 @@ def _draw_through_lens(
     job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     slot = job.lens[number]
-    lit = address_of(_light_at(light, job, number))
+    lit = address_of(light_at(light, job, number))
     world, coloured = i8(job.world[number]), until > RASTERISING and _coloured(output)
     if tables.dark[slot] == 1:
         darken(task, tables, output, index)
@@ -122,21 +126,23 @@ def _draw_through_lens(
         if first >= last:
             continue
         view = address_of(face_view(task, tables, number, face, first, last))
+        plain = address_of(no_glass(scratch, worker))
         band = address_of(
-            band_of(geometry, light, lit, movers, world, view, until, scratch, worker)
+            band_of(geometry, light, lit, movers, world, view, plain, until, scratch, worker, 0, 1)
         )
+        band.key[:] = 0
         count = draw_scene(band)
         if coloured:
             cast_light(band)
         glass = address_of(glass_of(task, tables, number, face, top))
         bent = address_of(bent_band(band, glass, scratch, worker, task.width, bottom - top))
         look_through(band, scratch.word[worker], bent, coloured)
-        _write_facts(band, bent, count, output, task, index)
-        _write_colours(bent, output, task, index)
+        write_facts(band, bent, count, output, task, index)
+        write_colours(bent, output, task, index)
 
 
 @kernel(inline=True)
-def _light_at(light: Light, job: Job, number: int) -> Illumination:
+def light_at(light: Light, job: Job, number: int) -> Illumination:
     """Return light and air of a view, where it is."""
     here = view_light(light.weather, job.light, number)
     if light.weather.air.windy > f4(0.0) and len(job.instant) > 0:
@@ -154,7 +160,7 @@ def _coloured(output: Output) -> bool:
 
 
 @kernel(inline=True)
-def _write_facts(
+def write_facts(
     band: Band, shown: Band, count: int, output: Output, task: Task, index: int
 ) -> None:
     """Write what is wanted of job `index` but colours.
@@ -174,7 +180,7 @@ def _write_facts(
         if shown.glass.on == 1:
             write_bent_depth(shown, output.depth[into, top:bottom])
         else:
-            write_depth(shown.key, output.depth[into, top:bottom])
+            write_depth(shown.key, output.depth[into, top:bottom], band.member, band.members)
     if len(output.object_id) > 0:
         write_objects(shown, output.object_id[into, top:bottom])
     if len(output.class_id) > 0:
@@ -188,7 +194,7 @@ def _write_facts(
 
 
 @kernel(inline=True)
-def _write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
+def write_colours(shown: Band, output: Output, task: Task, index: int) -> None:
     """Write the colours of job `index`, if they are wanted."""
     job = task.job
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
@@ -224,25 +230,32 @@ def band_of(
     movers: Movers,
     world: int,
     view: View,
+    glass: Glass,
     until: int,
     scratch: Scratch,
-    worker: int,
+    row: int,
+    member: int,
+    members: int,
 ) -> Band:
-    """Return a band of a view with a worker's rows of the working memory."""
+    """Return a band of a view with a row of the working memory.
+
+    What it points to, `lit`, `view` and `glass`, lies on the stack of the caller: what a kernel
+    that is inlined puts there is gone when it returns.
+    """
     rows = view.rows
     return Band(
         geometry, light, lit, movers, world, view, until, view.width // view.across,
         rows // view.down,
-        address_of(_no_glass(scratch, worker)), scratch.key[worker, :rows],
-        scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
-        scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
-        scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
-        scratch.leaning[worker],
+        glass, scratch.key[row, :rows],
+        scratch.alone[row, :rows], scratch.shade[row, :rows], scratch.drawn[row],
+        scratch.mesh[row], scratch.tiles[row], scratch.order[row],
+        scratch.triangle[row * members + member], scratch.polygon[row * members + member],
+        scratch.span[row * members + member], scratch.leaning[row], i8(member), i8(members),
     )  # fmt: skip
 
 
 @kernel(inline=True)
-def _no_glass(scratch: Scratch, worker: int) -> Glass:
+def no_glass(scratch: Scratch, worker: int) -> Glass:
     """Return what stands for a lens where there is none: arrays of the same kinds."""
     floats, whole = scratch.tiles[worker], scratch.drawn[worker]
     zero, none = 0.0, i8(0)
@@ -272,7 +285,7 @@ def bent_band(
         face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,
         i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,
         scratch.bent_shade[worker, :rows], face.drawn, face.mesh, face.tiles, face.order,
-        face.triangle, face.polygon, face.span, face.leaning,
+        face.triangle, face.polygon, face.span, face.leaning, face.member, face.members,
     )  # fmt: skip
 
 

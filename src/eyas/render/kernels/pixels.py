@@ -6,11 +6,13 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
+    agree,
     first_bit,
     gather,
     lane,
     lane_numbers,
     load,
+    own,
     store,
     store_triples,
     to_u4,
@@ -31,6 +33,31 @@ def pack(red: int, green: int, blue: int) -> int:
 
 
 @kernel(inline=True)
+def _write_own_pixel(
+    pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int
+) -> None:
+    """Write what `write_pixels` does; each thread writes its own pixel."""
+    number, value = i8(own(lane_numbers())), own(packed)
+    if (chosen >> number) & 1:
+        column = first + number
+        pixels[row, column, 0] = value & u4(255)
+        pixels[row, column, 1] = (value >> u4(8)) & u4(255)
+        pixels[row, column, 2] = (value >> u4(16)) & u4(255)
+    agree()
+
+
+@kernel(inline=True)
+def _write_own_number(
+    plane: NDArray[np.float32], row: int, first: int, chosen: int, value: float
+) -> None:
+    """Write what `write_plane` does; each thread writes its own number."""
+    number = i8(own(lane_numbers()))
+    if (chosen >> number) & 1:
+        plane[row, first + number] = own(value)
+    agree()
+
+
+@kernel(inline=True, threads=_write_own_pixel)
 def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int) -> None:
     """Write packed bytes to those of eight pixels, from column `first` on, whose bit is set."""
     if chosen == _ALL:
@@ -46,7 +73,7 @@ def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, p
         pixels[row, column, 2] = (value >> u4(16)) & u4(255)
 
 
-@kernel(inline=True)
+@kernel(inline=True, threads=_write_own_number)
 def write_plane(
     plane: NDArray[np.float32], row: int, first: int, chosen: int, value: float
 ) -> None:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import to_f4
-from eyas.render.kernels.bundles import Direction, View
+from eyas.render.kernels.bundles import Band, Direction, View
 from eyas.render.kernels.scalars import f4
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "around",
     "empty_box",
     "local_camera",
+    "own_row",
     "point_of",
     "ray_of_row",
 ]
@@ -36,6 +37,12 @@ class LocalCamera(NamedTuple):
     left: Direction
     """To the left by one sample at distance 1; the next one upwards."""
     up: Direction
+
+
+@kernel(inline=True)
+def own_row(band: Band, first: int) -> int:
+    """Return the first row, from one that is not negative on, that is a worker's own."""
+    return first + (band.member - first) % band.members
 
 
 @kernel(inline=True)

@@ -49,3 +49,8 @@ class Band(NamedTuple):
     polygon: NDArray[np.float64]
     span: NDArray[np.int32]
     leaning: NDArray[np.float32]
+    member: int
+    """Which of several workers that share the band this is: each does its own items of lists and
+    its own rows. On a processor, one does all."""
+    members: int
+    """How many they are."""

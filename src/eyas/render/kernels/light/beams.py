@@ -20,6 +20,7 @@ from eyas.render.kernels.samples import (
     ScreenBox,
     around,
     empty_box,
+    own_row,
     point_of,
     ray_of_row,
 )
@@ -114,7 +115,7 @@ def cast_beam(caster: Caster, band: Band, brakes: bool) -> None:
     stride, length = key.shape[1], f4(caster.length)
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
     bottom = min(int(box.bottom) + 1 - view.top, view.rows)
-    for line in range(max(int(box.top) - view.top, 0), bottom):
+    for line in range(own_row(band, max(int(box.top) - view.top, 0)), bottom, band.members):
         ray = ray_of_row(camera, view, line)
         for start in range(begin, end, WIDTH):
             first = min(start, stride - WIDTH)

@@ -32,7 +32,7 @@ from eyas.render.kernels.light.caster import (
     reach_of,
 )
 from eyas.render.kernels.light.shadow_boxes import darken, may_darken
-from eyas.render.kernels.samples import ScreenBox, around, empty_box, point_of, ray_of_row
+from eyas.render.kernels.samples import ScreenBox, around, empty_box, own_row, point_of, ray_of_row
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.surface.signalling import BRAKING
 from eyas.render.kernels.visibility.cull import sphere_is_visible
@@ -130,7 +130,7 @@ def _cast_shadow(caster: Caster, band: Band, first: int, last: int) -> None:
     stride = key.shape[1]
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
     bottom = min(int(box.bottom) + 1 - view.top, view.rows)
-    for line in range(max(int(box.top) - view.top, 0), bottom):
+    for line in range(own_row(band, max(int(box.top) - view.top, 0)), bottom, band.members):
         ray = ray_of_row(camera, view, line)
         for start in range(begin, end, WIDTH):
             left = min(start, stride - WIDTH)
@@ -198,9 +198,10 @@ def cast_light(band: Band) -> None:
     lenses of signals, cast nothing.
     """
     movers, world, shade = band.movers, band.world, band.shade
-    samples = band.key.shape[0] * band.key.shape[1]
-    for at in range(0, samples, WIDTH):
-        store_words(shade, 4 * min(at, samples - WIDTH), splat(u4(0xFFFF)))
+    rows, stride = band.key.shape
+    for line in range(band.member, rows, band.members):
+        for at in range(line * stride, (line + 1) * stride, WIDTH):
+            store_words(shade, 4 * at, splat(u4(0xFFFF)))
     lamps_on = band.lit.air.lamps > f4(0.0)
     fixtures, slots = len(band.geometry.fixture_prototype), movers.part.shape[1]
     first = next_thing(band, 0)

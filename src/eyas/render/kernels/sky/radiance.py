@@ -19,6 +19,7 @@ from eyas.lanes.vector import (
     lane_numbers,
     lesser,
     like,
+    own,
     root,
     select,
     splat,
@@ -313,6 +314,25 @@ def sky_colour(light: Light, lit: Illumination, rays: Rays, line: float, column:
 
 
 @kernel(inline=True)
+def _own_sky(
+    light: Light, lit: Illumination, rays: Rays, line: float, column: float, chosen: int
+) -> Colour:
+    """Return what `_sky_of` does; each thread computes its own place, if it is chosen."""
+    red, green, blue = f4(0.0), f4(0.0), f4(0.0)
+    if (chosen >> own(lane_numbers())) & 1:
+        red, green, blue = sky_colour(light, lit, rays, own(line), own(column))
+    return splat(red), splat(green), splat(blue)
+
+
+@kernel(inline=True, threads=_own_sky)
+def _sky_of(
+    light: Light, lit: Illumination, rays: Rays, line: float, column: float, chosen: int
+) -> Colour:
+    """Return the radiance of the sky at eight places, of which some are chosen, a bit each."""
+    return sky_colour(light, lit, rays, line, column)
+
+
+@kernel(inline=True)
 def _sky_bits(band: Band, row: int, first: int) -> int:
     """Return in which of eight pixels any sample shows the sky, a bit each."""
     bits, across, down = i8(0), band.camera.across, band.camera.down
@@ -348,7 +368,7 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """
     view, light, lit, width = band.camera, band.light, band.lit, band.columns
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
-    for row in range(band.lines):
+    for row in range(band.member, band.lines, band.members):
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:
@@ -359,5 +379,5 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
             line = splat(rays.top + f4(row) * down + f4(0.5) * down)
             if band.glass.on == 1:
                 line, column = _middle(band, row, first)
-            colour = sky_colour(light, lit, rays, line, column)
+            colour = _sky_of(light, lit, rays, line, column, chosen)
             write_colours(canvas, light, lit.air.exposure, row, first, chosen, colour)

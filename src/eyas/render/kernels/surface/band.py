@@ -14,6 +14,7 @@ from eyas.lanes.vector import (
     lane,
     lane_numbers,
     load_words,
+    own,
     select,
     splat,
     to_f4,
@@ -77,6 +78,33 @@ def _one_instance(
 
 
 @kernel(inline=True)
+def _own_colours(
+    band: Band,
+    rays: Rays,
+    tag: int,
+    wanted: bool,
+    distance: float,
+    line: float,
+    column: float,
+    wide: float,
+    shade: int,
+) -> Colour:
+    """Return what `_colours_of` does; each thread computes its own sample."""
+    red, green, blue = f4(0.0), f4(0.0), f4(0.0)
+    if own(wanted):
+        ray, eye = ray_of(rays, own(line), own(column)), (rays.eye.x, rays.eye.y, rays.eye.z)
+        away = own(distance)
+        if band.glass.on == 1:
+            part = f4(1.0) / own(wide)
+            ray, away = (ray[0] * part, ray[1] * part, ray[2] * part), away * own(wide)
+        row, triangle = drawn_of(own(tag)), triangle_of(own(tag))
+        red, green, blue = _one_instance(
+            band, row, i4(triangle), eye, ray, away, rays.pixel, own(shade)
+        )
+    return splat(red), splat(green), splat(blue)
+
+
+@kernel(inline=True, threads=_own_colours)
 def _colours_of(
     band: Band,
     rays: Rays,
@@ -310,24 +338,25 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
+    rays, view, width = rays_of(band.camera), band.camera, band.columns
+    rows, member, members = band.lines, band.member, band.members
     if view.down == 1:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_one(band, rays, canvas, width, row, first)
     elif len(canvas.red) > 0:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 if view.across == 1:
                     _mean_of_several(band, rays, canvas, row, first, 1)
                 else:
                     _mean_of_several(band, rays, canvas, row, first, 2)
     elif view.across == 1:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_several(band, rays, canvas.pixels, row, first, 1)
     else:
-        for row in range(rows):
+        for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
                 _shade_several(band, rays, canvas.pixels, row, first, 2)
 

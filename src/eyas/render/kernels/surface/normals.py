@@ -69,7 +69,7 @@ def write_normals(band: Band, pixels: NDArray[np.uint8]) -> None:
     """
     rays, key, width, glass = rays_of(band.camera), band.key, pixels.shape[1], band.glass
     numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
-    for line in range(pixels.shape[0]):
+    for line in range(band.member, pixels.shape[0], band.members):
         for start in range(0, width, WIDTH):
             keys = keys_of(key, line, start, 1)
             inside = (numbers < f4(width - start)) & (keys >= i8(0))

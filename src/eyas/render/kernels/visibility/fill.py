@@ -16,8 +16,12 @@ from eyas.lanes.vector import (
     lane_numbers,
     lesser,
     load,
+    own,
     select,
+    splat,
     store,
+    store_greater,
+    store_largest,
     to_f4,
     to_f8,
     to_i4,
@@ -139,10 +143,82 @@ def _show(
 ) -> None:
     """Write eight keys where they are wanted and larger than the old ones."""
     # A key below 0 is smaller than all others.
-    store(key, at, greater(key_of(select(wanted, inverse, f4(-1.0)), tag), old))
+    store_greater(key, at, key_of(select(wanted, inverse, f4(-1.0)), tag), old)
 
 
 @kernel(inline=True)
+def _fill_span(
+    key: NDArray[np.int64],
+    at: int,
+    length: int,
+    value: float,
+    texture: tuple[float, float],
+    triangle: NDArray[np.float64],
+    number: int,
+    tag: int,
+    holes: Holes,
+) -> None:
+    """Draw a row of a triangle, sample by sample.
+
+    Args:
+        key: See `fill`.
+        at: Index of the first sample.
+        length: Number of samples.
+        value: 1/distance there.
+        texture: u/distance and v/distance there.
+        triangle: See `fill`.
+        number: See `fill`.
+        tag: See `fill`.
+        holes: See `fill`.
+    """
+    step = f4(_entry(triangle, ACROSS, number))
+    least, most = f4(_entry(triangle, LEAST, number)), f4(_entry(triangle, MOST, number))
+    u_step = f4(_entry(triangle, U + ACROSS - START, number) * holes.size)
+    v_step = f4(_entry(triangle, V + ACROSS - START, number) * holes.size)
+    for k in range(length):
+        steps = f4(k)
+        inverse = lesser(greater(value + step * steps, least), most)
+        new = key_of(inverse, tag)
+        if new > gather(key, at + k):
+            w, shown = f4(1.0) / inverse, True
+            if holes.level >= 0:
+                u, v = texture[0] + u_step * steps, texture[1] + v_step * steps
+                shown = has_leaf(holes, u * w, v * w)
+            if shown:
+                store_largest(key, at + k, new)
+
+
+@kernel(inline=True)
+def _fill_by_rows(
+    triangle: NDArray[np.float64],
+    number: int,
+    top: int,
+    width: int,
+    key: NDArray[np.int64],
+    tag: int,
+    holes: Holes,
+    span: NDArray[np.int32],
+) -> None:
+    """Draw a triangle as `fill` does; each thread draws a row of eight."""
+    row, last_row = i8(_entry(triangle, FIRST_ROW, number)), i8(_entry(triangle, LAST_ROW, number))
+    numbers, none = lane_numbers(), splat(f4(0.0))
+    while row < last_row:
+        rows = to_f8(numbers + i4(row))
+        first, last = _ends(triangle, number, rows, float(width))
+        value, u, v = _values(triangle, number, START, 1.0, rows, first), none, none
+        if holes.level >= 0:
+            u = _values(triangle, number, U, holes.size, rows, first)
+            v = _values(triangle, number, V, holes.size, rows, first)
+        line = i8(own(numbers)) + row
+        if line < last_row:
+            begin = i8(own(first))
+            at = (line - top) * key.shape[1] + begin
+            length, texture = i8(own(last)) - begin, (own(u), own(v))
+            _fill_span(key, at, length, own(value), texture, triangle, number, tag, holes)
+        row += WIDTH
+
+
+@kernel(inline=True, threads=_fill_by_rows)
 def fill(
     triangle: NDArray[np.float64],
     number: int,

@@ -58,6 +58,12 @@ def level_of_detail(
 
 
 @kernel(inline=True)
+def own_share(band: Band) -> int:
+    """Return which of eight things are a worker's own, a bit each; 1, 2, 4 or 8 share a band."""
+    return (255 // ((1 << band.members) - 1)) << band.member
+
+
+@kernel(inline=True)
 def draw_mesh(
     band: Band,
     key: NDArray[np.int64],
@@ -84,9 +90,10 @@ def draw_mesh(
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
     first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
+    share = own_share(band)
     for start in range(0, clusters, CLUSTER):
         row = mesh[2] + start // CLUSTER
-        left = clusters_seen(geometry.bounds, row, planes, eye, smallest)
+        left = clusters_seen(geometry.bounds, row, planes, eye, smallest) & share
         while left != 0:
             cluster = first + start + first_bit(left)
             left &= left - 1

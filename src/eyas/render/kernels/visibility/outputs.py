@@ -14,15 +14,19 @@ __all__ = ["object_of", "write_classes", "write_depth", "write_objects"]
 
 
 @kernel
-def write_depth(key: NDArray[np.int64], output: NDArray[np.float32]) -> None:
+def write_depth(
+    key: NDArray[np.int64], output: NDArray[np.float32], member: int, members: int
+) -> None:
     """Write the distance along the optical axis of each pixel [m], infinity for sky.
 
     Args:
         key: See `Scratch`, shape (rows, columns).
         output: Shape (rows, width of the picture).
+        member: See `Band`.
+        members: See `Band`.
     """
     width = output.shape[1]
-    for row in range(output.shape[0]):
+    for row in range(member, output.shape[0], members):
         whole = width & -WIDTH
         for column in range(0, whole, WIDTH):
             inverse = distance_inverse(load(key, row * key.shape[1] + column))
@@ -51,7 +55,7 @@ def object_of(band: Band, key: int) -> int:
 def write_objects(band: Band, output: NDArray[np.int32]) -> None:
     """Write the object of each pixel into an array, shape (rows, width of the picture)."""
     key = band.key
-    for row in range(output.shape[0]):
+    for row in range(band.member, output.shape[0], band.members):
         for column in range(output.shape[1]):
             if key[row, column] >= i8(0):
                 output[row, column] = object_of(band, key[row, column])
@@ -73,7 +77,7 @@ def write_classes(band: Band, output: NDArray[np.uint8]) -> None:
     Most pixels show the same triangle as the one before them.
     """
     key = band.key
-    for row in range(output.shape[0]):
+    for row in range(band.member, output.shape[0], band.members):
         before, shown = i8(0), _class_of(band, i8(0))
         for column in range(output.shape[1]):
             now = key[row, column]

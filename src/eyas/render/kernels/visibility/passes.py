@@ -30,10 +30,10 @@ SMALLEST_DETAIL = 0.35
 def draw_scene(band: Band) -> int:
     """Draw everything that a band shows; return how many instances there are in `Band.drawn`.
 
+    Its keys must be 0. Workers that share a band each list all of it.
     They are numbered fixtures first, in the order of the arrays that hold them, so that the order
     of their tags does not depend on the band.
     """
-    band.key[:] = 0
     listed = list_chunks(band)
     count = list_fixtures(band, listed)
     count = list_slots(band, 0, band.movers.part.shape[1], listed, count)
@@ -55,17 +55,20 @@ def draw_slots(band: Band, first: int, last: int, count: int) -> int:
 
 @kernel
 def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
-    """Draw what is listed in `Band.order`, the nearest first."""
+    """Draw what is listed in `Band.order`, the nearest first; workers that share a band draw some
+    clusters of each mesh, as it comes.
+    """
     if band.until <= CULLING:
         return
     geometry, view, movers, world = band.geometry, band.camera, band.movers, band.world
     order, drawn, meshes, tiles = band.order, band.drawn, band.mesh, band.tiles
     chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
-    _shell_sort(order, listed)
-    measured = i8(MEASURED_EVERY)
+    alone, measured = band.members == 1, i8(MEASURED_EVERY)
+    if alone:
+        _shell_sort(order, listed)
     for k in range(listed):
         item = order[k] & i8(0xFFFFFFFF)
-        if k >= MEASURED_EVERY:
+        if alone and k >= MEASURED_EVERY:
             if k == measured:
                 measure_tiles(key, view.width, tiles)
                 measured += max(i8(MEASURED_EVERY), measured >> i8(2))
