@@ -2,10 +2,16 @@
 
 from typing import Any, NamedTuple, Protocol
 
-from eyas.render.kernels.bundles import Movers
+import numpy as np
+
+from eyas.lanes.device import Device
+from eyas.render.device import DeviceRenderer, PictureSize
+from eyas.render.kernels.bundles import Geometry, Job, Light, Movers
+from eyas.render.outputs import NO_OUTPUT
+from eyas.render.renderer import GRIDS
 from eyas.state.lighting import LightState
 
-__all__ = ["DeviceRenderer", "DeviceViews"]
+__all__ = ["DeviceDrawer", "DeviceViews", "StagedDrawer"]
 
 Array = Any
 """An `eyas.lanes.device.DeviceArray`."""
@@ -35,7 +41,7 @@ class DeviceViews(NamedTuple):
     """Whether flakes, drops and leaves are drawn at that time."""
 
 
-class DeviceRenderer(Protocol):
+class DeviceDrawer(Protocol):
     """Draws a scene and the things that move in it on a device."""
 
     def draw(self, cameras: DeviceViews, movers: Movers, rgb: Array) -> None:
@@ -48,3 +54,61 @@ class DeviceRenderer(Protocol):
                 are written.
         """
         ...
+
+
+class StagedDrawer:
+    """Draws by `eyas.render.device.DeviceRenderer`, whose working memory is for one number of
+    pictures; there is one for each number.
+
+    Args:
+        device: The device.
+        geometry: Everything that can be drawn.
+        light: Light and air.
+        samples: Samples per pixel.
+    """
+
+    def __init__(self, device: Device, geometry: Geometry, light: Light, samples: int = 1) -> None:
+        self._device, self._geometry, self._light = device, geometry, light
+        self._grid = GRIDS[samples]
+        self._made: dict[PictureSize, tuple[DeviceRenderer, Job]] = {}
+
+    def draw(self, cameras: DeviceViews, movers: Movers, rgb: Array) -> None:
+        """Draw the pictures of V cameras, see `DeviceDrawer`."""
+        views, (height, width) = cameras.views, rgb.shape[1:3]
+        size = PictureSize(views, height, width, *self._grid)
+        if size not in self._made:
+            renderer = DeviceRenderer(self._device, self._geometry, self._light)
+            self._made[size] = renderer, self._new_job(size)
+        renderer, job = self._made[size]
+        timed = cameras.instant.shape[0] > 0
+        job = job._replace(
+            eye=cameras.eye[:views],
+            axes=cameras.axes[:views],
+            world=cameras.world[:views],
+            subject=cameras.subject[:views],
+            light=LightState(*(array[:views] for array in cameras.light)),
+            instant=cameras.instant[:views] if timed else cameras.instant,
+            focal=cameras.focal[:views],
+        )
+        output = NO_OUTPUT._replace(rgb=rgb[:views])
+        renderer.draw(size, job, movers, output, falls=int(timed and cameras.falling))
+
+    def _new_job(self, size: PictureSize) -> Job:
+        """Return a job without its cameras, for whole views."""
+        views = size.views
+        band = np.zeros((views, 3), np.int32)
+        band[:, 0], band[:, 2] = np.arange(views), size.height
+        nothing: Any = np.zeros(0)
+        return Job(
+            picture=self._device.upload(np.arange(views, dtype=np.int32)),
+            band=self._device.upload(band),
+            begun=self._device.zeros(1, np.int64),
+            eye=nothing,
+            axes=nothing,
+            world=nothing,
+            subject=nothing,
+            light=LightState.create(0),
+            instant=nothing,
+            focal=nothing,
+            lens=self._device.zeros(0, np.int32),
+        )

@@ -19,6 +19,8 @@ from eyas.envs.vector_env import EyasVectorEnv
 from eyas.lanes.device import HostDevice
 from eyas.lanes.ptx import ptx_of
 
+from .apart import ApartDevice
+
 SHORT = {"done": {"total_steps": 60, "grace_steps": 0, "no_reward_steps": 28}}
 SMALL = {"width": 24, "height": 20}
 CASES = {
@@ -146,7 +148,7 @@ def test_results_are_new_arrays_unless_it_is_told_otherwise():
         ({}, {"measures": True}, "measures: true"),
         ({"verbose": True}, {}, "verbose: true"),
         ({}, {"mixture": [{"settings": {}}]}, "env.mixture"),
-        ({}, {"device": "abacus"}, "device: 'abacus' is not allowed: 'host'"),
+        ({}, {"device": "abacus"}, "device: 'abacus' is not allowed: 'cuda', "),
     ],
 )
 def test_what_is_not_there_is_told_in_one_line(settings, choices, said):
@@ -183,3 +185,27 @@ def test_the_drivers_compile_for_cuda():
         assert "fma" not in text
         assert not re.search(r"\.extern \.func|vprintf", text)
         assert not re.search(r"\b(mad|mul|add|sub)\.(f32|f64)\b", text)
+
+
+@pytest.mark.parametrize(("case", "mode"), [("plain", MODES[0]), ("dictionary", MODES[1])])
+def test_nothing_is_read_here_that_is_there(case, mode):
+    torch = pytest.importorskip("torch")
+    usual, _ = pair(case, 3, 1, mode)
+    settings, own = CASES[case]
+    choices = {"autoreset_mode": mode, "observation": SMALL, **own}
+    ours = EyasVectorEnv(3, SHORT | settings, device=ApartDevice(2), **choices)
+    observation, _ = ours.reset(seed=2)
+    assert_same(as_numpy(observation), usual.reset(seed=2)[0])
+    rng = np.random.default_rng(0)
+    for step in range(16):
+        actions = actions_of(usual, rng)
+        mine = ours.step(torch.from_numpy(actions) if step % 2 else actions)
+        theirs = usual.step(actions)
+        for told, expected in zip(mine[:4], theirs[:4], strict=True):
+            assert_same(as_numpy(told), expected)
+
+
+def as_numpy(told):
+    if isinstance(told, dict):
+        return {name: tensor.numpy() for name, tensor in told.items()}
+    return told.numpy()

@@ -8,6 +8,7 @@ import pytest
 from eyas.lanes import interpreted
 from eyas.lanes.device import HostDevice
 from eyas.lanes.ptx import ptx_of
+from eyas.render.device_views import StagedDrawer
 from eyas.sim.build import assets_of, build_simulation, in_one_wind
 from eyas.sim.config import SimConfig
 from eyas.sim.device.host_renderer import HostRenderer
@@ -34,13 +35,13 @@ CASES = {
 
 
 class Kept:
-    """A renderer that keeps what it is given."""
+    """One that keeps what it is given."""
 
     def draw(self, cameras, movers, rgb):
         self.given = cameras, movers
 
 
-def pair(case, count, workers, renderer=None):
+def pair(case, count, workers, drawer=None):
     """A usual simulation, and one on a device with its view, both at the start."""
     config = SimConfig.model_validate(SHORT | CASES[case])
     assets, tracker = assets_of(config, each_alone(count)), tracker_of(in_one_wind(config))
@@ -49,7 +50,7 @@ def pair(case, count, workers, renderer=None):
     usual = build_simulation(config, each_alone(count))
     ours.reset(np.arange(count))
     usual.reset()
-    return usual, ours, DeviceView(ours, renderer or HostRenderer(assets.renderer))
+    return usual, ours, DeviceView(ours, drawer or HostRenderer(assets.renderer))
 
 
 def steps(usual, ours, count):
@@ -82,6 +83,17 @@ def test_pictures_are_the_same(case, count, workers):
         assert np.array_equal(rgb[: len(chosen)], expected.rgb)
 
 
+def test_the_stages_of_devices_draw_the_same():
+    usual, ours, view = pair("snow", 5, 2)
+    view._drawer = StagedDrawer(HostDevice(1), *usual._assets.renderer.packed)
+    picture, rgb = Picture.create(5, *SIZE), np.zeros((5, *SIZE, 3), np.uint8)
+    for chosen in steps(usual, ours, 8):
+        expected = picture.first(len(chosen))
+        usual.draw(chosen, expected)
+        view.draw(chosen, rgb)
+        assert np.array_equal(rgb[: len(chosen)], expected.rgb)
+
+
 @pytest.mark.parametrize("workers", [1, 64])
 def test_lists_and_cameras_are_the_same(workers):
     kept = Kept()
@@ -90,7 +102,7 @@ def test_lists_and_cameras_are_the_same(workers):
         view.draw(chosen, None)
         cameras, movers = kept.given
         views, listed = usual._present.pictures._own_views(chosen, seen(usual, chosen))
-        assert cameras.views == len(chosen)
+        assert cameras.views == min(1 << (len(chosen) - 1).bit_length(), 7)
         rows = slice(len(chosen))
         assert np.array_equal(cameras.eye[rows], views.position)
         assert np.array_equal(cameras.axes[rows].swapaxes(1, 2), views.rotation)

@@ -11,7 +11,7 @@ from eyas.core.errors import ConfigError, EyasError
 from eyas.envs.actions import make_actions
 from eyas.envs.batch import Seeds
 from eyas.envs.device.actions import DeviceActions
-from eyas.envs.device.devices import device_of
+from eyas.envs.device.devices import device_of, drawer_of
 from eyas.envs.device.observation import DeviceObserver
 from eyas.envs.device.tensors import as_bool, copied, tensor_of
 from eyas.lanes.device import Device
@@ -49,7 +49,7 @@ class DeviceEnvs:
     def __init__(
         self, config: EyasConfig, count: int, device: Device | str, *, measures: bool = False
     ) -> None:
-        where, kind = device_of(device)
+        where = device_of(device)
         _check(config, measures=measures)
         with originals_named(config):
             assets = assets_of(config, each_alone(count))
@@ -64,7 +64,8 @@ class DeviceEnvs:
                 steps=physics_steps(config.control.frequency),
                 repeat=config.env.action_repeat,
             )
-        view = DeviceView(simulation, kind.renderer(where, assets.renderer, config.camera.samples))
+        drawer = drawer_of(where, assets.renderer, config.camera.samples)
+        view = DeviceView(simulation, drawer)
         self._observer = DeviceObserver(seen, simulation, view)
         actions = make_actions(config.env.actions, config.env.speeds)
         self._actions = DeviceActions(actions, where, simulation.commands)

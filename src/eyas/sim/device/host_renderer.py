@@ -27,7 +27,7 @@ class _Cameras(Views):
 
 
 class HostRenderer:
-    """Draws what lies in the memory of this processor, see `DeviceRenderer`.
+    """Draws what lies in the memory of this processor, see `DeviceDrawer`.
 
     Args:
         renderer: What draws.
@@ -38,7 +38,7 @@ class HostRenderer:
         self._renderer, self._samples = renderer, samples
 
     def draw(self, cameras: DeviceViews, movers: Movers, rgb: Any) -> None:  # noqa: ANN401  # as there
-        """Draw the pictures of V cameras, see `DeviceRenderer`."""
+        """Draw the pictures of V cameras, see `DeviceDrawer`."""
         count = cameras.views
         views = _Cameras(
             position=cameras.eye[:count],

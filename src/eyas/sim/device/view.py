@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.render.device_views import DeviceRenderer, DeviceViews
+from eyas.render.device_views import DeviceDrawer, DeviceViews
 from eyas.render.kernels.bundles import Movers
 from eyas.sim.assets import Assets
 from eyas.sim.device.near import (
@@ -50,13 +50,13 @@ class DeviceView:
 
     Args:
         simulation: The trackers.
-        renderer: Draws on their device.
+        drawer: Draws on their device.
     """
 
     movers: Movers
 
-    def __init__(self, simulation: DeviceSimulation, renderer: DeviceRenderer) -> None:
-        self._simulation, self._renderer = simulation, renderer
+    def __init__(self, simulation: DeviceSimulation, drawer: DeviceDrawer) -> None:
+        self._simulation, self._drawer = simulation, drawer
         config, assets, device = simulation.config, simulation.assets, simulation.device
         self._device, self._assets, count = device, assets, simulation.count
         reach = assets.renderer.influence(assets.rigs.reach(assets.renderer.part_reach()))
@@ -89,11 +89,14 @@ class DeviceView:
 
         Args:
             trackers: The trackers, shape (V,).
-            rgb: On the device, uint8, shape (at least V, H, W, 3); the first V are written.
+            rgb: On the device, uint8, shape (N, H, W, 3); the first V are written, and perhaps some
+                behind them.
         """
-        self._list(trackers)
+        # Powers of two and N: working memory of drawing is kept for each number of pictures.
+        count = min(1 << (len(trackers) - 1).bit_length(), self._simulation.count)
+        self._list(np.append(trackers, np.repeat(trackers[-1:], count - len(trackers))))
         self._pose()
-        self._renderer.draw(self.cameras, self.movers, rgb)
+        self._drawer.draw(self.cameras, self.movers, rgb)
 
     @property
     def cameras(self) -> DeviceViews:
