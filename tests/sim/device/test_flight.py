@@ -25,13 +25,18 @@ VARIED = {
     "world": {"wind": {"speed": 3.0}},
     "start": {"velocity": "target"},
 }
+WINDY = {
+    "supervised": False,
+    "drag_area": 0.02,
+    "wind": {"speed": {"uniform": [1.0, 4.0]}, "turbulence": 3.0},
+}
 CASES = {
     "drone": {},
     "flown": {"tracker": {"supervised": False}},
     "car": {"tracker": {"kind": "car"}},
     "varied": VARIED,
+    "windy": {"tracker": WINDY},
 }
-WINDY = {"supervised": False, "drag_area": 0.02, "wind": {"speed": 4.0}}
 
 
 def on_device(config, count, workers) -> DeviceSimulation:
@@ -80,7 +85,6 @@ def test_the_state_has_the_same_bytes_step_by_step_and_after_resets(case, count,
         ({"lidar": {"enabled": True}}, "lidar.enabled: true"),
         ({"done": {"crash": "end"}}, "done.crash: 'end'"),
         ({"reward": {"terms": {"speed": 1.0}}}, "reward.terms: 'speed'"),
-        ({"tracker": WINDY}, "tracker: the wind"),
     ],
 )
 def test_what_is_not_there_is_told_in_one_line(changes, said):
@@ -89,6 +93,14 @@ def test_what_is_not_there_is_told_in_one_line(changes, said):
     assert str(told.value).startswith(said)
     assert "is not there on a device; allowed: " in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_trackers_that_do_not_tell_what_is_sampled_are_refused():
+    config = SimConfig.model_validate({"tracker": WINDY})
+    assets, tracker = assets_of(config, each_alone(1)), tracker_of(config.tracker)
+    check_device(config, assets, tracker)
+    with pytest.raises(ConfigError, match=r"tracker\.kind: a 'flown drone' with a sample is not"):
+        check_device(config, assets, dataclasses.replace(tracker, sampled=None))
 
 
 def test_kinds_that_python_poses_are_refused():

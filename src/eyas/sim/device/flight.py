@@ -13,9 +13,13 @@ from eyas.sim.step import Orders, StepKernels, StepState, begin_one, fly_one
 from eyas.targets.kind import Looks
 from eyas.task.done import DoneReason
 
-__all__ = ["START", "FlightCalls", "Flown", "Focal", "Starts", "flight_calls"]
+__all__ = ["FEW", "START", "FlightCalls", "Flown", "Focal", "Starts", "flight_calls"]
 
 _STEP_LIMIT: Final = int(DoneReason.STEP_LIMIT)
+
+FEW: Final = 32
+"""Threads that a card starts together where each has much to do, so that some thousands are on all
+its processors."""
 
 START: Final = np.dtype(
     [

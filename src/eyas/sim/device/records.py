@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes.device import Device
 
-__all__ = ["Mirrored", "uploaded"]
+__all__ = ["Mirrored", "arrays_of", "uploaded"]
 
 
 def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, an array or a number
@@ -20,6 +20,13 @@ def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, a
         return record
     parts = [uploaded(device, part) for part in record]
     return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def arrays_of(record: Any) -> list[Any]:  # noqa: ANN401  # as above
+    """Return all arrays of a record, here or on a device."""
+    if isinstance(record, tuple):
+        return [array for part in record for array in arrays_of(part)]
+    return [record] if hasattr(record, "shape") else []
 
 
 class Mirrored:

@@ -56,8 +56,8 @@ def _simulated(config: SimConfig, assets: Assets, tracker: Tracker) -> Refused:
         yield f"done.crash: '{config.done.crash}'", f"'{Crash.ORIGINAL}'"
     for name in config.reward.terms:
         yield f"reward.terms: '{name}'", "none, the built-in reward"
-    if tracker.sample is not None:
-        yield f"tracker: the wind, or what else is drawn for a '{tracker.name}',", "none"
+    if tracker.sample is not None and tracker.sampled is None:
+        yield f"tracker.kind: a '{tracker.name}' with a sample", "one that tells what is sampled"
     if assets.traffic.live:
         yield "traffic.source: 'live'", "'recorded'"
 

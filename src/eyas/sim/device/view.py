@@ -9,6 +9,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.render.device_views import DeviceDrawer, DeviceViews
 from eyas.render.kernels.bundles import Movers
 from eyas.sim.assets import Assets
+from eyas.sim.device.flight import FEW
 from eyas.sim.device.near import (
     Cast,
     Counts,
@@ -112,7 +113,7 @@ class DeviceView:
         self._count.write(np.array([count]))
         self._chosen.write(trackers)
         device.clear(self._counts.short)
-        device.launch(list_actors, count, *self._looking, *self._lists)
+        device.launch(list_actors, count, *self._looking, *self._lists, block=FEW)
         if device.read(self._counts.short)[0]:
             entries = device.read(self._counts.end)[:count, -1].max()
             self._grow(int(entries), int(device.read(self._listed.used)[:count].max()))
