@@ -1,5 +1,6 @@
 """What a renderer on a device draws: cameras, in the layout that its kernels read."""
 
+import operator
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -71,6 +72,9 @@ class StagedDrawer:
         self._device, self._geometry, self._light = device, geometry, light
         self._grid = GRIDS[samples]
         self._made: dict[PictureSize, tuple[DeviceRenderer, Job]] = {}
+        self._last: PictureSize | None = None
+        self._given: tuple[Any, ...] = ()
+        self._cut: Any = None
 
     def draw(self, cameras: DeviceViews, movers: Movers, rgb: Array) -> None:
         """Draw the pictures of V cameras, see `DeviceDrawer`."""
@@ -81,16 +85,13 @@ class StagedDrawer:
             self._made[size] = renderer, self._new_job(size)
         renderer, job = self._made[size]
         timed = cameras.instant.shape[0] > 0
-        job = job._replace(
-            eye=cameras.eye[:views],
-            axes=cameras.axes[:views],
-            world=cameras.world[:views],
-            subject=cameras.subject[:views],
-            light=LightState(*(array[:views] for array in cameras.light)),
-            instant=cameras.instant[:views] if timed else cameras.instant,
-            focal=cameras.focal[:views],
-        )
-        output = NO_OUTPUT._replace(rgb=rgb[:views])
+        # Mostly the same arrays as the last time: cutting off a dozen takes some time.
+        given = rgb, *cameras[1:]
+        if self._last != size or not all(map(operator.is_, given, self._given)):
+            self._last, self._given = size, given
+            self._cut = _with_cameras(job, cameras, timed=timed), rgb[:views]
+        job, pictures = self._cut
+        output = NO_OUTPUT._replace(rgb=pictures)
         renderer.draw(size, job, movers, output, falls=int(timed and cameras.falling))
 
     def _new_job(self, size: PictureSize) -> Job:
@@ -112,3 +113,17 @@ class StagedDrawer:
             focal=nothing,
             lens=self._device.zeros(0, np.int32),
         )
+
+
+def _with_cameras(job: Job, cameras: DeviceViews, *, timed: bool) -> Job:
+    """Return a job with V cameras."""
+    rows = slice(cameras.views)
+    return job._replace(
+        eye=cameras.eye[rows],
+        axes=cameras.axes[rows],
+        world=cameras.world[rows],
+        subject=cameras.subject[rows],
+        light=LightState(*(array[rows] for array in cameras.light)),
+        instant=cameras.instant[rows] if timed else cameras.instant,
+        focal=cameras.focal[rows],
+    )

@@ -1,6 +1,7 @@
 """What actions mean, found out on a device."""
 
 import math
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
 from eyas.envs.actions import Actions, Discrete, Shares, Velocity
-from eyas.envs.device.tensors import again, is_tensor
+from eyas.envs.device.tensors import is_tensor, torch_of
 from eyas.envs.mixed_batch import array_of
 from eyas.lanes import parallel
 from eyas.lanes.device import Device
@@ -78,6 +79,11 @@ class DeviceActions:
             self._call = _command_quads
         self._held = device.held(given), device.held(Commanded(commands, self._refused))
 
+    @cached_property
+    def _tensor(self) -> Any:  # noqa: ANN401  # of PyTorch
+        """The memory for actions that are tensors."""
+        return torch_of(self._given)
+
     def take(self, actions: Any) -> None:  # noqa: ANN401  # whatever a learner returns
         """Write the commands of N actions: a tensor on the device, or anything else that the
         actions take.
@@ -97,7 +103,7 @@ class DeviceActions:
                 f"actions: a tensor of shape {shape} and type {actions.dtype} is not allowed: "
                 f"{self._actions.allowed} for each of {self._count} environments"
             )
-        again(self._given, actions)
+        self._tensor.copy_(actions)
         device.clear(self._refused)
         device.launch(self._call, self._count, *self._held)
         if device.read(self._refused)[0]:

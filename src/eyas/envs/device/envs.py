@@ -70,6 +70,9 @@ class DeviceEnvs:
         actions = make_actions(config.env.actions, config.env.speeds)
         self._actions = DeviceActions(actions, where, simulation.commands)
         self.action_space, self.observation_space = actions.space, self._observer.space
+        flown = simulation.flown
+        ends = (as_bool(tensor_of(array)) for array in (flown.terminated, flown.truncated))
+        self._told = tensor_of(flown.reward), *ends
         self.ended = np.zeros(count, np.bool_)
 
     def __reduce__(self) -> NoReturn:
@@ -93,14 +96,12 @@ class DeviceEnvs:
         Raises:
             ActionError: An action is not in the space of actions.
         """
-        simulation, flown = self._simulation, self._simulation.flown
+        simulation = self._simulation
         self._actions.take(actions)
         simulation.advance(active)
         self.ended = np.logical_or(*simulation.ended())
-        terminated, truncated = (
-            copied(as_bool(tensor_of(array))) for array in (flown.terminated, flown.truncated)
-        )
-        return copied(tensor_of(flown.reward)), terminated, truncated
+        reward, terminated, truncated = map(copied, self._told)
+        return reward, terminated, truncated
 
     def look(self, chosen: Mask, begun: Mask, *, final: bool = False) -> None:
         """Observe some trackers.

@@ -98,6 +98,10 @@ class DeviceObserver:
         self._device = device
         self._parts = tuple(dict.fromkeys(config.parts))
         self._latest, self._final = self._new(), self._new()
+        self._told = [
+            {part: tensor_of(array) for part, array in arrays.items()}
+            for arrays in (self._latest, self._final)
+        ]
         seen = Seen(np.zeros(1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.uint8))
         self._seen = [Mirrored(device, array) for array in seen]
         self._held_seen = device.held(Seen(*(own.array for own in self._seen)))
@@ -137,11 +141,10 @@ class DeviceObserver:
             out: Tensors to write it into; they are returned.
             final: Whether to return the last observations of episodes in the place of these.
         """
-        arrays = self._final if final else self._latest
         told = {}
-        for part, array in arrays.items():
+        for part, shared in self._told[final].items():
             own = out[part] if isinstance(out, Mapping) else out
-            told[part.value] = copied(tensor_of(array), own)
+            told[part.value] = copied(shared, own)
         return told if len(told) > 1 else next(iter(told.values()))
 
     def _new(self) -> dict[ObservationPart, Any]:

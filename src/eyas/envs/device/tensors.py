@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["again", "as_bool", "copied", "is_tensor", "tensor_of"]
+__all__ = ["as_bool", "copied", "is_tensor", "tensor_of", "torch_of"]
 
 Shared = Any
 """An array of numpy, or a tensor of PyTorch that shares the memory of a device's array."""
@@ -15,6 +15,11 @@ def tensor_of(array: Any) -> Shared:  # noqa: ANN401  # a `DeviceArray`
     """Return an array on a device as users get it; its memory is shared."""
     if isinstance(array, np.ndarray):
         return array
+    return torch_of(array)
+
+
+def torch_of(array: Any) -> Shared:  # noqa: ANN401  # a `DeviceArray`
+    """Return an array on a device as a tensor of PyTorch; its memory is shared."""
     from torch.utils.dlpack import from_dlpack
 
     return from_dlpack(array)
@@ -24,13 +29,6 @@ def is_tensor(actions: object) -> bool:
     """Return whether something is a tensor of PyTorch, which is imported then."""
     torch = sys.modules.get("torch")
     return torch is not None and isinstance(actions, torch.Tensor)
-
-
-def again(array: Any, given: Any) -> None:  # noqa: ANN401  # a `DeviceArray`, and a tensor
-    """Copy a tensor of the same shape, and of any type, into an array on the same device."""
-    from torch.utils.dlpack import from_dlpack
-
-    from_dlpack(array).copy_(given)
 
 
 def as_bool(shared: Shared) -> Shared:
