@@ -14,6 +14,9 @@ from numba.core.imputils import lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import intrinsic
 
+from eyas.lanes.vector import threads
+from eyas.lanes.vector.kinds import lanes_are_threads
+
 __all__ = ["address_of", "bits_of_float", "claim", "float_of_bits"]
 
 
@@ -52,7 +55,9 @@ def address_of(typing_context, bundle):
 
     def generate(context, builder, sig, args):
         model = context.data_model_manager[bundle]
-        slot = cgutils.alloca_once(builder, model.get_data_type())
+        kind = model.get_data_type()
+        name = threads.RECORD if lanes_are_threads(context) else ""
+        slot = cgutils.alloca_once(builder, kind, name=name)
         builder.store(model.as_data(builder, args[0]), slot)
         return slot
 

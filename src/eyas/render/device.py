@@ -8,7 +8,14 @@ from eyas.core.errors import ConfigError
 from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Task
-from eyas.render.kernels.stages import Shares, cast_lights, find_triangles, shade, tell_facts
+from eyas.render.kernels.stages import (
+    Shares,
+    cast_lights,
+    fill_triangles,
+    find_triangles,
+    shade,
+    tell_facts,
+)
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
@@ -21,6 +28,13 @@ __all__ = ["DeviceRenderer", "PictureSize"]
 
 MEMBERS = 4
 """Workers that share a view: a warp of a graphics processor is four times `WIDTH` threads."""
+
+FILLERS = 32
+"""Workers that share the rows of its triangles."""
+
+RECORDS, UNITS = 2048, 4096
+"""Triangles, and eights of their rows, that are kept for them; more are filled where they are found.
+"""
 
 _INSTANCES = 2048
 """Instances that a view shows at most."""
@@ -84,18 +98,18 @@ class DeviceRenderer:
         if key not in self._scratch:
             scratch = self._new_scratch(size, slots)
             shares = Shares(size.views, MEMBERS, device.zeros(size.views, np.int32))
-            alone = shares._replace(members=1)
-            self._scratch = {
-                key: (scratch, device.held(scratch), device.held(shares), device.held(alone))
-            }
-        scratch, held, shared, alone = self._scratch[key]
+            shared = [device.held(shares._replace(members=n)) for n in (1, MEMBERS, FILLERS)]
+            self._scratch = {key: (scratch, device.held(scratch), shared)}
+        scratch, held, (alone, shared, many) = self._scratch[key]
         task = Task(
             size.across, size.down, size.width, size.height, falls, int(until), job
         )
         bundles = (*self._held, held, device.held(movers), device.held(output), device.held(task))
         workers = size.views * MEMBERS
         device.clear(scratch.key)
+        device.clear(scratch.recorded)
         device.launch(find_triangles, workers, shared, *bundles, threads=WIDTH)
+        device.launch(fill_triangles, size.views * FILLERS, many, *bundles, threads=WIDTH)
         coloured = len(output.rgb) > 0 or len(output.radiance) > 0
         if coloured and until > DrawStage.RASTERISING:
             device.launch(cast_lights, workers, shared, *bundles, threads=WIDTH)
@@ -130,12 +144,16 @@ class DeviceRenderer:
             mesh=device.empty((views, instances), np.int32),
             tiles=device.empty((views, 1, 1), np.float32),
             order=device.empty((views, chunks + instances), np.int64),
-            triangle=device.empty((views * MEMBERS, TRIANGLE_ROWS, CLUSTER), np.float64),
-            polygon=device.zeros((views * MEMBERS, 15, CLUSTER), np.float64),
-            span=device.empty((views * MEMBERS, SPAN_ROWS, WIDTH), np.int32),
+            triangle=device.empty((views * FILLERS, TRIANGLE_ROWS, CLUSTER), np.float64),
+            polygon=device.zeros((views * FILLERS, 15, CLUSTER), np.float64),
+            span=device.empty((views * FILLERS, SPAN_ROWS, WIDTH), np.int32),
             word=device.empty(none, np.uint32),
             bent_key=device.empty(none, np.int64),
             bent_shade=device.empty((*none, 4), np.uint8),
             leaning=device.empty((views, swaying, 3, 4), np.float32),
+            record=device.empty((views, RECORDS // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
+            record_shown=device.empty((views, RECORDS, 2), np.int64),
+            unit=device.empty((views, UNITS), np.int32),
+            recorded=device.zeros((views, 1), np.int64),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )

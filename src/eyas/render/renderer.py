@@ -195,6 +195,10 @@ class CpuRenderer:
                 bent_key=np.zeros(bent, np.int64),
                 bent_shade=np.zeros((*bent, 4), np.uint8),
                 leaning=np.empty((workers, swaying, 3, 4), np.float32),
+                record=np.empty((workers, 0, TRIANGLE_ROWS, CLUSTER)),
+                record_shown=np.empty((workers, 0, 2), np.int64),
+                unit=np.empty((workers, 0), np.int32),
+                recorded=np.empty((workers, 0), np.int64),
                 bent_tile=np.zeros((0, 0, 4), np.int32),
             )
             _keep(self._scratch, key, Held(scratch))

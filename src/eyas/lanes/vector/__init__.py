@@ -17,6 +17,7 @@ __all__ = [
     "any_of",
     "bit_pattern",
     "bits_of",
+    "claim_some",
     "ceiling",
     "first_bit",
     "from_bits",
@@ -34,6 +35,7 @@ __all__ = [
     "magnitude",
     "own",
     "root",
+    "scatter",
     "select",
     "splat",
     "store",
@@ -57,12 +59,14 @@ WIDTH = 8
 _MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
 
 agree = Intrinsic(_MEMORY, "agree")
+claim_some = Intrinsic(_MEMORY, "claim_some")
 gather = Intrinsic(_MEMORY, "gather")
 gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")
 gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
 load_words = Intrinsic(_MEMORY, "load_words")
+scatter = Intrinsic(_MEMORY, "scatter")
 store = Intrinsic(_MEMORY, "store")
 store_greater = Intrinsic(_MEMORY, "store_greater")
 store_largest = Intrinsic(_MEMORY, "store_largest")

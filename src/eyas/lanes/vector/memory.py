@@ -4,14 +4,15 @@ from collections.abc import Iterable
 from typing import Any
 
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "agree", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "scatter",
+    "store",
     "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
@@ -252,6 +253,26 @@ def store_largest(typing_context, array, at, value):
 
 
 @intrinsic
+def claim_some(typing_context, counter, count):
+    """Return the first number of an array of int64 and add a count to it, atomically, once for all
+    lanes.
+    """
+
+    def generate(context, builder, sig, args):
+        count = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = context.make_array(counter)(context, builder, args[0]).data
+        if not lanes_are_threads(context):
+            return builder.atomic_rmw("add", pointer, count, "monotonic")
+        found = cgutils.alloca_once_value(builder, _I64(0))
+        first = builder.icmp_unsigned("==", threads.lane_number(builder), _I32(0))
+        with builder.if_then(first):
+            builder.store(builder.atomic_rmw("add", pointer, count, "monotonic"), found)
+        return threads.from_lane(builder, builder.load(found), _I32(0))
+
+    return types.int64(counter, count), generate
+
+
+@intrinsic
 def agree(typing_context):
     """Let all lanes see what each has written; for kernels of threads only."""
 
@@ -260,6 +281,22 @@ def agree(typing_context):
         return context.get_dummy_value()
 
     return types.void(), generate
+
+
+@intrinsic
+def scatter(typing_context, array, index, mask, value):
+    """Write elements at some indices, none negative, where the mask is set."""
+
+    def generate(context, builder, sig, args):
+        number = not isinstance(index, Lanes) or lanes_are_threads(context)
+        for k, at in enumerate(_each(context, builder, index, args[1])):
+            wanted = args[2] if number else builder.extract_element(args[2], _I32(k))
+            element = args[3] if number else builder.extract_element(args[3], _I32(k))
+            with builder.if_then(wanted):
+                builder.store(element, _pointer(context, builder, array, args[0], at))
+        return context.get_dummy_value()
+
+    return types.void(array, index, mask, value), generate
 
 
 @intrinsic
@@ -278,6 +315,11 @@ def store_where(typing_context, array, at, mask, value):
         held = ir_type(kind, threads=lanes_are_threads(context))
         pointer, align = _place(context, builder, sig, args, held, size)
         new = as_lanes(context, builder, sig.args[3], args[3], kind)
+        if lanes_are_threads(context):  # others may write beside what is wanted
+            with builder.if_then(args[2]):
+                builder.store(new, pointer).align = align
+            threads.agree(builder)
+            return context.get_dummy_value()
         chosen = builder.select(args[2], new, _load(builder, pointer, align))
         return _store(context, builder, chosen, pointer, align)
 

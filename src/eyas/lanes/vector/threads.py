@@ -11,9 +11,15 @@ from numba.core import cgutils
 
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["agree", "ballot", "from_lane", "lane_number"]
+__all__ = ["BLOCK", "RECORD", "agree", "ballot", "from_lane", "lane_number"]
 
 _I1, _I32, _I64, _VOID = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.VoidType()
+
+BLOCK = 64
+"""Threads in a block of a kernel on lanes: what workers share is laid out for so many."""
+
+RECORD = "worker_record"
+"""Name of places on the stack that hold the same for all lanes, see `eyas.lanes.ptx`."""
 
 _SEGMENT = ((32 - WIDTH) << 8) | 31
 """Operand of a shuffle that stays within the lanes of a worker (PTX ISA, `shfl.sync`)."""
@@ -74,3 +80,4 @@ def from_lane(builder: Any, value: ir.Value, number: ir.Value) -> ir.Value:  # n
 def agree(builder: Any) -> None:  # noqa: ANN401
     """Let all lanes see what each has written."""
     _call(builder, "bar.warp.sync", ir.FunctionType(_VOID, [_I32]), _members(builder))
+

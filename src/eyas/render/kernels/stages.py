@@ -25,9 +25,10 @@ from eyas.render.kernels.draw import band_of, light_at, no_glass, write_colours,
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.passes import draw_scene
+from eyas.render.kernels.visibility.records import fill_recorded
 from eyas.render.kernels.visibility.transform import view_of
 
-__all__ = ["Shares", "cast_lights", "find_triangles", "shade", "tell_facts"]
+__all__ = ["Shares", "cast_lights", "fill_triangles", "find_triangles", "shade", "tell_facts"]
 
 
 class Shares(NamedTuple):
@@ -86,6 +87,12 @@ def _draw(band: Band, output: Output, task: Task, index: int, shares: Shares) ->
 
 
 @kernel
+def _fill(band: Band, output: Output, task: Task, index: int, shares: Shares) -> None:
+    """Fill the triangles that were recorded."""
+    fill_recorded(band)
+
+
+@kernel
 def _cast(band: Band, output: Output, task: Task, index: int, shares: Shares) -> None:
     """Write the share of light that moving things let through, and their own light."""
     cast_light(band)
@@ -108,6 +115,7 @@ def _over_views(stage: Callable[..., Any]) -> ParallelCall:
 
 
 find_triangles = _over_views(_draw)
+fill_triangles = _over_views(_fill)
 cast_lights = _over_views(_cast)
 shade = _over_views(_shade)
 tell_facts = _over_views(_tell)

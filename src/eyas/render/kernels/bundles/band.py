@@ -49,6 +49,10 @@ class Band(NamedTuple):
     polygon: NDArray[np.float64]
     span: NDArray[np.int32]
     leaning: NDArray[np.float32]
+    record: NDArray[np.float64]
+    record_shown: NDArray[np.int64]
+    unit: NDArray[np.int32]
+    recorded: NDArray[np.int64]
     member: int
     """Which of several workers that share the band this is: each does its own items of lists and
     its own rows. On a processor, one does all."""

@@ -80,6 +80,15 @@ class Scratch(NamedTuple):
     leaning: NDArray[np.float32]
     """Poses of the visible fixtures in the wind, the rows of `drawn`, shape (K, I, 3, 4), or
     (K, 0, 3, 4) in calm air."""
+    record: NDArray[np.float64]
+    """Triangles to be filled later, eight in each like `triangle`, shape (K, R / 8, 28, 8), or
+    (K, 0, 28, 8) where they are filled at once, and when there is no room for more."""
+    record_shown: NDArray[np.int64]
+    """Their tags, and layer and mip level of their holes, -1: none, shape (K, R, 2)."""
+    unit: NDArray[np.int32]
+    """Eight rows of one of them: its number times 64, and which eight; -1: none, shape (K, U)."""
+    recorded: NDArray[np.int64]
+    """Units asked for, in the upper half, and records, shape (K, 1)."""
     bent_tile: NDArray[np.int32]
     """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 

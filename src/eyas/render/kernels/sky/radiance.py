@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
+    agree,
     any_of,
     bits_of,
     gather,
@@ -321,6 +322,7 @@ def _own_sky(
     red, green, blue = f4(0.0), f4(0.0), f4(0.0)
     if (chosen >> own(lane_numbers())) & 1:
         red, green, blue = sky_colour(light, lit, rays, own(line), own(column))
+    agree()
     return splat(red), splat(green), splat(blue)
 
 

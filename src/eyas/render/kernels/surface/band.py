@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
+    agree,
     any_of,
     bits_of,
     first_bit,
@@ -101,6 +102,7 @@ def _own_colours(
         red, green, blue = _one_instance(
             band, row, i4(triangle), eye, ray, away, rays.pixel, own(shade)
         )
+    agree()
     return splat(red), splat(green), splat(blue)
 
 

@@ -1,11 +1,14 @@
 """Filling of triangles: eight rows at once for where they begin and end, then eight samples."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
+    agree,
     any_of,
     bits_of,
     ceiling,
@@ -50,7 +53,7 @@ from eyas.render.kernels.visibility.triangles import (
     Y,
 )
 
-__all__ = ["SPAN_ROWS", "fill"]
+__all__ = ["SPAN_ROWS", "fill", "fill_rows", "slopes_of"]
 
 SPAN_ROWS = 7
 """Rows of `Scratch.span`: a column for each of eight rows of samples."""
@@ -146,6 +149,30 @@ def _show(
     store_greater(key, at, key_of(select(wanted, inverse, f4(-1.0)), tag), old)
 
 
+class Slopes(NamedTuple):
+    """What is the same in all rows of a triangle, of float32: how 1/distance changes from column to
+    column, its limits, and how u/distance and v/distance change.
+    """
+
+    step: float
+    least: float
+    most: float
+    u_step: float
+    v_step: float
+
+
+@kernel(inline=True)
+def slopes_of(triangle: NDArray[np.float64], number: int, holes: Holes) -> Slopes:
+    """Return the slopes of a triangle, see `fill`."""
+    return Slopes(
+        f4(_entry(triangle, ACROSS, number)),
+        f4(_entry(triangle, LEAST, number)),
+        f4(_entry(triangle, MOST, number)),
+        f4(_entry(triangle, U + ACROSS - START, number) * holes.size),
+        f4(_entry(triangle, V + ACROSS - START, number) * holes.size),
+    )
+
+
 @kernel(inline=True)
 def _fill_span(
     key: NDArray[np.int64],
@@ -153,8 +180,7 @@ def _fill_span(
     length: int,
     value: float,
     texture: tuple[float, float],
-    triangle: NDArray[np.float64],
-    number: int,
+    slopes: Slopes,
     tag: int,
     holes: Holes,
 ) -> None:
@@ -166,32 +192,30 @@ def _fill_span(
         length: Number of samples.
         value: 1/distance there.
         texture: u/distance and v/distance there.
-        triangle: See `fill`.
-        number: See `fill`.
+        slopes: Those of the triangle.
         tag: See `fill`.
         holes: See `fill`.
     """
-    step = f4(_entry(triangle, ACROSS, number))
-    least, most = f4(_entry(triangle, LEAST, number)), f4(_entry(triangle, MOST, number))
-    u_step = f4(_entry(triangle, U + ACROSS - START, number) * holes.size)
-    v_step = f4(_entry(triangle, V + ACROSS - START, number) * holes.size)
     for k in range(length):
         steps = f4(k)
-        inverse = lesser(greater(value + step * steps, least), most)
+        inverse = lesser(greater(value + slopes.step * steps, slopes.least), slopes.most)
         new = key_of(inverse, tag)
-        if new > gather(key, at + k):
-            w, shown = f4(1.0) / inverse, True
-            if holes.level >= 0:
-                u, v = texture[0] + u_step * steps, texture[1] + v_step * steps
-                shown = has_leaf(holes, u * w, v * w)
-            if shown:
+        if holes.level < 0:
+            store_largest(key, at + k, new)
+        elif new > gather(key, at + k):
+            w = f4(1.0) / inverse
+            u, v = texture[0] + slopes.u_step * steps, texture[1] + slopes.v_step * steps
+            if has_leaf(holes, u * w, v * w):
                 store_largest(key, at + k, new)
 
 
 @kernel(inline=True)
-def _fill_by_rows(
+def _fill_own_row(
     triangle: NDArray[np.float64],
     number: int,
+    slopes: Slopes,
+    row: int,
+    last_row: int,
     top: int,
     width: int,
     key: NDArray[np.int64],
@@ -199,26 +223,82 @@ def _fill_by_rows(
     holes: Holes,
     span: NDArray[np.int32],
 ) -> None:
-    """Draw a triangle as `fill` does; each thread draws a row of eight."""
-    row, last_row = i8(_entry(triangle, FIRST_ROW, number)), i8(_entry(triangle, LAST_ROW, number))
+    """Draw what `fill_rows` does; each thread draws a row of its own."""
     numbers, none = lane_numbers(), splat(f4(0.0))
-    while row < last_row:
-        rows = to_f8(numbers + i4(row))
-        first, last = _ends(triangle, number, rows, float(width))
-        value, u, v = _values(triangle, number, START, 1.0, rows, first), none, none
-        if holes.level >= 0:
-            u = _values(triangle, number, U, holes.size, rows, first)
-            v = _values(triangle, number, V, holes.size, rows, first)
-        line = i8(own(numbers)) + row
-        if line < last_row:
-            begin = i8(own(first))
-            at = (line - top) * key.shape[1] + begin
-            length, texture = i8(own(last)) - begin, (own(u), own(v))
-            _fill_span(key, at, length, own(value), texture, triangle, number, tag, holes)
-        row += WIDTH
+    rows = to_f8(numbers + i4(row))
+    first, last = _ends(triangle, number, rows, float(width))
+    value, u, v = _values(triangle, number, START, 1.0, rows, first), none, none
+    if holes.level >= 0:
+        u = _values(triangle, number, U, holes.size, rows, first)
+        v = _values(triangle, number, V, holes.size, rows, first)
+    line = i8(own(numbers)) + row
+    if line < last_row:
+        begin = i8(own(first))
+        at, length = (line - top) * key.shape[1] + begin, i8(own(last)) - begin
+        _fill_span(key, at, length, own(value), (own(u), own(v)), slopes, tag, holes)
+    agree()
 
 
-@kernel(inline=True, threads=_fill_by_rows)
+@kernel(inline=True, threads=_fill_own_row)
+def fill_rows(
+    triangle: NDArray[np.float64],
+    number: int,
+    slopes: Slopes,
+    row: int,
+    last_row: int,
+    top: int,
+    width: int,
+    key: NDArray[np.int64],
+    tag: int,
+    holes: Holes,
+    span: NDArray[np.int32],
+) -> None:
+    """Draw eight rows of a triangle, see `fill`.
+
+    Args:
+        triangle: See there.
+        number: See there.
+        slopes: Those of the triangle.
+        row: The first row.
+        last_row: `LAST_ROW` of the triangle.
+        top: See there.
+        width: See there.
+        key: See there.
+        tag: See there.
+        holes: See there.
+        span: See there.
+    """
+    numbers = lane_numbers()
+    live = _find_spans(triangle, number, row, top, width, key.shape[1], holes, span)
+    if last_row - row < WIDTH:
+        live &= (1 << (last_row - row)) - 1
+    while live != 0:
+        which = first_bit(live)
+        live &= live - 1
+        at, end = i8(gather(span, AT * WIDTH + which)), i8(gather(span, END * WIDTH + which))
+        columns = numbers + gather(span, OFFSET * WIDTH + which)
+        length = u4(gather(span, LENGTH * WIDTH + which))
+        value = from_bits(gather(span, VALUE * WIDTH + which))
+        while True:
+            steps = to_f4(columns)
+            inverse = lesser(greater(value + slopes.step * steps, slopes.least), slopes.most)
+            wanted, old = to_u4(columns) < length, load(key, at)
+            if holes.level < 0:
+                _show(key, at, wanted, inverse, tag, old)
+            else:
+                wanted &= key_of(inverse, tag) > old
+                if any_of(wanted):
+                    w = f4(1.0) / inverse
+                    u = from_bits(gather(span, U_VALUE * WIDTH + which)) + slopes.u_step * steps
+                    v = from_bits(gather(span, V_VALUE * WIDTH + which)) + slopes.v_step * steps
+                    _show(key, at, wanted & has_leaf(holes, u * w, v * w), inverse, tag, old)
+            at += WIDTH
+            if at >= end:
+                break
+            columns += i4(WIDTH)
+
+
+@kernel(inline=True)
 def fill(
     triangle: NDArray[np.float64],
     number: int,
@@ -244,37 +324,7 @@ def fill(
         span: Working memory, see `Scratch`, shape (SPAN_ROWS, 8).
     """
     row, last_row = i8(_entry(triangle, FIRST_ROW, number)), i8(_entry(triangle, LAST_ROW, number))
-    step = f4(_entry(triangle, ACROSS, number))
-    least, most = f4(_entry(triangle, LEAST, number)), f4(_entry(triangle, MOST, number))
-    u_step = f4(_entry(triangle, U + ACROSS - START, number) * holes.size)
-    v_step = f4(_entry(triangle, V + ACROSS - START, number) * holes.size)
-    numbers = lane_numbers()
+    slopes = slopes_of(triangle, number, holes)
     while row < last_row:
-        live = _find_spans(triangle, number, row, top, width, key.shape[1], holes, span)
-        if last_row - row < WIDTH:
-            live &= (1 << (last_row - row)) - 1
+        fill_rows(triangle, number, slopes, row, last_row, top, width, key, tag, holes, span)
         row += WIDTH
-        while live != 0:
-            which = first_bit(live)
-            live &= live - 1
-            at, end = i8(gather(span, AT * WIDTH + which)), i8(gather(span, END * WIDTH + which))
-            columns = numbers + gather(span, OFFSET * WIDTH + which)
-            length = u4(gather(span, LENGTH * WIDTH + which))
-            value = from_bits(gather(span, VALUE * WIDTH + which))
-            while True:
-                steps = to_f4(columns)
-                inverse = lesser(greater(value + step * steps, least), most)
-                wanted, old = to_u4(columns) < length, load(key, at)
-                if holes.level < 0:
-                    _show(key, at, wanted, inverse, tag, old)
-                else:
-                    wanted &= key_of(inverse, tag) > old
-                    if any_of(wanted):
-                        w = f4(1.0) / inverse
-                        u = from_bits(gather(span, U_VALUE * WIDTH + which)) + u_step * steps
-                        v = from_bits(gather(span, V_VALUE * WIDTH + which)) + v_step * steps
-                        _show(key, at, wanted & has_leaf(holes, u * w, v * w), inverse, tag, old)
-                at += WIDTH
-                if at >= end:
-                    break
-                columns += i4(WIDTH)

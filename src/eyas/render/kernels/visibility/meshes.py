@@ -17,8 +17,8 @@ from eyas.render.kernels.visibility.clusters import (
     project_cluster,
 )
 from eyas.render.kernels.visibility.cull import planes_of
-from eyas.render.kernels.visibility.fill import fill
 from eyas.render.kernels.visibility.holes import holes_level, holes_of, no_holes
+from eyas.render.kernels.visibility.records import fill_or_record
 from eyas.render.kernels.visibility.transform import clip_near
 from eyas.render.kernels.visibility.triangles import (
     INVERSE,
@@ -131,7 +131,7 @@ def _draw_triangles(
     tag: int,
 ) -> None:
     """Draw triangles of a cluster, then those that the near plane cuts, a bit each."""
-    geometry, view, triangle, span = band.geometry, band.camera, band.triangle, band.span
+    geometry, triangle = band.geometry, band.triangle
     whole, number = True, i8(0)
     while drawn != 0 or cut != 0:
         if drawn == 0:
@@ -143,19 +143,17 @@ def _draw_triangles(
         drawn &= drawn - 1
         if whole:
             number = column
-        holes, tiles = no_holes(geometry.texture), _tiles(geometry, cluster, number)
+        holes, layer = no_holes(geometry.texture), i8(0)
+        tiles = _tiles(geometry, cluster, number)
         at = CLUSTER * cluster + number
         if tiles >= 0.0:
             level = holes_level(
                 TEXELS * tiles / (focal * gather(triangle, INVERSE * CLUSTER + column))
             )
             if level >= 0:
-                holes = holes_of(
-                    geometry.texture,
-                    gather(geometry.layer, i8(gather(geometry.material, at))),
-                    level,
-                )
-        fill(triangle, column, view.top, view.width, key, tag + at, holes, span)
+                layer = i8(gather(geometry.layer, i8(gather(geometry.material, at))))
+                holes = holes_of(geometry.texture, layer, level)
+        fill_or_record(band, key, column, tag + at, layer, holes)
 
 
 @kernel(inline=True)
