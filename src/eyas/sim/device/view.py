@@ -82,7 +82,7 @@ class DeviceView:
             device.held(self._query),
             device.held(self._shown),
         )
-        self._views = 0
+        self._views, self._room = 0, (0, 0)
         self._grow(_ENTRIES, _SLOTS)
 
     def draw(self, trackers: NDArray[np.int64], rgb: Any) -> None:  # noqa: ANN401  # a device array
@@ -129,10 +129,12 @@ class DeviceView:
             device.launch(call, views * cells, *bundles)
 
     def _grow(self, entries: int, slots: int) -> None:
-        """Make room for some actors and slots in each list, and a quarter more."""
+        """Make room for some actors and slots in each list, and a quarter more; never less."""
         device, simulation, assets = self._device, self._simulation, self._assets
         count, casts = simulation.count, assets.rigs.casts
-        entries, slots = entries + entries // 4, slots + slots // 4
+        entries = max(self._room[0], entries + entries // 4)
+        slots = max(self._room[1], slots + slots // 4)
+        self._room = entries, slots
         movers = _movers(assets, count, slots)
         self.movers = Movers(*(device.upload(array) for array in movers))
         kinds = len(casts)
