@@ -37,7 +37,7 @@ from eyas.state.draw import NO_SPRAY, DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 
-__all__ = ["CpuRenderer", "build_renderer"]
+__all__ = ["GRIDS", "CpuRenderer", "build_renderer"]
 
 
 class CpuRenderer:
@@ -63,6 +63,11 @@ class CpuRenderer:
         self._banks: dict[tuple[int, int, int, int], LensBank] = {}
         self._tasks: dict[Size, Held[Task]] = {}
 
+    @property
+    def packed(self) -> tuple[Geometry, Light]:
+        """Everything that can be drawn, and light and air, as kernels read them."""
+        return self._geometry, self._light
+
     def part_reach(self) -> NDArray[np.float64]:
         """Return how far the corners of each part of the library are from its origin [m]."""
         box = self._geometry.box[self._geometry.part_first :].astype(np.float64)
@@ -85,13 +90,13 @@ class CpuRenderer:
         until: DrawStage = DrawStage.SHADING,
     ) -> None:
         """Draw views into the arrays of a picture that are not None, see `Renderer`."""
-        if samples not in _GRIDS:
+        if samples not in GRIDS:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
         if self._ready is not None:
             self._ready()
         movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
-        grid, several = _GRIDS[samples], samples > 1
+        grid, several = GRIDS[samples], samples > 1
         if len(output.radiance) and (several or len(output.rgb)):
             colours = NO_OUTPUT._replace(radiance=output.radiance)
             self._draw(views, movers, colours, picture, grid, until)
@@ -101,7 +106,7 @@ class CpuRenderer:
             self._draw(views, movers, colours, picture, grid, until)
             output = output._replace(rgb=NO_OUTPUT.rgb)
         if any(len(array) for array in output):
-            self._draw(views, movers, output, picture, _GRIDS[1], until)
+            self._draw(views, movers, output, picture, GRIDS[1], until)
 
     def _draw(
         self,
@@ -231,7 +236,7 @@ def build_renderer(
 Key = TypeVar("Key", bound=Hashable)
 Value = TypeVar("Value")
 
-_GRIDS = {1: (1, 1), 2: (1, 2), 4: (2, 2)}
+GRIDS = {1: (1, 1), 2: (1, 2), 4: (2, 2)}
 """Samples along a row and along a column of a pixel, by their number. Two lie one above the other:
 seen from a drone, kerbs, sills and lines of the road lie rather across the picture."""
 
