@@ -4,7 +4,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from eyas.core.errors import ConfigError
 from eyas.lanes import ParallelCall
 from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
@@ -14,11 +13,14 @@ from eyas.render.kernels.stages import (
     cast_lights,
     fill_triangles,
     find_triangles,
+    list_views,
+    look_for_clusters,
     shade,
     tell_facts,
 )
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
+from eyas.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.outputs import NO_OUTPUT
@@ -34,8 +36,12 @@ MEMBERS = 4
 FILLERS = 32
 """Workers that share the rows of its triangles."""
 
-BUSY = 8192
+BUSY = 4096
 """Warps that keep a card busy while some wait: fewer views are shared by more workers."""
+
+CLUSTERS = 2048
+"""Clusters of eight triangles of a view that are kept for those who project them; more are
+projected where they are found."""
 
 RECORDS = 2560
 """Triangles of a view that are kept for the fillers; more are filled where they are found."""
@@ -43,8 +49,9 @@ RECORDS = 2560
 UNITS_PER_ROW = 64
 """Eights of their rows that are kept, for each row of samples."""
 
-_INSTANCES = 2048
-"""Instances that a view shows at most."""
+ITEMS = 512
+"""Chunks and instances of a view that are kept for those who look for their clusters; more are
+drawn where they are listed."""
 
 
 class PictureSize(NamedTuple):
@@ -120,10 +127,13 @@ class DeviceRenderer:
         few, many = size.members
         device.clear(scratch.key)
         device.clear(scratch.recorded)
+        device.clear(scratch.found)
 
         def launch(stage: ParallelCall, members: int) -> None:
             device.launch(stage, size.views * members, of[members], *bundles, threads=WIDTH)
 
+        launch(list_views, MEMBERS)
+        launch(look_for_clusters, few)
         launch(find_triangles, few)
         launch(fill_triangles, max(FILLERS, many))
         coloured = len(output.rgb) > 0 or len(output.radiance) > 0
@@ -141,15 +151,14 @@ class DeviceRenderer:
         """Return working memory for all views."""
         device, views, (few, many) = self._device, size.views, size.members
         chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
-        instances = min(fixtures + slots * (2 if size.measured else 1), _INSTANCES)
-        if instances > MOST_INSTANCES:
-            raise ConfigError(f"device: {instances} instances; allowed: {MOST_INSTANCES}")
+        instances = min(fixtures + slots * (2 if size.measured else 1), MOST_INSTANCES)
         plane = (
             views,
             size.height * size.down,
             (size.width + -size.width % WIDTH) * size.across,
         )
         none = (views, 0, 0)
+        listed = chunks + instances
         swaying = instances if len(self._light.sway) else 0
         shade_bytes = device.empty((*plane, 4), np.uint8)
         return Scratch(
@@ -159,7 +168,7 @@ class DeviceRenderer:
             drawn=device.empty((views, instances, 2), np.int32),
             mesh=device.empty((views, instances), np.int32),
             tiles=device.empty((views, 1, 1), np.float32),
-            order=device.empty((views, chunks + instances), np.int64),
+            order=device.empty((views, listed), np.int64),
             triangle=device.empty((views * few, TRIANGLE_ROWS, CLUSTER), np.float64),
             polygon=device.zeros((views * few, 15, CLUSTER), np.float64),
             span=device.empty((views * max(FILLERS, many), SPAN_ROWS, WIDTH), np.int32),
@@ -167,6 +176,10 @@ class DeviceRenderer:
             bent_key=device.empty(none, np.int64),
             bent_shade=device.empty((*none, 4), np.uint8),
             leaning=device.empty((views, swaying, 3, 4), np.float32),
+            item=device.empty((views, min(listed, ITEMS), ITEM_COLUMNS), np.float64),
+            item_row=device.empty((views, min(listed, ITEMS) + 1), np.int64),
+            seen=device.empty((views, CLUSTERS), np.int64),
+            found=device.zeros((views, 2), np.int64),
             record=device.empty((views, RECORDS // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
             record_shown=device.empty((views, RECORDS, 2), np.int64),
             unit=device.empty((views, max(UNITS_PER_ROW * plane[1], 2 * RECORDS)), np.int32),

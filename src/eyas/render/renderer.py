@@ -22,6 +22,7 @@ from eyas.render.kernels.light.casters import influence
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.hidden import TILE
+from eyas.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.lenses import NO_TABLES, LensBank
@@ -195,6 +196,10 @@ class CpuRenderer:
                 bent_key=np.zeros(bent, np.int64),
                 bent_shade=np.zeros((*bent, 4), np.uint8),
                 leaning=np.empty((workers, swaying, 3, 4), np.float32),
+                item=np.empty((workers, 0, ITEM_COLUMNS)),
+                item_row=np.empty((workers, 0), np.int64),
+                seen=np.empty((workers, 0), np.int64),
+                found=np.empty((workers, 0), np.int64),
                 record=np.empty((workers, 0, TRIANGLE_ROWS, CLUSTER)),
                 record_shown=np.empty((workers, 0, 2), np.int64),
                 unit=np.empty((workers, 0), np.int32),

@@ -18,6 +18,7 @@ __all__ = [
     "bit_pattern",
     "bits_of",
     "claim_some",
+    "count_bits",
     "ceiling",
     "first_bit",
     "from_bits",
@@ -80,6 +81,7 @@ any_of = Intrinsic(_VALUES, "any_of")
 bit_pattern = Intrinsic(_VALUES, "bit_pattern")
 bits_of = Intrinsic(_VALUES, "bits_of")
 ceiling = Intrinsic(_VALUES, "ceiling")
+count_bits = Intrinsic(_VALUES, "count_bits")
 first_bit = Intrinsic(_VALUES, "first_bit")
 from_bits = Intrinsic(_VALUES, "from_bits")
 greater = Intrinsic(_VALUES, "greater")

@@ -12,7 +12,8 @@ from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import I4, Lanes, as_lanes, element_of, ir_type, lanes_are_threads
 
 __all__ = [
-    "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "first_bit", "from_bits", "greater",
+    "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "count_bits",
+    "first_bit", "from_bits", "greater",
     "lane", "lane_numbers", "lesser", "like", "magnitude", "own", "root", "select", "splat", "to_f4",
     "to_f8", "to_i4", "to_i8", "to_u4", "whole",
 ]  # fmt: skip
@@ -108,6 +109,16 @@ def bits_of(typing_context, mask):
         return builder.zext(_bits(context, builder, mask, args[0]), ir.IntType(64))
 
     return types.int64(mask), generate
+
+
+@intrinsic
+def count_bits(typing_context, bits):
+    """Return how many bits of a number are set."""
+
+    def generate(context, builder, sig, args):
+        return builder.ctpop(args[0])
+
+    return types.int64(types.int64), generate
 
 
 @intrinsic

@@ -250,7 +250,8 @@ def band_of(
         scratch.alone[row, :rows], scratch.shade[row, :rows], scratch.drawn[row],
         scratch.mesh[row], scratch.tiles[row], scratch.order[row],
         scratch.triangle[row * members + member], scratch.polygon[row * members + member],
-        scratch.span[row * members + member], scratch.leaning[row], scratch.record[row],
+        scratch.span[row * members + member], scratch.leaning[row], scratch.item[row],
+        scratch.item_row[row], scratch.seen[row], scratch.found[row], scratch.record[row],
         scratch.record_shown[row], scratch.unit[row], scratch.recorded[row], i8(member),
         i8(members),
     )  # fmt: skip
@@ -287,7 +288,8 @@ def bent_band(
         face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,
         i8(columns), i8(lines), glass, scratch.bent_key[worker, :rows], face.alone,
         scratch.bent_shade[worker, :rows], face.drawn, face.mesh, face.tiles, face.order,
-        face.triangle, face.polygon, face.span, face.leaning, face.record, face.record_shown,
+        face.triangle, face.polygon, face.span, face.leaning, face.item,
+        face.item_row, face.seen, face.found, face.record, face.record_shown,
         face.unit, face.recorded, face.member, face.members,
     )  # fmt: skip
 

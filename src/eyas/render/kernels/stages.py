@@ -24,11 +24,20 @@ from eyas.render.kernels.bundles import (
 from eyas.render.kernels.draw import band_of, light_at, no_glass, write_colours, write_facts
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.scalars import i8
-from eyas.render.kernels.visibility.passes import draw_scene
+from eyas.render.kernels.visibility.items import draw_clusters, find_clusters, list_items
 from eyas.render.kernels.visibility.records import fill_recorded
 from eyas.render.kernels.visibility.transform import view_of
 
-__all__ = ["Shares", "cast_lights", "fill_triangles", "find_triangles", "shade", "tell_facts"]
+__all__ = [
+    "Shares",
+    "cast_lights",
+    "fill_triangles",
+    "find_triangles",
+    "list_views",
+    "look_for_clusters",
+    "shade",
+    "tell_facts",
+]
 
 
 class Shares(NamedTuple):
@@ -81,9 +90,21 @@ def _each_view(
 
 
 @kernel
+def _list(band: Band, output: Output, task: Task, index: int, shares: Shares) -> None:
+    """List what a view shows."""
+    shares.listed[index] = list_items(band)
+
+
+@kernel
+def _find(band: Band, output: Output, task: Task, index: int, shares: Shares) -> None:
+    """Find the clusters that may be seen."""
+    find_clusters(band)
+
+
+@kernel
 def _draw(band: Band, output: Output, task: Task, index: int, shares: Shares) -> None:
-    """Draw what a view shows into its keys, which must be 0."""
-    shares.listed[index] = draw_scene(band)
+    """Find the triangles that are seen in them."""
+    draw_clusters(band)
 
 
 @kernel
@@ -114,6 +135,8 @@ def _over_views(stage: Callable[..., Any]) -> ParallelCall:
     return parallel(specialised(_each_view, _stage=stage))
 
 
+list_views = _over_views(_list)
+look_for_clusters = _over_views(_find)
 find_triangles = _over_views(_draw)
 fill_triangles = _over_views(_fill)
 cast_lights = _over_views(_cast)

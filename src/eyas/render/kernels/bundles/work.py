@@ -80,6 +80,16 @@ class Scratch(NamedTuple):
     leaning: NDArray[np.float32]
     """Poses of the visible fixtures in the wind, the rows of `drawn`, shape (K, I, 3, 4), or
     (K, 0, 3, 4) in calm air."""
+    item: NDArray[np.float64]
+    """What a view shows, see `eyas.render.kernels.visibility.items`, shape (K, C + I, 21); this and
+    the next three are empty where one worker draws all of a band.
+    """
+    item_row: NDArray[np.int64]
+    """Rows of `Geometry.bounds` that the items before each have, shape (K, C + I + 1)."""
+    seen: NDArray[np.int64]
+    """Clusters that may be seen: item and row of `Geometry.cluster`, shape (K, .)."""
+    found: NDArray[np.int64]
+    """How many those are, and how many rows of `Geometry.bounds` all items have, shape (K, 2)."""
     record: NDArray[np.float64]
     """Triangles to be filled later, eight in each like `triangle`, shape (K, R / 8, 28, 8), or
     (K, 0, 28, 8) where they are filled at once, and when there is no room for more."""

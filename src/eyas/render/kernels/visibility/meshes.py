@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, splat
-from eyas.render.kernels.bundles import Band, Geometry, Point, Projection, View
+from eyas.render.kernels.bundles import Band, Geometry, Planes, Point, Projection, View
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.clusters import (
     CLUSTER,
@@ -29,7 +29,7 @@ from eyas.render.kernels.visibility.triangles import (
 )
 from eyas.state.draw import DrawStage
 
-__all__ = ["draw_mesh", "level_of_detail"]
+__all__ = ["draw_cluster", "draw_mesh", "level_of_detail"]
 
 VERTICES = int(DrawStage.VERTICES)
 
@@ -58,15 +58,6 @@ def level_of_detail(
 
 
 @kernel(inline=True)
-def own_share(band: Band) -> int:
-    """Return which of the eight clusters in a row of `Geometry.bounds` are a worker's own, a bit
-    each; as many as a power of two share a band.
-    """
-    several = min(band.members, CLUSTER)
-    return (255 // ((1 << several) - 1)) << (band.member % CLUSTER)
-
-
-@kernel(inline=True)
 def draw_mesh(
     band: Band,
     key: NDArray[np.int64],
@@ -89,30 +80,51 @@ def draw_mesh(
         smallest: Size of the smallest detail to draw [m].
         tag: Tag of triangle 0.
     """
-    geometry, view, until, triangle = band.geometry, band.camera, band.until, band.triangle
+    geometry, view = band.geometry, band.camera
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
     first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
-    share = own_share(band)
-    # More than eight workers share rows.
-    begin, step = band.member // CLUSTER, max(band.members // CLUSTER, 1)
-    for start in range(begin * CLUSTER, clusters, step * CLUSTER):
+    for start in range(0, clusters, CLUSTER):
         row = mesh[2] + start // CLUSTER
-        left = clusters_seen(geometry.bounds, row, planes, eye, smallest) & share
+        left = clusters_seen(geometry.bounds, row, planes, eye, smallest)
         while left != 0:
             cluster = first + start + first_bit(left)
             left &= left - 1
-            corners, front, cut = project_cluster(
-                geometry.cluster, cluster, screen, planes, view, smallest
-            )
-            leafy = has_leaves(geometry.cluster, cluster)
-            drawn = bits_of(_prepared(corners, front, leafy, view, triangle))
-            if until == VERTICES:
-                continue
-            if drawn != 0 and any_of(leafy):
-                at = UV_ROWS * CLUSTER * cluster
-                set_up_leaves(corners, geometry.corner_uv, at, triangle)
-            _draw_triangles(band, key, cluster, drawn, bits_of(cut), screen, focal, tag)
+            draw_cluster(band, key, cluster, screen, planes, focal, smallest, tag)
+
+
+@kernel(inline=True)
+def draw_cluster(
+    band: Band,
+    key: NDArray[np.int64],
+    cluster: int,
+    screen: Projection,
+    planes: Planes,
+    focal: float,
+    smallest: float,
+    tag: int,
+) -> None:
+    """Draw eight triangles of a mesh.
+
+    Args:
+        band: See `draw_mesh`.
+        key: See there.
+        cluster: Row of `Geometry.cluster`.
+        screen: See there.
+        planes: Planes around what the band shows, in the frame of the mesh.
+        focal: See there.
+        smallest: See there.
+        tag: See there.
+    """
+    geometry, view, triangle = band.geometry, band.camera, band.triangle
+    corners, front, cut = project_cluster(geometry.cluster, cluster, screen, planes, view, smallest)
+    leafy = has_leaves(geometry.cluster, cluster)
+    drawn = bits_of(_prepared(corners, front, leafy, view, triangle))
+    if band.until == VERTICES:
+        return
+    if drawn != 0 and any_of(leafy):
+        set_up_leaves(corners, geometry.corner_uv, UV_ROWS * CLUSTER * cluster, triangle)
+    _draw_triangles(band, key, cluster, drawn, bits_of(cut), screen, focal, tag)
 
 
 @kernel(inline=True)

@@ -14,7 +14,7 @@ from eyas.render.kernels.visibility.transform import in_frame, object_projection
 from eyas.render.kernels.wind import sways
 from eyas.state.draw import DrawStage
 
-__all__ = ["draw_scene", "draw_slots"]
+__all__ = ["draw_scene", "draw_slots", "item_at", "list_scene"]
 
 CULLING = int(DrawStage.CULLING)
 
@@ -26,18 +26,28 @@ SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
 
 
-@kernel
-def draw_scene(band: Band) -> int:
-    """Draw everything that a band shows; return how many instances there are in `Band.drawn`.
+@kernel(inline=True)
+def list_scene(band: Band) -> tuple[int, int]:
+    """List everything that a band shows; return how much, and how many instances there are in
+    `Band.drawn`.
 
-    Its keys must be 0. Workers that share a band each list all of it.
     They are numbered fixtures first, in the order of the arrays that hold them, so that the order
     of their tags does not depend on the band.
     """
     listed = list_chunks(band)
     count = list_fixtures(band, listed)
     count = list_slots(band, 0, band.movers.part.shape[1], listed, count)
-    _draw_listed(band, band.key, listed + count)
+    return listed + count, count
+
+
+@kernel
+def draw_scene(band: Band) -> int:
+    """Draw everything that a band shows; return how many instances there are in `Band.drawn`.
+
+    Its keys must be 0.
+    """
+    listed, count = list_scene(band)
+    _draw_listed(band, band.key, listed)
     return count
 
 
@@ -55,40 +65,46 @@ def draw_slots(band: Band, first: int, last: int, count: int) -> int:
 
 @kernel
 def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
-    """Draw what is listed in `Band.order`, the nearest first; workers that share a band draw some
-    clusters of each mesh, as it comes.
-    """
+    """Draw what is listed in `Band.order`, the nearest first."""
     if band.until <= CULLING:
         return
-    geometry, view, movers, world = band.geometry, band.camera, band.movers, band.world
-    order, drawn, meshes, tiles = band.order, band.drawn, band.mesh, band.tiles
-    chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
-    alone, measured = band.members == 1, i8(MEASURED_EVERY)
-    if alone:
-        _shell_sort(order, listed)
+    geometry, view = band.geometry, band.camera
+    order, drawn, tiles = band.order, band.drawn, band.tiles
+    _shell_sort(order, listed)
+    measured = i8(MEASURED_EVERY)
     for k in range(listed):
         item = order[k] & i8(0xFFFFFFFF)
-        if alone and k >= MEASURED_EVERY:
+        if k >= MEASURED_EVERY:
             if k == measured:
                 measure_tiles(key, view.width, tiles)
                 measured += max(i8(MEASURED_EVERY), measured >> i8(2))
             if _is_hidden(geometry, item, drawn, view, tiles):
                 continue
-        if item < chunks:
-            mesh, screen, eye = geometry.chunk_range[item], view.screen, view.eye
-            focal, tag = view.focal, i8(0)
-            smallest = SMALLEST_DETAIL * 0.001 * (order[k] >> i8(32)) / focal
-        else:
-            row = item - chunks
-            mesh, instance = geometry.mesh_range[meshes[row]], i8(drawn[row, 1])
-            if instance < fixtures and sways(band.light, instance):
-                screen, eye, focal = _in_frame(view, band.leaning, row)
-            elif instance < fixtures:
-                screen, eye, focal = _in_frame(view, geometry.fixture_pose, instance)
-            else:
-                screen, eye, focal = _in_frame(view, movers.pose[world], instance - fixtures)
-            tag, smallest = instance_tag(row) - mesh[0], 0.0
+        mesh, screen, eye, focal, smallest, tag = item_at(band, k)
         draw_mesh(band, key, mesh, screen, eye, focal, smallest, tag)
+
+
+@kernel(inline=True)
+def item_at(band: Band, k: int) -> tuple[NDArray[np.int32], Projection, Point, float, float, int]:
+    """Return what is listed in row `k` of `Band.order`: its row of `chunk_range` or `mesh_range`,
+    and what `draw_mesh` is told of it.
+    """
+    geometry, view, movers, drawn = band.geometry, band.camera, band.movers, band.drawn
+    chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
+    item = band.order[k] & i8(0xFFFFFFFF)
+    if item < chunks:
+        smallest = SMALLEST_DETAIL * 0.001 * (band.order[k] >> i8(32)) / view.focal
+        return geometry.chunk_range[item], view.screen, view.eye, view.focal, smallest, i8(0)
+    row = item - chunks
+    mesh, instance = geometry.mesh_range[band.mesh[row]], i8(drawn[row, 1])
+    if instance < fixtures and sways(band.light, instance):
+        screen, eye, focal = _in_frame(view, band.leaning, row)
+    elif instance < fixtures:
+        screen, eye, focal = _in_frame(view, geometry.fixture_pose, instance)
+    else:
+        poses = movers.pose[band.world]
+        screen, eye, focal = _in_frame(view, poses, instance - fixtures)
+    return mesh, screen, eye, focal, 0.0, instance_tag(row) - mesh[0]
 
 
 @kernel(inline=True)
