@@ -32,11 +32,17 @@ def bench(
     camera: Annotated[
         bool, typer.Option("--camera", help="Also time the models of cameras.")
     ] = False,
+    device: Annotated[
+        str | None,
+        typer.Option(
+            "--device", help="Measure pictures on a graphics processor only: cuda, cuda:1, ..."
+        ),
+    ] = None,
 ) -> None:
     """Measure the speed of Eyas on this machine, as medians."""
     from eyas.modes.bench import run as bench
 
-    bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera)
+    bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera, device=device)
 
 
 def verify(

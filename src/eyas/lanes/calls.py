@@ -206,6 +206,13 @@ class ParallelCall(CompiledCall):
         with _POOL.busy:
             _POOL.run(_Job(self._function(held), held, workers))
 
+    def in_order(self, workers: list[int], *bundles: Any) -> None:  # noqa: ANN401
+        """Run the shares of all workers, of which each must be named once, one after another."""
+        held = _held(bundles)
+        function, table = self._function(held), array("q", [part.address for part in held])
+        for worker in workers:
+            _check(function(table.buffer_info()[0], worker, len(workers)))
+
 
 def compiled(function: Callable[..., None]) -> CompiledCall:
     """Compile a function of bundles, for calls from Python."""

@@ -117,12 +117,14 @@ class HostDevice:
     Args:
         workers: At most so many workers are told to a kernel, which does all the work with any
             number of them.
+        order: Where the order is drawn from in which the workers do their shares, one after
+            another; None: threads do them.
     """
 
     name = "host"
 
-    def __init__(self, workers: int = 1) -> None:
-        self._workers = workers
+    def __init__(self, workers: int = 1, order: np.random.Generator | None = None) -> None:
+        self._workers, self._order = workers, order
 
     def empty(self, shape: int | Sequence[int], dtype: DTypeLike) -> NDArray[Any]:
         """See `Device`."""
@@ -162,7 +164,11 @@ class HostDevice:
     ) -> None:
         """See `Device`."""
         del threads, block
-        call(min(workers, self._workers), *bundles)
+        workers = min(workers, self._workers)
+        if self._order is None:
+            call(workers, *bundles)
+        else:
+            call.in_order(self._order.permutation(workers).tolist(), *bundles)
 
     def synchronise(self) -> None:
         """See `Device`."""

@@ -17,6 +17,7 @@ from rich.console import Console
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
 from eyas.modes.bench.camera import camera_table, measure_camera
+from eyas.modes.bench.device import card_of, measure_device
 from eyas.modes.bench.measurement import Measurement, measurement_table, timed, why_not
 from eyas.modes.bench.pictures import (
     BY_DAY,
@@ -62,6 +63,7 @@ def run(
     cold: bool = False,
     stages: bool = False,
     camera: bool = False,
+    device: str | None = None,
 ) -> None:
     """Measure, print a table and write the figures.
 
@@ -71,20 +73,31 @@ def run(
         cold: Whether to time the first picture with an empty cache too.
         stages: Whether to time the stages of a picture too.
         camera: Whether to time camera models too.
+        device: Whose pictures to measure, and nothing else, see `card_of`; None: all of this
+            processor.
+
+    Raises:
+        ConfigError: There is no such graphics processor that can be used.
     """
     seconds = 0.3 if quick else 3.0
+    card = None if device is None else card_of(device)
     console = Console()
     results: list[Measurement] = []
     with console.status("measuring") as status:
-        for measurement in _measurements(seconds, cold=cold):
+        measurements = (
+            _measurements(seconds, cold=cold) if card is None else measure_device(card, seconds)
+        )
+        for measurement in measurements:
             results.append(measurement)
             status.update(f"measured: {measurement.name}")
         spent = measure_stages(seconds) if stages else []
         costs = measure_camera(seconds) if camera else []
     machine = describe_machine()
+    if card is not None:
+        machine = f"{card.name}, {machine}"
     console.print(measurement_table(results, machine))
     missing = why_not()
-    if missing is not None:
+    if missing is not None and card is None:
         console.print(f"no instructions and cycles: no access to hardware counters ({missing})")
     if stages:
         console.print(stage_table(spent))
