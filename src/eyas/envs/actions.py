@@ -20,6 +20,8 @@ class Actions(Protocol):
 
     space: gymnasium.Space[Any]
     """The actions of one agent."""
+    allowed: str
+    """Which these are, in words."""
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # whatever a learner returns
         """Return the commands of N actions.
@@ -58,6 +60,9 @@ class Discrete:
 
     0 forward, 1 backward, 2 left, 3 right, 4 turn counter-clockwise, 5 turn clockwise, 6 hover.
 
+    Attributes:
+        table: The command of each, shape (7, 4).
+
     Args:
         speeds: The speeds of the actions.
     """
@@ -66,35 +71,45 @@ class Discrete:
 
     def __init__(self, speeds: ActionSpeeds) -> None:
         self.space: gymnasium.Space[Any] = gymnasium.spaces.Discrete(7)
-        self._table = np.concatenate((action_table(speeds), np.zeros((1, 4))))
+        self.table = np.concatenate((action_table(speeds), np.zeros((1, 4))))
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
         """Return the commands of N numbers, shape (N,)."""
         numbers = _array(actions)
         if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
             raise _refused(actions, self.allowed)
-        if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(self._table):
-            wrong = int(np.flatnonzero((numbers < 0) | (numbers >= len(self._table)))[0])
+        if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(self.table):
+            wrong = int(np.flatnonzero((numbers < 0) | (numbers >= len(self.table)))[0])
             raise _refused(numbers[wrong], self.allowed, wrong, len(numbers))
-        commands: Commands = self._table[numbers]
+        commands: Commands = self.table[numbers]
         return commands
 
 
 class _FourNumbers:
     """Four numbers: forward, left, up, turn counter-clockwise; out of range, they are clipped.
 
-    Args:
+    Attributes:
         low: Smallest of each, shape (4,).
         high: Largest of each, shape (4,).
+        at_minus_1: Commands backward, right, down, clockwise, shape (4,).
+        at_1: Their opposites, shape (4,).
+
+    Args:
+        low: As above.
+        high: As above.
+        ends: The other two.
     """
 
     allowed = "four finite numbers"
+    UNITS = np.array([1.0, 1.0, 500.0, 1.0])
+    """Of velocities in commands, which have the third in m per 2 ms."""
 
-    def __init__(self, low: Commands, high: Commands) -> None:
+    def __init__(self, low: Commands, high: Commands, ends: tuple[Commands, Commands]) -> None:
         self.space: gymnasium.Space[Any] = gymnasium.spaces.Box(
             low.astype(np.float32), high.astype(np.float32)
         )
-        self._low, self._high = low, high
+        self.low, self.high = low, high
+        self.at_minus_1, self.at_1 = ends
 
     def clipped(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
         """Return N actions within the limits, shape (N, 4)."""
@@ -105,7 +120,7 @@ class _FourNumbers:
         if not np.isfinite(array).all():
             wrong = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
             raise _refused(given[wrong], self.allowed, wrong, len(array))
-        clipped: Commands = np.minimum(np.maximum(array, self._low), self._high)
+        clipped: Commands = np.minimum(np.maximum(array, self.low), self.high)
         return clipped
 
 
@@ -119,13 +134,12 @@ class Shares(_FourNumbers):
     allowed = "four finite numbers, each from -1 to 1"
 
     def __init__(self, speeds: EnvSpeeds) -> None:
-        super().__init__(-np.ones(4), np.ones(4))
-        self._at_minus_1, self._at_1 = _ends(speeds)
+        super().__init__(-np.ones(4), np.ones(4), _ends(speeds))
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
         """Return the commands of N times four shares, shape (N, 4)."""
         shares = self.clipped(actions)
-        return np.abs(shares) * np.where(shares >= 0.0, self._at_1, self._at_minus_1)
+        return np.abs(shares) * np.where(shares >= 0.0, self.at_1, self.at_minus_1)
 
 
 class Velocity(_FourNumbers):
@@ -136,16 +150,14 @@ class Velocity(_FourNumbers):
     """
 
     allowed = "four finite numbers: forward, left, up [m/s], turn counter-clockwise [rad/s]"
-    _UNITS = np.array([1.0, 1.0, 500.0, 1.0])
-    """Commands have the third in m per 2 ms."""
 
     def __init__(self, speeds: EnvSpeeds) -> None:
         ends = _ends(speeds)
-        super().__init__(np.minimum(*ends) * self._UNITS, np.maximum(*ends) * self._UNITS)
+        super().__init__(np.minimum(*ends) * self.UNITS, np.maximum(*ends) * self.UNITS, ends)
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
         """Return the commands of N times four velocities, shape (N, 4)."""
-        commands: Commands = self.clipped(actions) / self._UNITS
+        commands: Commands = self.clipped(actions) / self.UNITS
         return commands
 
 

@@ -5,17 +5,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.sim.simulation import Simulation
 from eyas.state.scene import ObjectClass
-from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS
 from eyas.task.config import Crash
 from eyas.task.done import DoneReason
 from eyas.task.packet_rows import SENSOR_COLUMNS
 from eyas.task.packets import BASIC_COLUMNS, REWARD_COLUMNS
 
-__all__ = ["Info", "by_term", "information", "masked", "of_one", "privileged_state", "sensor_state"]
+__all__ = ["Info", "by_term", "information", "masked", "of_one", "sensor_state"]
 
 Floats = NDArray[np.float64]
 Info = dict[str, Any]
@@ -130,23 +128,3 @@ def sensor_state(simulation: Simulation, out: NDArray[np.float32]) -> None:
         out: Shape (N, 19).
     """
     out[:] = simulation.view.packets()[0][:, SENSOR_COLUMNS]
-
-
-def privileged_state(snapshot: Snapshot, out: NDArray[np.float32]) -> None:
-    """Write the true motion of the targets, seen from the trackers, which no sensor tells.
-
-    The numbers: the target's centre in the body frame [m], its first [m/s] and second [m/s^2]
-    change, 3 numbers each; sine and cosine of its heading relative to the body's; its speed [m/s];
-    its length, width and height [m]; the pitch of the camera, positive down [rad].
-
-    Args:
-        snapshot: N trackers.
-        out: Shape (N, 16).
-    """
-    trackers, _, targets, episodes, _ = snapshot
-    turn = targets.yaw - trackers.euler[:, 2]
-    motion = episodes.relative_position, episodes.relative_velocity, episodes.relative_acceleration
-    heading = exact.sin(turn), exact.cos(turn)
-    out[:] = np.column_stack(
-        (*motion, *heading, targets.speed, targets.size, trackers.gimbal[:, 1])
-    )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
-from eyas.envs.information import privileged_state, sensor_state
+from eyas.envs.information import sensor_state
 from eyas.sensors.config import CameraConfig, ColourLayout
 from eyas.sensors.stack import FrameStack
 from eyas.sim.config import SimConfig
@@ -20,6 +20,7 @@ from eyas.targets.grammar.attributes import ATTRIBUTES
 from eyas.targets.grammar.naming import Phrase, phrase_about
 from eyas.targets.grammar.wording import CHARACTERS, LONGEST
 from eyas.task.packet_rows import SENSOR_COLUMNS
+from eyas.task.privileged import PRIVILEGED, fill_privileged
 
 __all__ = ["Observation", "Observer", "observation_space"]
 
@@ -28,7 +29,6 @@ Observation = Array | dict[str, Any]
 """An array; of several parts a dictionary of arrays, with a text, or a tuple of texts, as words."""
 
 _SENSORS = SENSOR_COLUMNS.stop - SENSOR_COLUMNS.start
-_PRIVILEGED = 16
 _Parts = ObservationPart
 
 
@@ -80,7 +80,7 @@ def _space(
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
         case _Parts.SENSORS | _Parts.PRIVILEGED:
-            count = _SENSORS if part is _Parts.SENSORS else _PRIVILEGED
+            count = _SENSORS if part is _Parts.SENSORS else PRIVILEGED
             return gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
@@ -197,7 +197,7 @@ class Observer:
         if (events := self._latest.get(_Parts.EVENTS)) is not None:
             self._count_events(chosen, events)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
-            privileged_state(self._simulation.snapshot, privileged)
+            fill_privileged(self._simulation.snapshot, privileged)
 
     def _look_through(
         self,

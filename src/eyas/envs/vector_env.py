@@ -10,14 +10,16 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 from numpy.typing import NDArray
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, EyasError
 from eyas.core.rng import checked_seed
 from eyas.envs.batch import Outcome, Truth
 from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings
+from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.mixed_batch import MixedBatch
 from eyas.envs.observation import Observation
 from eyas.envs.sub_env import SubEnv
+from eyas.lanes.device import Device
 from eyas.settings.config import EyasConfig
 
 __all__ = ["EyasVectorEnv"]
@@ -42,6 +44,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
         measures: Whether targets are measured in the pictures, see `truth`.
+        device: Where simulation and pictures are computed, and where observations, rewards and ends
+            are then arrays, or its name: see `docs/gpu.md`. None: on this processor.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:
@@ -64,6 +68,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         render_mode: str | None = None,
         overlay: bool = False,
         measures: bool = False,
+        device: Device | str | None = None,
         **choices: Unpack[EnvChoices],
     ) -> None:
         if num_envs < 1:
@@ -71,11 +76,17 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = chosen_settings(config, **choices)
-        self._batch = MixedBatch(self.config, num_envs, measures=measures)
+        self._there: DeviceEnvs | None = None
+        self._here: MixedBatch | None = None
+        if device is None:
+            self._here = MixedBatch(self.config, num_envs, measures=measures)
+        else:
+            self._there = DeviceEnvs(self.config, num_envs, device, measures=measures)
         self.num_envs = num_envs
         self.render_mode = render_mode
-        self.single_action_space = self._batch.action_space
-        self.single_observation_space = self._batch.observation_space
+        envs = self._there or self._batch
+        self.single_action_space = envs.action_space
+        self.single_observation_space = envs.observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
@@ -114,10 +125,13 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         """
         self._check_open()
         chosen = self._chosen(options)
-        self._batch.begin(chosen, self._seeds(seed))
+        envs = self._there or self._batch
+        envs.begin(chosen, self._seeds(seed))
         self._begun = True
-        self._batch.look(chosen, chosen)
+        envs.look(chosen, chosen)
         self._ended[chosen] = False
+        if self._there is not None:
+            return self._observations(out), {}
         info = masked(self._batch.info(), chosen)
         # The same names as after a step: TorchRL stacks all information.
         none = {name: np.zeros(self.num_envs) for name in self._batch.terms}
@@ -146,6 +160,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         begin = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED:
             assert not begin.any(), f"environments {np.flatnonzero(begin)} must be reset first"
+        if self._there is not None:
+            return self._step_there(self._there, actions, out)
         outcome = self._batch.step(actions, ~begin)
         self._ended, final = outcome.terminated | outcome.truncated, {}
         if self.autoreset_mode == AutoresetMode.SAME_STEP:
@@ -163,6 +179,37 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             outcome.truncated,
             info,
         )
+
+    def _step_there(
+        self,
+        envs: DeviceEnvs,
+        actions: Any,  # noqa: ANN401  # as in Gymnasium
+        out: Observation | None,
+    ) -> Stepped:
+        """Hold an action in each environment on a device, see `step`."""
+        begin = self._ended
+        reward, terminated, truncated = envs.step(actions, ~begin)
+        self._ended, info = envs.ended, {}
+        if self.autoreset_mode == AutoresetMode.SAME_STEP:
+            begin, self._ended = self._ended, np.zeros(self.num_envs, np.bool_)
+            if begin.any():
+                envs.look(begin, self._ended, final=True)
+                info = {"final_obs": envs.latest(final=True), "_final_obs": begin}
+        if begin.any():
+            envs.begin(begin)
+        envs.look(self._all, begin)
+        return self._observations(out), reward, terminated, truncated, info
+
+    @property
+    def _batch(self) -> MixedBatch:
+        """The environments, if they are on this processor.
+
+        Raises:
+            EyasError: They are on a device.
+        """
+        if self._here is None:
+            raise EyasError("device: it is not known here what only this processor knows")
+        return self._here
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """Return the cameras' pictures in their configured sizes, each of shape (H, W, 3)."""
@@ -198,7 +245,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one environment."""
-        return self._batch.config_of(index)
+        return self.config if self._here is None else self._here.config_of(index)
 
     def words_of(self, index: int) -> str:
         """Return the target of one environment in words that tell it from what else is in view."""
@@ -210,7 +257,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def close_extras(self, **_: Any) -> None:  # noqa: ANN401  # Gymnasium's
         """Close the logs and end live traffic."""
-        self._batch.close()
+        if self._here is not None:
+            self._here.close()
 
     def _final(self, ended: Mask, outcome: Outcome) -> Info:
         """Return the last observations and information of episodes that have ended."""
@@ -225,13 +273,19 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def _observations(self, out: Observation | None) -> Observation:
         """Return the latest observations in the caller's arrays, the next of the ring, or new."""
-        if out is None:
+        if out is None and self._ring:
             self._ring.reverse()
-            out = self._ring[0] if self._ring else self._new_observations()
+            out = self._ring[0]
+        if self._there is not None:
+            told: Observation = self._there.latest(out)
+            return told
+        out = self._new_observations() if out is None else out
         self._batch.copy_to(out)
         return out
 
     def _new_observations(self) -> Observation:
+        if self._there is not None:
+            return cast("Observation", self._there.latest())
         new: Any = create_empty_array(self.single_observation_space, self.num_envs)
         return cast("Observation", new)
 

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import parallel, thread_count
+from eyas.lanes import kernel, parallel, thread_count
 from eyas.sensors.config import ColourLayout, Colours
 
-__all__ = ["FrameStack"]
+__all__ = ["FrameStack", "luma"]
 
 Bytes = NDArray[np.uint8]
 
@@ -74,11 +74,15 @@ def _lumas(rgb: Bytes) -> Bytes:
     return lumas
 
 
+@kernel(inline=True)
+def luma(red: int, green: int, blue: int) -> int:
+    """Return the luma of a pixel, in Pillow's arithmetic."""
+    return int((19595 * red + 38470 * green + 7471 * blue + 0x8000) >> 16)
+
+
 @parallel
 def _find_lumas(worker: int, workers: int, rgb: Bytes, lumas: Bytes) -> None:
-    """Find the lumas of the pictures whose turn is this worker's, in Pillow's arithmetic."""
+    """Find the lumas of the pictures whose turn is this worker's."""
     for view in range(worker, rgb.shape[0], workers):
         for at in range(rgb.shape[1]):
-            red, green, blue = rgb[view, at, 0], rgb[view, at, 1], rgb[view, at, 2]
-            luma: int = (19595 * red + 38470 * green + 7471 * blue + 0x8000) >> 16
-            lumas[view, at] = luma
+            lumas[view, at] = luma(rgb[view, at, 0], rgb[view, at, 1], rgb[view, at, 2])

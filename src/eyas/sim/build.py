@@ -5,7 +5,7 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.sim.assets import load_assets
+from eyas.sim.assets import Assets, load_assets
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
@@ -14,7 +14,7 @@ from eyas.trackers.config import TrackerConfig
 from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["build_simulation"]
+__all__ = ["assets_of", "build_simulation", "in_one_wind"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -33,6 +33,13 @@ def build_simulation(
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
+    assets = assets_of(config, world_of)
+    chosen = tracker_of(in_one_wind(config)) if tracker is None else tracker
+    return Simulation(config, assets, chosen, world_of)
+
+
+def assets_of(config: SimConfig, world_of: NDArray[np.integer]) -> Assets:
+    """Return map, traffic and renderer of a simulation; see `build_simulation`."""
     trackers = largest_world(world_of)
     goes_on = bool((np.asarray(world_of) != ALONE).any())
     crowd = crowd_of(config, trackers if goes_on else 0)
@@ -43,8 +50,7 @@ def build_simulation(
             "which has no fog",
             config.world.weather,
         )
-    chosen = tracker_of(in_one_wind(config)) if tracker is None else tracker
-    return Simulation(config, assets, chosen, world_of)
+    return assets
 
 
 def in_one_wind(config: SimConfig) -> TrackerConfig:

@@ -44,6 +44,9 @@ class Episodes:
     (and, in a world of several trackers, on the targets of the others), not on the number of
     trackers.
 
+    Attributes:
+        models: What targets of each model have in common.
+
     Args:
         config: The settings.
         traffic: The traffic with the possible targets.
@@ -68,7 +71,7 @@ class Episodes:
         self._streams = Streams(np.full(count, config.seed, np.int64), np.arange(count))
         self._traffic, self._worlds = traffic, worlds
         self._episodes, self._targets = snapshot.episodes, snapshot.targets
-        self._models = _model_table()
+        self.models = _model_table()
         self._rules = _rules(config, int(traffic.duration / PHYSICS_STEP))
         self._sides = _sides(config, worlds)
         self._draw = Held(
@@ -80,7 +83,7 @@ class Episodes:
                 self._sides,
                 worlds.looks,
                 worlds.look_table,
-                self._models,
+                self.models,
                 light.rules,
                 self._rules,
                 self._streams,
@@ -169,7 +172,7 @@ class Episodes:
                 f"target: there is no actor {actor}; allowed: 0 to {self._traffic.actors - 1}"
             )
         model = self._worlds.model_of(tracker, actor)
-        _follow(self._targets, self._episodes, self._models, tracker, actor, model)
+        _follow(self._targets, self._episodes, self.models, tracker, actor, model)
 
     def restart_count(self, tracker: int) -> None:
         """Count a tracker's steps, and those without reward, from 0 again."""

@@ -27,9 +27,21 @@ from eyas.task.rules import Rules, exact, lenient, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["Simulation", "StepResult"]
+__all__ = ["Simulation", "StepResult", "is_judged", "rules_of"]
 
 Floats = NDArray[np.float64]
+
+
+def is_judged(config: SimConfig, tracker: Tracker) -> bool:
+    """Return whether views are rewarded and limits end episodes, see `TrackerConfig.judged`."""
+    own = config.tracker.judged
+    return tracker.judged if own is None else own
+
+
+def rules_of(config: SimConfig, tracker: Tracker) -> Rules:
+    """Return the rules for reward and end of episodes."""
+    rules = make_rules(config.reward, config.done, config.camera)
+    return exact(rules if is_judged(config, tracker) else lenient(rules))
 
 
 class StepResult(NamedTuple):
@@ -83,10 +95,8 @@ class Simulation:
         self._present = self.view = view(seen)
         if seen.is_late:
             self._present = view(seen.on_time())
-        rules = make_rules(config.reward, config.done, config.camera)
-        own = config.tracker.judged
-        self.judged = tracker.judged if own is None else own
-        self.rules = rules if self.judged else lenient(rules)
+        self.judged = is_judged(config, tracker)
+        self.rules = rules_of(config, tracker)
         early = config.done.grace_steps + 2 * physics_steps(config.control.frequency)
         self._terms = RewardTerms(config.reward, Setting(self.rules.aspect, early))
 

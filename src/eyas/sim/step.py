@@ -144,10 +144,14 @@ class StepKernels(NamedTuple):
     fly: CompiledCall
     carry: CompiledCall
     begin: CompiledCall
+    fly_one: Kernel
+    """`fly_one(state, orders, n)`: what `fly` does for tracker `n`."""
+    begin_one: Kernel
+    """`begin_one(state, n, pitch)`: what `begin` does for tracker `n`."""
 
     def bind(self, state: Held[StepState], orders: Held[Orders]) -> Step:
         """Return the calls, bound to a state."""
-        return Step(*(kernel.bind(state, orders) for kernel in self))
+        return Step(*(kernel.bind(state, orders) for kernel in self[:3]))
 
 
 def step_of(
@@ -179,10 +183,14 @@ def _step_of(
     if velocities or seen != _USUAL:
         pointing = kernel(inline=True)(specialised(pointing, **seen))
     seen["stand"] = begin_at_rest if velocities else left_unknown
+    flies = kernel(inline=True)(specialised(fly_one, advance=advance, point=pointing))
+    begins = kernel(inline=True)(specialised(begin_one, start=start, launch=launch, **seen))
     return StepKernels(
-        fly=compiled(specialised(_fly, advance=advance, point=pointing)),
+        fly=compiled(specialised(_fly, fly_one=flies)),
         carry=compiled(specialised(_carry, carry=carry, point=pointing)),
-        begin=compiled(specialised(_begin, start=start, launch=launch, **seen)),
+        begin=compiled(specialised(_begin, begin_one=begins)),
+        fly_one=flies,
+        begin_one=begins,
     )
 
 
@@ -218,23 +226,49 @@ stand = left_unknown
 _USUAL: dict[str, Kernel] = {"aim": aim, "carried": carried}
 
 
-def _fly(state: StepState, orders: Orders) -> None:
+@kernel(inline=True)
+def fly_one(state: StepState, orders: Orders, n: int) -> None:
+    """Move tracker `n` by its command."""
     trackers, cameras, targets, episodes, _ = state.snapshot
     memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
     share = state.inertial_share
-    steps, commands, active = orders.steps, orders.commands, orders.active
-    for n in range(commands.shape[0]):
-        if not active[n]:
-            continue
-        half_size = rewarded_size(cameras.field_of_view[n], rules)
-        for _step in range(steps[0]):
-            advance(trackers, memory, n, commands[n])
-            feel(trackers, n, share)
-            episodes.tick[n] += 1
-            _move_target(targets, episodes, n, around)
-            point(trackers, memory, cameras, n, mount)
-            observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
-            judge(trackers, targets, episodes, n, around.terrain, rules)
+    half_size = rewarded_size(cameras.field_of_view[n], rules)
+    for _step in range(orders.steps[0]):
+        advance(trackers, memory, n, orders.commands[n])
+        feel(trackers, n, share)
+        episodes.tick[n] += 1
+        _move_target(targets, episodes, n, around)
+        point(trackers, memory, cameras, n, mount)
+        observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
+        judge(trackers, targets, episodes, n, around.terrain, rules)
+
+
+@kernel(inline=True)
+def begin_one(state: StepState, n: int, pitch: float) -> None:
+    """Put tracker `n` at its start pose and aim its camera; target, tick and offset are set."""
+    trackers, cameras, targets, episodes, _ = state.snapshot
+    memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
+    share = state.inertial_share
+    clear_episode(episodes, n)
+    targets.lost[n] = False
+    _move_target(targets, episodes, n, around)
+    x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
+    start(trackers, memory, n, x, y, z, yaw, pitch)
+    if state.launched == 1:
+        speed, (north, east) = targets.speed[n], sin_cos(targets.yaw[n])
+        launch(trackers, memory, n, speed * east, speed * north)
+    rest(trackers, n, share)
+    aim(trackers, memory, cameras, n)
+    carried(trackers, cameras, n, mount)
+    stand(trackers, cameras, n)
+    half_size = rewarded_size(cameras.field_of_view[n], rules)
+    observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
+
+
+def _fly(state: StepState, orders: Orders) -> None:
+    for n in range(orders.commands.shape[0]):
+        if orders.active[n]:
+            fly_one(state, orders, n)
 
 
 def _carry(state: StepState, orders: Orders) -> None:
@@ -261,26 +295,8 @@ def _carry(state: StepState, orders: Orders) -> None:
 
 
 def _begin(state: StepState, orders: Orders) -> None:
-    """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
-    trackers, cameras, targets, episodes, _ = state.snapshot
-    memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
-    share = state.inertial_share
     for k in range(orders.starts[0]):
-        n = orders.chosen[k]
-        clear_episode(episodes, n)
-        targets.lost[n] = False
-        _move_target(targets, episodes, n, around)
-        x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
-        start(trackers, memory, n, x, y, z, yaw, orders.pitch[k])
-        if state.launched == 1:
-            speed, (north, east) = targets.speed[n], sin_cos(targets.yaw[n])
-            launch(trackers, memory, n, speed * east, speed * north)
-        rest(trackers, n, share)
-        aim(trackers, memory, cameras, n)
-        carried(trackers, cameras, n, mount)
-        stand(trackers, cameras, n)
-        half_size = rewarded_size(cameras.field_of_view[n], rules)
-        observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
+        begin_one(state, orders.chosen[k], orders.pitch[k])
 
 
 @kernel(inline=True)

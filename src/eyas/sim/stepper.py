@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Sampler
 from eyas.sim.latency import LateCommands
-from eyas.sim.step import Orders, StepState, StepSurroundings, step_of
+from eyas.sim.step import Orders, StepKernels, StepState, StepSurroundings, step_of
 from eyas.sim.views.delay import SeenState
 from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.worlds import Worlds
@@ -26,9 +27,31 @@ from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["Stepper"]
+__all__ = ["Stepper", "step_kernels", "step_state"]
 
 Floats = NDArray[np.float64]
+
+
+def step_kernels(config: SimConfig, tracker: Tracker) -> StepKernels:
+    """Return the kernels of the step of a kind of tracker."""
+    carried = CARRIED[config.camera.mount is not None]
+    return step_of(tracker, carried, velocities=config.needs_velocities)
+
+
+def step_state(
+    config: SimConfig,
+    tracker: Tracker,
+    snapshot: Snapshot,
+    memory: Any,  # noqa: ANN401  # the record that the tracker's kernels use
+    around: StepSurroundings,
+    rules: Rules,
+) -> StepState:
+    """Return what the step of a kind of tracker reads and writes."""
+    smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
+    mount = mount_of(config.camera.mount or MountConfig())
+    launched = int(config.start.velocity is StartVelocity.TARGET)
+    share = smoothing_share(smoothing)
+    return StepState(snapshot, memory, around, rules, share, mount, launched)
 
 
 class Stepper:
@@ -59,14 +82,9 @@ class Stepper:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
         self._memory = tracker.memory(count, terrain)
-        self._around = StepSurroundings(assets.traffic.motion, terrain)
-        smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
-        self._share = smoothing_share(smoothing)
-        self._launched = int(config.start.velocity is StartVelocity.TARGET)
-        mount = config.camera.mount
-        self._mount = mount_of(mount or MountConfig())
-        carried, velocities = CARRIED[mount is not None], config.needs_velocities
-        self._kernels = step_of(tracker, carried, velocities=velocities)
+        around = StepSurroundings(assets.traffic.motion, terrain)
+        self._state_by = partial(step_state, config, tracker, snapshot, self._memory, around)
+        self._kernels = step_kernels(config, tracker)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible
@@ -82,9 +100,7 @@ class Stepper:
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        snapshot, memory, around = self._snapshot, self._memory, self._around
-        state = StepState(snapshot, memory, around, rules, self._share, self._mount, self._launched)
-        self._step = self._kernels.bind(Held(state), self._held_orders)
+        self._step = self._kernels.bind(Held(self._state_by(rules)), self._held_orders)
 
     def begin(
         self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]

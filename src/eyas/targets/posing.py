@@ -1,6 +1,7 @@
 """What all rigs share: the slots, the frame of an actor, and the call of the posing kernel."""
 
 import operator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,12 +48,20 @@ class PoseCall:
     """The call of a kernel that poses the actors of one kind; that of the next picture is mostly
     the same, and is kept.
 
+    Attributes:
+        table: What the kernel knows of the models.
+        one: What it does for one actor: `one(table, group, actors, looks, out, w, g)`.
+
     Args:
         kernel: Takes the table, `Group`, `ActorState`, `Looks` and `Slots`.
-        table: What it knows of the models.
+        table: As above.
+        one: As above.
     """
 
-    def __init__(self, kernel: ParallelCall, table: tuple[Any, ...]) -> None:
+    def __init__(
+        self, kernel: ParallelCall, table: tuple[Any, ...], one: Callable[..., None]
+    ) -> None:
+        self.table, self.one = table, one
         self._kernel, self._table = kernel, Held(table)
         self._held: tuple[Held[Any], ...] = ()
         self._bound: BoundCall | None = None

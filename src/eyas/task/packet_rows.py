@@ -24,7 +24,7 @@ from eyas.task.packets import (
     first_column,
 )
 
-__all__ = ["SENSOR_COLUMNS", "PacketRows"]
+__all__ = ["SENSOR_COLUMNS", "PacketRows", "fill_basic"]
 
 _STEP_COUNT = first_column(BASIC_COLUMNS, "step_count")
 _POSITION = first_column(BASIC_COLUMNS, "position")
@@ -100,14 +100,15 @@ def _fill_packets(packets: _Packets) -> None:
     trackers, cameras, targets, episodes, _ = packets.snapshot
     floor, basic, reward = packets.floor, packets.basic, packets.reward
     for n in range(basic.shape[0]):
-        _fill_basic(trackers, episodes, n, basic[n])
+        fill_basic(trackers, episodes, n, basic[n])
         _fill_reward(trackers, cameras, targets, episodes, n, floor, reward[n])
 
 
 @kernel(inline=True)
-def _fill_basic(
+def fill_basic(
     trackers: TrackerState, episodes: EpisodeState, n: int, row: NDArray[np.float64]
 ) -> None:
+    """Fill one basic packet."""
     row[_STEP_COUNT] = episodes.step_count[n]
     felt, turning = accelerometer(trackers, n), gyroscope(trackers, n)
     for axis in range(3):

@@ -229,5 +229,6 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
         aim,
         launch,
         sample if blows else None,
+        sampled="wind",
         jumps=False,
     )

@@ -54,6 +54,9 @@ class Tracker:
     sample: Callable[[Any, int, EpisodeKey], None] | None = None
     """`sample(memory, n, key)`, a function of Python, samples what is random in an episode, before
     `start`; None: nothing is."""
+    sampled: str | None = None
+    """The field of the memory that `sample` writes, the whole row `n` of each of its arrays, and
+    reads nothing of; None: it is not known, so that this tracker cannot be on a device."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
     visible: bool = True

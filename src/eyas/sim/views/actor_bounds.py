@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import kernel
+from eyas.lanes import compiled, kernel
 from eyas.lanes.vector import WIDTH
 from eyas.state.motion import Motion
 
-__all__ = ["ActorBounds", "bounds_of", "made_row"]
+__all__ = ["ActorBounds", "bounds_of", "made_row", "make_rows"]
 
 NOWHERE = -1e30
 """Radius around actors that are absent: it reaches no view."""
@@ -53,6 +53,13 @@ def made_row(bounds: ActorBounds, motion: Motion, sample: int) -> int:
             _enclose(bounds, motion, row, column, first, last)
         bounds.ready[row] = True
     return int(row)
+
+
+@compiled
+def make_rows(bounds: ActorBounds, motion: Motion) -> None:
+    """Make all rows."""
+    for row in range(bounds.ready.shape[0]):
+        made_row(bounds, motion, row * bounds.samples[0])
 
 
 @kernel(inline=True)

@@ -26,10 +26,16 @@ from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
 from eyas.task.rules import Rules
 
-__all__ = ["PictureDrawer"]
+__all__ = ["PictureDrawer", "is_timed"]
 
 Chosen = NDArray[np.int32]
 Floats = NDArray[np.float64]
+
+
+def is_timed(config: SimConfig) -> bool:
+    """Return whether pictures show the instant at which they are taken."""
+    world = config.world
+    return config.light.flakes or world.wind is not None or world.smoke > 0 or world.spray
 
 
 class PictureDrawer:
@@ -70,8 +76,7 @@ class PictureDrawer:
         self._thermal = None if optics is None else optics.thermal
         self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
-        world = config.world
-        self._timed = self._flakes or world.wind is not None or world.smoke > 0 or world.spray
+        self._timed = is_timed(config)
         self._samples = config.camera.samples
         self._renderer = assets.renderer
         self._size = config.camera.height, config.camera.width

@@ -12,7 +12,7 @@ from eyas.targets.catalogue import MODELS
 from eyas.targets.kind import Kind
 
 if TYPE_CHECKING:
-    from eyas.sim.views.visible_actors import Listed
+    from eyas.sim.views.near_actors import Listed
 
 __all__ = ["SPRAY_REACH", "spray_of", "throwing"]
 

@@ -15,7 +15,7 @@ from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.posing import ActorFrame, Slots
 
-__all__ = ["BODY", "PART", "CycleTable", "pose_jointed"]
+__all__ = ["BODY", "PART", "CycleTable", "pose_figure", "pose_jointed"]
 
 _TIGHTEST = 0.3
 """Radius of the tightest curve that wheels steer [m]."""
@@ -159,7 +159,7 @@ def _steering(ahead: float, yaw_rate: float, speed: float) -> tuple[float, float
 
 
 @kernel
-def _pose_actor(
+def pose_figure(
     table: CycleTable, group: Group, actors: ActorState, looks: Looks, out: Slots, w: int, g: int
 ) -> None:
     """Write the slots of one actor."""
@@ -219,7 +219,7 @@ def pose_jointed(
         w, g = i // count, i % count
         a, first = group.actor[g], group.slot[g]
         if actors.present[w, a]:
-            _pose_actor(table, group, actors, looks, out, w, g)
+            pose_figure(table, group, actors, looks, out, w, g)
         else:
             for k in range(table.part.shape[1]):
                 out.part[w, first + k] = -1

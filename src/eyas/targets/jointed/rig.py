@@ -11,7 +11,7 @@ from eyas.mesh.shell import Shape, levels_of
 from eyas.state.mesh import Mesh
 from eyas.targets.jointed.cycle import frames_of, shapes_of, skeleton_of, table_of
 from eyas.targets.jointed.model import JointedModel
-from eyas.targets.jointed.pose import BODY, PART, CycleTable, pose_jointed
+from eyas.targets.jointed.pose import BODY, PART, CycleTable, pose_figure, pose_jointed
 from eyas.targets.posing import PoseCall
 
 __all__ = ["JointedRig", "Layout", "layout_of"]
@@ -60,7 +60,7 @@ class JointedRig:
         self._far = _farthest(table)
         self._scale = np.linalg.norm(table.rest[:, :, 0].astype(np.float64), axis=-1)
         self._parts = table.part["part"]
-        self.pose = PoseCall(pose_jointed, table)
+        self.pose = PoseCall(pose_jointed, table, pose_figure)
 
     @property
     def part_count(self) -> int:

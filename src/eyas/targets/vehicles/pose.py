@@ -13,7 +13,7 @@ from eyas.targets.posing import ActorFrame, Slots
 from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.traffic.trailer import folded
 
-__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicles"]
+__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
 """Largest steering angle [rad]."""
@@ -138,7 +138,7 @@ def _wheels_of(
 
 
 @kernel
-def _pose_actor(
+def pose_vehicle(
     table: RigTable, group: Group, actors: ActorState, looks: Looks, out: Slots, w: int, g: int
 ) -> None:
     """Write the slots of one vehicle."""
@@ -182,7 +182,7 @@ def pose_vehicles(
     for i in range(worker * total // workers, (worker + 1) * total // workers):
         w, g = i // count, i % count
         if actors.present[w, group.actor[g]]:
-            _pose_actor(table, group, actors, looks, out, w, g)
+            pose_vehicle(table, group, actors, looks, out, w, g)
         else:
             for k in range(table.slot.shape[2]):
                 out.part[w, group.slot[g] + k] = -1

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.mesh.shell import levels_of
 from eyas.state.mesh import Mesh
 from eyas.targets.posing import PoseCall
-from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicles
+from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicle, pose_vehicles
 from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Trailer, VehicleModel
 from eyas.world.cars.frame import Axle
 from eyas.world.cars.wheels import DESIGNS, wheel_levels
@@ -37,7 +37,7 @@ class VehicleRig:
         self.slots = max(len(layout) for variants in layouts for layout in variants)
         table = _tabulate(models, layouts, self.slots)
         self._slots = table.slot
-        self.pose = PoseCall(pose_vehicles, table)
+        self.pose = PoseCall(pose_vehicles, table, pose_vehicle)
 
     @property
     def part_count(self) -> int:

@@ -1,0 +1,3 @@
+"""Environments whose observations, rewards and ends are arrays on a device."""
+
+__all__: list[str] = []

@@ -1,0 +1,130 @@
+"""N environments on a device: what `EyasVectorEnv` does there."""
+
+from itertools import compress
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import physics_steps
+from eyas.core.errors import ConfigError, EyasError
+from eyas.envs.actions import make_actions
+from eyas.envs.batch import Seeds
+from eyas.envs.device.actions import DeviceActions
+from eyas.envs.device.devices import device_of, drawer_of
+from eyas.envs.device.observation import DeviceObserver
+from eyas.envs.device.tensors import as_bool, copied, tensor_of
+from eyas.lanes.device import Device
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.messages import originals_named
+from eyas.sim.build import assets_of, in_one_wind
+from eyas.sim.device.simulation import DeviceSimulation
+from eyas.sim.device.view import DeviceView
+from eyas.sim.worlds import each_alone
+from eyas.trackers.kinds import tracker_of
+
+__all__ = ["DeviceEnvs"]
+
+Mask = NDArray[np.bool_]
+
+
+class DeviceEnvs:
+    """N environments of the same settings, each in a world of its own, on a device.
+
+    Attributes:
+        action_space: The actions of one agent.
+        observation_space: What it sees.
+        ended: Whose episodes the last step has ended, on the host, shape (N,).
+
+    Args:
+        config: The settings.
+        count: N.
+        device: The device, or its name.
+        measures: As for `EyasVectorEnv`.
+
+    Raises:
+        EyasError: A setting is wrong, or not there on a device; the message is one line.
+    """
+
+    def __init__(
+        self, config: EyasConfig, count: int, device: Device | str, *, measures: bool = False
+    ) -> None:
+        where = device_of(device)
+        _check(config, measures=measures)
+        with originals_named(config):
+            assets = assets_of(config, each_alone(count))
+            seen = config.env.observation
+            simulation = self._simulation = DeviceSimulation(
+                config,
+                assets,
+                tracker_of(in_one_wind(config)),
+                count,
+                where,
+                size=(seen.height, seen.width),
+                steps=physics_steps(config.control.frequency),
+                repeat=config.env.action_repeat,
+            )
+        drawer = drawer_of(where, assets.renderer, config.camera.samples)
+        view = DeviceView(simulation, drawer)
+        self._observer = DeviceObserver(seen, simulation, view)
+        actions = make_actions(config.env.actions, config.env.speeds)
+        self._actions = DeviceActions(actions, where, simulation.commands)
+        self.action_space, self.observation_space = actions.space, self._observer.space
+        flown = simulation.flown
+        ends = (as_bool(tensor_of(array)) for array in (flown.terminated, flown.truncated))
+        self._told = tensor_of(flown.reward), *ends
+        self.ended = np.zeros(count, np.bool_)
+
+    def __reduce__(self) -> NoReturn:
+        """Refuse to be copied."""
+        raise EyasError("device: environments on a device cannot be copied")
+
+    def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
+        """Begin new episodes, see `eyas.envs.batch.Batch.begin`."""
+        trackers = np.flatnonzero(chosen)
+        for tracker, seed in zip(trackers.tolist(), compress(seeds or (), chosen), strict=False):
+            if seed is not None:
+                self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
+        self._simulation.reset(trackers)
+
+    def step(self, actions: Any, active: Mask) -> tuple[Any, Any, Any]:  # noqa: ANN401  # whatever a learner returns
+        """Hold an action of each agent, see `eyas.envs.batch.Batch.step`.
+
+        Returns:
+            Rewards, terminations and truncations, as tensors that later steps leave alone.
+
+        Raises:
+            ActionError: An action is not in the space of actions.
+        """
+        simulation = self._simulation
+        self._actions.take(actions)
+        simulation.advance(active)
+        self.ended = np.logical_or(*simulation.ended())
+        reward, terminated, truncated = map(copied, self._told)
+        return reward, terminated, truncated
+
+    def look(self, chosen: Mask, begun: Mask, *, final: bool = False) -> None:
+        """Observe some trackers.
+
+        Args:
+            chosen: Which, shape (N,).
+            begun: Whose episodes have just begun, shape (N,).
+            final: Whether these are the last observations of their episodes.
+        """
+        self._observer.look(np.flatnonzero(chosen), begun[chosen], final=final)
+
+    def latest(self, out: Any = None, *, final: bool = False) -> Any:  # noqa: ANN401  # as users get it
+        """Return the latest observations, see `DeviceObserver.latest`."""
+        return self._observer.latest(out, final=final)
+
+
+def _check(config: EyasConfig, *, measures: bool) -> None:
+    """Refuse settings of environments that need the host in a step."""
+    wanted = {
+        "env.mixture: several kinds of environments": bool(config.env.mixture),
+        "env.log_folder: a log of each step": config.env.log_folder is not None,
+        "verbose: true": config.verbose,
+        "measures: true": measures,
+    }
+    for setting in compress(wanted, wanted.values()):
+        raise ConfigError(f"{setting} is not there on a device; allowed: none")
