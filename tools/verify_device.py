@@ -11,8 +11,6 @@ take turns in orders drawn by lot; that needs no card, and measures nothing. `--
 """
 
 import argparse
-import dataclasses
-import inspect
 import json
 import math
 import statistics
@@ -20,7 +18,9 @@ import subprocess
 import sys
 import time
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -192,7 +192,7 @@ class _Scene:
             subject=(ACTOR_OBJECT + actor).astype(np.int32),
             field_of_view=1.2,
             light=LightState(ones, ones, ones * np.float32(light.fog_density), 4 * ones, 3 * ones),
-            instant=INSTANT + 0.37 * number,
+            instant=(INSTANT + 0.37 * number).astype(np.float64),
         )
 
     def drawn(self, renderer: Any) -> dict[str, NDArray[Any]]:  # noqa: ANN401  # of either kind
@@ -201,6 +201,7 @@ class _Scene:
         for samples in SAMPLES:
             picture = Picture.create(self._count, *SIZE)
             renderer.draw(self._views, self._movers, picture, samples)
+            assert picture.rgb is not None  # wanted above
             found[f"rgb {samples}"] = picture.rgb
         # Boxes of all actors take a picture's time each, so a few pictures have them.
         kinds = {"rgb": False, "depth": True, "object_id": True, "class_id": True, "normal": True}
@@ -210,7 +211,7 @@ class _Scene:
         ):
             picture = Picture.create(count, *SIZE, **wanted)
             renderer.draw(_first(self._views, count), self._movers, picture)
-            for field in dataclasses.fields(picture):
+            for field in fields(picture):
                 array = getattr(picture, field.name)
                 if array is not None:
                     found.setdefault(field.name, array)
@@ -220,7 +221,7 @@ class _Scene:
 def _first(views: Views, count: int) -> Views:
     """Return the first of some views."""
     assert views.light is not None
-    return dataclasses.replace(
+    return replace(
         views,
         position=views.position[:count],
         rotation=views.rotation[:count],
@@ -231,7 +232,7 @@ def _first(views: Views, count: int) -> Views:
     )
 
 
-def _rotations(yaw: NDArray[np.float64], pitch: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotations(yaw: NDArray[Any], pitch: NDArray[Any]) -> NDArray[np.float64]:
     """Return cameras without roll: columns forward, left, up, shape (V, 3, 3)."""
     rotation = np.zeros((len(yaw), 3, 3))
     for k, (y, p) in enumerate(zip(yaw.tolist(), pitch.tolist(), strict=True)):
@@ -259,26 +260,19 @@ def _different(a: NDArray[Any], b: NDArray[Any]) -> int:
 
 def _states(device: str, emulated: bool) -> int:
     """Compare what environments give on a device, step by step, with those of this processor."""
-    if "device" not in inspect.signature(EyasVectorEnv).parameters:
-        print("environments: this version has none on devices")
-        return 0
     count, steps = (8, 40) if emulated else (64, STEPS)
-    near, far = _envs(count, None), _envs(count, device)
+    near, far = EyasVectorEnv(count), EyasVectorEnv(count, device=device)
+    allowed: Any = near.single_action_space
     random, wrong = np.random.default_rng(1), 0
-    first = near.reset(seed=3)[0], far.reset(seed=3)[0]
-    wrong += not np.array_equal(*map(_here, first))
+    first, second = near.reset(seed=3)[0], far.reset(seed=3)[0]
+    wrong += not np.array_equal(_here(first), _here(second))
     for _ in range(steps):
-        actions = random.integers(0, near.single_action_space.n, count)
+        actions = random.integers(0, allowed.n, count)
         pairs = zip(near.step(actions)[:4], far.step(actions)[:4], strict=True)
         wrong += not all(np.array_equal(_here(a), _here(b)) for a, b in pairs)
     said = f"DIFFERENT in {wrong} steps" if wrong else "observations, rewards and ends equal"
     print(f"environments: {count}, {steps} steps: {said}", flush=True)
     return int(wrong > 0)
-
-
-def _envs(count: int, device: str | None) -> Any:  # noqa: ANN401  # any version's
-    options: dict[str, Any] = {} if device is None else {"device": device}
-    return EyasVectorEnv(count, **options)
 
 
 def _here(values: Any) -> NDArray[Any]:  # noqa: ANN401  # a tensor or an array
@@ -287,31 +281,30 @@ def _here(values: Any) -> NDArray[Any]:  # noqa: ANN401  # a tensor or an array
 
 def _table(device: Device) -> None:
     """Print how fast a card is."""
+    watts = None
     print("\nviews of 84x84, citystreet | day /s | night /s | snow /s | 4 samples, day /s")
     for views in COUNTS:
-        cells = []
-        for weather, samples in (("day", 1), ("night", 1), ("snow", 1), ("day", 4)):
-            batch = PictureBatch(views, *SIZE, weather=weather, samples=samples)
-            renderer, given = on_device(device, batch)
-            spent = seconds_of(device, lambda r=renderer, g=given: r.draw_uploaded(g), 0.5)
-            cells.append(f"{views / statistics.median(spent):,.0f}")
-            if (views, weather, samples) == (4096, "day", 1):
-                watts = _watts(lambda r=renderer, g=given: r.draw_uploaded(g), spent[-1])
-            del renderer, given
-        print(f"{views} | " + " | ".join(cells), flush=True)
-    if watts is not None:
-        print(f"{watts} W while 4096 views are drawn")
-    if "device" not in inspect.signature(EyasVectorEnv).parameters:
-        return
+        day = PictureBatch(views, *SIZE)
+        kinds = day, replace(day, weather="night"), replace(day, weather="snow")
+        rates = []
+        for batch in (*kinds, replace(day, samples=4)):
+            draw = partial(ReadBackRenderer.draw_uploaded, *on_device(device, batch))
+            spent = statistics.median(seconds_of(device, draw, 0.5))
+            rates.append(f"{views / spent:,.0f}")
+            if batch == PictureBatch(4096, *SIZE):
+                watts = _watts(draw, spent)
+            del draw  # its memory is needed
+        print(f"{views} | " + " | ".join(rates), flush=True)
+    print(f"power while 4096 views are drawn: {watts or 'not readable'} W")
     print("environments | whole steps /s")
     for count in COUNTS:
         print(f"{count} | {_steps(device, count):,.0f}", flush=True)
 
 
-def _watts(draw: Any, seconds: float) -> str | None:  # noqa: ANN401
+def _watts(draw: Callable[[], object], seconds: float) -> str | None:
     """Return what the card takes while it draws, if that can be read."""
     command = ["nvidia-smi", "--query-gpu=power.draw", "--format=csv,noheader,nounits"]
-    for _ in range(int(2.0 / max(seconds, 1e-4))):  # it goes on with that when this has asked
+    for _ in range(int(2.0 / seconds)):  # it goes on with that when this has asked
         draw()
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
@@ -322,9 +315,10 @@ def _watts(draw: Any, seconds: float) -> str | None:  # noqa: ANN401
 
 def _steps(device: Device, count: int) -> float:
     """Return how many steps environments on a card do in a second."""
-    envs: Iterator[Any] | Any = _envs(count, "cuda")
+    envs = EyasVectorEnv(count, device="cuda")
     envs.reset(seed=1)
-    actions = np.random.default_rng(1).integers(0, envs.single_action_space.n, count)
+    allowed: Any = envs.single_action_space
+    actions = np.random.default_rng(1).integers(0, allowed.n, count)
     spent = []
     for _ in range(23):
         begun = time.perf_counter()
