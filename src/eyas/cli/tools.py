@@ -1,4 +1,4 @@
-"""What there is besides runs: `eyas bench, verify, config, cache, policies, webots-shim`."""
+"""What there is besides runs: bench, verify, doctor, config, cache, policies, webots-shim."""
 
 import json
 import os
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from eyas.settings.config import EyasConfig
 
 
-__all__ = ["bench", "cache_app", "config_app", "policies_app", "verify", "webots_shim"]
+__all__ = ["bench", "cache_app", "config_app", "doctor", "policies_app", "verify", "webots_shim"]
 
 
 def bench(
@@ -43,6 +43,15 @@ def bench(
     from eyas.modes.bench import run as bench
 
     bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera, device=device)
+
+
+def doctor(
+    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Tell what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
+    from eyas.modes.doctor import run
+
+    run(as_json=json_)
 
 
 def verify(

@@ -74,7 +74,7 @@ class ReadBackRenderer:
         for part in _alone(colours):
             self._draw(views, draw_list, picture, part, samples, until)
         facts = output._replace(rgb=NO_OUTPUT.rgb, radiance=NO_OUTPUT.radiance)
-        if any(map(len, facts)):
+        if _arrays(facts):
             self._draw(views, draw_list, picture, facts, 1, until)
 
     def _draw(
@@ -90,9 +90,8 @@ class ReadBackRenderer:
         output = measured_alone(output, len(views.position))
         given = self.uploaded(views, draw_list, picture_size(picture), output, samples)
         self.draw_uploaded(given, until)
-        for array, found in zip(output, given.output, strict=True):
-            if len(array):
-                array[:] = device.read(found)
+        for name, array in _arrays(output).items():
+            array[:] = device.read(getattr(given.output, name))
         if given.size.measured:
             here = _job(views, picture_size(picture), samples, self._density)
             write_measured(here, output, picture)
@@ -140,10 +139,14 @@ class ReadBackRenderer:
         self._renderer.draw(size, job, movers, output, falls=falls, until=until)
 
 
+def _arrays(output: Output) -> dict[str, NDArray[Any]]:
+    """Return what is wanted, by name."""
+    return {name: array for name, array in output._asdict().items() if len(array)}
+
+
 def _alone(colours: Output) -> list[Output]:
     """Return outputs that want bytes or radiance, not both: a canvas holds one of them."""
-    wanted = {"rgb": colours.rgb, "radiance": colours.radiance}
-    return [NO_OUTPUT._replace(**{name: array}) for name, array in wanted.items() if len(array)]
+    return [NO_OUTPUT._replace(**{name: array}) for name, array in _arrays(colours).items()]
 
 
 def _job(views: Views, size: tuple[int, int], samples: int, density: float) -> Job:
@@ -161,5 +164,8 @@ def _job(views: Views, size: tuple[int, int], samples: int, density: float) -> J
 
 def _sent(job: Job, upload: Callable[[NDArray[Any]], Any]) -> Job:
     """Return a job whose arrays are on the device."""
-    light = LightState(*(upload(array) for array in job.light))
-    return Job(*(light if part is job.light else upload(part) for part in job))
+    sent: dict[str, Any] = {
+        name: LightState(*map(upload, part)) if isinstance(part, LightState) else upload(part)
+        for name, part in job._asdict().items()
+    }
+    return Job(**sent)

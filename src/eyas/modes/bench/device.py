@@ -1,6 +1,5 @@
 """`eyas bench --device`: pictures on a device, such as a graphics processor."""
 
-import re
 import statistics
 import time
 from collections.abc import Callable, Iterator
@@ -9,8 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import ConfigError
-from eyas.lanes.cuda import CudaDevice, CudaError, cuda_device
 from eyas.lanes.device import Device
 from eyas.modes.bench.measurement import Measurement
 from eyas.modes.bench.pictures import PictureBatch
@@ -28,7 +25,6 @@ from eyas.world.config import WorldConfig
 
 __all__ = [
     "ON_DEVICES",
-    "card_of",
     "measure_device",
     "measure_on_device",
     "on_device",
@@ -99,24 +95,6 @@ def _views(pictures: PictureBatch) -> tuple[CpuRenderer, Views, DrawList]:
     simulation.draw(trackers, Picture.create(pictures.views, 1, 1))
     assert kept.last is not None
     return renderer, *kept.last
-
-
-def card_of(name: str) -> CudaDevice:
-    """Return a graphics processor.
-
-    Args:
-        name: `cuda`, or `cuda:1` and so on.
-
-    Raises:
-        ConfigError: There is no such, or it cannot be used.
-    """
-    number = re.fullmatch(r"cuda(?::(\d{1,4}))?", name)
-    if number is None:
-        raise ConfigError(f"--device: '{name}' is not allowed: 'cuda', 'cuda:1' and so on")
-    try:
-        return cuda_device(int(number[1] or 0))
-    except CudaError as error:
-        raise ConfigError(f"--device: '{name}' cannot be used: {error}") from error
 
 
 def measure_device(device: Device, seconds: float) -> Iterator[Measurement]:

@@ -16,8 +16,9 @@ from rich.console import Console
 
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
+from eyas.envs.device.devices import device_of
 from eyas.modes.bench.camera import camera_table, measure_camera
-from eyas.modes.bench.device import card_of, measure_device
+from eyas.modes.bench.device import measure_device
 from eyas.modes.bench.measurement import Measurement, measurement_table, timed, why_not
 from eyas.modes.bench.pictures import (
     BY_DAY,
@@ -73,14 +74,14 @@ def run(
         cold: Whether to time the first picture with an empty cache too.
         stages: Whether to time the stages of a picture too.
         camera: Whether to time camera models too.
-        device: Whose pictures to measure, and nothing else, see `card_of`; None: all of this
+        device: Whose pictures to measure, and nothing else, see `device_of`; None: all of this
             processor.
 
     Raises:
-        ConfigError: There is no such graphics processor that can be used.
+        ConfigError: There is no such device, or it cannot be used.
     """
     seconds = 0.3 if quick else 3.0
-    card = None if device is None else card_of(device)
+    card = None if device is None else device_of(device)
     console = Console()
     results: list[Measurement] = []
     with console.status("measuring") as status:

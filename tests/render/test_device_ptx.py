@@ -1,4 +1,6 @@
-"""The hot kernels compile for graphics processors as they are: to PTX, for which none is needed."""
+"""The stages of a picture, and the step, compile for graphics processors: to PTX, for which no such
+processor is needed. It computes what the processor does: nothing is fused, nothing is outside.
+"""
 
 import os
 import re
@@ -8,17 +10,15 @@ import subprocess
 import numpy as np
 import pytest
 
-from eyas.lanes import address_of, parallel
+import eyas.render.kernels.stages as stages
+from eyas.lanes import ParallelCall
+from eyas.lanes.device import HostDevice
 from eyas.lanes.ptx import ptx_of
-from eyas.render.jobs import Size, new_task, set_views
-from eyas.render.kernels.bundles import Movers
-from eyas.render.kernels.draw import band_of, no_glass, view_light
-from eyas.render.kernels.scalars import u4
-from eyas.render.kernels.visibility.transform import view_of
+from eyas.render.read_back import ReadBackRenderer
 from eyas.sensors.config import CameraConfig, MountConfig
 from eyas.sensors.mount import CARRIED, mount_of
 from eyas.sim.step import Orders, StepState, StepSurroundings, step_of
-from eyas.state.draw import DrawStage
+from eyas.state.draw import Picture
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Terrain
@@ -28,8 +28,10 @@ from eyas.trackers.config import TrackerConfig
 from eyas.trackers.drone import DRONE
 from eyas.trackers.kinds import tracker_of
 
-from .one_pixel import shade_pixel
+from .on_devices import EVERYTHING
 from .small_city import car_parts, city_scene, city_traffic, looking
+
+STAGES = [name for name in stages.__all__ if isinstance(getattr(stages, name), ParallelCall)]
 
 
 def checked(text) -> str:
@@ -39,52 +41,63 @@ def checked(text) -> str:
     assert "vprintf" not in text
     assert not re.search(r"\.extern \.func", text)
     assert not re.search(r"\b(mad|mul|add|sub)\.(f32|f64)\b", text)  # `mul.rn`: never fused later
+    assert not re.search(r"\b(sqrt|div)\.(approx|full)", text)
     return text
 
 
-@parallel
-def shade_thread(row, column, geometry, light, scratch, movers, task, found):
-    """Do what one thread does for one pixel whose triangle is known."""
-    job = task.job
-    view = address_of(view_of(task, 0))
-    lit = address_of(view_light(light.weather, job.light, 0))
-    glass = address_of(no_glass(scratch, 0))
-    band = address_of(
-        band_of(geometry, light, lit, movers, 0, view, glass, task.until, scratch, 0, 0, 1)
-    )
-    key, shade = band.key[row, column], u4(band.shade[row, column, 0])
-    found[row, column] = shade_pixel(band, key, shade, row, column)
-
-
-@pytest.mark.slow  # compiles for half a minute
-def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(renderer_of, tmp_path):
-    renderer = renderer_of(city_scene(), car_parts())
-    traffic = city_traffic(1)
-    movers = Movers(*(getattr(traffic, name) for name in Movers._fields))
-    size = Size(1, 24, 32, 1, 1, int(DrawStage.SHADING), False, False, 1)
-    task = new_task(size)
-    set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
-    scratch = renderer._scratch_for(1, 24, size, movers.part.shape[1], False, None).bundle
-    found = np.zeros((24, 32), np.uint32)
-    bundles = (*(held.bundle for held in renderer._held), scratch, movers, task, found)
-    text = checked(ptx_of(shade_thread, bundles, "kernel"))
-    assert "sqrt.rn.f32" in text
+def assembled(text, folder) -> str:
+    """Return what NVIDIA's assembler reports; nothing where there is none."""
     ptxas = shutil.which("ptxas")
     if ptxas is None:
-        return
-    source = tmp_path / "shade.ptx"
+        return ""
+    source = folder / "kernel.ptx"
     source.write_text(text)
     command = [ptxas, "-v", "-arch=sm_90", "-o", os.devnull, str(source)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if known := re.search(r"current version is '([\d.]+)'", ran.stderr):  # older than LLVM's
         source.write_text(re.sub(r"\.version [\d.]+", f".version {known[1]}", source.read_text()))
         ran = subprocess.run(command, capture_output=True, text=True)
-    report = ran.stderr + ran.stdout
-    assert ran.returncode == 0, report
-    registers = int(re.search(r"Used (\d+) registers", report)[1])
-    spilled = [int(number) for number in re.findall(r"(\d+) bytes spill", report)]
-    assert registers <= 128
-    assert sum(spilled) == 0
+    assert ran.returncode == 0, ran.stderr + ran.stdout
+    return ran.stderr + ran.stdout
+
+
+class Launches(HostDevice):
+    """Keeps what is launched, and does it."""
+
+    def __init__(self):
+        super().__init__()
+        self.kept = {}
+
+    def launch(self, call, workers, *bundles, threads=1, block=128):
+        self.kept[call] = tuple(bundle.bundle for bundle in bundles), threads
+        super().launch(call, workers, *bundles, threads=threads, block=block)
+
+
+@pytest.fixture(scope="module")
+def launches(renderer_of):
+    device = Launches()
+    renderer = ReadBackRenderer(device, renderer_of(city_scene(), car_parts()))
+    picture = Picture.create(1, 24, 32, **EVERYTHING)
+    renderer.draw(looking([(0.0, 0.0, 20.0)]), city_traffic(1), picture)
+    return device.kept
+
+
+def test_every_stage_is_launched(launches):
+    assert {getattr(stages, name) for name in STAGES} == launches.keys()
+
+
+@pytest.mark.slow  # compiles for half a minute
+@pytest.mark.parametrize("name", STAGES)
+def test_a_stage_compiles_for_cuda(launches, name, tmp_path, capsys):
+    call = getattr(stages, name)
+    bundles, threads = launches[call]
+    report = assembled(checked(ptx_of(call, bundles, "kernel", threads=threads)), tmp_path)
+    if report:
+        registers = int(re.search(r"Used (\d+) registers", report)[1])
+        spilled = sum(map(int, re.findall(r"(\d+) bytes spill", report)))
+        with capsys.disabled():
+            print(f"\n{name}: {registers} registers, {spilled} bytes spilled")
+        assert registers <= 128
 
 
 FLOWN, CAR = (

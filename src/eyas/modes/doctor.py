@@ -1,0 +1,97 @@
+"""`eyas doctor`: what Eyas finds on this machine."""
+
+import json
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+
+from eyas import __version__
+from eyas.core.machine import describe_machine
+from eyas.lanes import thread_count
+from eyas.lanes.cuda import gpu_line
+from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder, refusal
+from eyas.lanes.identity import identity
+from eyas.lanes.machine_code import code_name
+from eyas.lanes.shipped import (
+    ARCHIVE,
+    LEVEL,
+    VARIABLE,
+    features,
+    is_shipped,
+    needed,
+    read_archive,
+    wanted,
+)
+from eyas.render.kernels.draw import draw_views
+
+__all__ = ["facts", "run"]
+
+_NEEDED = ("numpy", "numba", "llvmlite")
+_EXTRAS = ("torch", "onnxruntime")
+
+
+def run(*, as_json: bool = False) -> None:
+    """Print what is found.
+
+    Args:
+        as_json: Whether to print one JSON object.
+    """
+    found = facts()
+    if as_json:
+        print(json.dumps(found, indent=2))
+        return
+    for name, text in found.items():
+        print(f"{name + ':':<17} {text}")
+
+
+def facts() -> dict[str, str]:
+    """Return what is found, by names for people."""
+    packages = [f"{name} {_version(name)}" for name in _NEEDED]
+    packages += [f"{name} {_version(name)}" for name in _EXTRAS if find_spec(name) is not None]
+    return {
+        "Eyas": __version__,
+        "Python": f"{platform.python_version()} ({platform.python_implementation()})",
+        "packages": ", ".join(packages),
+        "machine": describe_machine(),
+        "threads": str(thread_count()),
+        "cache": _cache(),
+        "shipped kernels": _shipped(),
+        "graphics card": gpu_line(),
+    }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "missing"
+
+
+def _cache() -> str:
+    """Return where the cache is, or why compiled kernels are not kept."""
+    moved = f" (by {FOLDER_VARIABLE})" if FOLDER_VARIABLE in os.environ else ""
+    reason = refusal()
+    said = f"{cache_folder()}{moved}"
+    return f"{said}; compiled kernels are not kept: {reason}" if reason else said
+
+
+def _shipped() -> str:
+    """Return whether kernels that come compiled serve this machine, or why not."""
+    compiled = "kernels are compiled at the first start"
+    if not wanted():
+        return f"not used, by {VARIABLE}=0: {compiled}"
+    if platform.system() != "Linux" or platform.machine() != "x86_64":
+        return f"for Linux on x86_64 only: {compiled}"
+    if lacking := sorted(needed - features()):
+        return f"for {LEVEL}; this processor lacks {', '.join(lacking)}: {compiled}"
+    try:
+        codes = read_archive(ARCHIVE)
+    except (OSError, TypeError, ValueError) as error:
+        return f"{ARCHIVE}: damaged or missing ({error}): {compiled}"
+    if not codes:
+        return f"of another version: {compiled}"
+    said = f"{len(codes)} for {LEVEL}, which serve this machine"
+    if is_shipped(code_name("draw_views", identity(draw_views.function))):
+        return said
+    return f"{said}, but what draws has changed since: it is compiled at the first start"

@@ -1,0 +1,51 @@
+"""`eyas doctor` tells what is here, in lines and in JSON."""
+
+import json
+import platform
+import sys
+
+import numpy as np
+import pytest
+
+from eyas.cli.main import main
+from eyas.lanes import shipped
+from eyas.lanes.cuda import gpu_line
+from eyas.modes import doctor
+
+
+def told(monkeypatch, capsys, *options):
+    monkeypatch.setattr(sys, "argv", ["eyas", "doctor", *options])
+    with pytest.raises(SystemExit) as caught:
+        main()
+    said = capsys.readouterr()
+    assert (caught.value.code or 0, said.err) == (0, "")
+    return said.out
+
+
+def test_json_and_lines_tell_the_same(monkeypatch, capsys):
+    found = json.loads(told(monkeypatch, capsys, "--json"))
+    lines = told(monkeypatch, capsys).splitlines()
+    assert [line.split(":", 1)[1].strip() for line in lines] == list(found.values())
+    assert platform.python_version() in found["Python"]
+    assert f"numpy {np.__version__}" in found["packages"]
+    assert found["graphics card"] == gpu_line()
+
+
+def test_the_cache_and_who_has_moved_it(monkeypatch, tmp_path):
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    assert doctor.facts()["cache"] == f"{tmp_path} (by EYAS_CACHE_DIR)"
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path / "file"))
+    assert "; compiled kernels are not kept: " in doctor.facts()["cache"]
+
+
+def test_why_shipped_kernels_do_not_serve(monkeypatch, tmp_path):
+    monkeypatch.setattr(doctor, "features", lambda: shipped.needed - {"avx2"})
+    assert "lacks avx2: kernels are compiled" in doctor.facts()["shipped kernels"]
+    monkeypatch.setattr(doctor, "features", lambda: shipped.needed)
+    monkeypatch.setattr(platform, "machine", lambda: "x86_64")
+    monkeypatch.setattr(platform, "system", lambda: "Linux")
+    monkeypatch.setattr(doctor, "ARCHIVE", tmp_path / "none.eyk")
+    assert "damaged or missing" in doctor.facts()["shipped kernels"]
+    monkeypatch.setenv("EYAS_SHIPPED_CODE", "0")
+    assert doctor.facts()["shipped kernels"].startswith("not used, by EYAS_SHIPPED_CODE=0")
