@@ -137,7 +137,9 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         name = f"{function.__module__}.{function.__qualname__}"
         super().__init__(f"kernel({name} at {id(function):#x})")
 
-    def get_call_type(self, typing_context: object, args: Iterable[Kind], kws: dict[str, Kind]) -> object:
+    def get_call_type(
+        self, typing_context: object, args: Iterable[Kind], kws: dict[str, Kind]
+    ) -> object:
         """Return the signature of a call, after compiling the kernel for it."""
         let_in()
         given = self._parameters.bind(*args, **dict(kws)).arguments

@@ -31,7 +31,7 @@ class _ThreadContext(CPUContext):  # type: ignore[misc]  # numba has no types
         own.register(Lanes, ThreadModel)
         self.data_model_manager = own.chain(default_manager)
 
-    def get_function(self, fn: Any, sig: Any, _firstcall: bool = True) -> Any:  # noqa: ANN401, FBT001, FBT002
+    def get_function(self, fn: Any, sig: Any, _firstcall: bool = True) -> Any:  # noqa: ANN401
         """Return what makes code of a function; numba's own, such as `max`, are for numbers only,
         and are found where numba puts them.
         """
@@ -57,7 +57,7 @@ _threads = False
 @contextmanager
 def lanes_as_threads() -> Iterator[None]:
     """Compile for graphics processors meanwhile; the caller holds numba's lock of compilers."""
-    global _threads  # noqa: PLW0603  # as numba's own state, it belongs to who holds the lock
+    global _threads  # as numba's own state, it belongs to who holds the lock
     before, _threads = _threads, True
     try:
         yield

@@ -23,9 +23,7 @@ from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
-from eyas.render.outputs import NO_OUTPUT
 from eyas.state.draw import DrawStage
-from eyas.state.lighting import LightState
 
 __all__ = ["DeviceRenderer", "PictureSize"]
 
@@ -122,9 +120,7 @@ class DeviceRenderer:
             of = {n: device.held(shares._replace(members=n)) for n in counts}
             self._scratch = {key: (scratch, device.held(scratch), of)}
         scratch, held, of = self._scratch[key]
-        task = Task(
-            size.across, size.down, size.width, size.height, falls, int(until), job
-        )
+        task = Task(size.across, size.down, size.width, size.height, falls, int(until), job)
         bundles = (*self._held, held, device.held(movers), device.held(output), device.held(task))
         few, many = size.members
         device.clear(scratch.key)

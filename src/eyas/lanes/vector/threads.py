@@ -77,4 +77,3 @@ def from_lane(builder: Any, value: ir.Value, number: ir.Value) -> ir.Value:  # n
 def agree(builder: Any) -> None:  # noqa: ANN401
     """Let all lanes see what each has written."""
     _call(builder, "bar.warp.sync", ir.FunctionType(_VOID, [_I32]), _members(builder))
-

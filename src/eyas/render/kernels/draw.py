@@ -41,7 +41,16 @@ from eyas.render.kernels.wind import in_wind
 from eyas.state.draw import DrawStage
 from eyas.state.lighting import LightState
 
-__all__ = ["band_of", "draw_views", "light_at", "no_glass", "view_light", "with_veil", "write_colours", "write_facts"]
+__all__ = [
+    "band_of",
+    "draw_views",
+    "light_at",
+    "no_glass",
+    "view_light",
+    "with_veil",
+    "write_colours",
+    "write_facts",
+]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)

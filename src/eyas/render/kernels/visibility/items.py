@@ -146,6 +146,4 @@ def _draw_found(band: Band, k: int, cluster: int) -> None:
     """Draw a cluster of item `k`."""
     view, own = band.camera, _item(band, k)
     planes = planes_of(own.screen, view.width, view.height, view.top, view.top + view.rows)
-    draw_cluster(
-        band, band.key, cluster, own.screen, planes, own.focal, own.smallest, own.tag
-    )
+    draw_cluster(band, band.key, cluster, own.screen, planes, own.focal, own.smallest, own.tag)

@@ -8,14 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import WIDTH, claim_some, gather, lane_numbers, scatter, select, splat, store_where
+from eyas.lanes.vector import (
+    WIDTH,
+    claim_some,
+    gather,
+    lane_numbers,
+    scatter,
+    select,
+    splat,
+    store_where,
+)
 from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.fill import fill, fill_rows, slopes_of
 from eyas.render.kernels.visibility.holes import Holes, holes_of, no_holes
 from eyas.render.kernels.visibility.triangles import FIRST_ROW, LAST_ROW, TRIANGLE_ROWS
 
-__all__ = ["MOST_PASSES", "fill_recorded", "fill_or_record"]
+__all__ = ["MOST_PASSES", "fill_or_record", "fill_recorded"]
 
 MOST_PASSES = 64
 """Eight rows of a triangle are a unit; so many of them may be told apart."""
