@@ -91,7 +91,7 @@ class Device(Protocol):
         workers: int,
         *bundles: Any,  # noqa: ANN401
         threads: int = 1,
-        block: int = 128,
+        block: int | None = None,
     ) -> None:
         """Run a kernel for all workers.
 
@@ -102,7 +102,8 @@ class Device(Protocol):
             bundles: From `held`.
             threads: Threads of a graphics processor that are one worker: 1, or, if the kernel
                 works on lanes, one for each lane, `eyas.lanes.vector.WIDTH`.
-            block: Threads that a graphics processor starts together, a multiple of 32.
+            block: Threads that a graphics processor starts together, a multiple of 32; None: 128,
+                or `eyas.lanes.vector.BLOCK` if a worker is more than one.
         """
         ...
 
@@ -161,7 +162,7 @@ class HostDevice:
         workers: int,
         *bundles: Held[Any],
         threads: int = 1,
-        block: int = 128,
+        block: int | None = None,
     ) -> None:
         """See `Device`."""
         del block

@@ -16,8 +16,8 @@ from eyas.lanes.calls import CompiledCall
 from eyas.lanes.compilation import entry_module
 from eyas.lanes.machine_code import improve
 from eyas.lanes.targets import lanes_as_threads
-from eyas.lanes.vector import WIDTH
-from eyas.lanes.vector.threads import BLOCK, RECORD
+from eyas.lanes.vector import BLOCK, WIDTH
+from eyas.lanes.vector.threads import RECORD
 
 __all__ = ["ptx_of"]
 

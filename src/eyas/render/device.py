@@ -29,25 +29,24 @@ from eyas.state.lighting import LightState
 
 __all__ = ["DeviceRenderer", "PictureSize"]
 
-MEMBERS = 4
-"""Workers that share a view at least: a warp of a graphics processor is four times `WIDTH` threads.
-"""
+MEMBERS, MOST_MEMBERS = 4, 128
+"""Workers that share a view at least and at most: a warp of a graphics processor is four times
+`WIDTH` threads."""
 
-FILLERS = 32
-"""Workers that share the rows of its triangles."""
+FILLERS = 64
+"""Workers that share the rows of its triangles at least."""
 
-BUSY = 4096
-"""Warps that keep a card busy while some wait: fewer views are shared by more workers."""
+SEEKING, SHADING = 16384, 4096
+"""Warps that keep a card busy while some wait: fewer views are shared by more workers. Those that
+seek triangles have more or less to do, those that shade a view's rows about the same."""
 
 CLUSTERS = 2048
 """Clusters of eight triangles of a view that are kept for those who project them; more are
 projected where they are found."""
 
-RECORDS = 2560
-"""Triangles of a view that are kept for the fillers; more are filled where they are found."""
-
-UNITS_PER_ROW = 64
-"""Eights of their rows that are kept, for each row of samples."""
+RECORDS_PER_ROW, UNITS_PER_ROW = 32, 64
+"""Triangles of a view that are kept for the fillers, and eights of their rows, for each row of
+samples; more are filled where they are found."""
 
 ITEMS = 512
 """Chunks and instances of a view that are kept for those who look for their clusters; more are
@@ -72,7 +71,8 @@ class PictureSize(NamedTuple):
     @property
     def members(self) -> tuple[int, int]:
         """Workers that share the finding of triangles in a view, and its rows."""
-        return _members(self.views, 32), _members(self.views, self.height * self.down)
+        rows = self.height * self.down
+        return _members(self.views, SEEKING), min(_members(self.views, SHADING), _power_below(rows))
 
 
 class DeviceRenderer:
@@ -117,7 +117,9 @@ class DeviceRenderer:
         if key not in self._scratch:
             scratch = self._new_scratch(size, slots)
             shares = Shares(size.views, MEMBERS, device.zeros(size.views, np.int32))
-            of = {n: device.held(shares._replace(members=n)) for n in (1, *_powers())}
+            few, many = size.members
+            counts = {1, MEMBERS, few, many, max(FILLERS, many)}
+            of = {n: device.held(shares._replace(members=n)) for n in counts}
             self._scratch = {key: (scratch, device.held(scratch), of)}
         scratch, held, of = self._scratch[key]
         task = Task(
@@ -130,7 +132,8 @@ class DeviceRenderer:
         device.clear(scratch.found)
 
         def launch(stage: ParallelCall, members: int) -> None:
-            device.launch(stage, size.views * members, of[members], *bundles, threads=WIDTH)
+            workers = size.views * members
+            device.launch(stage, workers, of[members], *bundles, threads=WIDTH)
 
         launch(list_views, MEMBERS)
         launch(look_for_clusters, few)
@@ -159,6 +162,7 @@ class DeviceRenderer:
         )
         none = (views, 0, 0)
         listed = chunks + instances
+        records = -(-RECORDS_PER_ROW * plane[1] // WIDTH) * WIDTH
         swaying = instances if len(self._light.sway) else 0
         shade_bytes = device.empty((*plane, 4), np.uint8)
         return Scratch(
@@ -180,25 +184,20 @@ class DeviceRenderer:
             item_row=device.empty((views, min(listed, ITEMS) + 1), np.int64),
             seen=device.empty((views, CLUSTERS), np.int64),
             found=device.zeros((views, 2), np.int64),
-            record=device.empty((views, RECORDS // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
-            record_shown=device.empty((views, RECORDS, 2), np.int64),
-            unit=device.empty((views, max(UNITS_PER_ROW * plane[1], 2 * RECORDS)), np.int32),
+            record=device.empty((views, records // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
+            record_shown=device.empty((views, records, 2), np.int64),
+            unit=device.empty((views, UNITS_PER_ROW * plane[1]), np.int32),
             recorded=device.zeros((views, 1), np.int64),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )
 
 
-MOST = 128
-"""Workers that share a view at most."""
+def _power_below(number: int) -> int:
+    """Return the largest power of two that is not above a number."""
+    return 1 << (number.bit_length() - 1)
 
 
-def _powers() -> list[int]:
-    return [1 << k for k in range(MEMBERS.bit_length() - 1, MOST.bit_length())]
-
-
-def _members(views: int, most: int) -> int:
-    """Return how many workers share a view, a power of two, so that a card is busy."""
-    members = MEMBERS
-    while 2 * members <= min(most, MOST) and views * members < BUSY * MEMBERS:
-        members *= 2
-    return members
+def _members(views: int, warps: int) -> int:
+    """Return how many workers share a view, a power of two, so that there are so many warps."""
+    wanted = _power_below(max(MEMBERS * warps // views, 1))
+    return min(max(wanted, MEMBERS), MOST_MEMBERS)

@@ -23,6 +23,7 @@ from eyas.lanes.cuda.driver import driver
 from eyas.lanes.cuda.kernels import Function, Functions
 from eyas.lanes.cuda.memory import CudaArray
 from eyas.lanes.cuda.order import LEGACY, CudaEvent, Graph, recorded
+from eyas.lanes.vector import BLOCK
 
 __all__ = ["CudaDevice", "cuda_device"]
 
@@ -132,7 +133,7 @@ class CudaDevice:
         workers: int,
         *bundles: CudaBundle,
         threads: int = 1,
-        block: int = 128,
+        block: int | None = None,
     ) -> None:
         """See `Device`.
 
@@ -141,11 +142,13 @@ class CudaDevice:
             workers: See there.
             bundles: See there.
             threads: See there.
-            block: Threads that the card starts together, a multiple of 32.
+            block: See there.
 
         Raises:
             CudaError: The driver refuses the kernel, or an earlier one has failed.
         """
+        if block is None:
+            block = 128 if threads == 1 else BLOCK
         if block % 32 or not 32 <= block <= 1024:
             raise ValueError(f"a block of {block} threads; allowed: multiples of 32 up to 1024")
         if not workers:

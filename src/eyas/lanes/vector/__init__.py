@@ -11,6 +11,7 @@ import numba, so they are loaded only when a kernel is compiled.
 from eyas.lanes.intrinsics import Intrinsic
 
 __all__ = [
+    "BLOCK",
     "WIDTH",
     "agree",
     "all_of",
@@ -56,6 +57,10 @@ __all__ = [
 
 WIDTH = 8
 """Numbers in lanes."""
+
+BLOCK = 32
+"""Threads that a graphics processor starts together of a kernel on lanes: one warp, so that none
+waits for others to end. What the lanes of a worker share is laid out for so many."""
 
 _MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
 

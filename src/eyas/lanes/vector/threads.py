@@ -11,12 +11,9 @@ from numba.core import cgutils
 
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["BLOCK", "RECORD", "agree", "ballot", "from_lane", "lane_number"]
+__all__ = ["RECORD", "agree", "ballot", "from_lane", "lane_number"]
 
 _I1, _I32, _I64, _VOID = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.VoidType()
-
-BLOCK = 32
-"""Threads in a block of a kernel on lanes: what workers share is laid out for so many."""
 
 RECORD = "worker_record"
 """Name of places on the stack that hold the same for all lanes, see `eyas.lanes.ptx`."""
