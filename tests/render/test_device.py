@@ -1,6 +1,8 @@
 """The stages of a graphics processor give the bytes of the processor, whoever does what share."""
 
+import ast
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +10,8 @@ import pytest
 import eyas.render.device as device_module
 from eyas.core.errors import ConfigError
 from eyas.lanes.device import HostDevice
+from eyas.render.kernels import stages
+from eyas.render.kernels.visibility import items, records
 from eyas.render.read_back import ReadBackRenderer
 from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
@@ -76,19 +80,30 @@ def test_plants_in_the_wind_are_equal(renderers):
     assert differences(HostDevice(5), renderers["windy"], views, traffic, **EVERYTHING) == []
 
 
-@pytest.mark.parametrize("records", [0, 8, 200])
+@pytest.mark.parametrize("most", [0, 8, 200])
 def test_triangles_for_which_there_is_no_room_are_filled_where_they_are_found(
-    renderers, monkeypatch, records
+    renderers, monkeypatch, most
 ):
-    monkeypatch.setattr(device_module, "RECORDS", records)
-    device = HostDevice(7, np.random.default_rng(records))
+    monkeypatch.setattr(device_module, "RECORDS", most)
+    device = HostDevice(7, np.random.default_rng(most))
+    assert differences(device, renderers["day"], street(), city_traffic(1), **EVERYTHING) == []
+
+
+@pytest.mark.parametrize(("listed", "clusters"), [(0, 2048), (5, 2048), (512, 8), (7, 16)])
+def test_items_and_clusters_for_which_there_is_no_room_are_drawn_at_once(
+    renderers, monkeypatch, listed, clusters
+):
+    monkeypatch.setattr(device_module, "ITEMS", listed)
+    monkeypatch.setattr(device_module, "CLUSTERS", clusters)
+    device = HostDevice(7, np.random.default_rng(clusters))
     assert differences(device, renderers["day"], street(), city_traffic(1), **EVERYTHING) == []
 
 
 def test_few_rows_to_share_are_equal(renderers, monkeypatch):
     monkeypatch.setattr(device_module, "UNITS_PER_ROW", 1)
     monkeypatch.setattr(device_module, "RECORDS", 64)
-    assert differences(HostDevice(3), renderers["day"], street(), city_traffic(1)) == []
+    device = HostDevice(3, np.random.default_rng(1))
+    assert differences(device, renderers["day"], street(), city_traffic(1)) == []
 
 
 def test_what_the_near_plane_cuts_is_equal(renderer_of):
@@ -124,6 +139,17 @@ def test_a_real_map_is_equal():
     views = looking(places, yaw=[0.3, 2.0], pitch=[1.1, 0.3], fov=1.2)
     device = HostDevice(7, np.random.default_rng(1))
     assert differences(device, assets.renderer, views, movers, size=(84, 84), **EVERYTHING) == []
+
+
+@pytest.mark.parametrize("module", [stages, items, records])
+def test_drivers_compute_nothing_with_floats(module):
+    """What is computed of a point is written once, in kernels that the processor calls too."""
+    floats = {"f4", "f8", "to_f4", "to_f8", "root", "lesser", "greater"}
+    for node in ast.walk(ast.parse(Path(module.__file__).read_text())):
+        named = isinstance(node, ast.Name) and node.id in floats
+        number = isinstance(node, ast.Constant) and isinstance(node.value, float)
+        divided = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div | ast.Pow)
+        assert not any((named, number, divided)), f"line {node.lineno}"
 
 
 def test_one_byte_more_of_light_is_seen(renderers):

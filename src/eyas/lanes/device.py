@@ -119,7 +119,8 @@ class HostDevice:
         workers: At most so many workers are told to a kernel, which does all the work with any
             number of them.
         order: Where the order is drawn from in which the workers do their shares, one after
-            another; None: threads do them.
+            another; None: threads do them, but those of kernels on lanes the first first: on this
+            processor lanes are not written atomically.
     """
 
     name = "host"
@@ -164,12 +165,14 @@ class HostDevice:
         block: int | None = None,
     ) -> None:
         """See `Device`."""
-        del threads, block
+        del block
         workers = min(workers, self._workers)
-        if self._order is None:
-            call(workers, *bundles)
-        else:
+        if self._order is not None:
             call.in_order(self._order.permutation(workers).tolist(), *bundles)
+        elif threads > 1:
+            call.in_order(list(range(workers)), *bundles)
+        else:
+            call(workers, *bundles)
 
     def synchronise(self) -> None:
         """See `Device`."""
