@@ -1,5 +1,5 @@
 """Make what ships in the package: machine code (`eyas.lanes.shipped`), modules of functions
-(`eyas.lanes.modules`), and digests of syntax (`eyas.lanes.syntax`).
+(`eyas.lanes.modules`), PTX (`eyas.lanes.cuda.code`), and digests of syntax (`eyas.lanes.syntax`).
 
     python tools/ship_kernels.py              # some minutes; commit what it changes
     python tools/ship_kernels.py --check      # is the code in the package that of these sources?
@@ -23,6 +23,8 @@ from pathlib import Path
 import eyas
 from eyas.core import program
 from eyas.lanes import CompiledCall, modules
+from eyas.lanes.cuda import code as ptx
+from eyas.lanes.folder import read_trusted
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import ARCHIVE, LEVEL, VARIABLE, archive_of, features, needed, read_archive
@@ -97,7 +99,45 @@ with tempfile.TemporaryDirectory() as folder:
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+USES_DEVICE = """
+import numpy as np
+from eyas import EyasVectorEnv
+from eyas.lanes.cuda.code import ptx_code
+from eyas.lanes.device import HostDevice
+from eyas.lanes.held import Held
+
+
+class Recorder(HostDevice):
+    # Runs kernels here, and has PTX made of them as for a card, where all arrays are alike.
+    def launch(self, call, workers, *bundles, threads=1, block=None):
+        types = tuple(small(bundle.bundle) for bundle in bundles)
+        kinds = tuple(Held(bundle).kind for bundle in types)
+        ptx_code(call, types, kinds, threads)
+        super().launch(call, workers, *bundles, threads=threads, block=block)
+
+
+def small(value):
+    if isinstance(value, np.ndarray):
+        return np.zeros((1,) * value.ndim, value.dtype)
+    if not isinstance(value, tuple):
+        return value
+    parts = [small(part) for part in value]
+    return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+
+
+for settings in ({}, {"tracker": {"supervised": False}}, {"tracker": {"kind": "car"}}):
+    envs = EyasVectorEnv(2, settings, device=Recorder())
+    envs.reset(seed=1)
+    for _ in range(3):
+        envs.step(np.zeros(envs.action_space.shape, envs.action_space.dtype))
+"""
+"""A program that uses the kernels of environments on a graphics processor, with usual settings."""
+
+
 PACKAGE = Path(eyas.__file__).parent
+
+FOR_DEVICES = ("eyas.render.kernels.stages", "eyas.sim.device.", "eyas.envs.device.")
+"""Rooms of kernels that run on graphics processors; they ship as PTX."""
 
 DRAWING = "draw_views"
 """The function whose modules ship: to make them takes longer than those of all others together."""
@@ -122,6 +162,9 @@ def main() -> None:
         codes = codes_in(folder)
         (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
         (options.out / modules.ARCHIVE.name).write_bytes(modules.archive_of(folder, DRAWING))
+    with tempfile.TemporaryDirectory() as cache:
+        use_all(cache, {}, USES_DEVICE)
+        (options.out / ptx.ARCHIVE.name).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
     raise SystemExit(missing(codes))
 
 
@@ -139,12 +182,12 @@ def compiled() -> str | None:
     return f"not shipped as they are now: {', '.join(found)}" if found else None
 
 
-def use_all(cache: str, variables: dict[str, str]) -> None:
+def use_all(cache: str, variables: dict[str, str], program: str = USES_ALL) -> None:
     """Use every kernel in a process with an empty cache."""
     # numba walks through sets of names, whose order would differ from one process to the next.
     environment = {**os.environ, "EYAS_CACHE_DIR": cache, "PYTHONHASHSEED": "0", **variables}
     environment.pop("NUMBA_CACHE_DIR", None)
-    subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
+    subprocess.run([sys.executable, "-c", program], env=environment, check=True)
 
 
 def codes_in(folder: Path) -> dict[str, MachineCode]:
@@ -152,6 +195,17 @@ def codes_in(folder: Path) -> dict[str, MachineCode]:
     files = folder.glob(f"*{SUFFIX}")
     codes = {file.stem.rpartition("-")[0]: read_code(file) for file in files}
     return {name: code for name, code in codes.items() if code is not None}
+
+
+def ptx_in(cache: Path) -> dict[str, ptx.Ptx]:
+    """Return the PTX in a cache, by the names by which it is found."""
+    files = cache.rglob(f"*{ptx.SUFFIX}")
+    found = {file.stem.rpartition("-")[0]: read_trusted(file) for file in files}
+    return {
+        name: ptx.Ptx(one.header, bytes(one.pieces[0]))
+        for name, one in found.items()
+        if one is not None
+    }
 
 
 def missing(codes: Mapping[str, MachineCode]) -> str | None:
@@ -162,8 +216,9 @@ def missing(codes: Mapping[str, MachineCode]) -> str | None:
 
 def kernels() -> set[str]:
     """Return the names of all compiled functions of the package."""
-    modules = pkgutil.walk_packages(eyas.__path__, "eyas.")
-    found = [vars(importlib.import_module(module.name)).values() for module in modules]
+    names = [module.name for module in pkgutil.walk_packages(eyas.__path__, "eyas.")]
+    names = [name for name in names if not name.startswith(FOR_DEVICES)]
+    found = [vars(importlib.import_module(name)).values() for name in names]
     kept = [value for values in (*found, step_of(DRONE)) for value in values]
     return {kernel.function.__name__ for kernel in kept if isinstance(kernel, CompiledCall)}
 

@@ -21,7 +21,7 @@ __all__ = ["LANGUAGE", "identity", "language_files", "language_hash"]
 
 LANGUAGE = (
     *("compilation.py", "elementary", "front_end.py", "held.py", "intrinsics.py"),
-    *("machine_code.py", "modules.py", "operations.py", "vector"),
+    *("machine_code.py", "modules.py", "operations.py", "targets.py", "vector"),
 )
 """Files and folders of this room that decide what a kernel is compiled to, beside the kernel."""
 

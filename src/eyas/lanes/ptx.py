@@ -24,8 +24,8 @@ __all__ = ["ptx_of"]
 _TRIPLE = "nvptx64-nvidia-cuda"
 
 _REGISTERS = 128
-"""Registers of a thread at most. A card with 64 K of them for 2,048 threads then runs 512: with more
-registers, pictures took a quarter longer on an H200, with 64 or 96 a few percent."""
+"""Registers of a thread at most. A card that has 65,536 of them then runs 512 threads: with more
+registers, pictures took a quarter longer on an H200, with 64 or 96 some percent."""
 
 _INSTRUCTIONS = {
     "sqrt": ("double", "llvm.sqrt.f64"),
@@ -65,8 +65,8 @@ def ptx_of(
         module = entry_module(
             call.function, kinds, f"{name}_status", over_workers=call.over_workers
         )
-    text = _retargeted(str(module), name, str(machine.target_data), threads)
-    module = llvm.parse_assembly(text)
+    retargeted = _retargeted(str(module), name, str(machine.target_data), threads)
+    module = llvm.parse_assembly(retargeted)
     module.verify()
     for function in module.functions:  # what threads do together may not be moved into branches
         function.add_function_attribute("convergent")

@@ -143,7 +143,9 @@ class DeviceRenderer:
         if measured:
             device.clear(scratch.alone)
             launch(tell_facts, 1)
-        elif any(map(len, (output.depth, output.object_id, output.class_id, output.normal))):
+        elif any(
+            len(one) for one in (output.depth, output.object_id, output.class_id, output.normal)
+        ):
             launch(tell_facts, many)
 
     def _new_scratch(self, size: PictureSize, slots: int) -> Scratch:

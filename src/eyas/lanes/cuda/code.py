@@ -35,7 +35,7 @@ SUFFIX = ".eyp"
 
 _ROOM = Path(eyas.lanes.__file__).parent
 
-_MAKERS = ("ptx.py", "targets.py")
+_MAKERS = ("ptx.py",)
 """Files that decide what kernels become, beside the language of kernels."""
 
 ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"

@@ -81,8 +81,8 @@ def _each_view(
         glass = address_of(no_glass(scratch, index))
         band = address_of(
             band_of(
-                geometry, light, lit, movers, i8(job.world[number]), view, glass, task.until, scratch,
-                index, item - index * members, members,
+                geometry, light, lit, movers, i8(job.world[number]), view, glass, task.until,
+                scratch, index, item - index * members, members,
             )
         )  # fmt: skip
         _stage(band, output, task, index, shares)
