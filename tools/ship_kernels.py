@@ -43,9 +43,11 @@ from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.still import StillWorld
+from eyas.sim.views.actor_bounds import bounds_of, make_rows
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 from eyas.state.terrain import Terrain
+from eyas.task.privileged import fill_privileged
 from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
@@ -84,6 +86,9 @@ for settings in (
         if (sensor := simulation.view.events(np.zeros(1, np.int32))) is not None:
             sensor.count(np.zeros(1, np.int64), np.zeros((1, 240, 320, 2), np.uint8))
         simulation.advance(np.array([[5.0, 0.0, 0.0, 1.0]]), 10)
+fill_privileged(simulation.snapshot, np.zeros((1, 16), np.float32))
+traffic = load_assets(SimConfig().world, SimConfig().traffic).traffic
+make_rows(bounds_of(traffic.motion, np.arange(4)), traffic.motion)
 FrameStack(1, (84, 84), Colours.GREY).add(picture.rgb, np.zeros(1, np.int64))
 StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
 recording = load(MAPS.get("citystreet").shipped_traffic()[0])
@@ -217,10 +222,11 @@ def missing(codes: Mapping[str, MachineCode]) -> str | None:
 def kernels() -> set[str]:
     """Return the names of all compiled functions of the package."""
     names = [module.name for module in pkgutil.walk_packages(eyas.__path__, "eyas.")]
-    names = [name for name in names if not name.startswith(FOR_DEVICES)]
     found = [vars(importlib.import_module(name)).values() for name in names]
     kept = [value for values in (*found, step_of(DRONE)) for value in values]
-    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, CompiledCall)}
+    functions = [kernel.function for kernel in kept if isinstance(kernel, CompiledCall)]
+    ours = [one for one in functions if not one.__module__.startswith(FOR_DEVICES)]
+    return {one.__qualname__.rpartition(".")[2] for one in ours}
 
 
 if __name__ == "__main__":

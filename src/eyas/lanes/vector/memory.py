@@ -12,7 +12,8 @@ from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_
 
 __all__ = [
     "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load",
-    "load_words", "scatter", "store", "store_greater", "store_largest", "store_triples", "store_where", "store_words", "transposed",
+    "load_words", "scatter", "store", "store_greater", "store_largest",
+    "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
