@@ -228,7 +228,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert seen == {"compare": True, "verify": True}
+    assert seen == {"compare": True, "doctor": True, "verify": True}
 
 
 def test_everything_that_is_listed_can_be_a_target(monkeypatch, capsys):

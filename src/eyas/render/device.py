@@ -173,7 +173,7 @@ class DeviceRenderer:
             order=device.empty((views, listed), np.int64),
             triangle=device.empty((views * few, TRIANGLE_ROWS, CLUSTER), np.float64),
             polygon=device.zeros((views * few, 15, CLUSTER), np.float64),
-            span=device.empty((views * max(FILLERS, many), SPAN_ROWS, WIDTH), np.int32),
+            span=device.empty((views * max(FILLERS, few, many), SPAN_ROWS, WIDTH), np.int32),
             word=device.empty(none, np.uint32),
             bent_key=device.empty(none, np.int64),
             bent_shade=device.empty((*none, 4), np.uint8),
@@ -184,7 +184,8 @@ class DeviceRenderer:
             found=device.zeros((views, 2), np.int64),
             record=device.empty((views, records // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
             record_shown=device.empty((views, records, 2), np.int64),
-            unit=device.empty((views, UNITS_PER_ROW * plane[1]), np.int32),
+            # Lanes of a processor write back what lies beside what they write: one row more.
+            unit=device.empty((views + 1, UNITS_PER_ROW * plane[1]), np.int32),
             recorded=device.zeros((views, 1), np.int64),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )
