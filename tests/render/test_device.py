@@ -80,7 +80,7 @@ def test_plants_in_the_wind_are_equal(renderers):
     assert differences(HostDevice(5), renderers["windy"], views, traffic, **EVERYTHING) == []
 
 
-@pytest.mark.parametrize("most", [0, 1, 4])
+@pytest.mark.parametrize("most", [0, 1, 5])
 def test_triangles_for_which_there_is_no_room_are_filled_where_they_are_found(
     renderers, monkeypatch, most
 ):
@@ -101,7 +101,7 @@ def test_items_and_clusters_for_which_there_is_no_room_are_drawn_at_once(
 
 def test_few_rows_to_share_are_equal(renderers, monkeypatch):
     monkeypatch.setattr(device_module, "UNITS_PER_ROW", 1)
-    monkeypatch.setattr(device_module, "RECORDS_PER_ROW", 1)
+    monkeypatch.setattr(device_module, "RECORDS_PER_ROW", 2)
     device = HostDevice(3, np.random.default_rng(1))
     assert differences(device, renderers["day"], street(), city_traffic(1)) == []
 
