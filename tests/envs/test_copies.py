@@ -12,6 +12,9 @@ import pytest
 from eyas.core.errors import EyasError
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.envs.vector_env import EyasVectorEnv
+from eyas.lanes import Kernel
+from eyas.sim.step import step_of
+from eyas.trackers.drone import DRONE
 
 SMALL = {"height": 16, "width": 16}
 
@@ -109,6 +112,15 @@ def test_a_copy_takes_the_random_numbers_of_its_actions_along() -> None:
 def test_a_pickle_is_small() -> None:
     env = TrackingEnv({"env": {"observation": SMALL}})
     env.reset(seed=0)
+    assert len(pickle.dumps(env)) < 200_000
+
+
+def test_kernels_compiled_in_this_process_are_no_part_of_a_copy() -> None:
+    env = TrackingEnv({"env": {"observation": SMALL}})
+    env.reset(seed=0)
+    for kernel in step_of(DRONE)[3:]:
+        assert isinstance(kernel, Kernel)
+        assert kernel._numba_type_  # as compiling a function that calls it leaves there
     assert len(pickle.dumps(env)) < 200_000
 
 

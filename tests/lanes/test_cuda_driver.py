@@ -3,6 +3,7 @@ processor's, so that kernels compiled for this processor can run on what was put
 """
 
 import ctypes
+import gc
 import os
 import re
 import shutil
@@ -427,6 +428,7 @@ class OnHost:
 @pytest.mark.parametrize("kind", ["?", "u1", "i8", "f2", "f4", "f8"])
 def test_others_share_memory_by_dlpack_and_let_go_of_it(fake, card, kind):
     torch = pytest.importorskip("torch")
+    gc.collect()  # of tests before
     before = fake.pieces
     values = np.arange(24).reshape(4, 3, 2).astype(kind)
     array = card.upload(values)

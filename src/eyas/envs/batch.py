@@ -21,7 +21,7 @@ from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
-from eyas.lanes import BoundCall, CompiledCall, Held
+from eyas.lanes import BoundCall, CompiledCall, Held, Kernel
 from eyas.render.renderer import CpuRenderer
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
@@ -43,7 +43,7 @@ from eyas.task.step_line import step_line
 
 __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
-_CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
+_CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
 _TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
