@@ -42,7 +42,6 @@ def test_a_specialised_function_calls_the_other_kernel_and_leaves_the_first_as_i
 def test_with_the_kernels_that_it_names_a_function_stays_itself():
     assert specialised(applied, doubled=doubled) is applied
     assert step_of(DRONE) is step_of(DRONE)
-    assert step_of(DRONE).fly.function.__name__ == step_of(DRONE).fly.function.__qualname__
 
 
 def test_the_same_kernels_give_the_same_name_and_others_another():
@@ -123,7 +122,7 @@ def test_eyas_itself_calls_no_kernel_from_python():
         for function in functions_of(importlib.import_module(info.name))
     ]
     assert len(functions) > 500
-    compiled = {call.function.__code__ for call in step_of(DRONE)}
+    compiled = {call.function.__code__ for call in step_of(DRONE)[:3]}
     for function in functions:
         hands_on = function.__annotations__.get("return") is Tracker
         if function.__code__ not in compiled and not hands_on:
