@@ -129,6 +129,7 @@ def test_eyas_itself_calls_no_kernel_from_python():
     compiled = {call.function.__code__ for call in step_of(DRONE)[:3]}
     for function in functions:
         hands_on = function.__annotations__.get("return") is Tracker
+        hands_on |= function.__qualname__.endswith("Rig.__init__")  # to devices
         if function.__code__ not in compiled and not hands_on:
             loads = [each for each in dis.get_instructions(function) if "GLOBAL" in each.opname]
             used = (function.__globals__.get(each.argval) for each in loads)
