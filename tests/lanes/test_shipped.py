@@ -1,13 +1,17 @@
 """Machine code that comes with Eyas: used only where it is that of these sources and processors."""
 
+import lzma
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from eyas.lanes import CompiledCall, entry, shipped
+from eyas.lanes import CompiledCall, ParallelCall, entry, shipped
+from eyas.lanes.container import unpacked
+from eyas.lanes.cuda import code
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import archive_of, read_archive
+from eyas.render.kernels import stages as stages_of_cards
 
 CODE = {"double-a-b": MachineCode("double_a_b", ("memcpy",), b"code")}
 
@@ -134,3 +138,11 @@ def test_an_archive_is_the_same_bytes_whatever_the_order():
     other = CODE["double-a-b"]._replace(code=b"other")
     codes = CODE | {"half-a-b": other}
     assert archive_of(codes) == archive_of(dict(reversed(codes.items())))
+
+
+def test_what_a_card_draws_with_ships():
+    (_, table), _ = unpacked(lzma.decompress(code.ARCHIVE.read_bytes()))
+    ships = {name.partition("-")[0].strip("_").split("_")[0] for name, _ in table}
+    stages = {name for name, one in vars(stages_of_cards).items() if isinstance(one, ParallelCall)}
+    assert len(stages) == 7
+    assert ships >= {"act", "begin", "stack"} | {name.split("_")[0] for name in stages}

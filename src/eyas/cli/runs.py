@@ -139,6 +139,13 @@ def train(  # noqa: PLR0913  # one parameter for each option
             "--steps", min=1, help="Decisions of the whole run; stages keep their shares of it."
         ),
     ] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(
+            "--device",
+            help="Where to fly and learn: cuda, cuda:1, ... (train.device); by default here.",
+        ),
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
     ray: Annotated[
         bool,
@@ -153,6 +160,8 @@ def train(  # noqa: PLR0913  # one parameter for each option
     overrides = gathered(set_, map_name, weather, seed)
     if method is not None:
         overrides.append(f"train.method={json.dumps(method)}")
+    if device is not None:
+        overrides.append(f"train.device={json.dumps(device)}")
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if steps is not None:
         from eyas.core.config import updated

@@ -241,7 +241,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def truth(self) -> Truth:
         """Return what is true now, for teachers; an observation shows none of it."""
-        return self._batch.truth()
+        return self._batch.truth() if self._there is None else self._there.truth()
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one environment."""

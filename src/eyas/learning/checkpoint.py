@@ -107,7 +107,7 @@ class RunFolder:
         if not self._checkpoint.exists():
             return TrainingProgress()
         with readable(self._checkpoint):
-            saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
+            saved: dict[str, Any] = torch.load(self._checkpoint, "cpu", weights_only=True)
             build = Build(**saved["build"])
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
@@ -127,7 +127,8 @@ class RunFolder:
             DataFileError: There is no checkpoint, or one of another network.
         """
         with readable(self._checkpoint):
-            network.load_state_dict(torch.load(self._checkpoint, weights_only=True)["network"])
+            saved = torch.load(self._checkpoint, "cpu", weights_only=True)
+            network.load_state_dict(saved["network"])
 
 
 @contextmanager

@@ -12,6 +12,7 @@ __all__ = ["Evaluation", "Imitation", "Method", "Stage", "TeacherKind", "TrainCo
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
+DeviceName = Annotated[str, Field(pattern=r"^(host|cuda(:\d{1,4})?)$")]
 
 
 class Method(StrEnum):
@@ -139,6 +140,9 @@ class TrainConfig(Config):
     channels_last: bool = False
     """Whether pictures and weights have their channels last in memory: a third faster on
     processors with AVX2, with other last digits."""
+    device: DeviceName | None = None
+    """Where environments and network are: `cuda`, `cuda:1` and so on are graphics processors of
+    NVIDIA; `host` does on this processor what these would do, for tests. None: this processor."""
     shards: Annotated[int, Field(ge=1, le=1024)] = 1
     """Parts into which the environments are split, with random numbers of their own. One is fastest
     in one process; the result does not depend on where the shards run."""
@@ -186,6 +190,8 @@ class TrainConfig(Config):
 
     @model_validator(mode="after")
     def _check_shards(self) -> Self:
+        if self.device is not None and self.shards > 1:
+            raise ValueError(f"shards: {self.shards} are not there on a device; allowed: 1")
         if self.environments % self.shards:
             raise ValueError(
                 f"environments: {self.environments} cannot be split into {self.shards} shards of "

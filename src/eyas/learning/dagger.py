@@ -129,7 +129,7 @@ def _minibatches(
         old = torch.randint(buffer.filled, (count,), generator=generator)
         if not whole:
             old += width * torch.randint(steps, (count,), generator=generator)
-        yield torch.cat([fresh, old])
+        yield torch.cat([fresh, old]).to(buffer.lessons.labels.device)
 
 
 class _Part(NamedTuple):

@@ -28,7 +28,7 @@ class Graph:
 
     def weight(self, name: str, values: Any) -> str:  # noqa: ANN401  # whatever numpy takes
         """Add a tensor, an array or a number; return its name."""
-        array = values.detach().numpy() if isinstance(values, Tensor) else np.asarray(values)
+        array = values.detach().cpu().numpy() if isinstance(values, Tensor) else np.asarray(values)
         self.weights.append(numpy_helper.from_array(np.ascontiguousarray(array), name))
         return name
 

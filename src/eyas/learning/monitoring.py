@@ -1,6 +1,7 @@
 """What a run tells of itself: evaluation with its best actions, and curves for TensorBoard."""
 
 from collections.abc import Mapping
+from copy import deepcopy
 from pathlib import Path
 from typing import NamedTuple
 
@@ -59,10 +60,12 @@ class _NetworkPolicy:
 
 
 def evaluated(network: TrackingNetwork, config: EyasConfig) -> EvaluationScores:
-    """Return how the network does in the episodes of `train.evaluation`."""
+    """Return how the network does, on this processor, in the episodes of `train.evaluation`."""
     episodes, protocol = evaluation_episodes(config)
     env = config.env.model_copy(update={"mixture": ()})
-    flight = BatchFlight(episodes, protocol, _NetworkPolicy(network, env), delay_from("0"))
+    flight = BatchFlight(
+        episodes, protocol, _NetworkPolicy(deepcopy(network).cpu(), env), delay_from("0")
+    )
     records = [record for ended in flight.fly() for record in ended]
     means = [
         np.mean([getattr(record, name) for record in records]) for name in EvaluationScores._fields

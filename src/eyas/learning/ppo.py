@@ -60,7 +60,8 @@ def update(
     count = gains.shape[1] if network.shape.memory else gains.numel()
     losses = torch.zeros(len(Losses._fields))
     for _ in range(config.n_epochs):
-        for chosen in torch.randperm(count, generator=generator).chunk(config.minibatches):
+        order = torch.randperm(count, generator=generator).to(gains.device)
+        for chosen in order.chunk(config.minibatches):
             parts = [(part, len(part) / len(chosen)) for part in chosen.chunk(config.parts)]
             found = threads.each(lambda job: _gradients(network, lesson, *job, config), parts)
             losses = torch.stack([loss for loss, _ in found]).sum(0)

@@ -2,14 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
 from torch import Tensor
 
 from eyas.envs.vector_env import EyasVectorEnv
 from eyas.learning.config import Method
+from eyas.learning.devices import torch_device
 from eyas.learning.network import TrackingNetwork
 from eyas.learning.teacher import Teacher
 from eyas.settings.config import EyasConfig
@@ -72,7 +76,7 @@ class Roller:
     """
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
-        count, rollout = config.train.environments // config.train.shards, config.train.n_steps
+        count = config.train.environments // config.train.shards
         taught = config.train.method is not Method.PPO
         self._teacher = Teacher(config, count) if taught else None
         self.env = EyasVectorEnv(
@@ -81,35 +85,41 @@ class Roller:
             autoreset_mode=AutoresetMode.SAME_STEP,
             copy=False,
             measures=taught,
+            device=config.train.device,
         )
         self.finished = Finished()
         self._network = network
         self._config = config.train
-        shape = network.shape
-        self._data = Rollout(
-            pictures=torch.zeros(
-                rollout, count, shape.channels, shape.height, shape.width, dtype=torch.uint8
-            ),
-            states=torch.zeros(rollout, count, shape.state),
-            actions=torch.zeros(rollout, count, dtype=torch.long),
-            log_probability=torch.zeros(rollout, count),
-            rewards=torch.zeros(rollout, count),
-            values=torch.zeros(rollout + 1, count),
-            ended=torch.zeros(rollout, count),
-            labels=torch.zeros(rollout, count, dtype=torch.long),
-            weights=torch.zeros(rollout, count),
-        )
+        self._device = torch_device(config.train.device)
+        self._data = self._new_rollout(count)
         self._picture = torch.zeros(0)
-        self._state = torch.zeros(count, shape.state)
-        self._return, self._length = np.zeros(count), np.zeros(count, np.int64)
-        self._generator = torch.Generator()
+        self._state = torch.zeros(count, network.shape.state, device=self._device)
+        self._return = torch.zeros(count, dtype=torch.float64, device=self._device)
+        """Rewards of each episode so far."""
+        self._length, self._nobody = np.zeros(count, np.int64), np.zeros(count, np.bool_)
+        self._generator = torch.Generator(self._device)
+
+    def _new_rollout(self, count: int) -> Rollout:
+        """Return an empty rollout of N environments."""
+        shape, steps = self._network.shape, self._config.n_steps
+        zeros = partial(torch.zeros, steps, count, device=self._device)
+        return Rollout(
+            pictures=zeros(shape.channels, shape.height, shape.width, dtype=torch.uint8),
+            states=zeros(shape.state),
+            actions=zeros(dtype=torch.long),
+            log_probability=zeros(),
+            rewards=zeros(),
+            values=torch.zeros(steps + 1, count, device=self._device),
+            ended=zeros(),
+            labels=zeros(dtype=torch.long),
+            weights=zeros(),
+        )
 
     def begin(self, rng: np.random.Generator) -> None:
         """Begin new episodes and new random choices of actions."""
         observation, _ = self.env.reset(seed=int(rng.integers(2**31, 2**62)))
         self._generator.manual_seed(int(rng.integers(2**62)))
-        assert isinstance(observation, np.ndarray)
-        self._picture = torch.from_numpy(observation)
+        self._picture = torch.as_tensor(observation)
         self._state = torch.zeros_like(self._state)
         self._return[:], self._length[:] = 0.0, 0
         self.finished = Finished()
@@ -142,34 +152,43 @@ class Roller:
     def _taught(self, step: int, action: Tensor, guided: float) -> Tensor:
         """Keep what the teacher tells; return the actions, its own where it flies."""
         assert self._teacher is not None
-        labels, self._data.weights[step] = self._teacher.lesson(self.env.truth())
-        self._data.labels[step] = labels
-        flown = torch.arange(len(action)) < round(guided * len(action))
+        labels, weights = self._teacher.lesson(self.env.truth())
+        labels = labels.to(self._device)
+        self._data.labels[step], self._data.weights[step] = labels, weights
+        flown = torch.arange(len(action), device=self._device) < round(guided * len(action))
         return torch.where(flown, labels, action)
 
     def _step(self, step: int, action: Tensor, state: Tensor) -> Tensor:
         """Take a step in the environments; return which episodes have ended."""
-        observation, reward, terminated, truncated, info = self.env.step(action.numpy())
-        assert isinstance(observation, np.ndarray)
-        self._picture = torch.from_numpy(observation)
-        ended = terminated | truncated
+        given = action.numpy() if self._config.device is None else action
+        observation, *told, info = self.env.step(given)
+        self._picture = torch.as_tensor(observation)
+        reward, terminated, truncated = map(torch.as_tensor, told)
+        ended = info.get("_final_obs", self._nobody)  # known on the host
         if self._teacher is not None:
             self._teacher.forget(ended)
         self._count(reward, ended)
-        scaled = torch.from_numpy(reward * self._config.reward_scale).float()
-        cut = np.flatnonzero(truncated)
-        if len(cut):  # what would have followed counts as its value
-            last = torch.from_numpy(np.stack([info["final_obs"][n] for n in cut]))
+        scaled = (reward * self._config.reward_scale).float()
+        if ended.any() and len(cut := truncated.nonzero()[:, 0]):
+            # What would have followed counts as its value.
+            last = _rows(info["final_obs"], cut)
             scaled[cut] += self._config.gamma * self._network(last, state[cut])[1]
-        self._data.rewards[step] = scaled
-        gone = torch.from_numpy(ended)
-        self._data.ended[step] = gone.float()
+        gone = terminated | truncated
+        self._data.rewards[step], self._data.ended[step] = scaled, gone.float()
         return gone
 
-    def _count(self, reward: np.ndarray, ended: np.ndarray) -> None:
+    def _count(self, reward: Tensor, ended: NDArray[np.bool_]) -> None:
         self._return += reward
         self._length += 1
-        for index in np.flatnonzero(ended).tolist():
-            self.finished.returns.append(float(self._return[index]))
-            self.finished.lengths.append(int(self._length[index]))
-        self._return[ended], self._length[ended] = 0.0, 0
+        which = np.flatnonzero(ended)
+        if len(which):
+            self.finished.returns.extend(self._return[which].tolist())
+            self.finished.lengths.extend(self._length[which].tolist())
+            self._return[which], self._length[which] = 0.0, 0
+
+
+def _rows(final: Any, cut: Tensor) -> Tensor:  # noqa: ANN401  # as environments tell it
+    """Return the last observations of some environments: rows of a tensor, or one array each."""
+    if isinstance(final, np.ndarray) and final.dtype == object:
+        return torch.from_numpy(np.stack(list(final[cut.numpy()])))
+    return torch.as_tensor(final)[cut]

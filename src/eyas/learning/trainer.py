@@ -17,6 +17,7 @@ from eyas.envs.observation import observation_space
 from eyas.learning import dagger, ppo
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
 from eyas.learning.config import Method, Stage
+from eyas.learning.devices import torch_device
 from eyas.learning.export import export
 from eyas.learning.monitoring import (
     NO_SCORES,
@@ -104,6 +105,7 @@ class _Run:
         self.network.initialise(generator)
         if config.train.begin_from is not None:
             RunFolder(Path(config.train.begin_from)).load_network(self.network)
+        self.network.to(torch_device(config.train.device))
         rate = config.train.learning_rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = TrainingProgress()

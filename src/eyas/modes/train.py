@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from eyas.core.errors import MissingExtraError
+from eyas.core.errors import ConfigError, MissingExtraError
 from eyas.settings.config import EyasConfig
 
 __all__ = ["run"]
@@ -29,6 +29,8 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     say = (lambda _: None) if quiet else _say
     if not ray:
         return train(config, folder, resume=resume, say=say)
+    if config.train.device is not None:
+        raise ConfigError(f"train.device: '{config.train.device}' is not there with --ray")
     from eyas.learning.shards import on_ray
 
     with on_ray() as make_shards:

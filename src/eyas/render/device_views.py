@@ -1,13 +1,14 @@
 """What a renderer on a device draws: cameras, in the layout that its kernels read."""
 
 import operator
+from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from eyas.lanes.device import Device
 from eyas.render.device import DeviceRenderer, PictureSize
-from eyas.render.kernels.bundles import Geometry, Job, Light, Movers
+from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output
 from eyas.render.outputs import NO_OUTPUT
 from eyas.render.renderer import GRIDS
 from eyas.state.lighting import LightState
@@ -45,7 +46,9 @@ class DeviceViews(NamedTuple):
 class DeviceDrawer(Protocol):
     """Draws a scene and the things that move in it on a device."""
 
-    def draw(self, cameras: DeviceViews, movers: Movers, rgb: Array) -> None:
+    def draw(
+        self, cameras: DeviceViews, movers: Movers, rgb: Array, subject: Array | None = None
+    ) -> None:
         """Draw the pictures of V cameras.
 
         Args:
@@ -53,8 +56,24 @@ class DeviceDrawer(Protocol):
             movers: Draw lists on the device, the first V rows of which count.
             rgb: sRGB, row 0 on top, on the device, uint8, shape (at least V, H, W, 3); the first V
                 are written.
+            subject: What is measured of each camera's subject, as `Output.subject` on the device,
+                int32, shape (at least V, 10), likewise; None: nothing.
         """
         ...
+
+
+@dataclass
+class _Made:
+    """What draws so many pictures, and what it was last asked to."""
+
+    renderer: DeviceRenderer
+    job: Job
+    """Without its cameras."""
+    given: tuple[Any, ...] = ()
+    """The arrays that it was given."""
+    cut: Any = None
+    """The job with the cameras."""
+    output: Output = NO_OUTPUT
 
 
 class StagedDrawer:
@@ -71,28 +90,45 @@ class StagedDrawer:
     def __init__(self, device: Device, geometry: Geometry, light: Light, samples: int = 1) -> None:
         self._device, self._geometry, self._light = device, geometry, light
         self._grid = GRIDS[samples]
-        self._made: dict[PictureSize, tuple[DeviceRenderer, Job]] = {}
-        self._last: PictureSize | None = None
-        self._given: tuple[Any, ...] = ()
-        self._cut: Any = None
+        self._made: dict[PictureSize, _Made] = {}
 
-    def draw(self, cameras: DeviceViews, movers: Movers, rgb: Array) -> None:
+    def draw(
+        self, cameras: DeviceViews, movers: Movers, rgb: Array, subject: Array | None = None
+    ) -> None:
         """Draw the pictures of V cameras, see `DeviceDrawer`."""
-        views, (height, width) = cameras.views, rgb.shape[1:3]
-        size = PictureSize(views, height, width, *self._grid)
+        height, width = rgb.shape[1:3]
+        size = PictureSize(cameras.views, height, width, *self._grid)
+        measured = size._replace(across=1, down=1, measured=True)  # at the pixels' centres
+        if subject is None:
+            self._draw(size, cameras, movers, (rgb, None))
+            return
+        self._device.clear(subject)
+        if self._grid == (1, 1):
+            self._draw(measured, cameras, movers, (rgb, subject))
+        else:
+            self._draw(size, cameras, movers, (rgb, None))
+            self._draw(measured, cameras, movers, (None, subject))
+
+    def _draw(
+        self,
+        size: PictureSize,
+        cameras: DeviceViews,
+        movers: Movers,
+        wanted: tuple[Array | None, Array | None],
+    ) -> None:
+        """Draw pictures, or measure their subjects, or both."""
         if size not in self._made:
             renderer = DeviceRenderer(self._device, self._geometry, self._light)
-            self._made[size] = renderer, self._new_job(size)
-        renderer, job = self._made[size]
-        timed = cameras.instant.shape[0] > 0
+            self._made[size] = _Made(renderer, self._new_job(size))
+        made, timed = self._made[size], cameras.instant.shape[0] > 0
         # Mostly the same arrays as the last time: cutting off a dozen takes some time.
-        given = rgb, *cameras[1:]
-        if self._last != size or not all(map(operator.is_, given, self._given)):
-            self._last, self._given = size, given
-            self._cut = _with_cameras(job, cameras, timed=timed), rgb[:views]
-        job, pictures = self._cut
-        output = NO_OUTPUT._replace(rgb=pictures)
-        renderer.draw(size, job, movers, output, falls=int(timed and cameras.falling))
+        given = *wanted, *cameras[1:]
+        if len(made.given) != len(given) or not all(map(operator.is_, given, made.given)):
+            made.given = given
+            made.cut = _with_cameras(made.job, cameras, timed=timed)
+            made.output = _cut_output(*wanted, size.views)
+        falls = int(timed and cameras.falling)
+        made.renderer.draw(size, made.cut, movers, made.output, falls=falls)
 
     def _new_job(self, size: PictureSize) -> Job:
         """Return a job without its cameras, for whole views."""
@@ -113,6 +149,12 @@ class StagedDrawer:
             focal=nothing,
             lens=self._device.zeros(0, np.int32),
         )
+
+
+def _cut_output(rgb: Array | None, subject: Array | None, views: int) -> Output:
+    """Return the outputs that are not None, of V views."""
+    output = NO_OUTPUT if rgb is None else NO_OUTPUT._replace(rgb=rgb[:views])
+    return output if subject is None else output._replace(subject=subject[:views])
 
 
 def _with_cameras(job: Job, cameras: DeviceViews, *, timed: bool) -> Job:

@@ -9,7 +9,14 @@ from eyas.render.kernels.bundles import Job, Output
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 
-__all__ = ["NO_OUTPUT", "measured_alone", "picture_size", "wanted_output", "write_measured"]
+__all__ = [
+    "MEASURES",
+    "NO_OUTPUT",
+    "measured_alone",
+    "picture_size",
+    "wanted_output",
+    "write_measured",
+]
 
 MEASURES = 10
 """Numbers that are measured of a thing, see `Output.subject`."""

@@ -18,6 +18,7 @@ from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.vector_env import EyasVectorEnv
 from eyas.lanes.device import HostDevice
 from eyas.lanes.ptx import ptx_of
+from eyas.sim.device.records import arrays_of
 
 from .apart import ApartDevice
 
@@ -145,7 +146,6 @@ def test_results_are_new_arrays_unless_it_is_told_otherwise():
     ("settings", "choices", "said"),
     [
         ({}, {"observation": {"parts": ["image", "depth"]}}, "env.observation.parts: 'depth'"),
-        ({}, {"measures": True}, "measures: true"),
         ({"verbose": True}, {}, "verbose: true"),
         ({}, {"mixture": [{"settings": {}}]}, "env.mixture"),
         ({}, {"device": "abacus"}, "device: 'abacus' is not allowed: 'cuda', "),
@@ -160,7 +160,7 @@ def test_what_is_not_there_is_told_in_one_line(settings, choices, said):
 
 def test_what_only_the_processor_knows_is_refused():
     ours = EyasVectorEnv(1, SHORT, observation=SMALL, device="host", render_mode="rgb_array")
-    for ask in (ours.truth, ours.render, lambda: ours.words_of(0), lambda: copy.deepcopy(ours)):
+    for ask in (ours.render, lambda: ours.words_of(0), lambda: copy.deepcopy(ours)):
         with pytest.raises(EyasError, match=r"^device: "):
             ask()
     assert ours.config_of(0) is ours.config
@@ -203,6 +203,28 @@ def test_nothing_is_read_here_that_is_there(case, mode):
         theirs = usual.step(actions)
         for told, expected in zip(mine[:4], theirs[:4], strict=True):
             assert_same(as_numpy(told), expected)
+
+
+@pytest.mark.parametrize(
+    ("device", "samples"), [(HostDevice(2), 1), (ApartDevice(2), 1), (ApartDevice(2), 4)]
+)
+def test_what_is_true_is_told_on_the_host(device, samples):
+    pytest.importorskip("torch")
+    settings = SHORT | {"camera": {"samples": samples}}
+    choices = {"autoreset_mode": MODES[1], "observation": SMALL, "measures": True}
+    usual = EyasVectorEnv(3, settings, **choices)
+    ours = EyasVectorEnv(3, settings, device=device, **choices)
+    usual.reset(seed=5)
+    ours.reset(seed=5)
+    rng, shares = np.random.default_rng(0), set()
+    for _ in range(20):
+        for told, expected in zip(arrays_of(ours.truth()), arrays_of(usual.truth()), strict=True):
+            assert_same(told, expected)
+        shares.update(ours.truth().visible.tolist())
+        actions = actions_of(usual, rng)
+        ours.step(actions)
+        usual.step(actions)
+    assert len(shares) > 3, "some are hidden in part, or leave the picture"
 
 
 def as_numpy(told):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import physics_steps
 from eyas.core.errors import ConfigError, EyasError
 from eyas.envs.actions import make_actions
-from eyas.envs.batch import Seeds
+from eyas.envs.batch import Seeds, Truth
 from eyas.envs.device.actions import DeviceActions
 from eyas.envs.device.devices import device_of, drawer_of
 from eyas.envs.device.observation import DeviceObserver
@@ -18,6 +18,7 @@ from eyas.lanes.device import Device
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.build import assets_of, in_one_wind
+from eyas.sim.device.records import downloaded
 from eyas.sim.device.simulation import DeviceSimulation
 from eyas.sim.device.view import DeviceView
 from eyas.sim.worlds import each_alone
@@ -50,7 +51,7 @@ class DeviceEnvs:
         self, config: EyasConfig, count: int, device: Device | str, *, measures: bool = False
     ) -> None:
         where = device_of(device)
-        _check(config, measures=measures)
+        _check(config)
         with originals_named(config):
             assets = assets_of(config, each_alone(count))
             seen = config.env.observation
@@ -66,7 +67,7 @@ class DeviceEnvs:
             )
         drawer = drawer_of(where, assets.renderer, config.camera.samples)
         view = DeviceView(simulation, drawer)
-        self._observer = DeviceObserver(seen, simulation, view)
+        self._observer = DeviceObserver(seen, simulation, view, measures=measures)
         actions = make_actions(config.env.actions, config.env.speeds)
         self._actions = DeviceActions(actions, where, simulation.commands)
         self.action_space, self.observation_space = actions.space, self._observer.space
@@ -113,18 +114,23 @@ class DeviceEnvs:
         """
         self._observer.look(np.flatnonzero(chosen), begun[chosen], final=final)
 
+    def truth(self) -> Truth:
+        """Return a copy on the host of what is true now, see `EyasVectorEnv.truth`."""
+        simulation = self._simulation
+        there = downloaded(simulation.device, simulation.snapshot)
+        return Truth(there, self._observer.visible)
+
     def latest(self, out: Any = None, *, final: bool = False) -> Any:  # noqa: ANN401  # as users get it
         """Return the latest observations, see `DeviceObserver.latest`."""
         return self._observer.latest(out, final=final)
 
 
-def _check(config: EyasConfig, *, measures: bool) -> None:
+def _check(config: EyasConfig) -> None:
     """Refuse settings of environments that need the host in a step."""
     wanted = {
         "env.mixture: several kinds of environments": bool(config.env.mixture),
         "env.log_folder: a log of each step": config.env.log_folder is not None,
         "verbose: true": config.verbose,
-        "measures: true": measures,
     }
     for setting in compress(wanted, wanted.values()):
         raise ConfigError(f"{setting} is not there on a device; allowed: none")

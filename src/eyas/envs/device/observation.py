@@ -12,6 +12,7 @@ from eyas.envs.config import ObservationConfig, ObservationPart
 from eyas.envs.device.tensors import copied, tensor_of
 from eyas.envs.observation import observation_space
 from eyas.lanes import kernel, parallel
+from eyas.render.outputs import MEASURES
 from eyas.sensors.config import ColourLayout, Colours
 from eyas.sensors.stack import luma
 from eyas.sim.device.records import Mirrored
@@ -73,18 +74,26 @@ class DeviceObserver:
 
     Attributes:
         space: The space of one observation.
+        visible: Share of each target that the latest picture shows, if it is measured, on the host,
+            shape (N,).
 
     Args:
         config: What is observed.
         simulation: The trackers.
         view: Draws what they see.
+        measures: Whether targets are measured in the pictures, for teachers.
 
     Raises:
         ConfigError: A part is not there on a device.
     """
 
     def __init__(
-        self, config: ObservationConfig, simulation: DeviceSimulation, view: DeviceView
+        self,
+        config: ObservationConfig,
+        simulation: DeviceSimulation,
+        view: DeviceView,
+        *,
+        measures: bool = False,
     ) -> None:
         self.space = observation_space(config, simulation.config)
         for part in config.parts:
@@ -109,6 +118,8 @@ class DeviceObserver:
         # Pictures that are observations as they are drawn.
         last, single = config.layout is ColourLayout.HWC, config.frames == 1
         self._plain = last and single and config.colours is Colours.RGB
+        self.visible = np.zeros(count)
+        self._subject = device.zeros((count, MEASURES), np.int32) if measures else None
         self._rgb = device.zeros((count, config.height, config.width, 3), np.uint8)
         self._stacking = {final: self._held_pictures(final=final) for final in (False, True)}
         self._rows = {final: device.held(self._rows_of(final=final)) for final in (False, True)}
@@ -125,11 +136,14 @@ class DeviceObserver:
         for own, values in zip(self._seen, (np.array([count]), trackers, begun), strict=True):
             own.write(values)
         if _IMAGE in self._parts and self._plain and count == self._simulation.count and not final:
-            self._view.draw(trackers, self._latest[_IMAGE])
+            self._view.draw(trackers, self._latest[_IMAGE], self._subject)
         elif _IMAGE in self._parts:
-            self._view.draw(trackers, self._rgb)
+            self._view.draw(trackers, self._rgb, self._subject)
             pixels = self._config.height * self._config.width
             device.launch(_stack_pictures, count * pixels, self._held_seen, self._stacking[final])
+        if _IMAGE in self._parts and self._subject is not None:
+            seen, covered = device.read(self._subject)[:count, 4:6].T
+            self.visible[trackers] = seen / np.maximum(covered, 1)
         if set(self._parts) != {_IMAGE}:
             held = self._snapshot, self._held_seen, self._rows[final]
             device.launch(_fill_rows, count, *held)

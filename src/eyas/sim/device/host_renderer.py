@@ -37,7 +37,13 @@ class HostRenderer:
     def __init__(self, renderer: Renderer, samples: int = 1) -> None:
         self._renderer, self._samples = renderer, samples
 
-    def draw(self, cameras: DeviceViews, movers: Movers, rgb: Any) -> None:  # noqa: ANN401  # as there
+    def draw(
+        self,
+        cameras: DeviceViews,
+        movers: Movers,
+        rgb: Any,  # noqa: ANN401  # as there
+        subject: Any = None,  # noqa: ANN401  # as there
+    ) -> None:
         """Draw the pictures of V cameras, see `DeviceDrawer`."""
         count = cameras.views
         views = _Cameras(
@@ -52,6 +58,10 @@ class HostRenderer:
             lengths=cameras.focal[:count],
         )
         drawn = DrawList(**{array.name: getattr(movers, array.name) for array in fields(DrawList)})
-        picture = Picture.create(count, 1, 1, rgb=False)
+        picture = Picture.create(count, 1, 1, rgb=False, subject=subject is not None)
         picture.rgb = rgb[:count]
         self._renderer.draw(views, drawn, picture, self._samples)
+        if subject is not None:
+            boxes = picture.subject_box, picture.subject_pixels, picture.subject_visible_box
+            columns = [array for array in boxes if array is not None]  # all three
+            subject[:count] = np.concatenate(columns, axis=1)

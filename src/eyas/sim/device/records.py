@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes.device import Device
 
-__all__ = ["Mirrored", "arrays_of", "uploaded"]
+__all__ = ["Mirrored", "arrays_of", "downloaded", "uploaded"]
 
 
 def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, an array or a number
@@ -19,6 +19,14 @@ def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, a
     if not isinstance(record, tuple):
         return record
     parts = [uploaded(device, part) for part in record]
+    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def downloaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # as above
+    """Return such a record with copies here of its arrays on a device."""
+    if not isinstance(record, tuple):
+        return device.read(record) if hasattr(record, "shape") else record
+    parts = [downloaded(device, part) for part in record]
     return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
 
 

@@ -85,19 +85,25 @@ class DeviceView:
         self._views, self._room = 0, (0, 0)
         self._grow(_ENTRIES, _SLOTS)
 
-    def draw(self, trackers: NDArray[np.int64], rgb: Any) -> None:  # noqa: ANN401  # a device array
+    def draw(
+        self,
+        trackers: NDArray[np.int64],
+        rgb: Any,  # noqa: ANN401  # a device array
+        subject: Any = None,  # noqa: ANN401  # a device array
+    ) -> None:
         """Draw the pictures of some trackers' cameras.
 
         Args:
             trackers: The trackers, shape (V,).
             rgb: On the device, uint8, shape (N, H, W, 3); the first V are written, and perhaps some
                 behind them.
+            subject: What is measured of their targets, see `DeviceDrawer`, shape (N, 10), likewise.
         """
         # Powers of two and N: working memory of drawing is kept for each number of pictures.
         count = min(1 << (len(trackers) - 1).bit_length(), self._simulation.count)
         self._list(np.append(trackers, np.repeat(trackers[-1:], count - len(trackers))))
         self._pose()
-        self._drawer.draw(self.cameras, self.movers, rgb)
+        self._drawer.draw(self.cameras, self.movers, rgb, subject)
 
     @property
     def cameras(self) -> DeviceViews:

@@ -1,0 +1,29 @@
+"""Where PyTorch computes if environments are on a device."""
+
+import torch
+
+from eyas.core.errors import ConfigError
+
+__all__ = ["torch_device"]
+
+
+def torch_device(name: str | None) -> torch.device:
+    """Return where the network of a run is.
+
+    On a graphics processor, PyTorch is told to choose convolutions that give the same each time.
+
+    Args:
+        name: `train.device`.
+
+    Raises:
+        ConfigError: PyTorch cannot use it.
+    """
+    if name in (None, "host"):
+        return torch.device("cpu")
+    if not torch.cuda.is_available():
+        build = torch.version.cuda or "none, it is PyTorch's build for processors"
+        raise ConfigError(
+            f"train.device: '{name}' cannot be used by PyTorch {torch.__version__} (CUDA: {build})"
+        )
+    torch.backends.cudnn.deterministic = True
+    return torch.device(name)
