@@ -107,6 +107,7 @@ with tempfile.TemporaryDirectory() as folder:
 USES_DEVICE = """
 from pathlib import Path
 import numpy as np
+import torch
 from eyas import EyasVectorEnv
 from eyas.lanes.cuda import code
 from eyas.lanes.device import HostDevice
@@ -141,7 +142,7 @@ def small(value):
 for settings in ({}, {"tracker": {"supervised": False}}, {"tracker": {"kind": "car"}}):
     envs = EyasVectorEnv(2, settings, device=Recorder())
     envs.reset(seed=1)
-    envs.step(np.zeros(envs.action_space.shape, envs.action_space.dtype))
+    envs.step(torch.from_numpy(np.zeros(envs.action_space.shape, envs.action_space.dtype)))
 envs = EyasVectorEnv(2, device=Recorder(), measures=True, observation={"layout": "chw"})
 envs.reset(seed=1)
 """

@@ -8,6 +8,7 @@ import time
 import pytest
 import typer
 
+import eyas
 from eyas import __version__
 from eyas.cli.app import app
 from eyas.cli.main import main
@@ -138,6 +139,19 @@ def test_version_and_maps(monkeypatch, capsys):
     assert any(line.startswith("simpleway-clinker: ") for line in listed)
 
 
+def test_listings_are_json_too(monkeypatch, capsys):
+    def told(group):
+        code, out, err = run(monkeypatch, capsys, group, "list", "--json")
+        assert (code, err) == (0, [])
+        return {entry.pop("name"): entry for entry in json.loads(out)}
+
+    maps, targets, policies = map(told, ("maps", "targets", "policies"))
+    assert set(maps) == set(eyas.list_maps())
+    assert maps["citystreet"]["weathers"] == list(eyas.list_weathers("citystreet"))
+    assert set(policies) == set(eyas.list_policies())
+    assert targets["BmwX5Simple"]["size"] == [4.85, 1.9, 1.8]
+
+
 def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():
     command = [*COMMAND, "config", "show", "--set", "control.frequency=150"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -228,7 +242,8 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert seen == {"compare": True, "doctor": True, "verify": True}
+    assert len(seen) == 6
+    assert all(seen.values())
 
 
 def test_everything_that_is_listed_can_be_a_target(monkeypatch, capsys):

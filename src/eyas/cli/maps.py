@@ -1,11 +1,12 @@
 """`eyas maps`."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from eyas.cli.options import SEVERAL
+from eyas.cli.options import SEVERAL, AsJson
 from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
@@ -23,10 +24,18 @@ def _group() -> None: ...
 
 
 @app.command("list")
-def list_maps() -> None:
+def list_maps(*, as_json: AsJson = False) -> None:
     """Print the maps with their weathers."""
     from eyas.world.maps import MAPS
 
+    if as_json:
+        recipes = {name: MAPS.get(name) for name in sorted(MAPS.names())}
+        told = [
+            {"name": name, "title": recipe.title, "weathers": list(recipe.weathers)}
+            for name, recipe in recipes.items()
+        ]
+        typer.echo(json.dumps(told, indent=1))
+        return
     for name in sorted(MAPS.names()):
         recipe = MAPS.get(name)
         typer.echo(f"{name}: {recipe.title} ({', '.join(recipe.weathers)})")

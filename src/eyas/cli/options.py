@@ -10,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.settings.preset import DAT_MODES, TRAININGS, WORLDS
 
 __all__ = [
+    "AsJson",
     "ConfigFile",
     "MapName",
     "Overrides",
@@ -52,6 +53,7 @@ Weather = Annotated[
     typer.Option("--weather", help="Name of the weather, or package.module:attribute."),
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")
 ]

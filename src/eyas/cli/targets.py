@@ -1,9 +1,13 @@
 """`eyas targets`."""
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from eyas.cli.options import AsJson
 
 if TYPE_CHECKING:
     from eyas.custom.config import CustomConfig
@@ -28,12 +32,15 @@ def _group() -> None: ...
 
 
 @app.command("list")
-def list_targets() -> None:
+def list_targets(*, as_json: AsJson = False) -> None:
     """Print all targets with their sizes, motion, numbers of triangles and looks."""
     from rich.console import Console
 
-    from eyas.modes.targets.listing import table
+    from eyas.modes.targets.listing import entries, table
 
+    if as_json:
+        typer.echo(json.dumps([asdict(entry) for entry in entries()], indent=1))
+        return
     Console(width=_WIDTH).print(table())
 
 

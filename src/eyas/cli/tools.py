@@ -3,11 +3,20 @@
 import json
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from eyas.cli.options import SEVERAL, ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
+from eyas.cli.options import (
+    SEVERAL,
+    AsJson,
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    chosen_file,
+    gathered,
+)
 
 if TYPE_CHECKING:
     from eyas.settings.config import EyasConfig
@@ -122,6 +131,14 @@ def convert_config(
     write_atomic(target, f"{text}\n".encode())
 
 
+@config_app.command("schema")
+def print_schema() -> None:
+    """Print the JSON Schema of settings, by which editors complete and check them."""
+    from eyas.settings.schema import config_schema
+
+    typer.echo(json.dumps(config_schema(), indent=1))
+
+
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
     from eyas.settings.legacy.adapter import to_legacy
 
@@ -182,11 +199,18 @@ def _policies_group() -> None: ...
 
 
 @policies_app.command("list")
-def list_policies() -> None:
+def list_policies(*, as_json: AsJson = False) -> None:
     """Print the policies for `eyas evaluate --policy`, and what the trained ones reach."""
     from eyas.evaluation.policies.shipped import card_of, shipped_names
     from eyas.evaluation.policies.table import BUILT_IN
 
+    if as_json:
+        told: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
+        told += [
+            {"name": name, **card_of(name).model_dump(mode="json")} for name in shipped_names()
+        ]
+        typer.echo(json.dumps(told, indent=1))
+        return
     for name in BUILT_IN:
         typer.echo(f"{name} (built in)")
     for name in shipped_names():

@@ -17,11 +17,14 @@ from eyas.settings.legacy.messages import named_path
 from eyas.settings.legacy.own_target import CUSTOM, own_target_folders, with_own_target
 from eyas.settings.trust import refuse_code
 
-__all__ = ["load_settings", "parsed_override", "read_settings", "save_settings"]
+__all__ = ["SCHEMA_KEY", "load_settings", "parsed_override", "read_settings", "save_settings"]
 
 _LOG = logging.getLogger("eyas")
 
 Nested = dict[str, Any]
+
+SCHEMA_KEY = "$schema"
+"""By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
 
 _CLIENT_KEY = "Benchmark"
 """The one group of the `config.json` of the original's client."""
@@ -118,6 +121,8 @@ def read_settings(path: Path) -> Nested:
         raise DataFileError(f"{path}: not valid settings: {error}") from error
     if not isinstance(values, dict):
         raise DataFileError(f"{path}: line 1: not a JSON object")
+    if isinstance(values.get(SCHEMA_KEY), str):
+        del values[SCHEMA_KEY]
     return values
 
 
