@@ -14,6 +14,10 @@ from hypothesis import settings
 # The maps that a developer has imported are not there for tests.
 os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
 
+# All maps in all weathers take more room than the usual limit: what a test has made would be gone
+# when the next one needs it, and be made again and again.
+os.environ.setdefault("EYAS_CACHE_LIMIT", "32G")
+
 # No test asserts a time, and a submission meets the same examples as the last; others, and more
 # of them, are tried by `--hypothesis-profile search`.
 settings.register_profile("eyas", deadline=None, derandomize=True)
