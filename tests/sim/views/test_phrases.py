@@ -65,6 +65,11 @@ def test_a_phrase_fits_its_target_and_nothing_else_in_view(plain_words):
 
 
 @pytest.mark.slow
+def test_in_another_town_a_phrase_fits_nothing_else_in_view(plain_words):
+    assert check(crowded(200, world={"map": "village"}), plain_words, 200)[None] <= 4
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize("place", ["citystreet", "downtown"])
 def test_ten_thousand_phrases_fit_nothing_else_in_view(place, plain_words):
     simulation = crowded(500, world={"map": place})
