@@ -27,7 +27,6 @@ settings.load_profile("eyas")
 
 def pytest_addoption(parser):
     parser.addoption("--regenerate", action="store_true", help="redraw the golden pictures")
-    parser.addoption("--every-map", action="store_true", help="check all environments")
 
 
 def pytest_collection_modifyitems(config, items):

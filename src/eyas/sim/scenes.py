@@ -2,6 +2,7 @@
 of a season.
 """
 
+import itertools
 import logging
 from collections.abc import Callable, Sequence
 from enum import Enum
@@ -182,8 +183,16 @@ def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
 
 def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
-    chosen = _chosen(kinds)
-    return cached(Kind.PARTS, partial(part_library, chosen), chosen, of=PartLibrary)
+    # One entry for each kind: whoever adds another to a world makes the parts of that one only.
+    made = [
+        cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
+        for kind in _chosen(kinds)
+    ]
+    parts, lamps = (
+        tuple(itertools.chain.from_iterable(each))
+        for each in ([one.parts for one in made], [one.lamps for one in made])
+    )
+    return PartLibrary(parts, lamps)
 
 
 def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:

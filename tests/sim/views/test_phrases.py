@@ -58,15 +58,10 @@ def check(simulation, plain, count, first=0):
 
 
 def test_a_phrase_fits_its_target_and_nothing_else_in_view(plain_words):
-    found = check(crowded(1000), plain_words, 1000)
-    assert found[None] <= 20
-    assert min(found[kind] for kind in PhraseKind) >= 80
-    assert found["contradicted"] >= 970
-
-
-@pytest.mark.slow
-def test_in_another_town_a_phrase_fits_nothing_else_in_view(plain_words):
-    assert check(crowded(200, world={"map": "village"}), plain_words, 200)[None] <= 4
+    found = check(crowded(400), plain_words, 400)
+    assert found[None] <= 8
+    assert min(found[kind] for kind in PhraseKind) >= 30
+    assert found["contradicted"] >= 388
 
 
 @pytest.mark.thorough
