@@ -14,6 +14,14 @@ from hypothesis import settings
 # The maps that a developer has imported are not there for tests.
 os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
 
+# All maps in all weathers take more room than the usual limit: what a test has made would be gone
+# when the next one needs it, and be made again and again.
+os.environ.setdefault("EYAS_CACHE_LIMIT", "32G")
+
+# Of the hundreds of programs that tests start, the first compiles the sources for all, also on a
+# machine that asks otherwise.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # No test asserts a time, and a submission meets the same examples as the last; others, and more
 # of them, are tried by `--hypothesis-profile search`.
 settings.register_profile("eyas", deadline=None, derandomize=True)
@@ -23,7 +31,16 @@ settings.load_profile("eyas")
 
 def pytest_addoption(parser):
     parser.addoption("--regenerate", action="store_true", help="redraw the golden pictures")
-    parser.addoption("--every-map", action="store_true", help="check all environments")
+
+
+def pytest_collection_modifyitems(config, items):
+    """What only a release must prove is left out, unless `-m` asks for it."""
+    if "thorough" in config.option.markexpr:
+        return
+    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in set(left_out)]
 
 
 @pytest.fixture

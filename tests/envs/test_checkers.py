@@ -16,19 +16,23 @@ SHORT = {"done": {"total_steps": 40}}
 """Episodes of ten actions."""
 
 
-def pytest_generate_tests(metafunc):
-    """All take minutes: without `--every-map`, those of citystreet and one of each other place."""
-    if metafunc.config.getoption("--every-map"):
-        places = [(name, MAPS.get(name).weathers) for name in MAPS.built_in]
-    else:
-        names = [n for n in MAPS.built_in if n.partition("-")[2] in ("", "grass", "bare")]
-        some = {"citystreet": None}
-        places = [(n, MAPS.get(n).weathers[: some.get(n, 1)]) for n in names]
-    metafunc.parametrize(("name", "weathers"), places, ids=[name for name, _ in places])
+SOME = {"citystreet": ("day", "night"), "desert-bare": ("day",), "simpleway-grass": ("day",)}
+"""Of each kind of place one; what a checker looks at depends on neither map nor weather."""
 
 
 @pytest.mark.slow
-def test_checkers_find_nothing_wrong_on_a_map(name, weathers, official):
+@pytest.mark.parametrize(("name", "weathers"), SOME.items(), ids=SOME)
+def test_checkers_find_nothing_wrong(name, weathers, official):
+    checked(name, weathers, official)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", MAPS.built_in)
+def test_checkers_find_nothing_wrong_on_any_map_in_any_weather(name, official):
+    checked(name, MAPS.get(name).weathers, official)
+
+
+def checked(name, weathers, official):
     for weather in weathers:
         env = gymnasium.make(f"eyas/{name}-{weather}-v0", render_mode="rgb_array")
         with warnings.catch_warnings():

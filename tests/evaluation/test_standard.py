@@ -95,11 +95,19 @@ def test_an_episode_has_seeds_of_its_own_however_many_are_tried():
     assert sorted(slots) == list(range(12 * 11))
 
 
-@pytest.mark.slow  # the first time, two towns are built
+UNSEEN = EvaluationPlan(policy="hover", protocol="unseen")
+
+
+@pytest.mark.thorough  # six towns are built and looked at from 1,728 starts each
+def test_all_towns_of_unseen_have_their_episodes():
+    assert UNSEEN.count == 6 * 24 == len(episodes_of(protocol="unseen"))
+
+
+@pytest.mark.slow  # the first time, a town is built
 def test_unseen_is_flown_elsewhere_and_needs_no_sumo():
-    plan = EvaluationPlan(policy="hover", protocol="unseen")
+    plan, one = UNSEEN, {"protocol": "unseen", "maps": UNSEEN.maps[-1:]}
     assert len(plan.maps) == 6
-    assert plan.count == 6 * 24 == len(episodes_of(protocol="unseen"))
+    assert plan.count == 6 * 24 == 6 * len(episodes_of(**one))
     for name in plan.maps:
         town, seed = Place(name, "day", "SUMO_VEHICLE").town
         assert seed > TEST_SEEDS
@@ -109,7 +117,7 @@ def test_unseen_is_flown_elsewhere_and_needs_no_sumo():
         "import sys\n"
         "sys.modules.update(dict.fromkeys(['libsumo', 'sumo', 'sumolib', 'traci']))\n"
         "from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch\n"
-        "plan = EvaluationPlan(policy='hover', protocol='unseen', episodes=1)\n"
+        f"plan = EvaluationPlan(policy='hover', episodes=1, **{one})\n"
         "parts = batches(plan)\n"
         "part = [episode for part in parts for episode in part][:1]\n"
         "flown = [record for ended in fly_batch(plan, part) for record in ended]\n"

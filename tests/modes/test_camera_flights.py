@@ -39,10 +39,8 @@ def flown(map_name, name, count, steps, seed=0, start=None):
     return np.array(bodies), np.array(angles), crashed
 
 
-@pytest.mark.parametrize("map_name", MAPS)
-@pytest.mark.parametrize("name", PATHS.built_in)
-def test_twenty_flights_are_smooth_and_touch_nothing(map_name, name):
-    place, angles, crashed = flown(map_name, name, 20, STEPS)
+def smooth(map_name, name, count):
+    place, angles, crashed = flown(map_name, name, count, STEPS)
     assert not crashed.any()
     for order, most in ((2, LIMITS.acceleration), (3, LIMITS.jerk)):
         rate = np.linalg.norm(np.diff(place, n=order, axis=0), axis=2) / 0.002**order
@@ -51,7 +49,20 @@ def test_twenty_flights_are_smooth_and_touch_nothing(map_name, name):
     assert np.abs(np.diff(turns, axis=0)).max() / 0.002 <= 1.01 * LIMITS.turn
     moved = np.linalg.norm(place[-1] - place[0], axis=1)
     assert np.ptp(place, axis=0).max() > 3.0  # they fly
-    assert len({*moved.round(6).tolist()}) == 20  # each its own way
+    assert len({*moved.round(6).tolist()}) == count  # each its own way
+
+
+@pytest.mark.parametrize("name", PATHS.built_in)
+@pytest.mark.parametrize("map_name", ["citystreet", "village"])
+def test_flights_are_smooth_and_touch_nothing(map_name, name):
+    smooth(map_name, name, 6)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("map_name", MAPS)
+@pytest.mark.parametrize("name", PATHS.built_in)
+def test_twenty_flights_are_smooth_and_touch_nothing(map_name, name):
+    smooth(map_name, name, 20)
 
 
 @pytest.mark.parametrize("name", ["follow", "zoom"])

@@ -86,8 +86,12 @@ def test_every_stage_is_launched(launches):
     assert {getattr(stages, name) for name in STAGES} == launches.keys()
 
 
-@pytest.mark.slow  # compiles for half a minute
-@pytest.mark.parametrize("name", STAGES)
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    # That of pixels, `shade`, compiles for most of a minute.
+    [pytest.param(n, marks=pytest.mark.thorough) if n == "shade" else n for n in STAGES],
+)
 def test_a_stage_compiles_for_cuda(launches, name, tmp_path, capsys):
     call = getattr(stages, name)
     bundles, threads = launches[call]

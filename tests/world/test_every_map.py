@@ -21,16 +21,21 @@ ALIKE = ("simpleway-clinker", "simpleway-desert", "simpleway-farm", "simpleway-l
          "simpleway-village", "simpleway-city")  # fmt: skip
 """Maps that differ only in their ground from one that is drawn; each takes long to pack."""
 DRAWN = [name for name in NAMES if name not in ALIKE]
+ALL = ("citystreet",)
 OTHERS = ("rain", "dusk", "overcast", "dust", "autumn")
 """Weathers that are drawn on two maps only: packing a map in another season takes long."""
 CONDITIONS = [
-    (name, weather)
+    pytest.param(name, weather, marks=[pytest.mark.thorough] if number and name not in ALL else [])
     for name in DRAWN
-    for weather in MAPS.get(name).weathers
+    for number, weather in enumerate(MAPS.get(name).weathers)
     if weather not in OTHERS or name in ("citystreet", "desert")
 ]
-BUILT_AGAIN = ("downtown", "farmland", "simpleway-grass")
-"""The others are built again in the tests of their own."""
+"""Of all maps the first weather and of one all; the others before a release."""
+BUILT_AGAIN = (
+    *("farmland", "simpleway-grass"),
+    *(pytest.param(name, marks=pytest.mark.thorough) for name in ("downtown", "village", "lake")),
+)
+"""Others are built again in the tests of their own, and all are compared in `test_plan`."""
 SIDE = 96
 PICTURES = 3
 HALF_CAR = 1.0

@@ -12,7 +12,6 @@ from eyas.traffic.recording_file import load
 from eyas.world.maps.lake import LAKE
 from eyas.world.maps.lake.layout import MIXED, lay_out
 from eyas.world.maps.lake.roads import lattice, road_graph
-from eyas.world.plan.build import build_scene
 from eyas.world.plants.forest import FROSTED, SPECIES, STAND, TREES, stand_levels
 from eyas.world.plants.gardens import BORDERS
 from eyas.world.weather import Season
@@ -168,14 +167,6 @@ def test_lamps_stand_free(scene, plan):
     feet = shapely.points(scene.colliders.cylinder_centre[pole])
     for area in (plan.roads, *plan.ponds, *plan.lakes):
         assert shapely.distance(area, feet).min() > 1.0
-
-
-def test_building_again_gives_the_same_bytes(scene, network):
-    again = build_scene(LAKE.plan(network, 0), network)
-    assert again.static.positions.tobytes() == scene.static.positions.tobytes()
-    assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
-    for one, other in zip(again.fixtures.levels[-1], scene.fixtures.levels[-1], strict=True):
-        assert one.positions.tobytes() == other.positions.tobytes()
 
 
 def test_shores_are_uneven_within_their_basins_and_jetties_reach_the_water(plan, scene):

@@ -12,7 +12,6 @@ from eyas.traffic.recording_file import load
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.maps.village import VILLAGE
 from eyas.world.maps.village.layout import lay_out
-from eyas.world.plan.build import build_scene
 from eyas.world.roads.areas import road_area
 from eyas.world.street.clutter import CLUTTER
 
@@ -170,14 +169,6 @@ def test_a_followed_car_is_hidden_in_several_percent_of_the_time(plan):
     shapely.prepare(covered)
     share = shapely.contains_xy(covered, places[:, 0], places[:, 1]).mean()
     assert 0.04 < share < 0.25
-
-
-def test_building_again_gives_the_same_bytes(village, roads):
-    again = build_scene(VILLAGE.plan(roads, 0), roads)
-    assert again.static.positions.tobytes() == village.static.positions.tobytes()
-    assert again.fixtures.pose.tobytes() == village.fixtures.pose.tobytes()
-    assert again.terrain.relief.tobytes() == village.terrain.relief.tobytes()
-    assert again.colliders.prism_points.tobytes() == village.colliders.prism_points.tobytes()
 
 
 def test_scenes_are_small_enough_for_small_machines(village):

@@ -55,13 +55,12 @@ class Shell:
         both_sides: bool = False,
     ) -> None:
         """Add triangles, shape (T, 3, 3) [m], see `quads`; those without area are skipped."""
-        points = np.asarray(corners, np.float64).reshape(-1, 3, 3)
-        flat = np.zeros((len(points), 3, 2)) if uvs is None else np.asarray(uvs, np.float64)
-        solid = np.linalg.norm(_cross(points), axis=1) > 1e-7
-        points, flat = points[solid], flat.reshape(-1, 3, 2)[solid]
+        points = np.array(corners, np.float64).reshape(-1, 3, 3)
+        flat = np.zeros((len(points), 3, 2)) if uvs is None else np.array(uvs, np.float64)
+        flat = flat.reshape(-1, 3, 2)
         self._corners.append(points)
         self._uvs.append(flat)
-        self._materials += [material] * len(points)
+        self._materials.append(material)
         if both_sides:
             self.triangles(mirrored(points), material, uvs=flat[:, ::-1])
 
@@ -158,18 +157,29 @@ class Shell:
 
     def corners(self) -> NDArray[np.float64]:
         """Return the corners of all triangles [m], shape (3 T, 3)."""
-        return np.concatenate(self._corners).reshape(-1, 3)
+        return np.concatenate(self._corners)[self._solid()].reshape(-1, 3)
+
+    def _solid(self) -> NDArray[np.bool_]:
+        """Return which triangles have an area: of all at once, for single panels are thousands."""
+        solid: NDArray[np.bool_] = (
+            np.linalg.norm(_cross(np.concatenate(self._corners)), axis=1) > 1e-7
+        )
+        return solid
 
     def mesh(self) -> Mesh:
         """Return all panels as one mesh."""
-        corners = np.concatenate(self._corners)
-        palette = {m: i for i, m in enumerate(dict.fromkeys(self._materials))}
-        material = np.array([palette[m] for m in self._materials], np.int32)
+        solid = self._solid()
+        corners = np.concatenate(self._corners)[solid]
+        panel = np.repeat(np.arange(len(self._corners)), [len(each) for each in self._corners])
+        panel = panel[solid]
+        shown = dict.fromkeys(self._materials[i] for i in np.unique(panel))
+        palette = {m: i for i, m in enumerate(shown)}
+        material = np.array([palette.get(m, -1) for m in self._materials], np.int32)[panel]
         vertices = np.concatenate(
             [
                 corners.reshape(-1, 3),
                 _normals(corners, material, self.crease).reshape(-1, 3),
-                np.concatenate(self._uvs).reshape(-1, 2),
+                np.concatenate(self._uvs)[solid].reshape(-1, 2),
             ],
             axis=1,
         )

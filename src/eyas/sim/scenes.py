@@ -2,6 +2,7 @@
 of a season.
 """
 
+import itertools
 import logging
 from collections.abc import Callable, Sequence
 from enum import Enum
@@ -14,7 +15,8 @@ from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.render.ahead import other_is_ready
 from eyas.render.kernels.bundles import Geometry
-from eyas.render.pack.geometry import build_geometry
+from eyas.render.pack.geometry import PackedScene, build_geometry, packed_scene
+from eyas.render.pack.pool import Prototypes, packed_prototypes
 from eyas.render.textures.library import build_textures
 from eyas.sensors.obstacles import Solids, solids_of
 from eyas.state.draw import PartLibrary
@@ -146,9 +148,8 @@ def load_geometry(
         kinds: Kinds of the moving objects, indices into `KINDS`.
         lenses: Which lights of signals are parts, too, the last ones.
     """
-    scene = load_scene(map_name, seed, season)
-    make = partial(_packed, scene, partial(load_parts, kinds), load_textures, lenses=lenses)
-    origin = _origin(map_name, seed, season)
+    scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
+    make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
     if origin is None:
         return make()
     inputs = (*origin, part_library, _chosen(kinds), build_textures, lenses.value)
@@ -157,13 +158,34 @@ def load_geometry(
 
 def _packed(
     scene: Scene,
-    parts: Callable[[], PartLibrary],
+    origin: tuple[object, ...] | None,
+    kinds: tuple[int, ...],
     textures: Callable[[], dict[str, NDArray[np.uint8]]],
     *,
     lenses: Lenses,
 ) -> Geometry:
     other_is_ready()  # which may be to `paint`
-    return build_geometry(scene, _with_lights(parts(), lenses), textures())
+    parts = load_parts(kinds)
+    shown = _with_lights(parts, lenses)
+    # Kept by itself: other movers on the same map are packed in a second.
+    pack = partial(packed_scene, scene)
+    still = pack() if origin is None else cached(Kind.GEOMETRY, pack, origin, of=PackedScene)
+    lights = packed_prototypes(shown.parts[len(parts.parts) :])
+    return build_geometry(
+        scene, shown, textures(), (still, [*map(_packed_kind, _chosen(kinds)), lights])
+    )
+
+
+def _packed_kind(kind: TargetKind) -> Prototypes:
+    return cached(Kind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
+
+
+def _pack_kind(kind: TargetKind) -> Prototypes:
+    return packed_prototypes(_parts_of(kind).parts)
+
+
+def _parts_of(kind: TargetKind) -> PartLibrary:
+    return cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
 
 
 def paint(kinds: Sequence[int]) -> None:
@@ -182,8 +204,13 @@ def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
 
 def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
-    chosen = _chosen(kinds)
-    return cached(Kind.PARTS, partial(part_library, chosen), chosen, of=PartLibrary)
+    # One entry for each kind: whoever adds another to a world makes the parts of that one only.
+    made = [_parts_of(kind) for kind in _chosen(kinds)]
+    parts, lamps = (
+        tuple(itertools.chain.from_iterable(each))
+        for each in ([one.parts for one in made], [one.lamps for one in made])
+    )
+    return PartLibrary(parts, lamps)
 
 
 def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:

@@ -58,13 +58,13 @@ def check(simulation, plain, count, first=0):
 
 
 def test_a_phrase_fits_its_target_and_nothing_else_in_view(plain_words):
-    found = check(crowded(1000), plain_words, 1000)
-    assert found[None] <= 20
-    assert min(found[kind] for kind in PhraseKind) >= 80
-    assert found["contradicted"] >= 970
+    found = check(crowded(400), plain_words, 400)
+    assert found[None] <= 8
+    assert min(found[kind] for kind in PhraseKind) >= 30
+    assert found["contradicted"] >= 388
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 @pytest.mark.parametrize("place", ["citystreet", "downtown"])
 def test_ten_thousand_phrases_fit_nothing_else_in_view(place, plain_words):
     simulation = crowded(500, world={"map": place})
