@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from eyas.mavlink.component import Command, Component, Result
-from eyas.mavlink.frames import Vector, compass, swapped
+from eyas.mavlink.frames import Vector, compass, on_earth, swapped
 from eyas.mavlink.missions import refuse_missions
 from eyas.mavlink.modes import Landed, Mode
 from eyas.mavlink.pilot import Pilot
@@ -23,6 +23,8 @@ _LOCAL, _OFFSET, _BODY, _BODY_OFFSET, _BODY_FRD = 1, 7, 8, 9, 12
 _RELATIVE = (3, 6, 10, 11)
 """`MAV_FRAME`s whose heights are those over the origin; in others they are above the sea."""
 _CUSTOM = 1
+_FARTHEST = 1e5
+"""Largest number of a set point that is believed [m, m/s, rad, rad/s]."""
 
 
 class Autopilot:
@@ -119,10 +121,10 @@ class Autopilot:
         speed, yaw = command.p[0], command.p[3]
         latitude, longitude, altitude = command.p[4:7]
         place = at.body.commanded
-        if math.isfinite(latitude) and math.isfinite(longitude):
+        if on_earth(latitude, longitude, 0.0):
             east, north, _ = at.place_of(latitude, longitude, 0.0, relative=True)
             place = (east, north, place[2])
-        if math.isfinite(altitude):
+        if on_earth(0.0, 0.0, altitude):
             relative = command.frame in _RELATIVE
             place = (*place[:2], at.place_of(0.0, 0.0, altitude, relative=relative)[2])
         if speed > 0.0:
@@ -141,7 +143,7 @@ class Autopilot:
         at = self._now()
         if command.p[0] == 1.0:
             self._pilot.home = at.body.position
-        elif all(math.isfinite(part) for part in command.p[4:7]):
+        elif on_earth(*command.p[4:7]):
             relative = command.frame in _RELATIVE
             self._pilot.home = at.place_of(*command.p[4:7], relative=relative)
         else:
@@ -204,7 +206,7 @@ class Autopilot:
         yaw = None if mask & _NO_YAW or math.isnan(message.yaw) else compass(message.yaw)
         rate = None if mask & _NO_YAW_RATE or math.isnan(message.yaw_rate) else -message.yaw_rate
         values = (*(position or ()), *(velocity or ()), yaw or 0.0, rate or 0.0)
-        if any(math.isinf(part) for part in values):
+        if any(abs(part) > _FARTHEST for part in values):
             return
         self._pilot.set_point(Goal(position, velocity, yaw, rate, body), self._now().seconds)
 
@@ -212,9 +214,11 @@ class Autopilot:
         at = self._now()
         degrees = message.lat * 1e-7, message.lon * 1e-7
         place = at.place_of(*degrees, message.alt, relative=False)
+        if not on_earth(*degrees, message.alt):
+            return
         knows = bool(message.est_capabilities & 2)
         velocity = swapped(message.vel) if knows else (0.0, 0.0, 0.0)
-        if all(math.isfinite(part) for part in (*place, *velocity)):
+        if all(abs(part) < _FARTHEST for part in velocity):
             self._pilot.lead(place, velocity, at.seconds)
 
     def _hear_stick(self, message: Any) -> None:  # noqa: ANN401

@@ -16,6 +16,8 @@ Fields = dict[str, Any]
 
 FASTEST = 0.001
 """Shortest interval that may be asked for [s]."""
+SLOWEST = 2000.0
+"""Longest; messages hold not much more [s]."""
 
 
 class Result(IntEnum):
@@ -179,7 +181,8 @@ class Component:
             return Result.DENIED
         if interval == 0.0:  # the usual one
             interval = 1e6 * self._usual.get(message, -1e-6)
-        self._intervals[message] = max(interval * 1e-6, FASTEST) if interval > 0.0 else math.inf
+        seconds = min(max(interval * 1e-6, FASTEST), SLOWEST)
+        self._intervals[message] = seconds if interval > 0.0 else math.inf
         self._due[message] = 0.0 if interval > 0.0 else math.inf
         return Result.ACCEPTED
 
@@ -190,11 +193,13 @@ def _of_long(message: Any) -> Command:  # noqa: ANN401  # pymavlink's
     return Command(message.command, params, sender, None)
 
 
-_NOWHERE = 2**31 - 1
-
-
 def _of_int(message: Any) -> Command:  # noqa: ANN401  # pymavlink's
     first = (message.param1, message.param2, message.param3, message.param4)
-    place = tuple(math.nan if at == _NOWHERE else at * 1e-7 for at in (message.x, message.y))
+    place = tuple(_degrees(at) for at in (message.x, message.y))
     sender = message.get_srcSystem(), message.get_srcComponent()
     return Command(message.command, (*first, *place, message.z), sender, message.frame)
+
+
+def _degrees(at: int) -> float:
+    """Return an angle in degrees; what is none, such as the largest number, is left free."""
+    return at * 1e-7 if abs(at) <= 1_800_000_000 else math.nan

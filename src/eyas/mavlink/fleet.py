@@ -119,8 +119,8 @@ class Fleet:
         """Whether any vehicle is in offboard mode."""
         return any(vehicle.pilot.mode is Mode.OFFBOARD for vehicle in self.vehicles)
 
-    def step(self) -> None:
-        """Fly for a period, and send what is due."""
+    def step(self, *, look: bool = True) -> None:
+        """Fly for a period, and send what is due; pictures, too, if `look`."""
         for at, vehicle in enumerate(self.vehicles):
             self._set_points[at] = vehicle.pilot.set_points
             forward, left, up, turn = vehicle.command(self.now, self.period)
@@ -139,7 +139,8 @@ class Fleet:
         for vehicle in self.vehicles:
             vehicle.tell(self.now)
             self._flush()
-        self._look()
+        if look:
+            self._look()
 
     def beat(self) -> None:
         """Send heartbeats while time stands still."""
@@ -183,7 +184,8 @@ class Fleet:
         for at, vehicle in enumerate(self.vehicles):
             if self.now < self._picture_due[at]:
                 continue
-            self._picture_due[at] += 1.0 / self._config.picture_rate
+            later = self._picture_due[at] + 1.0 / self._config.picture_rate
+            self._picture_due[at] = max(later, self.now)
             if self._senders:
                 one = np.array([at], np.int32)
                 self._simulation.view.draw(one, self._picture)

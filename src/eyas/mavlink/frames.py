@@ -27,6 +27,7 @@ __all__ = [
     "compass",
     "of_angles",
     "of_body",
+    "on_earth",
     "swapped",
     "to_frd",
     "wrapped",
@@ -94,6 +95,11 @@ def camera_angles(rotation: NDArray[np.float64]) -> Vector:
     pitch = float(exact.asin(min(max(up, -1.0), 1.0)))
     roll = float(exact.atan2(rotation[2, 1], rotation[2, 2]))
     return roll, pitch, float(exact.atan2(east, north))
+
+
+def on_earth(latitude: float, longitude: float, altitude: float) -> bool:
+    """Return whether a place is one on the earth; not if it has numbers that are none."""
+    return abs(latitude) <= 90.0 and abs(longitude) <= 180.0 and abs(altitude) <= 1e5
 
 
 class Geodesy(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any
 
 from eyas.core import exact
 from eyas.mavlink.component import Command, Component, Fields, Result
-from eyas.mavlink.frames import Vector, camera_angles, of_angles, wrapped
+from eyas.mavlink.frames import Vector, camera_angles, of_angles, on_earth, wrapped
 from eyas.mavlink.readings import Instant
 
 __all__ = ["DEVICE", "Gimbal"]
@@ -147,14 +147,15 @@ class Gimbal:
         return Result.ACCEPTED
 
     def _look_at(self, command: Command) -> Result:
-        """Keep looking at a place on the earth."""
+        """Keep looking at a place on the earth, whose altitude is above the sea in any frame: as PX4
+        takes it, and as MAVSDK means it, which names another frame.
+        """
         if not self._in_control(command.sender):
             return Result.DENIED
         latitude, longitude, altitude = command.p[4:7]
-        if not all(math.isfinite(part) for part in (latitude, longitude, altitude)):
+        if not on_earth(latitude, longitude, altitude):
             return Result.DENIED
-        relative = command.frame in (3, 6)
-        self._look = self._now().place_of(latitude, longitude, altitude, relative=relative)
+        self._look = self._now().place_of(latitude, longitude, altitude, relative=False)
         self._rates = (0.0, 0.0)
         return Result.ACCEPTED
 

@@ -1,6 +1,7 @@
 """Lets a fleet fly by the clock, or in lock-step with those who fly it."""
 
 import logging
+import math
 import select
 import time
 from collections.abc import Sequence
@@ -15,7 +16,7 @@ _LOG = logging.getLogger("eyas")
 _LATEST = 0.1
 """By how much a fleet may be behind [s]; a slower machine flies slower."""
 _BEAT = 1.0
-"""Between heartbeats while time stands still [s]."""
+"""Between heartbeats while time stands still, or is slow [s]."""
 _PATIENCE = 10.0
 """How long time stands still for one who is silent [s]."""
 _REPORT = 5.0
@@ -41,8 +42,9 @@ def fly(fleet: Fleet, endpoints: Sequence[Endpoint], *, lockstep: bool) -> None:
             if not fleet.waits:
                 fleet.step()
             continue
-        while pace.due():
-            fleet.step()
+        due = pace.due()
+        for left in reversed(range(due)):
+            fleet.step(look=left == 0)
 
 
 def _hear(fleet: Fleet, endpoints: Sequence[Endpoint], wait: float) -> bool:
@@ -71,23 +73,27 @@ class _Pace:
         """Return the time until the next step [s]."""
         return max(self._next - time.monotonic(), 0.0)
 
-    def due(self) -> bool:
-        """Return whether a step is due, and count it."""
-        now = time.monotonic()
-        if now < self._next:
-            return False
+    def due(self) -> int:
+        """Return how many steps are due, and count them: a slow machine draws fewer pictures first,
+        then flies slower.
+        """
+        now, period = time.monotonic(), self._fleet.period
         behind = now - self._next - _LATEST
         if behind > 0.0:
             self._next += behind
             self._lose(behind, now)
-        self._next += self._fleet.period
-        return True
+        count = max(math.floor((now - self._next) / period) + 1, 0)
+        self._next += count * period
+        return count
 
     def _lose(self, seconds: float, now: float) -> None:
         """Report a machine that is too slow, once."""
         if now - self._since > _REPORT:
             self._since, self._lost = now, 0.0
         self._lost += seconds
+        if now - self._beaten > _BEAT:
+            self._beaten = now
+            self._fleet.beat()
         if self._lost > 0.2 * _REPORT and not self._told:
             self._told = True
             _LOG.warning(

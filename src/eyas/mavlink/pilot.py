@@ -193,19 +193,18 @@ class Pilot:
 
     def _reached(self, body: Body) -> bool:
         goal = self._goal.position
-        away = math.inf if goal is None else math.dist(goal, body.commanded)
-        return away < _NEAR
+        return goal is not None and _apart(goal, body.commanded) < _NEAR
 
     def _begin_return(self, body: Body) -> None:
         """Climb first, unless home is near."""
         x, y, z = body.commanded
-        near = math.dist((x, y), self.home[:2]) < 10.0
+        near = _apart((x, y, 0.0), (*self.home[:2], 0.0)) < 10.0
         high = self.home[2] + self.parameters["RTL_RETURN_ALT"]
         self._goal = Goal(position=(x, y, z if near else max(z, high)))
 
     def _next_of_return(self, body: Body) -> Goal:
         x, y, _ = body.commanded
-        if math.dist((x, y), self.home[:2]) < 2.0 * _NEAR:
+        if _apart((x, y, 0.0), (*self.home[:2], 0.0)) < 2.0 * _NEAR:
             self.mode, self._goal = Mode.LAND, Goal()
         else:
             self._goal = Goal(position=(self.home[0], self.home[1], body.commanded[2]))
@@ -274,3 +273,8 @@ class Pilot:
         if self.armed and done and 0.0 < self.parameters[patience] < self._stood:
             self.disarm()
         return self.landed is not Landed.GROUND
+
+
+def _apart(a: Vector, b: Vector) -> float:
+    """Return the distance of two places [m]."""
+    return exact.length([first - second for first, second in zip(a, b, strict=True)])
