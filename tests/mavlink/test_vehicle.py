@@ -297,3 +297,23 @@ def test_numbers_that_are_none_change_nothing(bench):
             assert bench.command(command, *params) is not None
     bench.fly(0.5)
     assert np.isfinite(bench.simulation.snapshot.trackers.position).all()
+
+
+def test_messages_of_all_kinds_with_any_content_change_nothing(bench):
+    from pymavlink.dialects.v20 import common
+
+    rng = random.Random(5)
+    for kind in sorted(common.mavlink_map) * 3:
+        body = rng.randbytes(common.mavlink_map[kind].unpacker.size)
+        head = bytes((0xFD, len(body), 0, 0, 0, 255, 190)) + kind.to_bytes(3, "little")
+        crc = common.x25crc(head[1:] + body)
+        crc.accumulate(bytes((common.mavlink_map[kind].crc_extra,)))
+        for message in common.MAVLink(None).parse_buffer(head + body + crc.crc.to_bytes(2, "little")):
+            if hasattr(message, "target_system"):
+                message.target_system, message.target_component = 1, rng.choice((0, 1, 100, 154))
+            if hasattr(message, "command"):
+                message.command = rng.choice(sorted(common.enums["MAV_CMD"]))
+            bench.fleet.take([message])
+    bench.fly(0.5)
+    assert np.isfinite(bench.simulation.snapshot.trackers.position).all()
+    assert bench.taken()

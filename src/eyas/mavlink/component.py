@@ -75,7 +75,7 @@ class Component:
         self._usual: dict[str, float] = {}
         self._intervals: dict[str, float] = {}
 
-    def send(self, message: str, **fields: Any) -> None:  # noqa: ANN401  # of any message
+    def send(self, message: str, /, **fields: Any) -> None:  # noqa: ANN401  # of any message
         """Send a message, such as `heartbeat`."""
         self._out(self._packer.pack(message, **fields))
 

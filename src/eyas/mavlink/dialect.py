@@ -33,7 +33,7 @@ class Packer:
         self._dialect = dialect()
         self._maker = self._dialect.MAVLink(None, system, component)
 
-    def pack(self, name: str, **fields: Any) -> bytes:  # noqa: ANN401  # numbers, texts and lists
+    def pack(self, name: str, /, **fields: Any) -> bytes:  # noqa: ANN401  # numbers, texts and lists
         """Return the packet of a message, such as `heartbeat`, with these fields."""
         message = getattr(self._dialect, f"MAVLink_{name}_message")(**fields)
         packet: bytes = message.pack(self._maker)
