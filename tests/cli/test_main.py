@@ -50,7 +50,7 @@ def run(monkeypatch, capsys, *arguments):
             "world.weather: 'snow' is not allowed on the map 'simpleway-clinker'",
         ),
         (["serve", "--root", "nowhere"], "nowhere: no such folder; give the one that holds "),
-        (["serve"], "Missing option '--root'"),
+        (["serve"], "either --root or --mavlink must be given"),
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
         (["video", "--seed", "x"], "Invalid value for '--seed'"),
         (["video", "--foo"], "No such option: --foo"),

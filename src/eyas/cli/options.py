@@ -10,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.settings.preset import DAT_MODES, TRAININGS, WORLDS
 
 __all__ = [
+    "SEVERAL",
     "AsJson",
     "ConfigFile",
     "MapName",

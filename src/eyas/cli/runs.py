@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from eyas.cli.options import (
+    SEVERAL,
     ConfigFile,
     MapName,
     Overrides,
@@ -186,13 +187,22 @@ def _default_folder(*, resume: bool) -> Path:
 
 def serve(  # noqa: PLR0913  # one parameter for each option
     root: Annotated[
-        Path,
+        Path | None,
         typer.Option(
             "--root",
             help="Folder of the DAT benchmark, with Webots_Simulation and Alg_Base, or an empty "
             "one. Its env_config.json is used unless --config or --preset is given.",
         ),
-    ],
+    ] = None,
+    mavlink: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--mavlink",
+            metavar="ADDRESS",
+            help="Fly vehicles that speak MAVLink instead: udp:HOST:PORT to send to, "
+            f"udpin:HOST:PORT to listen on; {SEVERAL}.",
+        ),
+    ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -202,6 +212,12 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     trust: Trust = False,
 ) -> None:
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
+    overrides = gathered(set_, map_name, weather, seed)
+    if (root is None) == (not mavlink):
+        raise ConfigError("either --root or --mavlink must be given")
+    if root is None:
+        _fly(mavlink or [], chosen_file(config, preset), overrides, trust=trust)
+        return
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
     from eyas.settings.legacy.adapter import LIKE_THE_ORIGINAL
@@ -211,7 +227,6 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     if file is None and (root / SETTINGS_FILE).exists():
         file = root / SETTINGS_FILE
     # The first start writes a file, which cannot tell all, and serves what the next will read.
-    overrides = gathered(set_, map_name, weather, seed)
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if settings.original is not None and settings.mode is not Mode.TRAIN:
@@ -220,3 +235,11 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     from eyas.modes.serve.run import run  # after all checks
 
     run(settings, root, load if file == root / SETTINGS_FILE else None)
+
+
+def _fly(addresses: list[str], file: Path | None, overrides: list[str], *, trust: bool) -> None:
+    """Fly vehicles that speak MAVLink, until Ctrl-C."""
+    from eyas.modes.serve.mavlink import AS_FLOWN, run
+    from eyas.settings.file import load_settings
+
+    run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), addresses)

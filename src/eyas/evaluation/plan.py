@@ -119,7 +119,7 @@ class EvaluationPlan(Config):
         return shlex.join(words)
 
 
-_NOT_FLOWN = ("exports", "learning", "modes/video", "overlay", "wire")
+_NOT_FLOWN = ("exports", "learning", "mavlink", "modes/video", "overlay", "wire")
 """Rooms that have no part in an evaluation."""
 
 

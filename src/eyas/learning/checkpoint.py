@@ -20,7 +20,7 @@ __all__ = ["RunFolder", "TrainingProgress", "readable"]
 
 Row = dict[str, float]
 
-_NOT_LEARNED = ("exports", "modes/video", "overlay", "wire")
+_NOT_LEARNED = ("exports", "mavlink", "modes/video", "overlay", "wire")
 """Rooms that have no part in a training run."""
 
 

@@ -10,6 +10,7 @@ from eyas.core.config import updated
 from eyas.core.errors import ConfigError
 from eyas.envs.config import EnvConfig
 from eyas.learning.config import TrainConfig
+from eyas.mavlink.config import MavlinkConfig
 from eyas.modes.video.config import VideoConfig
 from eyas.sim.config import SimConfig
 from eyas.wire.config import WireConfig
@@ -45,6 +46,7 @@ class EyasConfig(SimConfig):
     video: VideoConfig = VideoConfig()
     train: TrainConfig = TrainConfig()
     wire: WireConfig = WireConfig()
+    mavlink: MavlinkConfig = MavlinkConfig()
     original: dict[str, Value] | None = None
     """Values of the original's `env_config.json` that no other setting holds, such as those whose
     switch is off: they are written back with it. None if the settings do not come from such a

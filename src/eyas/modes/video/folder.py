@@ -39,7 +39,7 @@ installed."""
 STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
 """Names of the logs in the folder of a recording, outside of the trackers' folders."""
 
-_NOT_PICTURED = ("learning", "wire")
+_NOT_PICTURED = ("learning", "mavlink", "wire")
 """Rooms that have no part in a recording."""
 
 _OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)

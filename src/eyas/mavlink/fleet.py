@@ -1,0 +1,206 @@
+"""All vehicles in one world: their steps, their packets and their pictures."""
+
+import logging
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from eyas.core.clock import PHYSICS_RATE, physics_steps
+from eyas.mavlink.camera import Lens
+from eyas.mavlink.config import MavlinkConfig
+from eyas.mavlink.endpoint import parsed_address
+from eyas.mavlink.frames import Geodesy
+from eyas.mavlink.modes import Mode
+from eyas.mavlink.places import standing_places
+from eyas.mavlink.readings import Readings
+from eyas.mavlink.targets import Sights, seen_in
+from eyas.mavlink.vehicle import Vehicle
+from eyas.mavlink.video import Stream, VideoSender
+from eyas.sim.simulation import Simulation
+from eyas.state.draw import Picture
+
+__all__ = ["Fleet"]
+
+_LOG = logging.getLogger("eyas")
+
+_DATAGRAM = 1200
+"""Packets are gathered up to this size [bytes]."""
+
+
+class Fleet:
+    """Vehicles that fly in real time, or step by step.
+
+    Attributes:
+        period: Length of a step: that of a command [s].
+        vehicles: By number.
+        now: Time since the start [s].
+
+    Args:
+        simulation: Trackers in one world, not yet reset.
+        config: Its settings.
+        out: Takes datagrams.
+
+    Raises:
+        EyasError: Something of the settings is not possible.
+    """
+
+    def __init__(
+        self, simulation: Simulation, config: MavlinkConfig, out: Callable[[bytes], None]
+    ) -> None:
+        self._simulation, self._config, self._out = simulation, config, out
+        self._steps = physics_steps(simulation.config.control.frequency)
+        self.period = self._steps / PHYSICS_RATE
+        self.now, self._taken = 0.0, 0
+        self._gathered: list[bytes] = []
+        geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
+        self._readings, self._sights = Readings(simulation, geodesy), Sights(simulation)
+        count = simulation.count
+        self._commands, self._angles = np.zeros((count, 4)), np.zeros((count, 2))
+        self._senders = self._video()
+        self._pitch = np.full(count, 0.5)
+        simulation.reset()
+        self._fields = simulation.snapshot.cameras.field_of_view.copy()
+        places = standing_places(simulation)
+        simulation.start_at(np.arange(count), places, self._pitch)
+        self.vehicles = [self._vehicle(at, tuple(places[at, :3])) for at in range(count)]
+        # Not all at once, so that no step takes long.
+        spread = np.arange(count) / (count * config.picture_rate)
+        self._picture_due = spread.tolist()
+        camera = simulation.config.camera
+        self._picture = Picture.create(1, camera.height, camera.width, subject=True)
+        self._set_points = [0] * count
+        self._crashed = np.zeros(count, np.bool_)
+
+    def _video(self) -> list[VideoSender]:
+        config, camera = self._config, self._simulation.config.camera
+        if not config.video:
+            return []
+        host, port = parsed_address(config.video, "mavlink.video")
+        how = camera.height, camera.width, config.picture_rate, config.video_quality
+        return [
+            VideoSender(Stream((host, port + 2 * at), *how), at + 1)
+            for at in range(self._simulation.count)
+        ]
+
+    def _vehicle(self, at: int, home: Any) -> Vehicle:  # noqa: ANN401  # three numbers
+        config, camera = self._config, self._simulation.config.camera
+        port = parsed_address(config.video, "mavlink.video")[1] + 2 * at if config.video else 0
+        field = float(self._fields[at])
+        lens = Lens(camera.width, camera.height, field, config.picture_rate, port)
+        system = config.first_system + at
+        return Vehicle(at, system, self._readings, self._sights, home, lens, self._gather)
+
+    def close(self) -> None:
+        """End the threads of the video."""
+        for sender in self._senders:
+            sender.close()
+
+    def take(self, messages: Iterable[Any]) -> None:
+        """Give messages to those they are for, and send the answers."""
+        own = {vehicle.system for vehicle in self.vehicles}
+        for message in messages:
+            if message.get_srcSystem() in own:  # an echo, or another vehicle of the same number
+                continue
+            for vehicle in self.vehicles:
+                vehicle.take(message)
+        self._flush()
+
+    @property
+    def waits(self) -> bool:
+        """Whether a vehicle in offboard mode has got no set point since the last step."""
+        return any(
+            vehicle.pilot.mode is Mode.OFFBOARD and vehicle.pilot.set_points == before
+            for vehicle, before in zip(self.vehicles, self._set_points, strict=True)
+        )
+
+    @property
+    def offboard(self) -> bool:
+        """Whether any vehicle is in offboard mode."""
+        return any(vehicle.pilot.mode is Mode.OFFBOARD for vehicle in self.vehicles)
+
+    def step(self, *, look: bool = True) -> None:
+        """Fly for a period, and send what is due; pictures, too, if `look`."""
+        for at, vehicle in enumerate(self.vehicles):
+            self._set_points[at] = vehicle.pilot.set_points
+            forward, left, up, turn = vehicle.command(self.now, self.period)
+            self._commands[at] = forward, left, up / PHYSICS_RATE, turn
+            self._angles[at] = vehicle.aim(self.period)
+        self._zoom()
+        simulation = self._simulation
+        if simulation.steps_left < self._steps:
+            self._begin_traffic_anew()
+        simulation.command_gimbal(self._angles)
+        simulation.advance(self._commands, self._steps)
+        self._taken += 1
+        self.now = self._taken * self._steps / PHYSICS_RATE
+        self._readings.renew()
+        self._tell_crashes()
+        for vehicle in self.vehicles:
+            vehicle.tell(self.now)
+            self._flush()
+        if look:
+            self._look()
+
+    def beat(self) -> None:
+        """Send heartbeats while time stands still."""
+        for vehicle in self.vehicles:
+            vehicle.beat()
+        self._flush()
+
+    def hold(self, why: str) -> None:
+        """Let all in offboard mode hold."""
+        for vehicle in self.vehicles:
+            if vehicle.pilot.mode is Mode.OFFBOARD:
+                vehicle.pilot.hold(why)
+
+    def _zoom(self) -> None:
+        fields = np.array([vehicle.camera.field_of_view for vehicle in self.vehicles])
+        if (fields != self._fields).any():
+            self._fields = fields
+            self._simulation.set_fields_of_view(fields)
+
+    def _tell_crashes(self) -> None:
+        crashed = self._simulation.snapshot.episodes.crash
+        for at in np.flatnonzero(crashed & ~self._crashed).tolist():
+            self.vehicles[at].pilot.said.append((2, "Crashed"))
+        self._crashed = crashed.copy()
+
+    def _begin_traffic_anew(self) -> None:
+        """Begin the traffic anew; vehicles stay where they are, at rest."""
+        _LOG.info("the traffic has reached its end, and begins anew")
+        simulation, state = self._simulation, self._simulation.snapshot
+        poses = np.column_stack([state.trackers.commanded_position, state.trackers.commanded_yaw])
+        actors = state.targets.actor.tolist()
+        simulation.rewind()
+        simulation.reset()
+        simulation.start_at(np.arange(simulation.count), poses, self._pitch)
+        simulation.set_fields_of_view(self._fields)
+        for tracker, actor in enumerate(actors):
+            simulation.follow(tracker, actor)
+
+    def _look(self) -> None:
+        """Draw the pictures that are due, and let cameras see their targets in them."""
+        for at, vehicle in enumerate(self.vehicles):
+            if self.now < self._picture_due[at]:
+                continue
+            later = self._picture_due[at] + 1.0 / self._config.picture_rate
+            self._picture_due[at] = max(later, self.now)
+            if self._senders:
+                one = np.array([at], np.int32)
+                self._simulation.view.draw(one, self._picture)
+                assert self._picture.rgb is not None
+                self._senders[at].send(self._picture.rgb[0], self.now)
+                vehicle.see(seen_in(self._picture, 0))
+            elif vehicle.camera.tracks:
+                vehicle.see(self._sights.seen(at))
+
+    def _gather(self, packet: bytes) -> None:
+        if sum(map(len, self._gathered)) + len(packet) > _DATAGRAM:
+            self._flush()
+        self._gathered.append(packet)
+
+    def _flush(self) -> None:
+        if self._gathered:
+            self._out(b"".join(self._gathered))
+            self._gathered.clear()

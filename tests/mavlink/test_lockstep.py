@@ -1,0 +1,129 @@
+"""Time that stands still until a set point has come."""
+
+import socket
+import threading
+import time
+
+import numpy as np
+import pytest
+from pymavlink.dialects.v20 import common
+
+from eyas.core.errors import ConfigError, OutputError
+from eyas.mavlink.endpoint import Endpoint
+from eyas.mavlink.loop import fly
+from eyas.mavlink.modes import Mode
+
+
+class Stop(Exception):
+    pass
+
+
+def packet(kind, **fields):
+    message = getattr(common, f"MAVLink_{kind}_message")(**fields)
+    return message.pack(common.MAVLink(None, 255, 190))
+
+
+def velocity(north):
+    return packet(
+        "set_position_target_local_ned", time_boot_ms=0, target_system=1, target_component=1,
+        coordinate_frame=1, type_mask=0b0101_1100_0111, x=0, y=0, z=0, vx=north, vy=0, vz=0,
+        afx=0, afy=0, afz=0, yaw=0, yaw_rate=0,
+    )  # fmt: skip
+
+
+def test_each_set_point_is_one_step(make_bench):
+    bench = make_bench()
+    bench.fly_up()
+    bench.velocity(1, 0, 0)
+    bench.command("DO_SET_MODE", 1, 6, 0)
+    bench.fleet.step()
+    endpoint = Endpoint("udpin:127.0.0.1:0".replace(":0", f":{free_port()}"))
+    steps, begun = [], bench.fleet.now
+    step = bench.fleet.step
+
+    def counted(**words):
+        steps.append(bench.fleet.now)
+        step(**words)
+        if len(steps) == 20:
+            raise Stop
+
+    bench.fleet.step = counted
+    bench.fleet._out = endpoint.send
+
+    def client():
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            out.connect(endpoint.socket.getsockname())
+            out.settimeout(30.0)
+            time.sleep(0.3)
+            assert not steps  # time stands still
+            for _ in range(20):
+                before = len(steps)
+                out.send(velocity(2.0))
+                while len(steps) == before:
+                    out.recv(65_535)
+
+    flies = threading.Thread(target=client)
+    flies.start()
+    with pytest.raises(Stop):
+        fly(bench.fleet, [endpoint], lockstep=True)
+    flies.join()
+    endpoint.close()
+    assert bench.fleet.now - begun == pytest.approx(0.2)
+    assert bench.pilot.mode is Mode.OFFBOARD
+
+
+def test_the_same_set_points_give_the_same_flight(make_bench):
+    ends = []
+    for _ in range(2):
+        bench = make_bench()
+        bench.fly_up()
+        for at in range(60):
+            bench.velocity(2.0, 0.1 * at, 0)
+            bench.command("DO_SET_MODE", 1, 6, 0)
+            bench.fleet.step()
+        state = bench.simulation.snapshot.trackers
+        ends.append(np.concatenate([state.position[0], state.orientation[0]]))
+    assert (ends[0] == ends[1]).all()
+
+
+def test_several_vehicles_are_flown_by_their_system_ids(make_bench):
+    bench = make_bench(vehicles=3, mavlink={"vehicles": 3, "first_system": 7})
+    assert [bench.command("COMPONENT_ARM_DISARM", 1, system=at) for at in (7, 8, 9, 10)] == [
+        *(0, 0, 0),
+        None,
+    ]
+    assert bench.command("NAV_TAKEOFF", system=8) == 0
+    bench.fly(4.0)
+    height = bench.simulation.snapshot.trackers.position[:, 2]
+    assert height[1] > 2.0 > 0.5 > max(height[0], height[2])
+    assert {m.get_srcSystem() for m in bench.taken()} == {7, 8, 9}
+
+
+def test_when_the_traffic_ends_vehicles_stay_where_they_are(bench):
+    bench.fly_up()
+    before = bench.simulation.snapshot.trackers.position.copy()
+    ticks = bench.simulation.snapshot.episodes.tick
+    ticks += bench.simulation.steps_left - 10
+    bench.fly(0.5)
+    after = bench.simulation.snapshot.trackers.position
+    np.testing.assert_allclose(after, before, atol=0.05)
+    assert ticks[0] < 5000
+
+
+@pytest.mark.parametrize("text", ["tcp:127.0.0.1:1", "udp:127.0.0.1", "14540", "udp:no.host.:1"])
+def test_addresses_that_are_none_are_told(text):
+    with pytest.raises(ConfigError, match="--mavlink"):
+        Endpoint(text)
+
+
+def test_a_port_that_is_taken_is_told():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        with pytest.raises(OutputError, match="cannot listen"):
+            Endpoint(f"udpin:127.0.0.1:{other.getsockname()[1]}")
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as some:
+        some.bind(("127.0.0.1", 0))
+        return some.getsockname()[1]
