@@ -155,35 +155,33 @@ def check_plan(
 
 
 @app.command("export")
-def export_map(
+def export_map(  # noqa: PLR0913  # each option is a parameter
     name: Name,
-    gltf: Annotated[
-        Path | None, typer.Option("--gltf", help="Write this .glb file: shapes and textures.")
-    ] = None,
-    geojson: Annotated[
+    kind: Annotated[
+        str, typer.Option("--format", help="gltf, opendrive, sumo or geojson.", show_default=False)
+    ],
+    out: Annotated[
         Path | None,
-        typer.Option("--geojson", help="Write streets, buildings and rasters into this folder."),
+        typer.Option("--out", help="File or folder to write; by default NAME with an ending."),
     ] = None,
     seed: Seed = 0,
     detail: Annotated[
-        int, typer.Option("--detail", min=0, max=9, help="Trees in the .glb: 0 is the finest.")
+        int, typer.Option("--detail", min=0, max=9, help="gltf: trees; 0 is the finest.")
     ] = 1,
+    lamps: Annotated[bool, typer.Option(help="gltf: street lamps are lights.")] = True,
     cell: Annotated[
-        float, typer.Option("--cell", min=0.1, max=100.0, help="Side of a raster cell in metres.")
+        float,
+        typer.Option(
+            "--cell", min=0.1, max=100.0, help="geojson: side of a raster cell in metres."
+        ),
     ] = 0.5,
 ) -> None:
-    """Write a map for other programs."""
-    if gltf is None and geojson is None:
-        raise ConfigError("maps export: name --gltf FILE, --geojson FOLDER or both")
-    if gltf is not None:
-        from eyas.modes.maps.gltf import run as write_gltf
+    """Write a map for other programs: shapes, roads, or a plan."""
+    from eyas.modes.maps.export import ExportOptions, export, format_named
 
-        typer.echo(f"{gltf}: {write_gltf(name, seed, gltf, detail)} triangles")
-    if geojson is not None:
-        from eyas.modes.maps.plan_files import write_layers
-
-        for path in write_layers(name, seed, geojson, cell):
-            typer.echo(path)
+    options = ExportOptions(name, seed, detail, lamps, cell)
+    for line in export(format_named(kind), out, options):
+        typer.echo(line)
 
 
 def _bounds(text: str | None) -> tuple[float, float, float, float] | None:

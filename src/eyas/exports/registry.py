@@ -32,6 +32,8 @@ WRITERS: Registry[type[Any]] = Registry(
         "sensors": "eyas.exports.table:SensorWriter",
         "lidar": "eyas.exports.table:LidarWriter",
         "events": "eyas.exports.events:EventWriter",
+        "rosbag": "eyas.exports.ros.bag:RosbagWriter",
+        "rosbag-mcap": "eyas.exports.ros.bag:RosbagMcapWriter",
     },
     group="eyas.writers",
 )

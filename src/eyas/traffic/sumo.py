@@ -17,10 +17,10 @@ from eyas.traffic.cover import Cover
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
 from eyas.traffic.drivers import Manoeuvres
 from eyas.traffic.entrance import ActorSlots, Entrance
-from eyas.traffic.fleet import Fleet, vehicle_types
+from eyas.traffic.fleet import Departure, Fleet, vehicle_types
 from eyas.traffic.sumo_install import import_libsumo
 
-__all__ = ["RATE", "Drive", "SumoRun", "drive", "no_room", "options"]
+__all__ = ["RATE", "Drive", "SumoRun", "departures_and_types", "drive", "no_room", "options"]
 
 RATE = 10
 """SUMO's steps and Eyas's samples per second [Hz], as in the original."""
@@ -122,6 +122,22 @@ def drive(
             if progress and step % RATE == 0:
                 progress(step / steps)
     return result
+
+
+def departures_and_types(
+    network: bytes, config: TrafficConfig, fleet: Fleet
+) -> tuple[str, list[Departure]]:
+    """Return the classes of vehicles as SUMO's files tell them, and all vehicles, the earliest
+    first; arguments as of `SumoRun`.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: SUMO already runs another simulation in this process, or the roads are too few.
+    """
+    classes = tuple(dict.fromkeys(vehicle_types(config)))
+    with _simulation(network, config, classes) as sumo:
+        links = {name: _read_links(sumo, name) for name in classes}
+        return "".join(_type_xml(name, config) for name in classes), list(fleet(links))
 
 
 def no_room(present: NDArray[np.bool_]) -> ConfigError:

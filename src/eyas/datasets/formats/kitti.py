@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.frames import wrap_angle
-from eyas.datasets.boxes import box_of, camera_pose
 from eyas.datasets.format import Exported, Format, Job, SeenObject, by_split, lines, objects_of
 from eyas.datasets.recording import RecordedEpisode
+from eyas.exports.boxes import box_of, camera_pose
 from eyas.exports.label import Label
 from eyas.lanes import interpreted
 from eyas.state.scene import ObjectClass

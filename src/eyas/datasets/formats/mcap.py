@@ -11,9 +11,9 @@ from typing import Any
 
 from eyas.core.errors import MissingExtraError
 from eyas.core.files import atomic_path, refusals
-from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import Format, Job, SeenObject, objects_of, split_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
+from eyas.exports.boxes import box_of, camera_pose, quaternion_of
 from eyas.exports.label import label_schema
 
 __all__ = ["Mcap"]

@@ -19,7 +19,6 @@ from PIL import Image
 from eyas.core import exact
 from eyas.core.files import atomic_path
 from eyas.core.frames import rotate_back
-from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import (
     Exported,
     Format,
@@ -31,6 +30,7 @@ from eyas.datasets.format import (
     picture_ending,
 )
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
+from eyas.exports.boxes import box_of, camera_pose, quaternion_of
 from eyas.exports.label import Label
 from eyas.lanes import interpreted
 from eyas.state.scene import ObjectClass

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from eyas.core.errors import MissingExtraError
-from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import Format, Job, objects_of, split_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
+from eyas.exports.boxes import box_of, camera_pose, quaternion_of
 
 __all__ = ["Rerun"]
 

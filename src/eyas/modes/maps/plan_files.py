@@ -20,9 +20,8 @@ from eyas.sim.scenes import load_network, load_scene
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.maps import MAPS
-from eyas.world.maps.files import MAP_FILE, origin_of
+from eyas.world.maps.place import projection_of
 from eyas.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
-from eyas.world.osm.projection import Projection
 from eyas.world.plan.file import write_plan
 from eyas.world.plan.plan import Roads
 
@@ -122,14 +121,12 @@ def _collection(
 ) -> dict[str, Any]:
     """Return GeoJSON: in degrees where the map lies somewhere, otherwise in its own metres."""
     shapes = [shape for shape, _ in rows]
-    imported = recipe.home is not None and (recipe.home / MAP_FILE).is_file()
-    if imported and recipe.home is not None:
-        origin = origin_of(recipe.home)
-        projection = Projection(origin.longitude, origin.latitude)
+    projection = projection_of(recipe)
+    if projection is not None:
         shapes = [shapely.transform(shape, projection.degrees) for shape in shapes]
     told: dict[str, Any] = {
         "type": "FeatureCollection",
-        "coordinates": "WGS 84" if imported else "metres east and north of the map's middle",
+        "coordinates": "WGS 84" if projection else "metres east and north of the map's middle",
     }
     if recipe.attribution():
         told["attribution"] = recipe.attribution().splitlines()[0]

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from eyas.exports.label import Label
 
@@ -23,8 +23,8 @@ class Box3D(NamedTuple):
     """Box to world; columns forward, left, up, shape (3, 3)."""
 
 
-def box_of(corners: list[list[float]]) -> Box3D:
-    """Return the box of the corners of a label: four on the ground, counter-clockwise from the
+def box_of(corners: ArrayLike) -> Box3D:
+    """Return the box of eight corners, as in labels: four on the ground, counter-clockwise from the
     right of the tail, and those above them. One that is sheared (a person on a slope) is made
     rectangular.
     """

@@ -1,0 +1,1 @@
+"""Recordings as bags of ROS 2, without ROS; docs/ros.md."""

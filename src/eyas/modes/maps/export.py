@@ -1,0 +1,92 @@
+"""A map for other programs: the formats of `eyas maps export`."""
+
+from collections.abc import Iterator
+from enum import StrEnum
+from pathlib import Path
+from typing import NamedTuple
+
+from eyas.core.errors import UnknownNameError
+from eyas.world.maps import MAPS
+
+__all__ = ["ExportOptions", "MapFormat", "export", "format_named"]
+
+
+class MapFormat(StrEnum):
+    """The formats."""
+
+    GLTF = "gltf"
+    """Shapes, textures and lamps as one binary glTF file."""
+    OPENDRIVE = "opendrive"
+    """Roads and traffic lights as OpenDRIVE."""
+    SUMO = "sumo"
+    """A folder: roads and traffic for SUMO."""
+    GEOJSON = "geojson"
+    """A folder: streets, buildings and rasters."""
+
+
+_ENDINGS = {
+    MapFormat.GLTF: ".glb",
+    MapFormat.OPENDRIVE: ".xodr",
+    MapFormat.SUMO: "-sumo",
+    MapFormat.GEOJSON: "-geojson",
+}
+
+
+class ExportOptions(NamedTuple):
+    """What is exported, and how fine."""
+
+    name: str
+    """Name of the map."""
+    seed: int = 0
+    """Seed of the map."""
+    detail: int = 1
+    """Level of detail of trees and furniture; 0 is the finest."""
+    lamps: bool = True
+    """Whether street lamps are lights."""
+    cell: float = 0.5
+    """Side of a raster cell [m]."""
+
+
+def format_named(name: str) -> MapFormat:
+    """Return a format by its name.
+
+    Raises:
+        UnknownNameError: There is no such format.
+    """
+    if name not in list(MapFormat):
+        raise UnknownNameError("--format", name, list(MapFormat))
+    return MapFormat(name)
+
+
+def export(kind: MapFormat, out: Path | None, options: ExportOptions) -> Iterator[str]:
+    """Write a map in a format; yield what was written, a line each.
+
+    Args:
+        kind: The format.
+        out: The file or folder; None: one in the present folder that is named after the map.
+        options: What is exported.
+
+    Raises:
+        EyasError: The map cannot be built, an extra is missing, or a file cannot be written.
+    """
+    path = out or Path(f"{MAPS.get(options.name).name}{_ENDINGS[kind]}")
+    name, seed = options.name, options.seed
+    # Each format loads its own libraries.
+    if kind is MapFormat.GLTF:
+        from eyas.modes.maps.gltf import run as write_gltf
+
+        triangles = write_gltf(name, seed, path, options.detail, lamps=options.lamps)
+        yield f"{path}: {triangles} triangles"
+    elif kind is MapFormat.OPENDRIVE:
+        from eyas.modes.maps.roads import write_opendrive
+
+        write_opendrive(name, seed, path)
+        yield str(path)
+    elif kind is MapFormat.SUMO:
+        from eyas.modes.maps.roads import write_sumo
+
+        yield from map(str, write_sumo(name, seed, path))
+    else:
+        from eyas.modes.maps.plan_files import write_layers
+
+        yield from map(str, write_layers(name, seed, path, options.cell))
