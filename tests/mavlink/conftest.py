@@ -93,10 +93,10 @@ class Bench:
 
     def fly_up(self, height=5.0):
         """Arm, take off, and hold."""
-        self.pilot.parameters.values["MIS_TAKEOFF_ALT"] = height
+        self.pilot.parameters.values |= {"MIS_TAKEOFF_ALT": height, "MPC_TKO_SPEED": 4.0}
         assert self.command("COMPONENT_ARM_DISARM", 1) == 0
         assert self.command("NAV_TAKEOFF") == 0
-        self.fly(height / 1.5 + 3.0)
+        self.fly(height / 4.0 + 3.0)
 
     def stay_over_target(self, height=25.0):
         """Put the vehicle over its target, whose camera looks down."""

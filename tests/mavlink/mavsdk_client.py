@@ -1,6 +1,6 @@
 """A program that flies by MAVSDK, which knows nothing of Eyas: prints what it sees, as JSON.
 
-    python mavsdk_client.py PORT flight|lost
+python mavsdk_client.py PORT flight|lost
 """
 
 import json
@@ -64,9 +64,7 @@ class Client:
         until(lambda: gimbal.gimbal_list().gimbals)
         (found,) = gimbal.gimbal_list().gimbals
         gimbal.take_control(found.gimbal_id, ControlMode.PRIMARY)
-        gimbal.set_angles(
-            found.gimbal_id, 0.0, -35.0, 20.0, GimbalMode.YAW_FOLLOW, SendMode.ONCE
-        )
+        gimbal.set_angles(found.gimbal_id, 0.0, -35.0, 20.0, GimbalMode.YAW_FOLLOW, SendMode.ONCE)
 
         def angles():
             at = gimbal.get_attitude(found.gimbal_id).euler_angle_forward

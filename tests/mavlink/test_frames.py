@@ -38,9 +38,10 @@ def test_headings_are_clockwise_from_north(yaw, clockwise_from_north):
     assert math.degrees(compass(yaw)) == pytest.approx(clockwise_from_north)
     level = np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
     ahead = matrix(of_body(level))[:, 0]
-    assert math.degrees(math.atan2(ahead[1], ahead[0])) == pytest.approx(
-        clockwise_from_north
-    ) or clockwise_from_north == -180.0
+    assert (
+        math.degrees(math.atan2(ahead[1], ahead[0])) == pytest.approx(clockwise_from_north)
+        or clockwise_from_north == -180.0
+    )
 
 
 def test_nose_up_and_right_side_down_are_positive():

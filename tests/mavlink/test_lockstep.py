@@ -14,7 +14,7 @@ from eyas.mavlink.loop import fly
 from eyas.mavlink.modes import Mode
 
 
-class Stop(Exception):
+class StopError(Exception):
     pass
 
 
@@ -45,7 +45,7 @@ def test_each_set_point_is_one_step(make_bench):
         steps.append(bench.fleet.now)
         step(**words)
         if len(steps) == 20:
-            raise Stop
+            raise StopError
 
     bench.fleet.step = counted
     bench.fleet._out = endpoint.send
@@ -64,7 +64,7 @@ def test_each_set_point_is_one_step(make_bench):
 
     flies = threading.Thread(target=client)
     flies.start()
-    with pytest.raises(Stop):
+    with pytest.raises(StopError):
         fly(bench.fleet, [endpoint], lockstep=True)
     flies.join()
     endpoint.close()

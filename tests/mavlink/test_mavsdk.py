@@ -64,6 +64,7 @@ class Listener:
         raise AssertionError("no such message")
 
 
+@pytest.mark.slow
 def test_mavsdk_finds_it_flies_a_square_and_lands():
     port, other = free_port(), free_port()
     addresses = [f"udp:127.0.0.1:{one}" for one in (port, other)]
@@ -86,6 +87,7 @@ def test_mavsdk_finds_it_flies_a_square_and_lands():
     assert landed is not None
 
 
+@pytest.mark.slow
 def test_when_its_client_dies_it_holds_and_another_takes_over():
     port, other = free_port(), free_port()
     listener = Listener(other)
@@ -95,9 +97,7 @@ def test_when_its_client_dies_it_holds_and_another_takes_over():
             os.kill(client.pid, signal.SIGKILL)
         text = listener.until(lambda m: m.get_type() == "STATUSTEXT" and "lost" in m.text).text
         assert text == "Offboard set points lost: holding"
-        beat = listener.until(
-            lambda m: m.get_type() == "HEARTBEAT" and m.get_srcComponent() == 1
-        )
+        beat = listener.until(lambda m: m.get_type() == "HEARTBEAT" and m.get_srcComponent() == 1)
         assert beat.custom_mode == 4 << 16 | 3 << 24
         peer = listener.socket.recvfrom(65_535)[1]
         land = common.MAVLink_command_long_message(1, 1, 21, 0, *[0.0] * 7)

@@ -54,6 +54,15 @@ def test_it_takes_off_holds_returns_and_disarms(bench):
     assert place(bench) == pytest.approx([0.0, 0.0, 0.0], abs=0.1)
 
 
+def test_a_drone_that_follows_its_commands_exactly_can_be_flown_too(make_bench):
+    bench = make_bench(tracker={"supervised": True, "ground_contact": False})
+    bench.fly_up()
+    assert place(bench)[2] == pytest.approx(-5.0, abs=0.02)
+    assert bench.command("NAV_LAND") == ACCEPTED
+    bench.fly(10.0)
+    assert (bench.pilot.armed, bench.pilot.landed) == (False, Landed.GROUND)
+
+
 @pytest.mark.parametrize(
     ("frame", "sent", "north_east_down"),
     [(1, (2, 0, 0), (2, 0, 0)), (1, (0, 3, -1), (0, 3, -1)), (8, (2, 0, 0), (0, 2, 0)),
@@ -239,7 +248,9 @@ def test_it_tracks_what_is_shown_and_tells_where_it_is(bench):
     status, earth = (told[f"CAMERA_TRACKING_{what}_STATUS"] for what in ("IMAGE", "GEO"))
     assert (status.tracking_status, status.tracking_mode) == (1, 2)
     seen = bench.fleet._sights.seen(0)
-    assert (status.rec_top_x, status.rec_bottom_y) == pytest.approx((seen.left, seen.bottom), abs=0.15)
+    assert (status.rec_top_x, status.rec_bottom_y) == pytest.approx(
+        (seen.left, seen.bottom), abs=0.15
+    )
     assert earth.dist == pytest.approx(25.0, abs=4.0)
     assert bench.command("CAMERA_STOP_TRACKING", component=100) == ACCEPTED
     bench.fly(0.5)
@@ -265,8 +276,9 @@ def test_the_camera_zooms(bench):
 
 
 def test_garbage_changes_nothing(bench):
-    from eyas.mavlink.dialect import Parser
     from pymavlink.dialects.v20 import common
+
+    from eyas.mavlink.dialect import Parser
 
     rng, parser = random.Random(3), Parser()
     whole = common.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3).pack(common.MAVLink(None, 255, 190))
@@ -274,7 +286,12 @@ def test_garbage_changes_nothing(bench):
         damaged = bytearray(whole)
         damaged[rng.randrange(len(damaged))] ^= 1 << rng.randrange(8)
         noise = rng.randbytes(rng.randrange(300))
-        for datagram in (noise, bytes(damaged), b"\xfd" + noise, whole[: rng.randrange(len(whole))]):
+        for datagram in (
+            noise,
+            bytes(damaged),
+            b"\xfd" + noise,
+            whole[: rng.randrange(len(whole))],
+        ):
             bench.fleet.take(parser.messages(datagram))
     assert parser.messages(b"\xfd\xff" + noise + whole) is not None
     assert [m.get_type() for m in parser.messages(whole)] == ["HEARTBEAT"]
@@ -308,7 +325,9 @@ def test_messages_of_all_kinds_with_any_content_change_nothing(bench):
         head = bytes((0xFD, len(body), 0, 0, 0, 255, 190)) + kind.to_bytes(3, "little")
         crc = common.x25crc(head[1:] + body)
         crc.accumulate(bytes((common.mavlink_map[kind].crc_extra,)))
-        for message in common.MAVLink(None).parse_buffer(head + body + crc.crc.to_bytes(2, "little")):
+        for message in common.MAVLink(None).parse_buffer(
+            head + body + crc.crc.to_bytes(2, "little")
+        ):
             if hasattr(message, "target_system"):
                 message.target_system, message.target_component = 1, rng.choice((0, 1, 100, 154))
             if hasattr(message, "command"):

@@ -147,8 +147,10 @@ class Gimbal:
         return Result.ACCEPTED
 
     def _look_at(self, command: Command) -> Result:
-        """Keep looking at a place on the earth, whose altitude is above the sea in any frame: as PX4
-        takes it, and as MAVSDK means it, which names another frame.
+        """Keep looking at a place on the earth.
+
+        Its altitude is above the sea in any frame: so PX4 takes it, and so MAVSDK means it, which
+        names another frame.
         """
         if not self._in_control(command.sender):
             return Result.DENIED

@@ -110,6 +110,11 @@ class VideoSender:
         self._thread = Thread(target=self._run, name="eyas-video", daemon=True)
         self._thread.start()
 
+    @property
+    def waits(self) -> bool:
+        """Whether a picture waits to be encoded."""
+        return not self._waiting.empty()
+
     def send(self, rgb: NDArray[np.uint8], seconds: float) -> None:
         """Send a picture, shape (H, W, 3), of a time [s]; it is copied."""
         if not self._waiting.full():
