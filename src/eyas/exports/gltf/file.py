@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import struct
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,15 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.core import exact
 from eyas.state.mesh import Material, Mesh, Surface
 
-__all__ = ["LIGHTS", "PLAIN", "UPRIGHT", "GltfFile"]
+__all__ = ["LIGHTS", "PLAIN", "UPRIGHT", "GltfFile", "light_factors"]
 
 _FLOAT, _UINT = 5126, 5125
 _ARRAYS, _INDICES = 34962, 34963
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
-UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+UPRIGHT = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
 """glTF's y points up, ours is z: a quarter turn about x."""
 
 LIGHTS = "KHR_lights_punctual"
@@ -30,6 +32,11 @@ _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 """Roughness of what shines; everything else is matt."""
 
 Node = dict[str, Any]
+
+
+def light_factors(material: Material) -> list[float]:
+    """Return the tint of a material, a factor on sRGB colours, as factors on light."""
+    return [min(round(float(exact.power(each, 2.2)), 5), 1.0) for each in material.tint]
 
 
 @dataclass(slots=True)
@@ -128,8 +135,7 @@ class GltfFile:
         """Return the index of a material, added when it is first used."""
         if material not in self._of_material:
             holes = material.surface is Surface.FOLIAGE
-            # Tints are factors on sRGB colours, those of glTF on light.
-            factor = [min(round(channel**2.2, 5), 1.0) for channel in material.tint]
+            factor = light_factors(material)
             look: dict[str, Any] = {
                 "baseColorFactor": [*factor, 1.0],
                 "metallicFactor": 0.0,
