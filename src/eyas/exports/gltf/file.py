@@ -49,9 +49,14 @@ class GltfFile:
     """Rows from the top; sRGB and alpha."""
     notice: str = ""
     """Whose data it is."""
+    extras: dict[str, Any] = field(default_factory=dict)
+    """What else is told about the file."""
     lights: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)
     nodes: list[Node] = field(default_factory=list)
+    _cameras: list[dict[str, Any]] = field(default_factory=list)
+    _channels: list[dict[str, Any]] = field(default_factory=list)
+    _samplers: list[dict[str, Any]] = field(default_factory=list)
     _parts: list[bytes] = field(default_factory=list)
     _length: int = 0
     _views: list[dict[str, int]] = field(default_factory=list)
@@ -93,6 +98,35 @@ class GltfFile:
             )
         self.meshes.append({"name": name, "primitives": primitives})
         return len(self.meshes) - 1
+
+    def camera(self, perspective: dict[str, float]) -> int:
+        """Add a camera; return its index."""
+        self._cameras.append({"type": "perspective", "perspective": perspective})
+        return len(self._cameras) - 1
+
+    def keys(self, values: NDArray[np.float64], kind: str) -> int:
+        """Add values of an animation, shape (K, numbers of the kind); return their index."""
+        flat = np.ascontiguousarray(values, np.float32)
+        ends = {"min": flat.min(axis=0).tolist(), "max": flat.max(axis=0).tolist()}
+        accessor = {"bufferView": self._view(flat.tobytes()), "componentType": _FLOAT}
+        self._accessors.append({**accessor, "count": len(flat), "type": kind, **ends})
+        return len(self._accessors) - 1
+
+    def animate(
+        self, node: int, path: str, times: int, values: int, between: str = "LINEAR"
+    ) -> None:
+        """Let a property of a node take values at times.
+
+        Args:
+            node: The node.
+            path: The property: translation, rotation or scale.
+            times: Index of the times [s].
+            values: Index of the values.
+            between: How values between these are found: LINEAR or STEP.
+        """
+        self._samplers.append({"input": times, "output": values, "interpolation": between})
+        target = {"node": node, "path": path}
+        self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
 
     def _view(self, data: bytes, target: int | None = None) -> int:
         """Add bytes; return the index of their view."""
@@ -170,7 +204,9 @@ class GltfFile:
         )
 
     def _told(self) -> dict[str, Any]:
-        asset = {"version": "2.0", "generator": "Eyas"}
+        asset: dict[str, Any] = {"version": "2.0", "generator": "Eyas"}
+        if self.extras:
+            asset["extras"] = self.extras
         if self.notice:
             asset["copyright"] = self.notice.splitlines()[0]
         textures = [{"source": k, "sampler": 0} for k in range(len(self._images))]
@@ -182,6 +218,8 @@ class GltfFile:
             "scene": 0,
             "scenes": [{"nodes": [0], "name": self.name}],
             "nodes": self.nodes,
+            "cameras": self._cameras,
+            "animations": self._animations(),
             "meshes": self.meshes,
             "materials": self._materials,
             "textures": textures,
@@ -192,3 +230,7 @@ class GltfFile:
             "buffers": [{"byteLength": self._length}] if self._length else [],
         }
         return told
+
+    def _animations(self) -> list[dict[str, Any]]:
+        told = {"name": "flight", "channels": self._channels, "samplers": self._samplers}
+        return [told] if self._channels else []
