@@ -271,6 +271,9 @@ def test_a_stage_holds_every_shape_in_its_place_with_its_class(stage, scene):
     assert list(labels) == ["building"]
     tree = stage.GetPrimAtPath("/small/tree/oak_2")
     assert tree.IsInstance()
+    labels = UsdSemantics.LabelsAPI(tree, "class").GetLabelsAttr().Get()
+    assert list(labels) == ["tree"]
+    assert tree.HasAPI(UsdSemantics.LabelsAPI, "class")
     shape = UsdGeom.Mesh(
         tree.GetPrimAtPath("shape") or stage.GetPrimAtPath(f"{tree.GetPath()}/shape")
     )

@@ -118,9 +118,9 @@ class _Stage:
         self.stage.GetRootLayer().documentation = "\n".join(["Made by Eyas.", notice]).strip()
         UsdPhysics.Scene.Define(self.stage, f"{self._root}/physics")
         self._add_parts()
-        self._add_copies()
         self._add_lamps()
         self._add_colliders()
+        self._add_copies()  # last, since each edit of a stage with many instances takes long
 
     def _place(self, group: str, name: str) -> str:
         """Return a path of its own in a group, which is made when it is first used."""
@@ -154,7 +154,7 @@ class _Stage:
             self.triangles += len(part.mesh.triangles)
 
     def _add_copies(self) -> None:
-        from pxr import Gf, UsdGeom
+        from pxr import Sdf, UsdGeom
 
         prototypes = prototypes_of(self._scene.fixtures, self._detail)
         above = f"{self._root}/prototypes"
@@ -169,16 +169,35 @@ class _Stage:
                 UsdGeom.Xform.Define(self.stage, path)
                 self._mesh(f"{path}/shape", shape)
                 drawn[copies.prototype] = path
-            for number, pose in enumerate(copies.pose):
-                place = self._place(group, f"{copies.name}_{number}")
-                copy = UsdGeom.Xform.Define(self.stage, place)
-                whole = np.eye(4)
-                whole[:, :3] = pose.T  # row vectors
-                copy.AddTransformOp().Set(Gf.Matrix4d(whole.tolist()))
-                copy.GetPrim().GetReferences().AddInternalReference(drawn[copies.prototype])
-                copy.GetPrim().SetInstanceable(instanceable=True)
-                self._label(copy.GetPrim(), copies.object_class)
+            places = [
+                self._place(group, f"{copies.name}_{number}") for number in range(len(copies.pose))
+            ]
+            # Object by object through the stage, thousands of copies would take a minute.
+            with Sdf.ChangeBlock():
+                for place, pose in zip(places, copies.pose, strict=True):
+                    self._copy(place, drawn[copies.prototype], pose, group)
             self.triangles += len(shape.triangles) * len(copies.pose)
+
+    def _copy(self, path: str, prototype: str, pose: NDArray[np.float32], kind: str) -> None:
+        """Add an instance of a prototype, with the label of its class."""
+        from pxr import Gf, Sdf, Vt
+
+        spec = Sdf.CreatePrimInLayer(self.stage.GetRootLayer(), path)
+        spec.specifier, spec.typeName = Sdf.SpecifierDef, "Xform"
+        spec.referenceList.prependedItems = [Sdf.Reference(primPath=prototype)]
+        spec.instanceable = True
+        whole = np.eye(4)
+        whole[:, :3] = pose.T  # row vectors
+        types = Sdf.ValueTypeNames
+        uniform = Sdf.VariabilityUniform
+        moved = Sdf.AttributeSpec(spec, "xformOp:transform", types.Matrix4d)
+        moved.default = Gf.Matrix4d(whole.tolist())
+        order = Sdf.AttributeSpec(spec, "xformOpOrder", types.TokenArray, uniform)
+        order.default = Vt.TokenArray(["xformOp:transform"])
+        applied = Sdf.TokenListOp.Create(prependedItems=["SemanticsLabelsAPI:class"])
+        spec.SetInfo("apiSchemas", applied)
+        label = Sdf.AttributeSpec(spec, "semantics:labels:class", types.TokenArray)
+        label.default = Vt.TokenArray([kind])
 
     def _mesh(self, path: str, mesh: Mesh) -> "Usd.Prim":
         """Add a mesh with its materials, a subset of the faces for each."""
