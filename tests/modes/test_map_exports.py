@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from eyas.core.errors import UnknownNameError
+from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.exports.gltf.file import GltfFile
 from eyas.exports.gltf.world import add_lamps, add_world
 from eyas.mesh.assembly import transformed
@@ -226,3 +226,91 @@ def test_sumo_drives_what_is_written(tmp_path):
     assert done.returncode == 0, done.stderr
     last = re.findall(r'inserted="(\d+)" running="(\d+)"', summary.read_text())[-1]
     assert last == ("40", "40")
+
+
+@pytest.fixture
+def stage(scene, monkeypatch, tmp_path):
+    """This map as a stage, opened again."""
+    pxr = pytest.importorskip("pxr")
+    del pxr
+    from pxr import Usd
+
+    from eyas.modes.maps import usd
+
+    houses = np.array([[20, 0], [22, 0], [22, 2], [21, 1], [20, 2]], float)
+    solid = replace(
+        scene.colliders,
+        prism_points=houses,
+        prism_first=np.array([0, 5], np.int32),
+        prism_bottom=np.array([0.0]),
+        prism_top=np.array([5.0]),
+        prism_object=np.array([1], np.int32),
+        cylinder_centre=np.array([[5.0, 10.0]]),
+        cylinder_radius=np.array([0.5]),
+        cylinder_bottom=np.array([1.0]),
+        cylinder_top=np.array([4.0]),
+        cylinder_object=np.array([3], np.int32),
+    )
+    monkeypatch.setattr(usd, "load_scene", lambda name, seed: replace(scene, colliders=solid))
+    monkeypatch.setattr(usd, "load_textures", lambda: {"brick": np.full((4, 4, 4), 9, np.uint8)})
+    paths = [tmp_path / name / "small.usdc" for name in ("a", "b")]
+    for path in paths:
+        path.parent.mkdir()
+        line = f"{path}: 12 triangles"
+        assert list(export(MapFormat.USD, path, ExportOptions("citystreet"))) == [line]
+    assert paths[0].read_bytes() == paths[1].read_bytes()
+    return Usd.Stage.Open(str(paths[0]))
+
+
+def test_a_stage_holds_every_shape_in_its_place_with_its_class(stage, scene):
+    from pxr import UsdGeom, UsdSemantics
+
+    assert (UsdGeom.GetStageUpAxis(stage), UsdGeom.GetStageMetersPerUnit(stage)) == ("Z", 1.0)
+    house = stage.GetPrimAtPath("/small/building/building_1")
+    labels = UsdSemantics.LabelsAPI(house, "class").GetLabelsAttr().Get()
+    assert list(labels) == ["building"]
+    tree = stage.GetPrimAtPath("/small/tree/oak_2")
+    assert tree.IsInstance()
+    labels = UsdSemantics.LabelsAPI(tree, "class").GetLabelsAttr().Get()
+    assert list(labels) == ["tree"]
+    assert tree.HasAPI(UsdSemantics.LabelsAPI, "class")
+    shape = UsdGeom.Mesh(
+        tree.GetPrimAtPath("shape") or stage.GetPrimAtPath(f"{tree.GetPath()}/shape")
+    )
+    whole = np.array(UsdGeom.Xformable(shape).ComputeLocalToWorldTransform(0))
+    points = np.column_stack([np.array(shape.GetPointsAttr().Get()), np.ones(4)]) @ whole
+    ours = transformed(scene.fixtures.levels[0][1], scene.fixtures.pose[2]).positions
+    np.testing.assert_allclose(points[:, :3], ours, atol=1e-5)
+    light = stage.GetPrimAtPath("/small/lamps/lamp_1")
+    turn = np.array(UsdGeom.Xformable(light).ComputeLocalToWorldTransform(0))
+    np.testing.assert_allclose([0, 0, -1] @ turn[:3, :3], scene.lamps.axis[1], atol=1e-5)
+
+
+def test_colliders_of_a_stage_are_closed_and_not_drawn(stage):
+    trimesh = pytest.importorskip("trimesh")
+    from pxr import UsdGeom, UsdPhysics
+
+    prism = UsdGeom.Mesh(stage.GetPrimAtPath("/small/colliders/prism_0"))
+    faces = np.array(prism.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+    body = trimesh.Trimesh(np.array(prism.GetPointsAttr().Get()), faces)
+    assert body.is_watertight
+    assert body.volume == pytest.approx(3.0 * 5.0)
+    trunk = UsdGeom.Cylinder(stage.GetPrimAtPath("/small/colliders/cylinder_0"))
+    assert (trunk.GetRadiusAttr().Get(), trunk.GetHeightAttr().Get()) == (0.5, 3.0)
+    for made in (prism, trunk):
+        assert made.GetPurposeAttr().Get() == "guide"
+        assert made.GetPrim().HasAPI(UsdPhysics.CollisionAPI)
+
+
+def test_the_validators_of_usd_have_nothing_to_remark(stage):
+    from pxr import UsdValidation
+
+    every = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    assert len(every) >= 20
+    errors = UsdValidation.ValidationContext(every).Validate(stage)
+    assert [error.GetMessage() for error in errors] == []
+
+
+def test_other_endings_than_those_of_stages_are_refused(tmp_path):
+    with pytest.raises(ConfigError, match=r"^--out: 'a\.glb' is not allowed: .*\.usdc"):
+        list(export(MapFormat.USD, tmp_path / "a.glb", ExportOptions("citystreet")))

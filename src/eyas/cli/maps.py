@@ -158,7 +158,8 @@ def check_plan(
 def export_map(  # noqa: PLR0913  # each option is a parameter
     name: Name,
     kind: Annotated[
-        str, typer.Option("--format", help="gltf, opendrive, sumo or geojson.", show_default=False)
+        str,
+        typer.Option("--format", help="gltf, usd, opendrive, sumo or geojson.", show_default=False),
     ],
     out: Annotated[
         Path | None,
@@ -166,7 +167,7 @@ def export_map(  # noqa: PLR0913  # each option is a parameter
     ] = None,
     seed: Seed = 0,
     detail: Annotated[
-        int, typer.Option("--detail", min=0, max=9, help="gltf: trees; 0 is the finest.")
+        int, typer.Option("--detail", min=0, max=9, help="gltf, usd: trees; 0 is the finest.")
     ] = 1,
     lamps: Annotated[bool, typer.Option(help="gltf: street lamps are lights.")] = True,
     cell: Annotated[

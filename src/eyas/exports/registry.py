@@ -32,6 +32,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "sensors": "eyas.exports.table:SensorWriter",
         "lidar": "eyas.exports.table:LidarWriter",
         "events": "eyas.exports.events:EventWriter",
+        "scene": "eyas.exports.gltf.flight:SceneWriter",
         "rosbag": "eyas.exports.ros.bag:RosbagWriter",
         "rosbag-mcap": "eyas.exports.ros.bag:RosbagMcapWriter",
     },

@@ -72,10 +72,11 @@ def copies_of(scene: Scene) -> Iterator[Copies]:
 
 
 def prototypes_of(fixtures: Fixtures, detail: int) -> list[Mesh]:
-    """Return the mesh of each prototype.
+    """Return the mesh of each prototype, without vertices that no triangle has.
 
     Args:
         fixtures: The repeated things.
         detail: Level of detail; 0 is the finest.
     """
-    return [levels[min(detail, len(levels) - 1)] for levels in fixtures.levels]
+    chosen = [levels[min(detail, len(levels) - 1)] for levels in fixtures.levels]
+    return [subset(mesh, np.arange(len(mesh.triangles))) for mesh in chosen]

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import struct
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,15 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.core import exact
 from eyas.state.mesh import Material, Mesh, Surface
 
-__all__ = ["LIGHTS", "PLAIN", "UPRIGHT", "GltfFile"]
+__all__ = ["LIGHTS", "PLAIN", "UPRIGHT", "GltfFile", "light_factors"]
 
 _FLOAT, _UINT = 5126, 5125
 _ARRAYS, _INDICES = 34962, 34963
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
-UPRIGHT = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+UPRIGHT = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
 """glTF's y points up, ours is z: a quarter turn about x."""
 
 LIGHTS = "KHR_lights_punctual"
@@ -32,6 +34,11 @@ _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 Node = dict[str, Any]
 
 
+def light_factors(material: Material) -> list[float]:
+    """Return the tint of a material, a factor on sRGB colours, as factors on light."""
+    return [min(round(float(exact.power(each, 2.2)), 5), 1.0) for each in material.tint]
+
+
 @dataclass(slots=True)
 class GltfFile:
     """The parts of a glTF file. Node 0 is the root, in whose frame z points up."""
@@ -42,9 +49,14 @@ class GltfFile:
     """Rows from the top; sRGB and alpha."""
     notice: str = ""
     """Whose data it is."""
+    extras: dict[str, Any] = field(default_factory=dict)
+    """What else is told about the file."""
     lights: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)
     nodes: list[Node] = field(default_factory=list)
+    _cameras: list[dict[str, Any]] = field(default_factory=list)
+    _channels: list[dict[str, Any]] = field(default_factory=list)
+    _samplers: list[dict[str, Any]] = field(default_factory=list)
     _parts: list[bytes] = field(default_factory=list)
     _length: int = 0
     _views: list[dict[str, int]] = field(default_factory=list)
@@ -87,6 +99,35 @@ class GltfFile:
         self.meshes.append({"name": name, "primitives": primitives})
         return len(self.meshes) - 1
 
+    def camera(self, perspective: dict[str, float]) -> int:
+        """Add a camera; return its index."""
+        self._cameras.append({"type": "perspective", "perspective": perspective})
+        return len(self._cameras) - 1
+
+    def keys(self, values: NDArray[np.float64], kind: str) -> int:
+        """Add values of an animation, shape (K, numbers of the kind); return their index."""
+        flat = np.ascontiguousarray(values, np.float32)
+        ends = {"min": flat.min(axis=0).tolist(), "max": flat.max(axis=0).tolist()}
+        accessor = {"bufferView": self._view(flat.tobytes()), "componentType": _FLOAT}
+        self._accessors.append({**accessor, "count": len(flat), "type": kind, **ends})
+        return len(self._accessors) - 1
+
+    def animate(
+        self, node: int, path: str, times: int, values: int, between: str = "LINEAR"
+    ) -> None:
+        """Let a property of a node take values at times.
+
+        Args:
+            node: The node.
+            path: The property: translation, rotation or scale.
+            times: Index of the times [s].
+            values: Index of the values.
+            between: How values between these are found: LINEAR or STEP.
+        """
+        self._samplers.append({"input": times, "output": values, "interpolation": between})
+        target = {"node": node, "path": path}
+        self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
+
     def _view(self, data: bytes, target: int | None = None) -> int:
         """Add bytes; return the index of their view."""
         padded = data + bytes(-len(data) % 4)
@@ -128,8 +169,7 @@ class GltfFile:
         """Return the index of a material, added when it is first used."""
         if material not in self._of_material:
             holes = material.surface is Surface.FOLIAGE
-            # Tints are factors on sRGB colours, those of glTF on light.
-            factor = [min(round(channel**2.2, 5), 1.0) for channel in material.tint]
+            factor = light_factors(material)
             look: dict[str, Any] = {
                 "baseColorFactor": [*factor, 1.0],
                 "metallicFactor": 0.0,
@@ -164,7 +204,9 @@ class GltfFile:
         )
 
     def _told(self) -> dict[str, Any]:
-        asset = {"version": "2.0", "generator": "Eyas"}
+        asset: dict[str, Any] = {"version": "2.0", "generator": "Eyas"}
+        if self.extras:
+            asset["extras"] = self.extras
         if self.notice:
             asset["copyright"] = self.notice.splitlines()[0]
         textures = [{"source": k, "sampler": 0} for k in range(len(self._images))]
@@ -176,6 +218,8 @@ class GltfFile:
             "scene": 0,
             "scenes": [{"nodes": [0], "name": self.name}],
             "nodes": self.nodes,
+            "cameras": self._cameras,
+            "animations": self._animations(),
             "meshes": self.meshes,
             "materials": self._materials,
             "textures": textures,
@@ -186,3 +230,7 @@ class GltfFile:
             "buffers": [{"byteLength": self._length}] if self._length else [],
         }
         return told
+
+    def _animations(self) -> list[dict[str, Any]]:
+        told = {"name": "flight", "channels": self._channels, "samplers": self._samplers}
+        return [told] if self._channels else []

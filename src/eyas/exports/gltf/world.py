@@ -11,7 +11,7 @@ from eyas.exports.gltf.file import LIGHTS, GltfFile
 from eyas.exports.scene_parts import copies_of, parts_of, prototypes_of
 from eyas.state.scene import Lamps, ObjectClass, Scene
 
-__all__ = ["CANDELAS", "add_lamps", "add_world"]
+__all__ = ["CANDELAS", "add_lamps", "add_world", "towards"]
 
 CANDELAS = 1500.0
 """Of a street lamp along its axis: some 10,000 lumen in its cone [cd]."""
@@ -61,7 +61,7 @@ def add_lamps(file: GltfFile, lamps: Lamps) -> None:
     light = {LIGHTS: {"light": len(file.lights) - 1}}
     for number, (place, axis) in enumerate(zip(lamps.position, lamps.axis, strict=True)):
         node: dict[str, Any] = {"name": f"lamp-{number}", "translation": _rounded(place)}
-        file.node({**node, "rotation": _rounded(_towards(axis)), "extensions": light}, group)
+        file.node({**node, "rotation": _rounded(towards(axis)), "extensions": light}, group)
 
 
 def _group(file: GltfFile, groups: dict[ObjectClass, int], kind: ObjectClass) -> int:
@@ -83,8 +83,8 @@ def _rounded(values: NDArray[np.generic]) -> list[float]:
     return [round(float(value), 6) for value in values]
 
 
-def _towards(axis: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the shortest turn, as a quaternion x, y, z, w, from -z, where lights of glTF shine, to
+def towards(axis: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return the shortest turn, as a quaternion x, y, z, w, from -z, where lights shine, to
     a unit vector.
     """
     x, y, z = axis.astype(np.float64).tolist()

@@ -16,6 +16,8 @@ class MapFormat(StrEnum):
 
     GLTF = "gltf"
     """Shapes, textures and lamps as one binary glTF file."""
+    USD = "usd"
+    """The same as OpenUSD, with classes and colliders."""
     OPENDRIVE = "opendrive"
     """Roads and traffic lights as OpenDRIVE."""
     SUMO = "sumo"
@@ -26,6 +28,7 @@ class MapFormat(StrEnum):
 
 _ENDINGS = {
     MapFormat.GLTF: ".glb",
+    MapFormat.USD: ".usdc",
     MapFormat.OPENDRIVE: ".xodr",
     MapFormat.SUMO: "-sumo",
     MapFormat.GEOJSON: "-geojson",
@@ -77,6 +80,10 @@ def export(kind: MapFormat, out: Path | None, options: ExportOptions) -> Iterato
 
         triangles = write_gltf(name, seed, path, options.detail, lamps=options.lamps)
         yield f"{path}: {triangles} triangles"
+    elif kind is MapFormat.USD:
+        from eyas.modes.maps.usd import run as write_usd
+
+        yield f"{path}: {write_usd(name, seed, path, options.detail)} triangles"
     elif kind is MapFormat.OPENDRIVE:
         from eyas.modes.maps.roads import write_opendrive
 

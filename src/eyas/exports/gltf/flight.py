@@ -1,0 +1,195 @@
+"""A flight as one animated glTF file: the map, the tracker, its camera, and all that moves."""
+
+import json
+import struct
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.exports.boxes import box_of, quaternion_of
+from eyas.exports.frame import CameraPose, Frame, Subject
+from eyas.exports.gltf.boxes import box_mesh
+from eyas.exports.gltf.file import GltfFile
+from eyas.exports.gltf.world import add_world
+from eyas.exports.writer import Episode, Files, Gather, Run, Summary, Writer
+from eyas.sim.scenes import load_scene, load_textures
+from eyas.state.scene import ObjectClass
+from eyas.world.maps import MAPS
+
+__all__ = ["SceneWriter"]
+
+NAME = "scene.glb"
+_FRAMES = "eyas_frames"
+_DETAIL = 9
+"""The coarsest trees."""
+_BODY = (0.8, 0.8, 0.35)
+"""Length, width and height of the box that stands for the tracker [m]."""
+_NEAR = 0.05
+"""[m]"""
+_LONGEST = 1 << 28
+"""Of the part of a file that tells what is in it [bytes]."""
+
+Floats = NDArray[np.float64]
+
+
+class _Pose(NamedTuple):
+    place: tuple[float, ...]
+    turn: tuple[float, ...]
+    """Quaternion x, y, z, w."""
+
+
+class _Mover(NamedTuple):
+    """A moving object in a frame."""
+
+    type: str
+    kind: ObjectClass
+    size: tuple[float, float, float]
+    pose: _Pose
+
+
+class _Moment(NamedTuple):
+    """What a frame tells."""
+
+    time: float
+    """Since the reset [s]."""
+    camera: CameraPose
+    tracker: _Pose
+    target: int
+    movers: dict[int, _Mover]
+
+
+class SceneWriter(Writer):
+    """`scene.glb`: the map with the flight as an animation.
+
+    Args:
+        run: The recording.
+    """
+
+    wants = frozenset({"others"})
+    files = Files(episode=(NAME,))
+
+    def __init__(self, run: Run) -> None:
+        self._world = run.config.world
+
+    def begin(self, episode: Episode) -> Gather[_Moment]:
+        """Return the writer of an episode's scene."""
+        return Gather(episode.folder / NAME, _moment, self._encoded)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return the number of frames that the file states."""
+        try:
+            with (folder / NAME).open("rb") as file:
+                _, _, whole, length, _ = struct.unpack("<IIIII", file.read(20))
+                told = json.loads(file.read(min(length, _LONGEST)))
+                if whole != (folder / NAME).stat().st_size:
+                    return None
+            return Summary(int(told["asset"]["extras"][_FRAMES]))
+        except (OSError, ValueError, struct.error, RecursionError, KeyError, TypeError):
+            return None
+
+    def _encoded(self, moments: Sequence[_Moment]) -> bytes:
+        world = self._world
+        recipe = MAPS.get(world.map)
+        scene = load_scene(world.map, world.seed, recipe.season(world.weather))
+        file = GltfFile(scene.name, load_textures(), recipe.attribution())
+        file.extras = {_FRAMES: len(moments)}
+        add_world(file, scene, _DETAIL)
+        flight = _Flight(file, moments)
+        flight.add_tracker()
+        flight.add_movers()
+        return file.encoded()
+
+
+def _moment(frame: Frame) -> _Moment:
+    w, x, y, z = frame.tracker.orientation.tolist()
+    body = _Pose(tuple(frame.tracker.position.tolist()), (x, y, z, w))
+    movers = {each.object_id: _mover(each) for each in (frame.target, *frame.others)}
+    target = frame.target.object_id
+    return _Moment(frame.episode_time, frame.camera, body, target, movers)
+
+
+def _mover(subject: Subject) -> _Mover:
+    box = box_of(subject.corners)
+    length, width, height = subject.size.tolist()
+    pose = _Pose(tuple(box.centre.tolist()), _turn(box.rotation))
+    return _Mover(subject.type, subject.object_class, (length, width, height), pose)
+
+
+def _turn(rotation: Floats) -> tuple[float, ...]:
+    w, x, y, z = quaternion_of(rotation)
+    return x, y, z, w
+
+
+def _lens(camera: CameraPose) -> tuple[_Pose, float]:
+    """Return the pose of a camera as glTF has it, right, up and back, and its vertical field of
+    view [rad].
+    """
+    forward, left, up = camera.rotation.T
+    turn = _turn(np.column_stack([-left, up, -forward]))
+    slope = 0.5 * camera.height / float(camera.intrinsics[1, 1])
+    return _Pose(tuple(camera.position.tolist()), turn), 2.0 * float(exact.atan(slope))
+
+
+class _Flight:
+    """The animation of a file."""
+
+    def __init__(self, file: GltfFile, moments: Sequence[_Moment]) -> None:
+        self._file, self._moments = file, moments
+        self._times = file.keys(np.array([[each.time] for each in moments]), "SCALAR")
+
+    def add_tracker(self) -> None:
+        """Add the tracker's body, and its camera, which has the field of view of the first
+        frame.
+        """
+        first = self._moments[0].camera
+        views = [_lens(each.camera) for each in self._moments]
+        perspective = {"aspectRatio": first.width / first.height, "yfov": views[0][1]}
+        camera = self._file.camera({**perspective, "znear": _NEAR})
+        self._move("camera", {"camera": camera}, [pose for pose, _ in views])
+        mesh = self._file.mesh(box_mesh(_BODY, ObjectClass.ROBOT), "tracker")
+        self._move("tracker", {"mesh": mesh}, [each.tracker for each in self._moments])
+
+    def add_movers(self) -> None:
+        """Add all that moves; what is not seen in a frame has no size in it."""
+        shapes: dict[str, int] = {}
+        for number in sorted({number for each in self._moments for number in each.movers}):
+            found = [each.movers.get(number) for each in self._moments]
+            first = next(each for each in found if each is not None)
+            if first.type not in shapes:
+                shapes[first.type] = self._file.mesh(box_mesh(first.size, first.kind), first.type)
+            poses, last = [], first.pose
+            for each in found:
+                last = last if each is None else each.pose
+                poses.append(last)
+            is_target = number == self._moments[0].target
+            name = f"target-{number}" if is_target else f"{first.kind.name.lower()}-{number}"
+            extras = {"class": first.kind.name.lower(), "type": first.type}
+            node = self._move(name, {"mesh": shapes[first.type], "extras": extras}, poses)
+            seen = np.array([[float(each is not None)] * 3 for each in found])
+            if not seen.all():
+                self._file.animate(
+                    node, "scale", self._times, self._file.keys(seen, "VEC3"), "STEP"
+                )
+
+    def _move(self, name: str, what: dict[str, object], poses: Sequence[_Pose]) -> int:
+        """Add a node that moves; return its index."""
+        first = poses[0]
+        pose = {"translation": list(first.place), "rotation": list(first.turn)}
+        node = self._file.node({"name": name, **what, **pose})
+        places = self._file.keys(np.array([pose.place for pose in poses]), "VEC3")
+        turns = self._file.keys(_continuous(np.array([pose.turn for pose in poses])), "VEC4")
+        self._file.animate(node, "translation", self._times, places)
+        self._file.animate(node, "rotation", self._times, turns)
+        return node
+
+
+def _continuous(turns: Floats) -> Floats:
+    """Return quaternions, shape (K, 4), each with the sign that is nearer to the last one."""
+    agrees = (turns[1:] * turns[:-1]).sum(axis=1) >= 0.0
+    signs = np.concatenate([[1.0], np.where(agrees, 1.0, -1.0)])
+    result: Floats = turns * np.cumprod(signs)[:, None]
+    return result

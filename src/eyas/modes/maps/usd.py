@@ -1,0 +1,388 @@
+"""A map as OpenUSD: shapes, materials, classes (UsdSemantics), colliders (UsdPhysics), lamps."""
+
+import io
+import math
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from PIL import Image
+
+from eyas.core.errors import ConfigError, MissingExtraError
+from eyas.core.files import refusals, write_atomic
+from eyas.core.scratch import scratch
+from eyas.exports.gltf.file import PLAIN, light_factors
+from eyas.exports.gltf.world import CANDELAS, towards
+from eyas.exports.scene_parts import copies_of, parts_of, prototypes_of
+from eyas.mesh.flat import flat_polygon
+from eyas.sim.scenes import load_scene, load_textures
+from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.maps import MAPS
+
+if TYPE_CHECKING:
+    from pxr import Usd, UsdShade
+
+__all__ = ["ENDINGS", "run"]
+
+ENDINGS = (".usdc", ".usda", ".usd")
+"""Binary, text, either."""
+
+_RADIUS = 0.1
+"""Of the sphere that shines in a street lamp [m]."""
+
+_TOUCHED = {ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT}
+"""What is solid by its triangles; all else that is solid has colliders of its own."""
+
+_SHINING = {Surface.LAMP, Surface.SIGNAL}
+_ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
+
+
+def run(name: str, seed: int, path: Path, detail: int) -> int:
+    """Write a map as a stage, and its textures into a folder beside it; return its number of
+    triangles.
+
+    Args:
+        name: Name of the map.
+        seed: Seed of the map.
+        path: The file, which ends in one of `ENDINGS`.
+        detail: Level of detail of trees and furniture; 0 is the finest.
+
+    Raises:
+        MissingExtraError: The extra `usd` is not installed.
+        EyasError: The map cannot be built, or a file not written.
+    """
+    if path.suffix not in ENDINGS:
+        allowed = " or ".join(ENDINGS)
+        raise ConfigError(f"--out: {path.name!r} is not allowed: a name that ends in {allowed}")
+    try:
+        from pxr import Usd
+    except ImportError as error:
+        raise MissingExtraError("the format 'usd'", "usd") from error
+    scene, textures = load_scene(name, seed), load_textures()
+    made = _Stage(Usd.Stage.CreateInMemory(), scene, f"{path.stem}-textures", detail)
+    made.fill(MAPS.get(name).attribution())
+    folder = path.with_name(f"{path.stem}-textures")
+    with refusals(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    for used in sorted(made.textures):
+        write_atomic(folder / f"{used}.png", _png(textures[used]))
+    with scratch() as place:
+        made.stage.GetRootLayer().Export(str(place / f"map{path.suffix}"))
+        write_atomic(path, (place / f"map{path.suffix}").read_bytes())
+    return made.triangles
+
+
+def _png(pixels: NDArray[np.uint8]) -> bytes:
+    png = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels)).save(png, format="PNG")
+    return png.getvalue()
+
+
+class _Stage:
+    """A stage under construction.
+
+    Args:
+        stage: An empty one.
+        scene: The map.
+        folder: Name of the folder of its textures.
+        detail: Level of detail of trees and furniture.
+    """
+
+    def __init__(self, stage: "Usd.Stage", scene: Scene, folder: str, detail: int) -> None:
+        self.stage, self.triangles = stage, 0
+        self.textures: set[str] = set()
+        self._scene, self._folder, self._detail = scene, folder, detail
+        self._root = f"/{_valid(scene.name)}"
+        self._materials: dict[Material, UsdShade.Material] = {}
+        self._used: Counter[str] = Counter()
+
+    def fill(self, notice: str) -> None:
+        """Add everything.
+
+        Args:
+            notice: Whose data the map is made of.
+        """
+        from pxr import Kind, Usd, UsdGeom, UsdPhysics
+
+        UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)
+        UsdGeom.SetStageMetersPerUnit(self.stage, 1.0)
+        UsdPhysics.SetStageKilogramsPerUnit(self.stage, 1.0)
+        root = UsdGeom.Xform.Define(self.stage, self._root).GetPrim()
+        self.stage.SetDefaultPrim(root)
+        Usd.ModelAPI(root).SetKind(Kind.Tokens.component)
+        self.stage.GetRootLayer().documentation = "\n".join(["Made by Eyas.", notice]).strip()
+        UsdPhysics.Scene.Define(self.stage, f"{self._root}/physics")
+        self._add_parts()
+        self._add_lamps()
+        self._add_colliders()
+        self._add_copies()  # last, since each edit of a stage with many instances takes long
+
+    def _place(self, group: str, name: str) -> str:
+        """Return a path of its own in a group, which is made when it is first used."""
+        from pxr import UsdGeom
+
+        above = f"{self._root}/{_valid(group)}"
+        if not self._used[above]:
+            UsdGeom.Xform.Define(self.stage, above)
+        self._used[above] += 1
+        wanted = f"{above}/{_valid(name)}"
+        self._used[wanted] += 1
+        return wanted if self._used[wanted] == 1 else f"{wanted}_{self._used[wanted]}"
+
+    def _label(self, prim: "Usd.Prim", kind: ObjectClass) -> None:
+        from pxr import UsdSemantics
+
+        labels = UsdSemantics.LabelsAPI.Apply(prim, "class")
+        labels.CreateLabelsAttr([kind.name.lower()])
+
+    def _add_parts(self) -> None:
+        from pxr import UsdPhysics
+
+        for part in parts_of(self._scene):
+            kind = part.object_class
+            prim = self._mesh(self._place(kind.name.lower(), part.name), part.mesh)
+            self._label(prim, kind)
+            if kind in _TOUCHED:
+                UsdPhysics.CollisionAPI.Apply(prim)
+                solid = UsdPhysics.MeshCollisionAPI.Apply(prim)
+                solid.CreateApproximationAttr(UsdPhysics.Tokens.none)
+            self.triangles += len(part.mesh.triangles)
+
+    def _add_copies(self) -> None:
+        from pxr import Sdf, UsdGeom
+
+        prototypes = prototypes_of(self._scene.fixtures, self._detail)
+        above = f"{self._root}/prototypes"
+        self.stage.CreateClassPrim(above)
+        drawn: dict[int, str] = {}
+        for copies in copies_of(self._scene):
+            shape, group = prototypes[copies.prototype], copies.object_class.name.lower()
+            if not len(shape.triangles):
+                continue
+            if copies.prototype not in drawn:
+                path = f"{above}/{_valid(copies.name)}_{copies.prototype}"
+                UsdGeom.Xform.Define(self.stage, path)
+                self._mesh(f"{path}/shape", shape)
+                drawn[copies.prototype] = path
+            places = [
+                self._place(group, f"{copies.name}_{number}") for number in range(len(copies.pose))
+            ]
+            # Object by object through the stage, thousands of copies would take a minute.
+            with Sdf.ChangeBlock():
+                for place, pose in zip(places, copies.pose, strict=True):
+                    self._copy(place, drawn[copies.prototype], pose, group)
+            self.triangles += len(shape.triangles) * len(copies.pose)
+
+    def _copy(self, path: str, prototype: str, pose: NDArray[np.float32], kind: str) -> None:
+        """Add an instance of a prototype, with the label of its class."""
+        from pxr import Gf, Sdf, Vt
+
+        spec = Sdf.CreatePrimInLayer(self.stage.GetRootLayer(), path)
+        spec.specifier, spec.typeName = Sdf.SpecifierDef, "Xform"
+        spec.referenceList.prependedItems = [Sdf.Reference(primPath=prototype)]
+        spec.instanceable = True
+        whole = np.eye(4)
+        whole[:, :3] = pose.T  # row vectors
+        types = Sdf.ValueTypeNames
+        uniform = Sdf.VariabilityUniform
+        moved = Sdf.AttributeSpec(spec, "xformOp:transform", types.Matrix4d)
+        moved.default = Gf.Matrix4d(whole.tolist())
+        order = Sdf.AttributeSpec(spec, "xformOpOrder", types.TokenArray, uniform)
+        order.default = Vt.TokenArray(["xformOp:transform"])
+        applied = Sdf.TokenListOp.Create(prependedItems=["SemanticsLabelsAPI:class"])
+        spec.SetInfo("apiSchemas", applied)
+        label = Sdf.AttributeSpec(spec, "semantics:labels:class", types.TokenArray)
+        label.default = Vt.TokenArray([kind])
+
+    def _mesh(self, path: str, mesh: Mesh) -> "Usd.Prim":
+        """Add a mesh with its materials, a subset of the faces for each."""
+        from pxr import Sdf, UsdGeom, UsdShade, Vt
+
+        made = UsdGeom.Mesh.Define(self.stage, path)
+        self._shape(made, mesh.positions, mesh.triangles)
+        made.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(mesh.normals)))
+        made.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+        uvs = UsdGeom.PrimvarsAPI(made).CreatePrimvar(
+            "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex
+        )
+        uvs.Set(Vt.Vec2fArray.FromNumpy(np.ascontiguousarray(mesh.uvs, np.float32)))
+        used = np.unique(mesh.materials).tolist()
+        if any(mesh.palette[index].surface is Surface.FOLIAGE for index in used):
+            made.CreateDoubleSidedAttr(defaultValue=True)
+        for index in used:
+            material = self._material(mesh.palette[index])
+            prim = made.GetPrim()
+            if len(used) > 1:
+                faces = np.flatnonzero(mesh.materials == index).astype(np.int32)
+                subset = UsdGeom.Subset.CreateGeomSubset(
+                    made, f"material_{index}", UsdGeom.Tokens.face,
+                    Vt.IntArray.FromNumpy(faces), UsdShade.Tokens.materialBind,
+                    UsdGeom.Tokens.partition,
+                )  # fmt: skip
+                prim = subset.GetPrim()
+            UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)
+        if len(used) > 1:
+            UsdShade.MaterialBindingAPI.Apply(made.GetPrim())
+        return made.GetPrim()
+
+    def _shape(self, made: Any, points: NDArray[Any], triangles: NDArray[Any]) -> None:  # noqa: ANN401
+        from pxr import UsdGeom, Vt
+
+        points = np.ascontiguousarray(points, np.float32)
+        made.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points))
+        made.CreateFaceVertexCountsAttr(Vt.IntArray(len(triangles), 3))
+        corners = np.ascontiguousarray(triangles.ravel(), np.int32)
+        made.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(corners))
+        made.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        ends = np.stack([points.min(axis=0), points.max(axis=0)])
+        made.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(ends))
+
+    def _facet(self, made: Any) -> None:  # noqa: ANN401  # of pxr
+        """Give a mesh a normal for each face."""
+        from pxr import UsdGeom, Vt
+
+        corners = np.array(made.GetPointsAttr().Get())[
+            np.array(made.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
+        ]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.sqrt(np.square(normals).sum(axis=1, keepdims=True)), 1e-12)
+        made.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(normals.astype(np.float32)))
+        made.SetNormalsInterpolation(UsdGeom.Tokens.uniform)
+
+    def _material(self, material: Material) -> "UsdShade.Material":
+        """Return a material, added when it is first used."""
+        from pxr import Gf, Sdf, UsdGeom, UsdShade
+
+        if material in self._materials:
+            return self._materials[material]
+        group = f"{self._root}/materials"
+        if not self._materials:
+            UsdGeom.Scope.Define(self.stage, group)
+        path = f"{group}/{_valid(material.texture)}_{len(self._materials)}"
+        made = self._materials[material] = UsdShade.Material.Define(self.stage, path)
+        shader = UsdShade.Shader.Define(self.stage, f"{path}/surface")
+        shader.CreateIdAttr("UsdPreviewSurface")
+        types = Sdf.ValueTypeNames
+        tint = light_factors(material)
+        colour = shader.CreateInput("diffuseColor", types.Color3f)
+        if material.texture == PLAIN:
+            colour.Set(Gf.Vec3f(*tint))
+        else:
+            self._textured(path, material, tint, (shader, colour))
+        shader.CreateInput("roughness", types.Float).Set(_ROUGH.get(material.surface, 1.0))
+        if material.surface in _SHINING:
+            shader.CreateInput("emissiveColor", types.Color3f).Set(Gf.Vec3f(*tint))
+        made.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+        return made
+
+    def _textured(
+        self, path: str, material: Material, tint: list[float], inputs: tuple[Any, Any]
+    ) -> None:
+        """Give a shader the colours of a texture, and holes if they are leaves."""
+        from pxr import Gf, Sdf, UsdShade
+
+        shader, colour = inputs
+        types = Sdf.ValueTypeNames
+        self.textures.add(material.texture)
+        reader = UsdShade.Shader.Define(self.stage, f"{path}/st")
+        reader.CreateIdAttr("UsdPrimvarReader_float2")
+        reader.CreateInput("varname", types.String).Set("st")
+        reader.CreateOutput("result", types.Float2)
+        texture = UsdShade.Shader.Define(self.stage, f"{path}/texture")
+        texture.CreateIdAttr("UsdUVTexture")
+        file = f"./{self._folder}/{material.texture}.png"
+        texture.CreateInput("file", types.Asset).Set(Sdf.AssetPath(file))
+        texture.CreateInput("st", types.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
+        for axis in "ST":
+            texture.CreateInput(f"wrap{axis}", types.Token).Set("repeat")
+        texture.CreateInput("sourceColorSpace", types.Token).Set("sRGB")
+        texture.CreateInput("scale", types.Float4).Set(Gf.Vec4f(*tint, 1.0))
+        texture.CreateOutput("rgb", types.Float3)
+        colour.ConnectToSource(texture.ConnectableAPI(), "rgb")
+        if material.surface is Surface.FOLIAGE:
+            texture.CreateOutput("a", types.Float)
+            opacity = shader.CreateInput("opacity", types.Float)
+            opacity.ConnectToSource(texture.ConnectableAPI(), "a")
+            shader.CreateInput("opacityThreshold", types.Float).Set(0.5)
+
+    def _add_lamps(self) -> None:
+        from pxr import Gf, UsdGeom, UsdLux
+
+        lamps = self._scene.lamps
+        for number, (place, axis) in enumerate(zip(lamps.position, lamps.axis, strict=True)):
+            lamp = UsdLux.SphereLight.Define(self.stage, self._place("lamps", f"lamp_{number}"))
+            lamp.CreateRadiusAttr(_RADIUS)
+            lamp.CreateIntensityAttr(CANDELAS / (math.pi * _RADIUS * _RADIUS))  # nits
+            lamp.CreateColorAttr(Gf.Vec3f(1.0, 0.87, 0.7))
+            lamp.CreateExtentAttr([Gf.Vec3f(-_RADIUS), Gf.Vec3f(_RADIUS)])
+            cone = UsdLux.ShapingAPI.Apply(lamp.GetPrim())
+            cone.CreateShapingConeAngleAttr(math.degrees(lamps.cut_off))
+            x, y, z, w = towards(axis).tolist()
+            xform = UsdGeom.Xformable(lamp)
+            xform.AddTranslateOp().Set(Gf.Vec3d(*place.astype(float).tolist()))
+            xform.AddOrientOp().Set(Gf.Quatf(w, x, y, z))
+
+    def _add_colliders(self) -> None:
+        """Add what Eyas itself lets bodies touch and lidars see: prisms and cylinders."""
+        from pxr import Gf, UsdGeom, UsdPhysics
+
+        solids, kinds = self._scene.colliders, self._scene.object_class
+        for number, (low, high) in enumerate(pairwise(solids.prism_first.tolist())):
+            span = float(solids.prism_bottom[number]), float(solids.prism_top[number])
+            made = UsdGeom.Mesh.Define(self.stage, self._place("colliders", f"prism_{number}"))
+            self._shape(made, *_prism(solids.prism_points[low:high], span))
+            self._facet(made)
+            UsdPhysics.MeshCollisionAPI.Apply(made.GetPrim()).CreateApproximationAttr(
+                UsdPhysics.Tokens.none
+            )
+            self._solid(made, ObjectClass(int(kinds[solids.prism_object[number]])))
+        for number, radius in enumerate(solids.cylinder_radius.tolist()):
+            place = self._place("colliders", f"cylinder_{number}")
+            made = UsdGeom.Cylinder.Define(self.stage, place)
+            low, high = float(solids.cylinder_bottom[number]), float(solids.cylinder_top[number])
+            made.CreateRadiusAttr(radius)
+            made.CreateHeightAttr(high - low)
+            made.CreateAxisAttr(UsdGeom.Tokens.z)
+            half = Gf.Vec3f(radius, radius, 0.5 * (high - low))
+            made.CreateExtentAttr([-half, half])
+            x, y = solids.cylinder_centre[number].tolist()
+            made.AddTranslateOp().Set(Gf.Vec3d(x, y, 0.5 * (low + high)))
+            self._solid(made, ObjectClass(int(kinds[solids.cylinder_object[number]])))
+
+    def _solid(self, made: Any, kind: ObjectClass) -> None:  # noqa: ANN401  # of pxr
+        from pxr import UsdGeom, UsdPhysics
+
+        made.CreatePurposeAttr(UsdGeom.Tokens.guide)
+        UsdPhysics.CollisionAPI.Apply(made.GetPrim())
+        self._label(made.GetPrim(), kind)
+
+
+def _valid(name: str) -> str:
+    """Return a name that a prim can have."""
+    from pxr import Tf
+
+    valid: str = Tf.MakeValidIdentifier(name)
+    return valid
+
+
+def _prism(
+    outline: NDArray[np.float64], span: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return the points and triangles of a prism on a counter-clockwise outline."""
+    count = len(outline)
+    sides = np.concatenate([np.column_stack([outline, np.full(count, z)]) for z in span])
+    here, there = np.arange(count), (np.arange(count) + 1) % count
+    walls = [[here, there, there + count], [here, there + count, here + count]]
+    floor, roof = (flat_polygon(shapely.Polygon(outline), z, Material(), 1.0) for z in span)
+    below = 2 * count
+    above = below + len(floor.positions)
+    triangles: list[NDArray[np.signedinteger]] = [np.stack(wall, axis=1) for wall in walls]
+    triangles += [floor.triangles[:, ::-1] + below, roof.triangles + above]
+    every = np.concatenate([sides, floor.positions, roof.positions])
+    points, welded = np.unique(every, axis=0, return_inverse=True)
+    return points, welded.ravel()[np.concatenate(triangles)].astype(np.int32)
