@@ -1,6 +1,6 @@
 """How often the intervals of `eyas evaluate` hold the truth, on records of real flights.
 
-    for policy in fast robust anywhere; do for map in citystreet downtown village; do
+    for policy in fast eyas; do for map in citystreet downtown village; do
         eyas evaluate --policy $policy --map $map --episodes 100 --out runs/cover/$policy-$map
     done; done
     python tools/interval_coverage.py runs/cover/*
@@ -9,7 +9,7 @@ The 400 episodes of a folder are taken for all that there are, so that the truth
 seeds are sampled with replacement, as many of each start direction, thousands of times. Folders
 that are joined by a comma are one population, in which a seed has several places:
 
-    python tools/interval_coverage.py runs/cover/robust-day,runs/cover/robust-night
+    python tools/interval_coverage.py runs/cover/eyas-day,runs/cover/eyas-night
 
 With `--differences` each two folders are a pair, of which the difference is estimated. The table
 tells the share of intervals that hold the truth, and in brackets the shares that lie wholly below

@@ -1,11 +1,11 @@
 """Put a trained policy into the package, with its curve and what it reaches.
 
     python tools/ship_policy.py runs/fast fast "citystreet by day" --trained-on "..." --limit "..."
-    python tools/ship_policy.py runs/eyas eyas "..." ...  # of `python -m eyas.learning.tracking`
-    python tools/ship_policy.py --measure fast robust    # flies them again, for new scores
+    python tools/ship_policy.py runs/eyas eyas "..." ... # or eyas-flown, of the same run
+    python tools/ship_policy.py --measure fast eyas      # flies them again, for new scores
 
 The card's rows: `paper` on each map and in each weather that it has learned, and `long` on
-citystreet by day; of the tracker also look-alikes, people, robots, and late actions. If the run
+citystreet by day; of a tracker also look-alikes, people, robots, and late actions. If the run
 teaches another run's network further, the card has both commands.
 """
 
@@ -19,15 +19,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from eyas import __version__
-from eyas.core.config import validated
 from eyas.envs.choice import settings_of_kinds
 from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 from eyas.evaluation.policies.shipped import TRAINED, Card, Score, card_of, file_of
+from eyas.learning.config import Method
 from eyas.learning.tracking.flights import MAPS, WEATHERS
-from eyas.learning.tracking.lessons import BATCH
-from eyas.learning.tracking.training import TrackingConfig
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
+
+_FLOWN = "eyas-flown"
+"""The tracker for flown drones: its drone begins as fast as its target."""
+
+_OF_A_FLOWN_DRONE = {
+    "tracker": {"supervised": False, "flight": "mended"},
+    "start": {"velocity": "target"},
+}
 
 
 class Flown(NamedTuple):
@@ -38,6 +44,7 @@ class Flown(NamedTuple):
     weather: str
     target: str = "SUMO_VEHICLE"
     latency: str = "0"
+    flown: bool = False
 
 
 def main() -> None:
@@ -57,10 +64,14 @@ def main() -> None:
     if None in (asked.run, asked.name, asked.title, asked.trained_on) or not asked.limit:
         parser.error("RUN, NAME, TITLE, --trained-on and --limit, or --measure, must be given")
     TRAINED.mkdir(exist_ok=True)
-    policy = shutil.copy(asked.run / "policy.onnx", TRAINED / f"{asked.name}.onnx")
+    file = "policy-flown.onnx" if asked.name == _FLOWN else "policy.onnx"
+    policy = shutil.copy(asked.run / file, TRAINED / f"{asked.name}.onnx")
     curve = shutil.copy(asked.run / "curve.csv", TRAINED / f"{asked.name}.csv")
-    tracker = asked.run / "tracking.json"
-    trained, flown = of_tracker(tracker) if tracker.is_file() else of_network(asked.run, curve)
+    config = load_settings(asked.run / "config.json")
+    tracks = config.train.method is Method.TRACKER
+    trained, flown = of_tracker(config) if tracks else of_network(config, curve)
+    flown = on_flown_drones() if asked.name == _FLOWN else flown
+    trained["command"] = command(asked.run, config)
     card = Card(
         title=asked.title,
         version=__version__,
@@ -72,27 +83,29 @@ def main() -> None:
     write(asked.name, card)
 
 
-def of_network(run: Path, curve: Path) -> tuple[dict[str, Any], list[Flown]]:
-    """Return what a card says of a run of `eyas train`, and what is flown."""
-    config = load_settings(run / "config.json")
+def of_network(config: EyasConfig, curve: Path) -> tuple[dict[str, Any], list[Flown]]:
+    """Return what a card says of a network, and what is flown."""
     learned = [(kind.world.map, kind.world.weather) for kind in settings_of_kinds(config)]
     with curve.open() as file:
         decisions = int(list(csv.DictReader(file))[-1]["decisions"])
     flown = [Flown("paper", *place) for place in learned] + [Flown("long", "citystreet", "day")]
-    return {"command": command(run, config), "decisions": decisions}, flown
+    return {"decisions": decisions}, flown
 
 
-def of_tracker(path: Path) -> tuple[dict[str, Any], list[Flown]]:
-    """Return what a card says of a run of `python -m eyas.learning.tracking`, and what is flown."""
-    config = validated(TrackingConfig, json.loads(path.read_text()), str(path))
-    command = f"python -m eyas.learning.tracking --seed {config.seed} --out {path.parent}"
-    shown = BATCH * sum(each.steps for each in config.rounds)
+def of_tracker(config: EyasConfig) -> tuple[dict[str, Any], list[Flown]]:
+    """Return what a card says of a tracker, and what is flown."""
     flown = [Flown("paper", place, weather) for place in MAPS for weather in WEATHERS]
     flown += [Flown("long", place, "day") for place in MAPS[:2]]
     flown += [Flown("distractor", MAPS[0], "day")]
     flown += [Flown("paper", MAPS[0], "day", target=name) for name in ("Pedestrian", "GhostDog")]
     flown += [Flown("paper", MAPS[0], "day", latency="80")]
-    return {"command": command, "decisions": shown, "entry_class": "box"}, flown
+    return {"decisions": config.train.tracker.pictures, "entry_class": "box"}, flown
+
+
+def on_flown_drones() -> list[Flown]:
+    """Return what is flown for the card of the tracker for flown drones."""
+    flown = [Flown("paper", place, "day", flown=True) for place in MAPS[:2]]
+    return [*flown, Flown("paper", MAPS[0], "day", latency="40", flown=True)]
 
 
 def write(name: str, card: Card) -> None:
@@ -129,6 +142,7 @@ def score(policy: Path, flown: Flown) -> Score:
         weathers=(flown.weather,),
         targets=(flown.target,),
         latency=flown.latency,
+        settings=_OF_A_FLOWN_DRONE if flown.flown else {},
     )
     records = [
         record for batch in batches(plan) for ended in fly_batch(plan, batch) for record in ended

@@ -1,29 +1,36 @@
 """Teaching the tracker's network: pictures, samples, lessons, its file."""
 
-from itertools import islice
+import json
+from contextlib import nullcontext
 
 import numpy as np
 import onnxruntime
 import pytest
 import torch
+from typer.testing import CliRunner
 
-from eyas.core.errors import DataFileError
+from eyas.cli.app import app
+from eyas.core.config import updated
+from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import Place
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.policies.tracker.detector import OUTPUTS
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.evaluation.policies.tracker.tracker import OBSERVED
 from eyas.evaluation.protocols import protocol_named
+from eyas.learning.tracking import flights
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.lessons import loss_of, taught
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.samples import GROUP, Samples
 from eyas.learning.tracking.shots import Shots, load, save
-from eyas.learning.tracking.training import Round, TrackingConfig, train
+from eyas.learning.tracking.training import train
+from eyas.settings.file import load_settings
+from eyas.settings.preset import preset_file
 
 SIZE = 24, 32
 ENV = env_config(
@@ -40,12 +47,12 @@ def network():
     return DetectorNetwork(SIZE, width=16, keys=8)
 
 
-def spots(flights=12, times=8):
+def spots(count=12, times=8):
     """Pictures with one white spot, which is the target, or none."""
     rng = np.random.default_rng(5)
-    picture = rng.integers(0, 60, (flights, times, 3, *SIZE)).astype(np.uint8)
-    place = rng.uniform(2.0, (SIZE[1] - 2, SIZE[0] - 2), (flights, times, 2)).astype(np.float32)
-    share = (rng.random((flights, times)) < 0.7).astype(np.float32)
+    picture = rng.integers(0, 60, (count, times, 3, *SIZE)).astype(np.uint8)
+    place = rng.uniform(2.0, (SIZE[1] - 2, SIZE[0] - 2), (count, times, 2)).astype(np.float32)
+    share = (rng.random((count, times)) < 0.7).astype(np.float32)
     for flight, time in np.argwhere(share > 0):
         column, row = place[flight, time].astype(int)
         picture[flight, time, :, row - 1 : row + 2, column - 1 : column + 2] = 250
@@ -122,25 +129,98 @@ def test_pictures_of_flights(policy, who, tmp_path):
         np.testing.assert_allclose(shots.expected[:, 0], shots.place[:, 0], atol=1.5)
 
 
-def trained(folder, lines=None, seed=0):
+ROUNDS = [{"flights": 1, "steps": 10}, {"flights": 0, "steps": 10}]
+
+
+def config(**changes):
+    """Settings of a small training."""
+    small = {
+        "env": {"observation": {"width": SIZE[1], "height": SIZE[0]}},
+        "train": {"tracker": {"rounds": ROUNDS}},
+    }
+    return updated(updated(load_settings(preset_file("eyas")), small), changes)
+
+
+class StoppedError(Exception):
+    """A training is interrupted."""
+
+
+def trained(folder, lines=None, resume=False, **changes):
     """Train on pictures that are there already; stop after some lines."""
     folder.mkdir(exist_ok=True)
     save(spots(), folder / "shots-000.npz")
-    rounds = Round(batches=1, steps=10), Round(batches=0, steps=10)
-    config = TrackingConfig(seed=seed, width=SIZE[1], rounds=rounds)
-    for _ in islice(train(config, folder), lines):
-        pass
+    said = []
+
+    def say(line):
+        said.append(line)
+        if len(said) == lines:
+            raise StoppedError
+
+    with nullcontext() if lines is None else pytest.raises(StoppedError):
+        train(config(**changes), folder, resume=resume, say=say)
     return {name: (folder / name).read_bytes() for name in ("policy.onnx", "curve.csv")}
 
 
 def test_an_interrupted_training_goes_on_to_the_same_bytes(tmp_path):
     whole = trained(tmp_path / "whole")
     assert len(whole["curve.csv"].splitlines()) == 21
-    first = trained(tmp_path / "cut", lines=15)  # in the second round
+    first = trained(tmp_path / "cut", lines=16)  # in the second round
     assert first["policy.onnx"] != whole["policy.onnx"]
-    assert trained(tmp_path / "cut") == whole
-    with pytest.raises(DataFileError, match="other settings"):
-        trained(tmp_path / "cut", seed=1)
+    assert trained(tmp_path / "cut", resume=True) == whole
+    with pytest.raises(OutputError, match="has a run already"):
+        trained(tmp_path / "cut")
+    with pytest.raises(OutputError, match="other settings"):
+        trained(tmp_path / "cut", resume=True, seed=1)
+
+
+def test_another_build_does_not_go_on(tmp_path):
+    trained(tmp_path, lines=16)
+    build = json.loads((tmp_path / "build.json").read_text())
+    build["rooms"]["task"] = "another"
+    (tmp_path / "build.json").write_text(json.dumps(build))
+    with pytest.raises(OutputError, match="differs from this one in task; resume with that"):
+        trained(tmp_path, resume=True)
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"world": {"map": "village"}}, "world: not allowed here"),
+        ({"env": {"actions": "discrete"}}, "env: not allowed here"),
+        ({"env": {"observation": {"height": 32}}}, "32x32 is not allowed: .* such as 80x60"),
+        ({"train": {"begin_from": "runs/eyas"}}, "begin_from: not allowed"),
+    ],
+)
+def test_what_would_change_nothing_is_refused(changes, why, tmp_path):
+    with pytest.raises(ConfigError, match=why):
+        train(config(**changes), tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_steps_are_pictures_in_lessons():
+    tracker = load_settings(preset_file("eyas")).train.tracker
+    assert tracker.pictures == 448_000
+    small = updated(tracker, {"rounds": tracker.scaled_rounds(12_800)})
+    assert [(each.flights, each.steps) for each in small.rounds] == [(1, 29), (1, 26), (0, 46)]
+    with pytest.raises(ConfigError, match=r"rounds.0.flights: 0 is not allowed"):
+        updated(tracker, {"rounds": [{"flights": 0, "steps": 5}]})
+
+
+def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
+    """The command with short flights, of the second round by what the first has taught."""
+    monkeypatch.setattr(flights, "_STEPS", 400)
+    monkeypatch.setattr(flights, "_FLIGHTS", 2)
+    out = tmp_path / "run"
+    command = ["train", "--preset", "eyas", "--steps", "256", "--out", str(out)]
+    size = ["--set", "env.observation.width=32", "--set", "env.observation.height=24"]
+    result = CliRunner().invoke(app, [*command, *size])
+    assert result.exit_code == 0, result.output
+    said = result.stdout.splitlines()
+    assert said[0] == "2 batches of 32 flights, 384 pictures in lessons"
+    assert "round 1: flights 2 of 2: " in result.stdout
+    assert said[-1] == str(out / "policy.onnx")
+    assert open_policy(said[-1], {}).env.observation.width == SIZE[1]
+    assert open_policy(str(out / "policy-flown.onnx"), {}).settings == FLOWN
 
 
 class Opens:
@@ -157,7 +237,7 @@ def test_a_network_of_others_runs_no_code(tmp_path):
     trained(tmp_path)
     torch.save(Opens(str(tmp_path / "run")), tmp_path / "round-0.pt")
     with pytest.raises(DataFileError, match=r"round-0\.pt: not a checkpoint"):
-        trained(tmp_path)
+        trained(tmp_path, resume=True)
     assert not (tmp_path / "run").exists()
 
 

@@ -230,7 +230,7 @@ def test_a_network_is_found_in_the_folder_and_must_be_the_same(board, tmp_path):
     assert "is not there" in only(entry).why
     shutil.copy(file_of("fast"), entry / "mine.onnx")
     assert only(entry).verdict is Verdict.VERIFIED
-    shutil.copy(file_of("robust"), entry / "mine.onnx")
+    shutil.copy(file_of("eyas"), entry / "mine.onnx")
     assert "the policy's file is another" in only(entry).why
 
 

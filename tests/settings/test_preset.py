@@ -19,7 +19,8 @@ from eyas.settings.preset import PRESETS, preset_file
 def test_an_environment_runs_with_each(name):
     env = TrackingEnv(name)
     env.reset(seed=0)
-    *_, info = env.step(6)
+    env.action_space.seed(0)
+    *_, info = env.step(env.action_space.sample())
     assert info["step"] == steps_per_action(env.config)
     assert env.config == settings_of_kinds(load_settings(preset_file(name)))[0]
 

@@ -132,12 +132,17 @@ def train(  # noqa: PLR0913  # one parameter for each option
     trust: Trust = False,
     method: Annotated[
         str | None,
-        typer.Option("--method", help="How to teach: ppo, dagger or dagger+ppo (train.method)."),
+        typer.Option(
+            "--method", help="How to teach: ppo, dagger, dagger+ppo or tracker (train.method)."
+        ),
     ] = None,
     steps: Annotated[
         int | None,
         typer.Option(
-            "--steps", min=1, help="Decisions of the whole run; stages keep their shares of it."
+            "--steps",
+            min=1,
+            help="Decisions of the whole run (of a tracker: pictures that it is taught with); "
+            "stages keep their shares of it.",
         ),
     ] = None,
     device: Annotated[
@@ -167,7 +172,7 @@ def train(  # noqa: PLR0913  # one parameter for each option
     if steps is not None:
         from eyas.core.config import updated
 
-        settings = updated(settings, {"train": {"stages": settings.train.scaled_stages(steps)}})
+        settings = updated(settings, {"train": settings.train.scaled(steps)})
     from eyas.modes.train import run
 
     policy = run(

@@ -222,6 +222,7 @@ def list_policies(*, as_json: AsJson = False) -> None:
                 f"CR {score.cr:.1f}  n {score.n}"
                 f"{'' if score.latency == '0' else f'  {score.latency} ms late'}"
                 f"{'' if score.target == 'SUMO_VEHICLE' else f'  {score.target}'}"
+                f"{'  flown drone' if score.flown else ''}"
             )
 
 

@@ -112,13 +112,20 @@ class RunFolder:
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
             progress = TrainingProgress(**saved["progress"])
+        self.refuse_other(build)
+        return progress
+
+    def refuse_other(self, build: Build) -> None:
+        """Refuse to go on with what another build has begun: it may compute other numbers.
+
+        Raises:
+            OutputError: The build differs from this one in a room that learning depends on.
+        """
         if differs := build.difference(this_build(), without=_NOT_LEARNED, libraries=True):
             raise OutputError(
                 f"{self.path}: trained by build {build.id} of Eyas, which differs from this one in "
-                f"{differs}; resume with that build, or begin another run from this one "
-                "(train.begin_from)"
+                f"{differs}; resume with that build, or begin another run"
             )
-        return progress
 
     def load_network(self, network: torch.nn.Module) -> None:
         """Set a network to what this run has learned.

@@ -8,7 +8,20 @@ from pydantic import Field, model_validator
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
-__all__ = ["Evaluation", "Imitation", "Method", "Stage", "TeacherKind", "TrainConfig"]
+__all__ = [
+    "LESSON",
+    "Evaluation",
+    "Imitation",
+    "Method",
+    "Round",
+    "Stage",
+    "TeacherKind",
+    "TrackerTraining",
+    "TrainConfig",
+]
+
+LESSON = 128
+"""Pictures in a step of learning of a tracker."""
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
@@ -24,6 +37,9 @@ class Method(StrEnum):
     """By a teacher: dataset aggregation (Ross et al. 2011, arXiv:1011.0686)."""
     DAGGER_PPO = "dagger+ppo"
     """By a teacher at first, then by rewards."""
+    TRACKER = "tracker"
+    """The network of a tracker that follows what its first box shows, from pictures of flights
+    (docs/following-one-target.md); settings: `tracker`, no others."""
 
 
 class TeacherKind(StrEnum):
@@ -89,6 +105,52 @@ class Imitation(Config):
     """Of Adam; it falls linearly to `train.final_rate` of this while the teacher teaches."""
 
 
+class Round(Config):
+    """A part of the training of a tracker: flights, then lessons from all pictures there are."""
+
+    flights: Annotated[int, Field(ge=0, le=100_000)]
+    """Batches of 32 flights, of an oracle in the first round, then of the tracker itself."""
+    steps: Annotated[int, Field(ge=1, le=100_000_000)]
+    """Steps of the optimiser, of 128 pictures each."""
+
+
+class TrackerTraining(Config):
+    """How a tracker is taught."""
+
+    rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
+        Round(flights=18, steps=1000),
+        Round(flights=12, steps=900),
+        Round(flights=0, steps=1600),
+    )
+    """Flights and lessons; the first round needs flights."""
+    learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
+    """Of AdamW; in each round it rises to this and falls to a fiftieth of it."""
+
+    @property
+    def pictures(self) -> int:
+        """Pictures in all lessons, with those that come more than once."""
+        return LESSON * sum(each.steps for each in self.rounds)
+
+    def scaled_rounds(self, total: int) -> list[dict[str, int]]:
+        """Return the rounds with `total` pictures in all lessons, each with its share of steps and
+        flights, at least 1 where there were any.
+        """
+        factor = total / self.pictures
+        return [
+            {
+                "flights": max(round(each.flights * factor), min(each.flights, 1)),
+                "steps": max(round(each.steps * factor), 1),
+            }
+            for each in self.rounds
+        ]
+
+    @model_validator(mode="after")
+    def _check_first(self) -> Self:
+        if not self.rounds[0].flights:
+            raise ValueError("rounds.0.flights: 0 is not allowed: nothing to learn from")
+        return self
+
+
 class TrainConfig(Config):
     """How a network is taught; see `Method`."""
 
@@ -96,6 +158,8 @@ class TrainConfig(Config):
     """By rewards, by a teacher, or first by a teacher."""
     imitation: Imitation = Imitation()
     """How a teacher teaches."""
+    tracker: TrackerTraining = TrackerTraining()
+    """How a tracker is taught."""
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
@@ -160,7 +224,7 @@ class TrainConfig(Config):
     def taught_decisions(self) -> int:
         """Decisions at the beginning of a run in which a teacher teaches."""
         match self.method:
-            case Method.PPO:
+            case Method.PPO | Method.TRACKER:
                 return 0
             case Method.DAGGER:
                 return self.run_decisions
@@ -172,6 +236,12 @@ class TrainConfig(Config):
     def run_decisions(self) -> int:
         """Decisions of all stages."""
         return sum(map(self.updates_of, self.stages)) * self.update_decisions
+
+    def scaled(self, total: int) -> dict[str, Any]:
+        """Return the changes that make it a run of `total` decisions, or pictures of a tracker."""
+        if self.method is Method.TRACKER:
+            return {"tracker": {"rounds": self.tracker.scaled_rounds(total)}}
+        return {"stages": self.scaled_stages(total)}
 
     def scaled_stages(self, total: int) -> list[dict[str, Any]]:
         """Return the stages with `total` decisions together, each with its share, at least 1."""

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from eyas.core.errors import ConfigError, MissingExtraError
+from eyas.learning.config import Method
 from eyas.settings.config import EyasConfig
 
 __all__ = ["run"]
@@ -27,6 +28,17 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     except ModuleNotFoundError as error:
         raise MissingExtraError("training", "train") from error
     say = (lambda _: None) if quiet else _say
+    if config.train.method is Method.TRACKER:
+        from eyas.learning.tracking.training import train as train_tracker
+
+        if ray:
+            raise ConfigError("--ray: not allowed for a tracker: it is taught in one process")
+        if config.train.device is not None:
+            raise ConfigError(
+                f"train.device: '{config.train.device}' is not allowed for a tracker: it is taught "
+                "on this processor"
+            )
+        return train_tracker(config, folder, resume=resume, say=say)
     if not ray:
         return train(config, folder, resume=resume, say=say)
     if config.train.device is not None:

@@ -57,6 +57,7 @@ def _scores(card: Card) -> str:
 def _row(score: Score) -> str:
     changed = score.target if score.target != "SUMO_VEHICLE" else ""
     late = f"{score.latency} ms late" if score.latency != "0" else ""
-    protocol = ", ".join(filter(None, (score.protocol, changed, late)))
+    drone = "flown drone" if score.flown else ""
+    protocol = ", ".join(filter(None, (score.protocol, changed, late, drone)))
     cells = (protocol, score.map, score.weather, str(score.n))
     return f"| {' | '.join(cells)} | {score.cr:.1f} | {score.tsr:.3f} |"

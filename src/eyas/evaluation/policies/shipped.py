@@ -25,6 +25,8 @@ class Score(Config):
     target: str = "SUMO_VEHICLE"
     latency: str = "0"
     """[ms]"""
+    flown: bool = False
+    """Whether its flight controller flies the drone, which begins at its target's velocity."""
     n: int
     """Number of episodes."""
     cr: float

@@ -8,16 +8,14 @@ import torch
 from torch import Tensor
 
 from eyas.evaluation.policies.tracker.detector import STRIDE
+from eyas.learning.config import LESSON
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.samples import GROUP, Sample, Samples
 
-__all__ = ["BATCH", "Loss", "Progress", "loss_of", "taught"]
+__all__ = ["Loss", "Progress", "loss_of", "taught"]
 
-_GROUPS = 32
+_GROUPS = LESSON // GROUP
 """In a step."""
-
-BATCH = _GROUPS * GROUP
-"""Pictures in a step."""
 
 _SHOWN = 0.6
 """Share of the other pictures of a group whose keys make the target's."""

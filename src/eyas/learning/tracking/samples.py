@@ -86,10 +86,10 @@ class Samples:
         """Return flights and instants, shape (groups, GROUP)."""
         rng = self._rng
         rows, first = self._flown[rng.integers(len(self._flown), size=groups)].T
-        hard = rng.random(groups) < _HARD
+        hard = (rng.random(groups) < _HARD) & bool(len(self._difficult))
         rows, first = rows.copy(), first.copy()
         rows[hard], first[hard] = self._difficult[
-            rng.integers(len(self._difficult), size=int(hard.sum()))
+            rng.integers(max(len(self._difficult), 1), size=int(hard.sum()))
         ].T
         last = self._last[rows][:, None]
         times = (rng.random((groups, GROUP)) * last).astype(np.int64)

@@ -6,25 +6,25 @@ must learn.
 """
 
 import io
+import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Annotated
 
 import numpy as np
 import torch
-from pydantic import Field
 
-from eyas.core.config import Config
-from eyas.core.errors import DataFileError
+from eyas.core.build import Build, this_build
+from eyas.core.config import updated
+from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.core.rng import stream
-from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import OBSERVED, Tracker
-from eyas.learning.checkpoint import readable
+from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
+from eyas.evaluation.policies.tracker.tracker import Tracker
+from eyas.learning.checkpoint import RunFolder, readable
+from eyas.learning.config import TrackerTraining
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.flights import Pilot, flown
 from eyas.learning.tracking.lessons import taught
@@ -32,104 +32,150 @@ from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.samples import Samples
 from eyas.learning.tracking.shots import Shots, load, save
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+from eyas.settings.preset import preset_file
 
-__all__ = ["Round", "TrackingConfig", "train"]
+__all__ = ["train"]
 
-Count = Annotated[int, Field(ge=1, le=100_000_000)]
-
-
-class Round(Config):
-    """Flights, then steps of learning from all pictures there are."""
-
-    batches: Annotated[int, Field(ge=0, le=100_000)]
-    """Batches of flights, of 32 flights each; the first round needs some."""
-    steps: Count
-    """Steps of learning, of 128 pictures each."""
+Say = Callable[[str], None]
 
 
-class TrackingConfig(Config):
-    """How a tracker is trained."""
+def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = print) -> Path:
+    """Train a tracker; return the path of the ONNX file. Beside it is another with the same network
+    for flown drones, `policy-flown.onnx`.
 
-    seed: Annotated[int, Field(ge=0)] = 0
-    width: Annotated[int, Field(ge=16, le=640, multiple_of=16)] = 80
-    """Of the pictures [pixels]; their height is three quarters of it."""
-    rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
-        Round(batches=18, steps=1000),
-        Round(batches=12, steps=900),
-        Round(batches=0, steps=1600),
-    )
-    """The first has flights of the oracle, later ones add flights of what was learned before."""
-    rate: Annotated[float, Field(gt=0.0, le=1.0)] = 2e-3
-    """Largest rate of learning."""
-    tracker: TrackerSettings = TrackerSettings()
-
-
-def train(config: TrackingConfig, folder: Path) -> Iterator[str]:
-    """Train, yielding lines of progress with the CPU time; `policy.onnx` is then in the folder.
-
-    A training that was interrupted goes on with the next batch of flights or round of lessons when
-    it is begun again: pictures and what was learned are kept in the folder.
+    A run that is resumed goes on with the next batch of flights or round of lessons, and gives the
+    same: pictures and what was learned are kept in the folder.
 
     Args:
-        config: The settings.
-        folder: Is made if it does not exist.
+        config: The settings: those of the preset `eyas`, with any seed, size of the pictures and
+            `train.tracker`.
+        folder: Where the run is kept.
+        resume: Whether to continue the run in the folder.
+        say: Called with a line for each batch, and ten times in each round of lessons.
 
     Raises:
-        DataFileError: A training with other settings is there.
+        EyasError: A setting is wrong, or the folder; one line.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    said, settings = folder / "tracking.json", config.model_dump_json(indent=1).encode()
-    if said.is_file() and said.read_bytes() != settings:
-        raise DataFileError(f"{said}: a training with other settings is in this folder")
-    write_atomic(said, settings)
-    torch.set_num_threads(1)
-    torch.manual_seed(config.seed)
-    height = config.width * 3 // 4
-    image = {**OBSERVED, "width": config.width, "height": height}
-    env = env_config({"actions": "velocity", "observation": image, "action_repeat": 4})
-    network = DetectorNetwork((height, config.width))
-    network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-    shots: list[Shots] = []
-    for number, each in enumerate(config.rounds):
-        make = partial(Oracle, env) if number == 0 else partial(_pupil, folder / "policy.onnx")
-        for batch in range(len(shots), len(shots) + each.batches):
-            shots.append(_kept(folder / f"shots-{batch:03d}.npz", make, batch, config.seed))
-            yield f"round {number}: batch {batch}, {shots[-1].flown.sum()} pictures"
-        learned = folder / f"round-{number}.pt"
+    _refuse_unlike(config)
+    files = RunFolder(folder)
+    files.begin(config, resume=resume)
+    _refuse_other_build(files, folder / "build.json")
+    run = _Run(config, folder, say)
+    batches = sum(each.flights for each in run.training.rounds)
+    say(f"{batches} batches of 32 flights, {run.training.pictures:,} pictures in lessons")
+    for number in range(len(run.training.rounds)):
+        run.round(number)
+    run.export(FLOWN, folder / "policy-flown.onnx")
+    return files.policy
+
+
+def _refuse_unlike(config: EyasConfig) -> None:
+    """Refuse settings that would change nothing.
+
+    Raises:
+        ConfigError: There is one, or no such picture can be seen.
+    """
+    seen = config.env.observation
+    size = {"width": seen.width, "height": seen.height}
+    wanted = updated(load_settings(preset_file("eyas")), {"env": {"observation": size}})
+    for name in sorted(EyasConfig.model_fields.keys() - {"mode", "seed", "train"}):
+        if getattr(config, name) != getattr(wanted, name):
+            raise ConfigError(
+                f"{name}: not allowed here: a tracker's flights have all maps, weathers and "
+                "targets; besides preset 'eyas' only seed, train.tracker and the width and height "
+                "in env.observation can be chosen"
+            )
+    if seen.width % 16 or 4 * seen.height != 3 * seen.width:
+        raise ConfigError(
+            f"env.observation: {seen.width}x{seen.height} is not allowed: a tracker sees pictures "
+            "of 4 to 3 whose width is a multiple of 16, such as 80x60"
+        )
+    if config.train.begin_from is not None:
+        raise ConfigError("train.begin_from: not allowed for a tracker: it begins anew")
+
+
+def _refuse_other_build(files: RunFolder, path: Path) -> None:
+    """Note the build that begins a run, or refuse one that another has begun.
+
+    Raises:
+        EyasError: Another build has, or the file cannot be read.
+    """
+    if path.is_file():
+        with readable(path):
+            build = Build(**json.loads(path.read_text()))
+        files.refuse_other(build)
+    write_atomic(path, this_build().model_dump_json(indent=1).encode())
+
+
+class _Run:
+    """A run and how far it has come."""
+
+    def __init__(self, config: EyasConfig, folder: Path, say: Say) -> None:
+        self.training: TrackerTraining = config.train.tracker
+        self._config, self._folder, self._say = config, folder, say
+        self._begun = time.process_time()
+        torch.set_num_threads(1)
+        torch.manual_seed(config.seed)
+        seen = config.env.observation
+        self._network = DetectorNetwork((seen.height, seen.width))
+        self._network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        self._shots: list[Shots] = []
+
+    def round(self, number: int) -> None:
+        """Fly and learn; or take what is kept of an earlier run."""
+        policy, env = self._folder / "policy.onnx", self._config.env
+        make = partial(Oracle, env) if number == 0 else partial(_pupil, policy)
+        for _ in range(self.training.rounds[number].flights):
+            self._fly(make, number)
+        learned = self._folder / f"round-{number}.pt"
         if learned.is_file():
             with readable(learned):  # a file of others runs no code
-                network.load_state_dict(torch.load(learned, weights_only=True))
-            continue
-        yield from _lessons(config, number, network, Shots.joined(shots), folder)
-        export(network, env, config.tracker, folder / "policy.onnx")
+                self._network.load_state_dict(torch.load(learned, weights_only=True))
+            return
+        self._learn(number)
+        self.export(TrackerSettings(), policy)
         content = io.BytesIO()
-        torch.save(network.state_dict(), content)
+        torch.save(self._network.state_dict(), content)
         write_atomic(learned, content.getvalue())
 
+    def export(self, settings: TrackerSettings, path: Path) -> None:
+        """Write the network as it is, for a tracker with these settings."""
+        export(self._network, self._config.env, settings, path)
 
-def _lessons(
-    config: TrackingConfig, number: int, network: DetectorNetwork, shots: Shots, folder: Path
-) -> Iterator[str]:
-    """Teach in a round; yield lines of progress, and add them to `curve.csv`."""
-    rng = stream(config.seed, "tracking lessons", number)
-    path, begun = folder / "curve.csv", time.process_time()
-    curve = path.read_text() if number > 0 else "round,step,loss,right\n"
-    lessons = taught(network, Samples(shots, rng), config.rounds[number].steps, config.rate, rng)
-    for step, loss, right in lessons:
-        curve += f"{number},{step},{loss:.4f},{right:.4f}\n"
-        spent = time.process_time() - begun
-        yield f"round {number}: step {step}: loss {loss:.3f}, right {right:.3f}, CPU {spent:.0f} s"
-    write_atomic(path, curve.encode())
+    def _fly(self, make: Callable[[np.random.Generator], Pilot], number: int) -> None:
+        """Fly the next batch, unless its pictures are there."""
+        batch = len(self._shots)
+        path = self._folder / f"shots-{batch:03d}.npz"
+        if not path.is_file():
+            save(next(flown(make, range(batch, batch + 1), self._config.seed)), path)
+        self._shots.append(load(path))
+        batches = sum(each.flights for each in self.training.rounds)
+        pictures = self._shots[-1].flown.sum()
+        self._tell(f"round {number}: flights {batch + 1} of {batches}: {pictures:,} pictures")
+
+    def _learn(self, number: int) -> None:
+        """Teach in a round, and add how it went to `curve.csv`."""
+        each = self.training.rounds[number]
+        rng = stream(self._config.seed, "tracking lessons", number)
+        path = self._folder / "curve.csv"
+        curve = path.read_text() if number > 0 else "round,step,loss,right\n"
+        samples = Samples(Shots.joined(self._shots), rng)
+        rate = self.training.learning_rate
+        for step, loss, right in taught(self._network, samples, each.steps, rate, rng):
+            curve += f"{number},{step},{loss:.4f},{right:.4f}\n"
+            self._tell(
+                f"round {number}: step {step:,} of {each.steps:,}: loss {loss:.3f}, "
+                f"right {right:.3f}"
+            )
+        write_atomic(path, curve.encode())
+
+    def _tell(self, line: str) -> None:
+        self._say(f"{line}  CPU {time.process_time() - self._begun:.0f} s")
 
 
 def _pupil(policy: Path, rng: np.random.Generator) -> Pupil:
     tracker = open_policy(str(policy), {})
     assert isinstance(tracker, Tracker)
     return Pupil(tracker, rng)
-
-
-def _kept(path: Path, make: Callable[[np.random.Generator], Pilot], batch: int, seed: int) -> Shots:
-    """Return a batch of flights, from its file if it has been flown before."""
-    if not path.is_file():
-        save(next(flown(make, range(batch, batch + 1), seed)), path)
-    return load(path)

@@ -101,6 +101,7 @@ def _differences(found: Expected, wanted: Expected) -> list[str]:
         return ["its rows are others than the documents'"]
     return [
         f"{new.label}, {name}: {new.cells[name]} here, {old.cells.get(name)} in the documents"
+        + (f" (of build {old.build_id})" if old.build_id else "")
         for new, old in zip(found.rows, wanted.rows, strict=True)
         for name in new.cells
         if new.cells[name] != old.cells.get(name)
@@ -131,5 +132,6 @@ def write_expected(name: str, found: Expected) -> None:
     """Make figures those of the documents, see `tools/write_tables.py`."""
     path = Path(__file__).parent / "expected" / f"{name}.json"
     path.parent.mkdir(exist_ok=True)
-    content = json.dumps(found.model_dump(mode="json"), indent=1, ensure_ascii=False) + "\n"
+    said = found.model_dump(mode="json", exclude_none=True)
+    content = json.dumps(said, indent=1, ensure_ascii=False) + "\n"
     write_atomic(path, content.encode())

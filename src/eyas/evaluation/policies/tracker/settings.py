@@ -6,7 +6,7 @@ from pydantic import Field
 
 from eyas.core.config import Config
 
-__all__ = ["TrackerSettings"]
+__all__ = ["FLOWN", "TrackerSettings"]
 
 Positive = Annotated[float, Field(gt=0.0, le=1e3)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
@@ -43,3 +43,8 @@ class TrackerSettings(Config):
     """Largest distance of a place from the expected one, in standard deviations."""
     gain: Share = 0.6
     """Share of the distance from the middle that an action makes up for."""
+
+
+FLOWN = TrackerSettings(gain=0.05)
+"""For a drone that its flight controller flies: it cannot follow commands at once, so that a larger
+gain makes it swing about its target."""
