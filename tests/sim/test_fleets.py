@@ -21,8 +21,15 @@ LOOKS_LIKE = {
 }
 
 
+OTHERS = [kind for kind in LOOKS_LIKE if kind is not VehicleType.TRUCK]
+"""SUMO drives ten minutes of each; all are drawn in a mixed fleet below."""
+
+
 @pytest.mark.sumo
-@pytest.mark.parametrize("vehicle", LOOKS_LIKE)
+@pytest.mark.parametrize(
+    "vehicle",
+    [VehicleType.TRUCK, *(pytest.param(kind, marks=pytest.mark.thorough) for kind in OTHERS)],
+)
 def test_a_fleet_is_followed_and_drawn_as_what_it_is(vehicle):
     config = SimConfig(
         start=StartConfig(pitch=1.37, height=22.0), traffic=TrafficConfig(vehicle_type=vehicle)

@@ -206,11 +206,10 @@ def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
     # One entry for each kind: whoever adds another to a world makes the parts of that one only.
     made = [_parts_of(kind) for kind in _chosen(kinds)]
-    parts, lamps = (
-        tuple(itertools.chain.from_iterable(each))
-        for each in ([one.parts for one in made], [one.lamps for one in made])
+    return PartLibrary(
+        tuple(itertools.chain.from_iterable(one.parts for one in made)),
+        tuple(itertools.chain.from_iterable(one.lamps for one in made)),
     )
-    return PartLibrary(parts, lamps)
 
 
 def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:

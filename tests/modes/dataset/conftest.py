@@ -25,7 +25,7 @@ TINY = {
     "splits": {
         "train": {"share": 0.5, "maps": ["citystreet"]},
         "val": {"share": 0.25, "maps": ["simpleway-grass"]},
-        "test": {"share": 0.25, "maps": ["desert-bare"]},
+        "test": {"share": 0.25, "maps": ["lake"]},
     },
     "weathers": ["day", "night"],
     "heights": [15.0, {"uniform": [13.0, 25.0]}],

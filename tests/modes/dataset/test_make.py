@@ -149,6 +149,7 @@ def test_an_interrupt_is_one_line(recipe_file, start, tmp_path):
     process = start("make", recipe_file, "--out", tmp_path / "out", "--workers", "2")
     until = time.monotonic() + 300
     while not (tmp_path / "out" / "making.json").exists():
+        assert process.poll() is None, process.communicate()
         assert time.monotonic() < until
         time.sleep(0.02)
     process.send_signal(subprocess.signal.SIGINT)
