@@ -4,8 +4,8 @@
     python bench/mavlink.py --vehicles 20 --pictures 10 --width 320 --height 240
 
 Each vehicle flies, sends the usual messages, and place, attitude, quaternion and IMU 100 times a
-second, and its pictures as H.264 to a port where nobody listens. Time is not waited for, so that other
-programs on the machine change little.
+second, and its pictures as H.264 to a port where nobody listens. Time is not waited for, so that
+other programs on the machine change little.
 """
 
 import argparse
@@ -13,13 +13,14 @@ import math
 import socket
 import time
 
-from pymavlink.dialects.v20 import common
-
 from eyas.core.config import updated
+from eyas.mavlink.dialect import dialect
 from eyas.mavlink.fleet import Fleet
 from eyas.modes.serve.mavlink import AS_FLOWN
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import together
+
+common = dialect()
 
 FAST = (
     "GLOBAL_POSITION_INT",

@@ -96,7 +96,7 @@ class Bench:
         self.pilot.parameters.values |= {"MIS_TAKEOFF_ALT": height, "MPC_TKO_SPEED": 4.0}
         assert self.command("COMPONENT_ARM_DISARM", 1) == 0
         assert self.command("NAV_TAKEOFF") == 0
-        self.fly(height / 4.0 + 3.0)
+        self.fly(height / 4.0 + 4.0)
 
     def stay_over_target(self, height=25.0):
         """Put the vehicle over its target, whose camera looks down."""

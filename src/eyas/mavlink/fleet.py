@@ -11,7 +11,7 @@ from eyas.mavlink.camera import Lens
 from eyas.mavlink.config import MavlinkConfig
 from eyas.mavlink.endpoint import parsed_address
 from eyas.mavlink.frames import Geodesy
-from eyas.mavlink.modes import Mode
+from eyas.mavlink.modes import Landed, Mode
 from eyas.mavlink.places import standing_places
 from eyas.mavlink.readings import Readings
 from eyas.mavlink.targets import Sights, seen_in
@@ -19,6 +19,7 @@ from eyas.mavlink.vehicle import Vehicle
 from eyas.mavlink.video import Stream, VideoSender
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
+from eyas.task.config import Crash
 
 __all__ = ["Fleet"]
 
@@ -174,9 +175,13 @@ class Fleet:
             self._simulation.set_fields_of_view(fields)
 
     def _tell_crashes(self) -> None:
+        """Report what flying vehicles touch, where contacts are computed."""
+        if self._simulation.config.done.crash is Crash.ORIGINAL:
+            return
         crashed = self._simulation.snapshot.episodes.crash
         for at in np.flatnonzero(crashed & ~self._crashed).tolist():
-            self.vehicles[at].pilot.said.append((2, "Crashed"))
+            if self.vehicles[at].pilot.landed is Landed.AIR:
+                self.vehicles[at].pilot.said.append((2, "Crashed"))
         self._crashed = crashed.copy()
 
     def _begin_traffic_anew(self) -> None:

@@ -12,8 +12,12 @@ DEFAULTS: dict[str, float | int] = {
     "COM_DISARM_PRFLT": 10.0,  # armed, without taking off, it disarms [s]
     "COM_DL_LOSS_T": 10,  # without a ground station's heartbeat, it holds [s]
     "COM_OF_LOSS_T": 1.0,  # without a set point in offboard mode, it holds [s]
+    "FLW_TGT_ALT_M": 0,  # it, _FA, _MAX_VEL and _RS have no effect; MAVSDK sets them
     "FLW_TGT_DST": 8.0,  # distance kept from what it follows [m]
     "FLW_TGT_HT": 8.0,  # height over the place of take-off while it follows [m]
+    "FLW_TGT_FA": 180.0,
+    "FLW_TGT_MAX_VEL": 5.0,
+    "FLW_TGT_RS": 0.1,
     "MIS_TAKEOFF_ALT": 2.5,  # height of take-off [m]
     "MPC_ACC_HOR": 5.0,  # [m/s^2]
     "MPC_LAND_SPEED": 0.7,  # [m/s]
