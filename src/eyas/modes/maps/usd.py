@@ -15,17 +15,17 @@ from PIL import Image
 from eyas.core.errors import ConfigError, MissingExtraError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.scratch import scratch
-from eyas.exports.gltf.file import PLAIN, light_factors
 from eyas.exports.gltf.world import CANDELAS, towards
 from eyas.exports.scene_parts import copies_of, parts_of, prototypes_of
 from eyas.mesh.flat import flat_polygon
+from eyas.modes.maps.usd_materials import Materials
 from eyas.sim.scenes import load_scene, load_textures
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.maps import MAPS
 
 if TYPE_CHECKING:
-    from pxr import Usd, UsdShade
+    from pxr import Usd
 
 __all__ = ["ENDINGS", "run"]
 
@@ -37,9 +37,6 @@ _RADIUS = 0.1
 
 _TOUCHED = {ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT}
 """What is solid by its triangles; all else that is solid has colliders of its own."""
-
-_SHINING = {Surface.LAMP, Surface.SIGNAL}
-_ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 
 
 def run(name: str, seed: int, path: Path, detail: int) -> int:
@@ -95,11 +92,16 @@ class _Stage:
 
     def __init__(self, stage: "Usd.Stage", scene: Scene, folder: str, detail: int) -> None:
         self.stage, self.triangles = stage, 0
-        self.textures: set[str] = set()
-        self._scene, self._folder, self._detail = scene, folder, detail
+        self._shown = Materials(stage.GetRootLayer(), folder)
+        self._scene, self._detail = scene, detail
         self._root = f"/{_valid(scene.name)}"
-        self._materials: dict[Material, UsdShade.Material] = {}
+        self._materials: dict[Material, str] = {}
         self._used: Counter[str] = Counter()
+
+    @property
+    def textures(self) -> set[str]:
+        """Names of the textures that its materials show."""
+        return self._shown.textures
 
     def fill(self, notice: str) -> None:
         """Add everything.
@@ -117,6 +119,7 @@ class _Stage:
         Usd.ModelAPI(root).SetKind(Kind.Tokens.component)
         self.stage.GetRootLayer().documentation = "\n".join(["Made by Eyas.", notice]).strip()
         UsdPhysics.Scene.Define(self.stage, f"{self._root}/physics")
+        self._add_materials()
         self._add_parts()
         self._add_lamps()
         self._add_colliders()
@@ -215,7 +218,8 @@ class _Stage:
         if any(mesh.palette[index].surface is Surface.FOLIAGE for index in used):
             made.CreateDoubleSidedAttr(defaultValue=True)
         for index in used:
-            material = self._material(mesh.palette[index])
+            place = self._materials[mesh.palette[index]]
+            material = UsdShade.Material.Get(self.stage, place)
             prim = made.GetPrim()
             if len(used) > 1:
                 faces = np.flatnonzero(mesh.materials == index).astype(np.int32)
@@ -254,61 +258,22 @@ class _Stage:
         made.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(normals.astype(np.float32)))
         made.SetNormalsInterpolation(UsdGeom.Tokens.uniform)
 
-    def _material(self, material: Material) -> "UsdShade.Material":
-        """Return a material, added when it is first used."""
-        from pxr import Gf, Sdf, UsdGeom, UsdShade
+    def _add_materials(self) -> None:
+        """Add the materials of all meshes."""
+        from pxr import Sdf, UsdGeom
 
-        if material in self._materials:
-            return self._materials[material]
         group = f"{self._root}/materials"
-        if not self._materials:
-            UsdGeom.Scope.Define(self.stage, group)
-        path = f"{group}/{_valid(material.texture)}_{len(self._materials)}"
-        made = self._materials[material] = UsdShade.Material.Define(self.stage, path)
-        shader = UsdShade.Shader.Define(self.stage, f"{path}/surface")
-        shader.CreateIdAttr("UsdPreviewSurface")
-        types = Sdf.ValueTypeNames
-        tint = light_factors(material)
-        colour = shader.CreateInput("diffuseColor", types.Color3f)
-        if material.texture == PLAIN:
-            colour.Set(Gf.Vec3f(*tint))
-        else:
-            self._textured(path, material, tint, (shader, colour))
-        shader.CreateInput("roughness", types.Float).Set(_ROUGH.get(material.surface, 1.0))
-        if material.surface in _SHINING:
-            shader.CreateInput("emissiveColor", types.Color3f).Set(Gf.Vec3f(*tint))
-        made.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
-        return made
-
-    def _textured(
-        self, path: str, material: Material, tint: list[float], inputs: tuple[Any, Any]
-    ) -> None:
-        """Give a shader the colours of a texture, and holes if they are leaves."""
-        from pxr import Gf, Sdf, UsdShade
-
-        shader, colour = inputs
-        types = Sdf.ValueTypeNames
-        self.textures.add(material.texture)
-        reader = UsdShade.Shader.Define(self.stage, f"{path}/st")
-        reader.CreateIdAttr("UsdPrimvarReader_float2")
-        reader.CreateInput("varname", types.String).Set("st")
-        reader.CreateOutput("result", types.Float2)
-        texture = UsdShade.Shader.Define(self.stage, f"{path}/texture")
-        texture.CreateIdAttr("UsdUVTexture")
-        file = f"./{self._folder}/{material.texture}.png"
-        texture.CreateInput("file", types.Asset).Set(Sdf.AssetPath(file))
-        texture.CreateInput("st", types.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
-        for axis in "ST":
-            texture.CreateInput(f"wrap{axis}", types.Token).Set("repeat")
-        texture.CreateInput("sourceColorSpace", types.Token).Set("sRGB")
-        texture.CreateInput("scale", types.Float4).Set(Gf.Vec4f(*tint, 1.0))
-        texture.CreateOutput("rgb", types.Float3)
-        colour.ConnectToSource(texture.ConnectableAPI(), "rgb")
-        if material.surface is Surface.FOLIAGE:
-            texture.CreateOutput("a", types.Float)
-            opacity = shader.CreateInput("opacity", types.Float)
-            opacity.ConnectToSource(texture.ConnectableAPI(), "a")
-            shader.CreateInput("opacityThreshold", types.Float).Set(0.5)
+        UsdGeom.Scope.Define(self.stage, group)
+        prototypes = prototypes_of(self._scene.fixtures, self._detail)
+        meshes = [part.mesh for part in parts_of(self._scene)] + prototypes
+        with Sdf.ChangeBlock():  # through the stage, thousands of them would take long
+            for mesh in meshes:
+                for index in np.unique(mesh.materials).tolist():
+                    material = mesh.palette[index]
+                    if material not in self._materials:
+                        name = f"{_valid(material.texture)}_{len(self._materials)}"
+                        self._materials[material] = f"{group}/{name}"
+                        self._shown.add(f"{group}/{name}", material)
 
     def _add_lamps(self) -> None:
         from pxr import Gf, UsdGeom, UsdLux
