@@ -101,6 +101,7 @@ _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
 _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
 _SEERS = ("hover", "sighted", "constant-velocity")
+_SHORT = (*_SEERS, "fast", "eyas")
 
 
 def _short_flights() -> Iterator[Table]:
@@ -116,14 +117,14 @@ def _short_flights() -> Iterator[Table]:
         "protocols/paper.md",
         "Shipped policies in `paper`",
         _PAPER,
-        tuple(_rows(("sighted", "fast"), _BY_DAY, seeds=THREE_SETS)),
+        tuple(_rows(("sighted", "fast", "eyas"), _BY_DAY, seeds=THREE_SETS)),
     )
     yield Table(
         "standard",
         "protocols/standard.md",
         "`standard`",
         _PAPER[1:],
-        tuple(_rows((*_SEERS, "fast", "eyas"), _BY_DAY, protocol="standard")),
+        tuple(_rows(_SHORT, _BY_DAY, protocol="standard")),
     )
     yield Table(
         "conditions",
@@ -137,7 +138,7 @@ def _short_flights() -> Iterator[Table]:
         "protocols/unseen.md",
         "`unseen`, six towns by day",
         _PAPER[1:],
-        _flown("unseen", _SEERS),
+        _flown("unseen", _SHORT),
     )
 
 
