@@ -75,11 +75,13 @@ def level():
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item, call):
     """Where EYAS_TEST_NO_SKIP is set (CI), a skipped test has failed: nothing may be missing but a
-    graphics processor.
+    graphics processor and checkers of formats that pip does not bring.
     """
     report = (yield).get_result()
     missing = report.skipped and not hasattr(report, "wasxfail")
-    if os.environ.get("EYAS_TEST_NO_SKIP") and missing and not item.get_closest_marker("card"):
+    if os.environ.get("EYAS_TEST_NO_SKIP") and missing and not (
+        item.get_closest_marker("card") or item.get_closest_marker("checker")
+    ):
         report.outcome = "failed"
         report.longrepr = f"skipped, which is not allowed here: {report.longrepr}"
 

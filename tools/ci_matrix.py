@@ -29,7 +29,7 @@ TESTS = (
 )
 """Quick tests that a plain install can run: they need no extras."""
 
-TESTERS = ("pytest>=8", "hypothesis>=6.100", "pytest-xdist>=3.6", "pygame>=2.6")
+TESTERS = ("pytest>=8", "hypothesis>=6.100", "pytest-xdist>=3.6", "pygame>=2.6", "jsonschema>=4.20")
 
 LEFT_OUT = "not (test_each_command_refuses_and_is_told_to_trust_by_a_flag and train)"
 """All but a test that needs the extra `train`."""

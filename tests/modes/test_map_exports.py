@@ -146,6 +146,7 @@ def test_lamps_shine_where_they_are_aimed(written, scene):
         np.testing.assert_allclose(shines, axis, atol=1e-5)
 
 
+@pytest.mark.checker
 def test_the_validator_has_nothing_to_remark(written):
     """Needs node, and `NODE_PATH` where the package gltf-validator is."""
     node = shutil.which("node")
@@ -191,6 +192,7 @@ def test_roads_and_traffic_lights_are_in_opendrive(roads, tmp_path):
 
 
 @pytest.mark.sumo
+@pytest.mark.checker
 def test_asams_checker_finds_no_issue(roads, tmp_path):
     checker = shutil.which("qc_opendrive")
     if checker is None:
