@@ -79,8 +79,10 @@ def pytest_runtest_makereport(item, call):
     """
     report = (yield).get_result()
     missing = report.skipped and not hasattr(report, "wasxfail")
-    if os.environ.get("EYAS_TEST_NO_SKIP") and missing and not (
-        item.get_closest_marker("card") or item.get_closest_marker("checker")
+    if (
+        os.environ.get("EYAS_TEST_NO_SKIP")
+        and missing
+        and not (item.get_closest_marker("card") or item.get_closest_marker("checker"))
     ):
         report.outcome = "failed"
         report.longrepr = f"skipped, which is not allowed here: {report.longrepr}"
