@@ -54,6 +54,7 @@ PARTS = MovingParts(
     np.full((48, 64), -1, np.int32), np.ones((48, 64), np.float32), np.zeros(0, np.int32),
     np.zeros((0, 3, 4), np.float32),
 )  # fmt: skip
+BAGS = ["rosbag/.rosbag_0.db3.part", "rosbag-mcap/.rosbag-mcap_0.mcap.part"]
 PICTURES = sorted(
     f"{place}{number:06d}.{kind}"
     for place, kind in (
@@ -130,7 +131,7 @@ def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     (tmp_path / "episode0" / "notes.txt").write_text("mine")
     files = write(tmp_path / "episode0", 2)
     assert names_in(tmp_path / "episode0") == sorted(
-        [".episode.mp4.part", *FLOW, *PICTURES, "notes.txt"]
+        [".episode.mp4.part", *BAGS, *FLOW, *PICTURES, "notes.txt"]
     )
     files.finish()
 
