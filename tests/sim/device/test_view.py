@@ -37,7 +37,7 @@ CASES = {
 class Kept:
     """One that keeps what it is given."""
 
-    def draw(self, cameras, movers, rgb):
+    def draw(self, cameras, movers, rgb, subject):
         self.given = cameras, movers
 
 
