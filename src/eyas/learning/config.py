@@ -165,7 +165,7 @@ class TrainConfig(Config):
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
     """The curriculum: one stage after the other."""
     evaluation: Evaluation = Evaluation()
-    begin_from: str | None = None
+    begin_from: Annotated[str, Field(min_length=1)] | None = None
     """Folder of another run, whose network this one teaches further; None: a new network."""
     n_steps: Annotated[int, Field(ge=2, le=65536)] = 64
     """Decisions of each environment between two updates."""

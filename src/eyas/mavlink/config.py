@@ -24,7 +24,7 @@ class MavlinkConfig(Config):
     """Of the origin of the world above mean sea level [m]."""
     lockstep: bool = False
     """Whether time stands still until each vehicle in offboard mode has got another set point."""
-    video: str = ""
+    video: Annotated[str, Field(pattern=r"^(\S+:\d{1,5})?$")] = ""
     """Address `HOST:PORT` to which the first vehicle sends its pictures, as H.264 in RTP; each
     further vehicle takes a port that is higher by 2. Empty: no pictures are sent."""
     picture_rate: Annotated[float, Field(gt=0, le=100)] = 30.0
