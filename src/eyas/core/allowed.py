@@ -18,7 +18,7 @@ from typing import (
 import annotated_types
 from pydantic.fields import FieldInfo
 
-__all__ = ["Written", "describe", "names_of"]
+__all__ = ["Said", "Written", "describe", "names_of"]
 
 
 @runtime_checkable
@@ -27,6 +27,13 @@ class Written(Protocol):
 
     written: ClassVar[str]
     """The notation, for example `{"uniform": [low, high]}`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """Says, in `Annotated`, which texts a pattern allows."""
+
+    words: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +64,9 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
         return _either([_quoted(member.value) for member in annotation])
     if isinstance(annotation, type) and isinstance(annotation, Written):
         return annotation.written
+    for entry in metadata:
+        if isinstance(entry, Said):
+            return entry.words
     empty = any(isinstance(entry, annotated_types.MinLen) for entry in metadata)
     text = "text, not empty" if empty else "text"
     simple = {bool: "true or false", str: text, types.NoneType: "null"}

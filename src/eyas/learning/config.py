@@ -5,6 +5,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from eyas.core.allowed import Said
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
@@ -25,7 +26,9 @@ LESSON = 128
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
-DeviceName = Annotated[str, Field(pattern=r"^(host|cuda(:\d{1,4})?)$")]
+DeviceName = Annotated[
+    str, Field(pattern=r"^(host|cuda(:\d{1,4})?)$"), Said("'cuda', 'cuda:1' and so on or 'host'")
+]
 
 
 class Method(StrEnum):
