@@ -64,17 +64,18 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
         return _either([_quoted(member.value) for member in annotation])
     if isinstance(annotation, type) and isinstance(annotation, Written):
         return annotation.written
-    for entry in metadata:
-        if isinstance(entry, Said):
-            return entry.words
-    empty = any(isinstance(entry, annotated_types.MinLen) for entry in metadata)
-    text = "text, not empty" if empty else "text"
-    simple = {bool: "true or false", str: text, types.NoneType: "null"}
+    simple = {bool: "true or false", str: _text(metadata), types.NoneType: "null"}
     if annotation in simple:
         return simple[annotation]
     if annotation in (int, float):
         return _number(annotation, _limits(metadata))
     return "an object"
+
+
+def _text(metadata: Sequence[object]) -> str:
+    said = [entry.words for entry in metadata if isinstance(entry, Said)]
+    empty = any(isinstance(entry, annotated_types.MinLen) for entry in metadata)
+    return said[0] if said else "text, not empty" if empty else "text"
 
 
 def names_of(annotation: object) -> tuple[str, ...]:
