@@ -47,7 +47,7 @@ def test_every_map_in_every_weather_and_every_preset_is_in_the_manifest():
     assert "lidar files" in known["lidar"]
 
 
-@pytest.mark.slow  # as this processor, `tools/ci_matrix.py` and all golden pictures try it
+@pytest.mark.thorough  # `tools/ci_matrix.py` does the same, under another Python as well
 def test_another_processor_computes_what_the_manifest_promises():
     run = verify("--quick", **OTHER)
     assert run.returncode == 0, run.stdout + run.stderr
