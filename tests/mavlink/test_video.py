@@ -73,5 +73,5 @@ def test_a_large_picture_is_cut_into_packets_that_fit():
 
 @pytest.mark.parametrize("address", ["5600", "host:", "127.0.0.1:70000", ":5600"])
 def test_an_address_that_is_none_is_told(make_bench, address):
-    with pytest.raises(ConfigError, match=r"mavlink\.video: .* is not of the form HOST:PORT"):
+    with pytest.raises(ConfigError, match=r"mavlink\.video: .*HOST:PORT"):
         make_bench(mavlink={"video": address})
