@@ -257,7 +257,7 @@ class Camera:
         }
 
     def _geo_status(self) -> Iterable[Fields]:
-        """Where the target is on the earth, as long as it is seen."""
+        """Where the target is on the earth, also while nothing of it can be seen."""
         if not self.tracks:
             return
         at, subject = self._now(), self._subject()
