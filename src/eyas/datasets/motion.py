@@ -1,15 +1,17 @@
 """What a policy learns from a recording: states and actions of the tracker, as arrays."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.core.errors import ConfigError
 from eyas.datasets.recording import RecordedEpisode
 from eyas.exports.label import Label
 
-__all__ = ["ACTION_NAMES", "STATE_NAMES", "TRUTH_NAMES", "Motion", "motion_of", "task_of"]
+__all__ = ["STATE_NAMES", "TRUTH_NAMES", "Motion", "action_names", "motion_of", "task_of"]
 
 STATE_NAMES = (
     *("x", "y", "z", "velocity_x", "velocity_y", "velocity_z"),
@@ -29,6 +31,28 @@ ACTION_NAMES = ("forward", "left", "up", "yaw_rate")
 ArduPilot (there with other signs: forward, right, down)."""
 
 
+GIMBAL_NAMES = ("gimbal_pitch_rate", "gimbal_yaw_rate")
+"""Behind `ACTION_NAMES` where a policy turns the camera: down and to the left [rad/s]."""
+
+
+def action_names(widths: Iterable[int]) -> tuple[str, ...]:
+    """Return the names of the numbers of an action of a data set.
+
+    Args:
+        widths: How many each of its episodes has: four or six.
+
+    Raises:
+        ConfigError: Not all have as many.
+    """
+    found = {*widths}
+    if len(found) > 1:
+        raise ConfigError(
+            "episodes with four and with six numbers in an action (a policy turns the camera) are "
+            "not allowed in one data set: export them apart"
+        )
+    return (*ACTION_NAMES, *GIMBAL_NAMES)[: found.pop()]
+
+
 class Motion(NamedTuple):
     """States and actions of one episode of T frames."""
 
@@ -38,7 +62,7 @@ class Motion(NamedTuple):
     """`TRUTH_NAMES` of each frame, shape (T, 8)."""
     actions: NDArray[np.float32]
     """`ACTION_NAMES` from each frame to the next: as commanded, or as flown where nothing was
-    commanded; in the last frame those before, shape (T, 4)."""
+    commanded; in the last frame those before; shape (T, 4), or with `GIMBAL_NAMES` (T, 6)."""
     rewards: NDArray[np.float32]
     """Reward at each frame, NaN where it is not defined, shape (T,)."""
 
@@ -73,10 +97,13 @@ def task_of(episode: RecordedEpisode) -> str:
 
 def _actions(labels: list[Label], period: float) -> NDArray[np.float32]:
     """Return the actions; that of a frame is told by the next one, which it has led to."""
-    actions = np.zeros((len(labels), 4), np.float32)
+    turns = any("gimbal_command" in label for label in labels)
+    actions = np.zeros((len(labels), 6 if turns else 4), np.float32)
     for number, label in enumerate(labels[1:]):
         command = label["command"]
-        actions[number] = _flown(labels[number], label, period) if command is None else command
+        actions[number, :4] = _flown(labels[number], label, period) if command is None else command
+        if turns:
+            actions[number, 4:] = label.get("gimbal_command", (0.0, 0.0))
     if len(labels) > 1:
         actions[-1] = actions[-2]
     return actions

@@ -122,7 +122,7 @@ class Batch:
         self._shared, self._seed = shared, config.seed
         with originals_named(config):
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
-        self.actions = make_actions(config.env.actions, config.env.speeds)
+        self.actions = make_actions(config.env)
         self.observer = Observer(config.env.observation, self._simulation, measures=measures)
         self._steps = physics_steps(config.control.frequency)
         self._all = np.arange(count, dtype=np.int32)

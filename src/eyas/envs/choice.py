@@ -10,7 +10,7 @@ import numpy as np
 from eyas.core.clock import physics_steps
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.envs.config import ActionKind, EnvSpeeds, ObservationConfig, ObservationPart
+from eyas.envs.config import ActionKind, EnvSpeeds, GimbalConfig, ObservationConfig, ObservationPart
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
@@ -47,6 +47,8 @@ class EnvChoices(TypedDict, total=False):
     """`env.action_repeat`"""
     speeds: EnvSpeeds | Mapping[str, float]
     """`env.speeds`"""
+    gimbal: GimbalConfig | Mapping[str, float]
+    """`env.gimbal`"""
     observation: ObservationConfig | Mapping[str, Any]
     """`env.observation`"""
     mixture: list[Mapping[str, Any]]

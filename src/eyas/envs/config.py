@@ -1,9 +1,9 @@
 """Settings of the environments, and the speeds of the actions that they share with recordings."""
 
 from enum import StrEnum
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 from eyas.sensors.config import ColourLayout, Colours
@@ -13,6 +13,7 @@ __all__ = [
     "ActionSpeeds",
     "EnvConfig",
     "EnvSpeeds",
+    "GimbalConfig",
     "MixturePart",
     "ObservationConfig",
     "ObservationPart",
@@ -47,6 +48,27 @@ class EnvSpeeds(ActionSpeeds):
     """Speed up and down [m per 2 ms step]; used by actions of four numbers only."""
 
 
+class GimbalConfig(Config):
+    """How far and how fast an agent turns its camera. The defaults are those of the demo."""
+
+    pitch_rate: Annotated[float, Field(gt=0, le=20)] = 1.5
+    """Fastest turn up and down [rad/s]."""
+    yaw_rate: Annotated[float, Field(gt=0, le=20)] = 2.5
+    """Fastest turn to the left and right [rad/s]."""
+    least_pitch: Annotated[float, Field(ge=-1.6, le=1.6)] = -0.5
+    """Highest look, positive down [rad]."""
+    most_pitch: Annotated[float, Field(ge=-1.6, le=1.6)] = 1.5
+    """Lowest look, positive down [rad]."""
+    most_yaw: Annotated[float, Field(gt=0, le=1.7)] = 1.7
+    """Furthest look to each side of the body [rad]."""
+
+    @model_validator(mode="after")
+    def _range(self) -> Self:
+        if self.least_pitch >= self.most_pitch:
+            raise ValueError(f"least_pitch: {self.least_pitch} is not below most_pitch")
+        return self
+
+
 class ActionKind(StrEnum):
     """What an agent chooses from."""
 
@@ -56,6 +78,30 @@ class ActionKind(StrEnum):
     """Four numbers from -1 to 1: shares of the speeds forward, left, up and of the turn rate."""
     VELOCITY = "velocity"
     """The same four in physical units: m/s and, counter-clockwise, rad/s."""
+    DISCRETE_GIMBAL = "discrete+gimbal"
+    """Eleven actions: the seven, and four that turn the camera: down, up, left, right."""
+    SHARES_GIMBAL = "shares+gimbal"
+    """Six numbers from -1 to 1: the four, and shares of the camera's rates down and to the left."""
+    VELOCITY_GIMBAL = "velocity+gimbal"
+    """Six numbers: the four in physical units, and the camera's rates down and to the left [rad/s].
+    """
+
+    @property
+    def numbered(self) -> bool:
+        """Whether an action is the number of one."""
+        return self in (ActionKind.DISCRETE, ActionKind.DISCRETE_GIMBAL)
+
+    @property
+    def gimbal(self) -> bool:
+        """Whether actions turn the camera."""
+        return self.value.endswith("+gimbal")
+
+    @property
+    def size(self) -> int:
+        """How many actions there are, or how many numbers an action has."""
+        if self.numbered:
+            return 11 if self.gimbal else 7
+        return 6 if self.gimbal else 4
 
 
 class ObservationPart(StrEnum):
@@ -122,6 +168,7 @@ class EnvConfig(Config):
     """Number of control steps that an action lasts; their rewards are added up, and only the last
     is observed. It ends early with the episode."""
     speeds: EnvSpeeds = EnvSpeeds()
+    gimbal: GimbalConfig = GimbalConfig()
     observation: ObservationConfig = ObservationConfig()
     log_folder: Annotated[str, Field(min_length=1)] | None = None
     """If `verbose` is true, folder in which each environment's steps are logged as by the original,

@@ -1,58 +1,46 @@
-"""Keys of `gymnasium.utils.play`: W, A, S, D move, Q and E turn, R and F climb and sink.
+"""Keys of `gymnasium.utils.play`: W, A, S, D move, Q and E turn, R and F climb and sink; K and I
+turn the camera down and up, J and L to the left and right.
 
 Nothing pressed must mean hover: `play(env, noop=hover(env.action_space))`.
 """
 
-from collections.abc import Callable, Mapping
 from itertools import product
 from typing import Any
 
 import gymnasium
 import numpy as np
 
-from eyas.envs.actions import Velocity
-from eyas.envs.config import ActionKind, EnvSpeeds
+from eyas.envs.actions import make_actions
+from eyas.envs.config import EnvConfig
 
-__all__ = ["KEYS_TO_ACTION", "hover"]
+__all__ = ["hover", "keys_to_action"]
 
 Keys = dict[tuple[str, ...], Any]
 
-_NUMBERS = {"w": 0, "s": 1, "a": 2, "d": 3, "q": 4, "e": 5}
-_PAIRS = ("ws", "ad", "rf", "qe")
-"""Keys for 1 and -1 on each axis: forward, left, up, turn counter-clockwise."""
+_NUMBERS = {"w": 0, "s": 1, "a": 2, "d": 3, "q": 4, "e": 5, "k": 7, "i": 8, "j": 9, "l": 10}
+_PAIRS = ("ws", "ad", "rf", "qe", "ki", "jl")
+"""Keys for the most and the least on each axis: forward, left, up, turn counter-clockwise, camera
+down, camera to the left."""
 
 
-def _discrete(_: EnvSpeeds) -> Keys:
-    return {(key,): number for key, number in _NUMBERS.items()}
-
-
-def _shares(_: EnvSpeeds) -> Keys:
+def keys_to_action(env: EnvConfig) -> Keys:
     """Return the action of each set of keys that do not contradict each other."""
-    keys: Keys = {}
-    for signs in product((0, 1, -1), repeat=4):
-        pressed = [pair[0 if s > 0 else 1] for pair, s in zip(_PAIRS, signs, strict=True) if s]
-        if pressed:
-            keys[tuple(pressed)] = np.array(signs, np.float32)
-    return keys
-
-
-def _velocities(speeds: EnvSpeeds) -> Keys:
-    space = Velocity(speeds).space
+    kind, space = env.actions, make_actions(env).space
+    if kind.numbered:
+        return {(key,): number for key, number in _NUMBERS.items() if number < kind.size}
     assert isinstance(space, gymnasium.spaces.Box)
-    return {
-        keys: np.where(shares > 0, space.high, np.where(shares < 0, space.low, 0.0)).astype("f4")
-        for keys, shares in _shares(speeds).items()
-    }
-
-
-KEYS_TO_ACTION: Mapping[ActionKind, Callable[[EnvSpeeds], Keys]] = {
-    ActionKind.DISCRETE: _discrete,
-    ActionKind.SHARES: _shares,
-    ActionKind.VELOCITY: _velocities,
-}
-"""Returns the keys for each kind of actions."""
+    keys: Keys = {}
+    for signs in product((0, 1, -1), repeat=kind.size):
+        pairs = zip(_PAIRS, signs, strict=False)
+        pressed = [pair[0 if sign > 0 else 1] for pair, sign in pairs if sign]
+        if pressed:
+            ends = np.where(np.array(signs) > 0, space.high, space.low)
+            keys[tuple(pressed)] = np.where(signs, ends, 0.0).astype(np.float32)
+    return keys
 
 
 def hover(space: gymnasium.Space[Any]) -> Any:  # noqa: ANN401  # an action of the space
     """Return the action that stays in place."""
-    return 6 if isinstance(space, gymnasium.spaces.Discrete) else np.zeros(4, np.float32)
+    if isinstance(space, gymnasium.spaces.Discrete):
+        return 6
+    return np.zeros(space.shape or (), np.float32)

@@ -18,7 +18,7 @@ from eyas.envs.choice import (
     settings_of_kinds,
 )
 from eyas.envs.information import Info, by_term, of_one
-from eyas.envs.keys import KEYS_TO_ACTION
+from eyas.envs.keys import keys_to_action
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
 from eyas.settings.config import EyasConfig
@@ -137,7 +137,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
         """Return the keys of `gymnasium.utils.play`, see `eyas.envs.keys`."""
-        return KEYS_TO_ACTION[self.config.env.actions](self.config.env.speeds)
+        return keys_to_action(self.config.env)
 
     def close(self) -> None:
         """Close the window and the logs, and end live traffic; may be called again."""

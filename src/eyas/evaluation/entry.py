@@ -3,7 +3,13 @@
 from enum import StrEnum
 
 from eyas.core.config import Config
-from eyas.envs.config import ActionKind, EnvSpeeds, ObservationConfig, ObservationPart
+from eyas.envs.config import (
+    ActionKind,
+    EnvSpeeds,
+    GimbalConfig,
+    ObservationConfig,
+    ObservationPart,
+)
 from eyas.evaluation.policies.policy import Policy
 
 __all__ = ["Entry", "EntryClass", "entry_class", "entry_of"]
@@ -41,6 +47,8 @@ class Entry(Config):
     observation: ObservationConfig
     actions: ActionKind
     speeds: EnvSpeeds
+    gimbal: GimbalConfig | None = None
+    """How its actions turn the camera; None: they do not."""
     action_repeat: int
     latency: str
 
@@ -78,6 +86,7 @@ def entry_of(policy: Policy, latency: str, *, apart: bool, beside: bool) -> Entr
         observation=env.observation,
         actions=env.actions,
         speeds=env.speeds,
+        gimbal=env.gimbal if env.actions.gimbal else None,
         action_repeat=env.action_repeat,
         latency=latency,
     )

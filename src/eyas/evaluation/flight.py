@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
-from eyas.envs.actions import make_actions
+from eyas.envs.actions import command_width, make_actions
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch
@@ -65,12 +65,13 @@ class BatchFlight:
         )
         self._radio = Radio(episodes, protocol) if protocol.team else None
         self._meter = Meter(self._batch, protocol)
-        self._actions = make_actions(policy.env.actions, policy.env.speeds)
+        self._actions = make_actions(policy.env)
         count = len(episodes)
         self._active = np.ones(count, np.bool_)
         self._failed: dict[int, Failure] = {}
-        self._commands = np.zeros((count, 4))
-        self._next = np.zeros((count, 4))
+        width = command_width(policy.env.actions)
+        self._commands = np.zeros((count, width))
+        self._next = np.zeros((count, width))
         self._ready = np.zeros(count, np.int64)
         """Control step from which each policy can look again."""
         self._effective = np.zeros(count, np.int64)

@@ -57,6 +57,9 @@ class RecordedAction:
     command: Floats | None
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
     target is followed exactly."""
+    gimbal_rates: Floats | None = None
+    """Rates of the camera's pitch, positive down, and yaw, to the left [rad/s], shape (2,); None
+    where no policy turns it."""
 
 
 @dataclass(frozen=True, slots=True)

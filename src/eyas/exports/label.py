@@ -94,6 +94,7 @@ COEFFICIENTS = Type(
     "4 or 5 numbers",
     {"type": "array", "items": NUMBER.schema, "minItems": 4, "maxItems": 5},
 )
+PAIR = _array("2 numbers", NUMBER.schema, 2)
 COMMAND = Type("4 numbers, or null", {**EXTENT.schema, "type": ["array", "null"]})
 CORNERS = _array("8 points", VECTOR.schema, 8)
 SECTIONS = Type(
@@ -174,6 +175,11 @@ def _indicator(frame: Frame, subject: Subject) -> str:
 def _command(frame: Frame, episode: Episode) -> list[float | None] | None:
     command = frame.action.command
     return None if command is None else rounded_list(command * _PER_SECOND)
+
+
+def _turn(frame: Frame, episode: Episode) -> list[float | None] | None:
+    rates = frame.action.gimbal_rates
+    return None if rates is None else rounded_list(rates)
 
 
 FIELDS = (
@@ -281,6 +287,9 @@ FIELDS = (
     LabelField("command", COMMAND, "What the tracker is told to do: forward, left, up and yaw "
                "rate; null when it is carried with its target (`exact`).", _command,
                unit="m/s, rad/s", frame="tracker's body"),
+    LabelField("gimbal_command", PAIR, "How fast its camera is told to turn: pitch, positive down, "
+               "and yaw, to the left; only where a policy turns it.", _turn, unit="rad/s",
+               frame="tracker's body", left_out=True),
     LabelField("distortion_model", TEXT, "Model of the lens: `brown` or `fisheye`; only of those "
                "that bend the picture.", lambda f, e: f.camera.distortion_model, left_out=True),
     LabelField("exposure_time", NUMBER, "How long the picture was exposed; only with "

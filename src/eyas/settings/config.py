@@ -53,6 +53,15 @@ class EyasConfig(SimConfig):
     file."""
 
     @model_validator(mode="after")
+    def _gimbal_there(self) -> Self:
+        if self.env.actions.gimbal and self.camera.mount is not None:
+            raise ValueError(
+                f"env.actions: '{self.env.actions}' turns the camera, which camera.mount fixes to "
+                "the body; allowed: one of the two"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _check_variants(self) -> Self:
         for _ in variants(self):
             pass

@@ -82,12 +82,16 @@ class LateCommands:
         """Yield the commands in force during the next steps, and for how many steps.
 
         Args:
-            commands: The new commands, shape (N, 4).
+            commands: The new commands, shape (N, 4) or (N, 8).
             steps: Number of physics steps.
             clock: Physics steps of each tracker since its reset, shape (N,).
         """
         self._next = (self._next + 1) % len(self._since)
-        self._commands[self._next] = commands
+        more = commands.shape[1] - self._commands.shape[2]
+        if more > 0:  # the first that turn cameras
+            self._commands = np.pad(self._commands, ((0, 0), (0, 0), (0, more)))
+        self._commands[self._next] = 0.0
+        self._commands[self._next, :, : commands.shape[1]] = commands
         self._since[self._next] = clock + self._latency.steps
         times = clock + np.arange(steps)[:, np.newaxis]
         given = np.where(self._since <= times[:, np.newaxis], self._since, -2)

@@ -25,6 +25,7 @@ from eyas.task.clearance import Clearance
 from eyas.task.quantities import Setting
 from eyas.task.rules import Rules, exact, lenient, make_rules
 from eyas.task.terms import RewardTerms
+from eyas.trackers.gimbal_command import WIDTH, WITH_GIMBAL
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["Simulation", "StepResult", "is_judged", "rules_of"]
@@ -175,12 +176,15 @@ class Simulation:
         """Hold commands for some physics steps of 2 ms, each with reward and end conditions.
 
         Args:
-            commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4).
+            commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4); or
+                with four more that turn the cameras, shape (N, 8), see
+                `eyas.trackers.gimbal_command`.
             physics_steps: Number of steps.
             active: The trackers that fly, shape (N,); for the others time stands still, so that
                 these must have worlds of their own. None: all.
         """
-        assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
+        allowed = (self.count, WIDTH), (self.count, WITH_GIMBAL)
+        assert commands.shape in allowed, f"commands: shape {commands.shape}, not (N, 4) or (N, 8)"
         self._stepper.fly(commands, physics_steps, active)
         return self._result()
 

@@ -95,7 +95,7 @@ class Orders(NamedTuple):
     steps: NDArray[np.int64]
     """Physics steps to take, shape (1,)."""
     commands: NDArray[np.float64]
-    """Command of each tracker, see `Tracker.advance`, shape (N, 4)."""
+    """Command of each tracker, see `Tracker.advance`, shape (N, 4) or (N, 8)."""
     active: NDArray[np.bool_]
     """Whether each tracker flies, shape (N,); for the others, time stands still."""
     placed: NDArray[np.int64]

@@ -25,6 +25,7 @@ from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
+from eyas.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["Stepper", "step_kernels", "step_state"]
@@ -85,8 +86,10 @@ class Stepper:
         around = StepSurroundings(assets.traffic.motion, terrain)
         self._state_by = partial(step_state, config, tracker, snapshot, self._memory, around)
         self._kernels = step_kernels(config, tracker)
+        self._turning_kernels = partial(step_kernels, config, with_gimbal(tracker))
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
+        self._turning_orders = self._orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
         active, bodies = self._orders.active, tracker.visible
         self.sensors = SensorSuite(config, assets, worlds, snapshot, active, bodies=bodies)
         control = config.control
@@ -100,7 +103,9 @@ class Stepper:
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        self._step = self._kernels.bind(Held(self._state_by(rules)), self._held_orders)
+        self._held_state = Held(self._state_by(rules))
+        self._step = self._kernels.bind(self._held_state, self._held_orders)
+        self._turning: BoundCall | None = None
 
     def begin(
         self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
@@ -129,8 +134,19 @@ class Stepper:
             clock = self._snapshot.episodes.step_count
             pieces = list(self._late.pieces(commands, steps, clock))
         for piece, some in pieces:
-            self._orders.commands[:] = piece
-            self._take(self._step.fly, some)
+            if piece.shape[1] == WITH_GIMBAL:
+                self._turning_orders.commands[:] = piece
+                self._take(self._fly_and_turn(), some)
+            else:
+                self._orders.commands[:] = piece
+                self._take(self._step.fly, some)
+
+    def _fly_and_turn(self) -> BoundCall:
+        """Return the step that also turns cameras; it is compiled when it is first needed."""
+        if self._turning is None:
+            kernels = self._turning_kernels()
+            self._turning = kernels.fly.bind(self._held_state, Held(self._turning_orders))
+        return self._turning
 
     def carry(self, steps: int) -> None:
         """Move all trackers with their targets."""

@@ -11,8 +11,8 @@ import pytest
 from gymnasium.vector import AutoresetMode
 
 from eyas.core.errors import ActionError, ConfigError, EyasError
-from eyas.envs.actions import make_actions
-from eyas.envs.config import ActionKind, EnvSpeeds
+from eyas.envs.actions import command_width, make_actions
+from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.device.actions import DeviceActions
 from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.vector_env import EyasVectorEnv
@@ -107,17 +107,17 @@ def test_tensors_of_actions_mean_what_arrays_mean():
     torch = pytest.importorskip("torch")
     rng, device = np.random.default_rng(2), HostDevice(2)
     for kind in ActionKind:
-        space = make_actions(kind, EnvSpeeds())
-        commands = np.zeros((40, 4))
+        space = make_actions(EnvConfig(actions=kind))
+        commands = np.zeros((40, command_width(kind)))
         taken = DeviceActions(space, device, commands)
-        discrete = kind is ActionKind.DISCRETE
-        actions = rng.integers(0, 7, 40) if discrete else rng.normal(size=(40, 4))
+        discrete, size = kind.numbered, kind.size
+        actions = rng.integers(0, size, 40) if discrete else rng.normal(size=(40, size))
         for dtype in (np.int32, np.int64) if discrete else (np.float32, np.float64):
             given = actions.astype(dtype)
             taken.take(torch.from_numpy(given))
             assert commands.tobytes() == space.commands(given).tobytes()
         wrong = given.copy()
-        wrong.flat[7] = 7 if discrete else np.nan
+        wrong.flat[7] = size if discrete else np.nan
         for refused in (torch.from_numpy(wrong), torch.from_numpy(given[:5]), wrong):
             with pytest.raises(ActionError, match=re.escape(space.allowed)):
                 taken.take(refused)
@@ -168,18 +168,22 @@ def test_what_only_the_processor_knows_is_refused():
 
 
 def test_the_drivers_compile_for_cuda():
-    from eyas.envs.device import actions, observation
+    from eyas.envs.device import observation
 
     _, ours = pair("dictionary", 2, 1)
     envs: DeviceEnvs = ours._there
     observer = envs._observer
     calls = [
-        (actions._command_quads, envs._actions._held),
+        *((call, (given, envs._actions._held)) for call, given in envs._actions._calls),
         (observation._stack_pictures, (observer._held_seen, observer._stacking[False])),
         (observation._fill_rows, (observer._snapshot, observer._held_seen, observer._rows[False])),
     ]
     _, ours = pair("plain", 2, 1)
-    calls.append((actions._command_numbers, ours._there._actions._held))
+    taken = ours._there._actions
+    calls += [(call, (given, taken._held)) for call, given in taken._calls]
+    turning = make_actions(EnvConfig(actions="velocity+gimbal"))
+    taken = DeviceActions(turning, HostDevice(1), np.zeros((2, 8)))
+    calls += [(call, (given, taken._held)) for call, given in taken._calls]
     for call, bundles in calls:
         text = ptx_of(call, tuple(held.bundle for held in bundles), "kernel")
         assert "fma" not in text

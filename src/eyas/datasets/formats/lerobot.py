@@ -15,7 +15,7 @@ from PIL import Image
 
 from eyas.core.errors import MissingExtraError
 from eyas.datasets.format import KEPT, Exported, Format, Job
-from eyas.datasets.motion import ACTION_NAMES, STATE_NAMES, TRUTH_NAMES, motion_of, task_of
+from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
 from eyas.datasets.recording import RecordedEpisode
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ _LOOKED_AT = 16
 _FEATURES = {
     "observation.state": STATE_NAMES,
     "observation.environment_state": TRUTH_NAMES,
-    "action": ACTION_NAMES,
 }
+_ACTION = "action"
 
 _COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 
@@ -67,7 +67,7 @@ class LeRobot(Format):
         arrays: dict[str, Any] = {
             "observation.state": motion.states,
             "observation.environment_state": motion.truth,
-            "action": motion.actions,
+            _ACTION: motion.actions,
             "next.reward": np.nan_to_num(motion.rewards)[:, None],
             "next.done": np.array([[label["done"]] for label in episode.labels]),
         }
@@ -80,12 +80,14 @@ class LeRobot(Format):
             "size": [height, width],
             "task": task_of(episode),
             "colours": _colour_stats(episode),
+            _ACTION: motion.actions.shape[1],
         }
         self._job.keep(episode, kept)
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the tables and the descriptions, the splits one after the other."""
         order = sorted(episodes, key=lambda each: ("train", "val", "test").index(each.split))
+        names = action_names(self._job.kept(each.name)[_ACTION] for each in order)
         tasks: dict[str, int] = {}
         rows: list[Row] = []
         for number, episode in enumerate(order):
@@ -97,7 +99,7 @@ class LeRobot(Format):
         columns = {name: [row[name] for row in rows] for name in rows[0]}
         self._write_table("meta/episodes/chunk-000/file-000.parquet", self._pa.table(columns))
         first_kept = self._job.kept(order[0].name)
-        self._write_json("meta/info.json", _info(order, first_kept, len(tasks)))
+        self._write_json("meta/info.json", _info(order, first_kept, len(tasks), names))
         self._write_json("meta/stats.json", _all_stats(rows))
 
     def _episode(self, number: int, episode: Exported, kept: Row, task: int, first: int) -> Row:
@@ -146,7 +148,7 @@ class LeRobot(Format):
         pa, columns = self._pa, {}
         for name, values in arrays.items():
             flat = pa.array(values.ravel())
-            if name in _FEATURES:
+            if name in (*_FEATURES, _ACTION):
                 flat = pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
             columns[name] = flat
         return pa.table({**columns, **{name: pa.array(own) for name, own in counters.items()}})
@@ -181,8 +183,8 @@ class LeRobot(Format):
         self._job.write(inside, json.dumps(what, indent=4) + "\n")
 
 
-def _info(order: Sequence[Exported], kept: Row, tasks: int) -> Row:
-    """Return the description of the data set."""
+def _info(order: Sequence[Exported], kept: Row, tasks: int, actions: Sequence[str]) -> Row:
+    """Return the description of the data set; `actions` are the names of their numbers."""
     height, width = kept["size"]
     fps = int(kept["fps"]) if float(kept["fps"]).is_integer() else kept["fps"]
     video = {
@@ -198,7 +200,7 @@ def _info(order: Sequence[Exported], kept: Row, tasks: int) -> Row:
     axes = {"dtype": "video", "names": ["height", "width", "channels"], "info": video}
     vectors = {
         name: {"dtype": "float32", "shape": [len(names)], "names": list(names), "fps": fps}
-        for name, names in _FEATURES.items()
+        for name, names in {**_FEATURES, _ACTION: actions}.items()
     }
     single = {"shape": [1], "names": None, "fps": fps}
     counters = {

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import MissingExtraError, OutputError
 from eyas.core.files import atomic_path
 from eyas.datasets.format import KEPT, Exported, Format, Job
-from eyas.datasets.motion import ACTION_NAMES, STATE_NAMES, TRUTH_NAMES, motion_of, task_of
+from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
 from eyas.datasets.recording import RecordedEpisode
 
 __all__ = ["Minari"]
@@ -70,7 +70,11 @@ class Minari(Format):
             file["rewards"] = motion.rewards[1:].astype(np.float64)
             file["terminations"], file["truncations"] = ends, last & ~ends
         self._job.write(f"{KEPT}/{episode.name}.hdf5", stored.getvalue())
-        about = {"task": task_of(episode), "size": [height, width]}
+        about = {
+            "task": task_of(episode),
+            "size": [height, width],
+            "action": motion.actions.shape[1],
+        }
         self._job.keep(episode, {"seed": episode.config.seed, **about})
 
     def finish(self, episodes: Sequence[Exported]) -> None:
@@ -99,7 +103,8 @@ class Minari(Format):
                 )
         steps = sum(episode.frames - 1 for episode in episodes)
         size = round(path.stat().st_size / 1e6, 1)
-        about = _metadata(folder.parent.as_posix(), len(episodes), steps, kept[0]["size"], size)
+        names = folder.parent.as_posix(), len(action_names(each["action"] for each in kept))
+        about = _metadata(*names, len(episodes), steps, kept[0]["size"], size)
         self._job.write((folder / "metadata.json").as_posix(), json.dumps(about) + "\n")
         self._job.write("eyas/namespace_metadata.json", json.dumps({"description": "Eyas"}) + "\n")
 
@@ -116,7 +121,9 @@ def _plain(name: str) -> str:
     return re.sub(r"[^\w]+", "-", name).strip("-") or "recording"
 
 
-def _metadata(name: str, episodes: int, steps: int, size: Sequence[int], megabytes: float) -> Row:
+def _metadata(
+    name: str, action: int, episodes: int, steps: int, size: Sequence[int], megabytes: float
+) -> Row:
     height, width = size
     # Minari's Box spells out the limits of every number.
     image = np.zeros((height, width, 3), np.uint8)
@@ -132,7 +139,7 @@ def _metadata(name: str, episodes: int, steps: int, size: Sequence[int], megabyt
         "data_format": "hdf5",
         "jpeg_encoding": False,
         "observation_space": json.dumps({"type": "Dict", "subspaces": inputs}),
-        "action_space": json.dumps(_unlimited(len(ACTION_NAMES))),
+        "action_space": json.dumps(_unlimited(action)),
         "dataset_size": megabytes,
         "minari_version": "0.5.0",
         "description": "Recorded with Eyas: pictures, states, and velocities in the body's axes.",

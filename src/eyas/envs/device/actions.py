@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
-from eyas.envs.actions import Actions, Discrete, Shares, Velocity
+from eyas.envs.actions import Actions, Discrete, GimbalNumbers, Shares, Velocity, turn_commands
 from eyas.envs.device.tensors import is_tensor, torch_of
 from eyas.envs.mixed_batch import array_of
 from eyas.lanes import parallel
@@ -23,7 +23,7 @@ class Numbers(NamedTuple):
     action: NDArray[np.int64]
     """Shape (N,)."""
     table: NDArray[np.float64]
-    """The command of each number, shape (7, 4)."""
+    """The command of each number, shape (7, 4) or (11, 8)."""
 
 
 class Quads(NamedTuple):
@@ -45,11 +45,28 @@ class Quads(NamedTuple):
     """1: they are shares."""
 
 
+class Turns(NamedTuple):
+    """The last two numbers of actions of six."""
+
+    action: NDArray[np.float64]
+    """Shape (N, 6)."""
+    low: NDArray[np.float64]
+    """They are clipped to this, shape (6,)."""
+    high: NDArray[np.float64]
+    """And to this, shape (6,)."""
+    per_unit: NDArray[np.float64]
+    """Rates that 1 means, shape (2,)."""
+    most: NDArray[np.float64]
+    """Where rates that are not negative lead, shape (2,)."""
+    least: NDArray[np.float64]
+    """Where others lead, shape (2,)."""
+
+
 class Commanded(NamedTuple):
     """What actions mean."""
 
     commands: NDArray[np.float64]
-    """See `eyas.trackers.tracker.Tracker.advance`, shape (N, 4)."""
+    """See `eyas.trackers.tracker.Tracker.advance`, shape (N, 4) or (N, 8)."""
     refused: NDArray[np.int64]
     """1: one of the actions is not allowed, shape (1,)."""
 
@@ -60,7 +77,7 @@ class DeviceActions:
     Args:
         actions: What an agent chooses from.
         device: Where the commands are.
-        commands: Shape (N, 4), on the device.
+        commands: Shape (N, 4), or (N, 8) of those that turn the camera, on the device.
     """
 
     def __init__(self, actions: Actions, device: Device, commands: Any) -> None:  # noqa: ANN401
@@ -70,14 +87,18 @@ class DeviceActions:
         if isinstance(actions, Discrete):
             self._given = device.zeros(self._count, np.int64)
             given: Numbers | Quads = Numbers(self._given, actions.table)
-            self._call = _command_numbers
+            self._calls = [(_command_numbers, device.held(given))]
         else:
-            assert isinstance(actions, Shares | Velocity)
-            self._given = device.zeros((self._count, 4), np.float64)
-            given = Quads(self._given, actions.low, actions.high, actions.at_1, actions.at_minus_1,
-                          actions.UNITS, int(isinstance(actions, Shares)))  # fmt: skip
-            self._call = _command_quads
-        self._held = device.held(given), device.held(Commanded(commands, self._refused))
+            own = actions.own if isinstance(actions, GimbalNumbers) else actions
+            assert isinstance(own, Shares | Velocity)
+            self._given = device.zeros((self._count, *(actions.space.shape or ())), np.float64)
+            given = Quads(self._given, own.low, own.high, own.at_1, own.at_minus_1,
+                          own.UNITS, int(isinstance(own, Shares)))  # fmt: skip
+            self._calls = [(_command_quads, device.held(given))]
+            if isinstance(actions, GimbalNumbers):
+                turns = _turns(actions, self._given)
+                self._calls.append((_command_turns, device.held(turns)))
+        self._held = device.held(Commanded(commands, self._refused))
 
     @cached_property
     def _tensor(self) -> Any:  # noqa: ANN401  # of PyTorch
@@ -105,9 +126,15 @@ class DeviceActions:
             )
         self._tensor.copy_(actions)
         device.clear(self._refused)
-        device.launch(self._call, self._count, *self._held)
+        for call, given in self._calls:
+            device.launch(call, self._count, given, self._held)
         if device.read(self._refused)[0]:
             raise ActionError(f"actions: one is not allowed: {self._actions.allowed}")
+
+
+def _turns(actions: GimbalNumbers, given: Any) -> Turns:  # noqa: ANN401  # on a device
+    ends = turn_commands(np.array([[1.0, 1.0], [-1.0, -1.0]]), actions.gimbal)
+    return Turns(given, actions.low, actions.high, actions.rates, ends[0, :2], ends[1, :2])
 
 
 @parallel
@@ -118,7 +145,7 @@ def _command_numbers(worker: int, workers: int, given: Numbers, out: Commanded) 
         if action < 0 or action >= given.table.shape[0]:
             out.refused[0] = 1  # whoever writes it
             continue
-        for axis in range(4):
+        for axis in range(given.table.shape[1]):
             out.commands[n, axis] = given.table[action, axis]
 
 
@@ -137,3 +164,18 @@ def _command_quads(worker: int, workers: int, given: Quads, out: Commanded) -> N
                 out.commands[n, axis] = abs(action) * most
             else:
                 out.commands[n, axis] = action / given.units[axis]
+
+
+@parallel
+def _command_turns(worker: int, workers: int, given: Turns, out: Commanded) -> None:
+    """Write what `GimbalNumbers.commands` returns behind the first four numbers."""
+    for n in range(worker, given.action.shape[0], workers):
+        for axis in range(2):
+            action = given.action[n, 4 + axis]
+            if not math.isfinite(action):
+                out.refused[0] = 1  # whoever writes it
+                continue
+            action = min(max(action, given.low[4 + axis]), given.high[4 + axis])
+            rate = action * given.per_unit[axis]
+            out.commands[n, 4 + axis] = given.most[axis] if rate >= 0.0 else given.least[axis]
+            out.commands[n, 6 + axis] = abs(rate)

@@ -64,11 +64,12 @@ class DeviceEnvs:
                 size=(seen.height, seen.width),
                 steps=physics_steps(config.control.frequency),
                 repeat=config.env.action_repeat,
+                gimbal=config.env.actions.gimbal,
             )
         drawer = drawer_of(where, assets.renderer, config.camera.samples)
         view = DeviceView(simulation, drawer)
         self._observer = DeviceObserver(seen, simulation, view, measures=measures)
-        actions = make_actions(config.env.actions, config.env.speeds)
+        actions = make_actions(config.env)
         self._actions = DeviceActions(actions, where, simulation.commands)
         self.action_space, self.observation_space = actions.space, self._observer.space
         flown = simulation.flown

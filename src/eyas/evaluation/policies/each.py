@@ -8,7 +8,7 @@ import numpy as np
 
 from eyas.core.errors import ConfigError
 from eyas.core.own_code import imported, running, takes
-from eyas.envs.config import ActionKind, EnvConfig
+from eyas.envs.config import EnvConfig
 from eyas.envs.observation import Observation
 from eyas.evaluation.messages import MESSAGE
 from eyas.evaluation.policies.policy import (
@@ -127,9 +127,9 @@ def _asked_for(found: type) -> frozenset[str]:
     return wanted if wanted & _IN_WORDS else frozenset({"box"})
 
 
-def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or four
+def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or several
     """Return the action that does nothing."""
-    return HOVER if env.actions is ActionKind.DISCRETE else np.zeros(4)
+    return HOVER if env.actions.numbered else np.zeros(env.actions.size)
 
 
 def one_of(observation: Observation, row: int) -> Observation:

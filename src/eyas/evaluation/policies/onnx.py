@@ -4,11 +4,12 @@ Inputs and outputs, by name, all with a leading axis of N episodes:
 
 - `image`, uint8, (N, C, H, W) with the layout `chw`: the observation;
 - `last_action`, float32, optional: (N, 7) with a 1 at the last action (hover at the start), or the
-  last four numbers;
+  last four numbers; with a gimbal (N, 11), or the last six;
 - `attributes`, float32, (N, A), optional: what the target is told to be, see docs/words.md; 0 where
   nothing is told;
 - any number of memories `x`, float32, (N, ...), with an output `next_x` each; 0 at the start;
-- the first output: `logits`, float, (N, 7), or `action`, float, (N, 4).
+- the first output: `logits`, float, (N, 7), or `action`, float, (N, 4); with a gimbal (N, 11) or
+  (N, 6).
 
 The metadata `eyas` holds JSON: changes of the defaults of `env`, such as `{"observation": {"width":
 48, "height": 48, "layout": "chw", "frames": 1}, "actions": "discrete", "action_repeat": 4}`.
@@ -24,10 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
-from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
-from eyas.evaluation.policies.simple import ACTIONS, HOVER
+from eyas.evaluation.policies.simple import HOVER
 from eyas.evaluation.policies.tracker.detector import Detector
 from eyas.evaluation.policies.tracker.metadata import METADATA, TRACKER, metadata
 from eyas.evaluation.policies.tracker.tracker import Tracker
@@ -64,7 +64,7 @@ class OnnxPolicy:
         self.env = env_config({"observation": {"layout": "chw"}, **settings}, changes)
         self.sampled = sampled
         self._chooser = Chooser(sampled=sampled)
-        self._discrete = self.env.actions is ActionKind.DISCRETE
+        self._discrete = self.env.actions.numbered
         inputs = {each.name: each.shape for each in self._session.get_inputs()}
         outputs = [each.name for each in self._session.get_outputs()]
         memories = [name for name in inputs if name not in (_IMAGE, _LAST, _TOLD)]
@@ -87,8 +87,7 @@ class OnnxPolicy:
         }
         nothing = np.zeros((count, len(ATTRIBUTES)), np.float32)
         self._told = nothing if start.told is None else start.told.attributes
-        width = ACTIONS if self._discrete else 4
-        self._last = np.zeros((count, width), np.float32)
+        self._last = np.zeros((count, self.env.actions.size), np.float32)
         if self._discrete:
             self._last[:, HOVER] = 1.0
 
@@ -109,7 +108,7 @@ class OnnxPolicy:
             self._last[mask] = answer[mask]
             return Decision(answer)
         actions = self._chooser.of(answer, mask)
-        self._last[mask] = np.eye(ACTIONS, dtype=np.float32)[actions[mask]]
+        self._last[mask] = np.eye(self.env.actions.size, dtype=np.float32)[actions[mask]]
         return Decision(actions)
 
 

@@ -55,7 +55,10 @@ class Sb3Policy:
             "frames": planes if grey else planes // 3,
         }
         discrete = hasattr(self._model.action_space, "n")
+        space = self._model.action_space
         actions = "discrete" if discrete else "shares"
+        if space.n == 11 if discrete else space.shape == (6,):
+            actions += "+gimbal"
         self.env = env_config({"observation": image, "actions": actions}, changes)
         self.sampled = sampled
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from eyas.core.errors import ActionError, EyasError
 from eyas.envs.actions import make_actions
-from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.apart import Array, receive, send
 from eyas.evaluation.policies.each import no_action
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
@@ -58,7 +57,7 @@ class _Answers:
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
-        self._actions = make_actions(policy.env.actions, policy.env.speeds)
+        self._actions = make_actions(policy.env)
         self._latest: dict[str, Array] = {}
         """Latest observations, by the names of their parts."""
 
@@ -102,7 +101,7 @@ class _Answers:
     def _told(self, decision: Decision, deciding: Array) -> tuple[Mapping[str, Any], list[Array]]:
         """Return the actions as plain numbers; those that are not allowed are failures."""
         failed = dict(decision.failed)
-        discrete = self._policy.env.actions is ActionKind.DISCRETE
+        discrete = self._policy.env.actions.numbered
         actions = np.array([no_action(self._policy.env)] * len(deciding))
         for row in np.flatnonzero(deciding).tolist():
             if row in failed:

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from eyas.core.errors import DataFileError, MissingExtraError
-from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 
@@ -18,7 +17,8 @@ _EXPORTED = ".pt2"
 
 
 class TorchPolicy:
-    """A module without memory: from observations (N, ...), uint8, to scores (N, 7) or (N, 4).
+    """A module without memory: from observations (N, ...), uint8, to scores (N, 7) or
+    actions (N, 4); with a gimbal (N, 11) or (N, 6).
 
     Its attribute `env_settings`, or the extra file `eyas.json` of an exported program, holds
     changes of the defaults of `env`.
@@ -53,7 +53,7 @@ class TorchPolicy:
         observation: Any = sight.observation
         with self._torch.inference_mode():
             answer = self._module(self._torch.from_numpy(observation)).numpy()
-        if self.env.actions is not ActionKind.DISCRETE:
+        if not self.env.actions.numbered:
             return Decision(answer)
         return Decision(self._chooser.of(np.asarray(answer), sight.deciding))
 

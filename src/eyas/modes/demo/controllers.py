@@ -98,7 +98,7 @@ class PolicyController:
         env = self._policy.env
         self._simulation = flight.simulation
         self._observer = Observer(env.observation, flight.simulation)
-        self._actions = make_actions(env.actions, env.speeds)
+        self._actions = make_actions(env)
         self._steps = physics_steps(flight.config.control.frequency) * env.action_repeat
         self._size = env.observation.height, env.observation.width
         self._begun = np.ones(1, np.bool_)

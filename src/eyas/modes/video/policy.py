@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import physics_steps
 from eyas.core.errors import ActionError, ConfigError
 from eyas.core.rng import stream
-from eyas.envs.actions import make_actions
-from eyas.envs.config import ActionKind
+from eyas.envs.actions import command_width, make_actions, turn_rates
 from eyas.envs.observation import Observation, Observer
 from eyas.evaluation.policies.policy import Failure, Policy, PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
@@ -20,6 +19,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
+from eyas.trackers.gimbal_command import WIDTH
 
 __all__ = ["PolicyPilot"]
 
@@ -48,9 +48,9 @@ class PolicyPilot:
         self._policies: list[Policy] = [open_policy(name, changes) for _ in range(sim.count)]
         env = self._policies[0].env
         self._env, self._observer = env, Observer(env.observation, sim)
-        self._actions = make_actions(env.actions, env.speeds)
+        self._actions = make_actions(env)
         self._period = physics_steps(config.control.frequency) * env.action_repeat
-        self._commands = np.zeros((sim.count, 4))
+        self._commands = np.zeros((sim.count, command_width(env.actions)))
         self._numbers = np.full(sim.count, -1)
 
     def begin(self, trackers: NDArray[np.int64], longest: int) -> None:
@@ -77,7 +77,11 @@ class PolicyPilot:
 
     def action(self, tracker: int) -> RecordedAction:
         """Return a tracker's action in the last step."""
-        return RecordedAction(int(self._numbers[tracker]), self._commands[tracker].copy())
+        command = self._commands[tracker]
+        turned = None
+        if len(command) > WIDTH:
+            turned = turn_rates(command[None], self._env.gimbal)[0]
+        return RecordedAction(int(self._numbers[tracker]), command[:WIDTH].copy(), turned)
 
     def _decide(self, tracker: int) -> None:
         sight = PolicyInput(
@@ -96,7 +100,7 @@ class PolicyPilot:
             self._commands[tracker] = self._actions.commands([decision.actions[0]])[0]
         except (ActionError, IndexError, KeyError, TypeError) as error:
             raise self._failed(tracker, Failure.of(error, traced=False)) from error
-        if self._env.actions is ActionKind.DISCRETE:
+        if self._env.actions.numbered:
             self._numbers[tracker] = int(decision.actions[0])
 
     def _observed(self, tracker: int) -> Observation:

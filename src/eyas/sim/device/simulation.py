@@ -16,6 +16,7 @@ from eyas.sim.stepper import step_kernels, step_state
 from eyas.state.snapshot import Snapshot
 from eyas.targets.kind import Looks
 from eyas.task.done import DoneReason
+from eyas.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["DeviceSimulation"]
@@ -37,7 +38,7 @@ class DeviceSimulation:
         held_focal: The `Focal` of the pictures, held by the device.
         flown: How the trackers have done in the last action, on the device.
         commands: Commands of the trackers, see `eyas.trackers.tracker.Tracker.advance`, on the
-            device, shape (N, 4).
+            device, shape (N, 4) or (N, 8).
 
     Args:
         config: The settings.
@@ -48,6 +49,7 @@ class DeviceSimulation:
         size: Height and width of the pictures [pixels], which may squeeze the camera's.
         steps: Physics steps of a command.
         repeat: Commands of an action.
+        gimbal: Whether commands turn the cameras, see `eyas.trackers.gimbal_command`.
 
     Raises:
         ConfigError: Devices cannot do what a setting asks for.
@@ -64,6 +66,7 @@ class DeviceSimulation:
         size: tuple[int, int],
         steps: int,
         repeat: int = 1,
+        gimbal: bool = False,
     ) -> None:
         check_device(config, assets, tracker)
         self.config, self.count, self.device, self.assets = config, count, device, assets
@@ -78,6 +81,9 @@ class DeviceSimulation:
         rules = rules_of(config, tracker)
         state = device.held(step_state(config, tracker, self.snapshot, memory, around, rules))
         orders = Orders.create(count)
+        if gimbal:
+            orders = orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
+            tracker = with_gimbal(tracker)
         orders.steps[0] = steps
         self._active = Mirrored(device, orders.active)
         orders = uploaded(device, orders)._replace(active=self._active.array)
