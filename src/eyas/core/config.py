@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, ErrorDetails
 from eyas.core.allowed import describe, names_of
 from eyas.core.errors import ConfigError, UnknownNameError, nearest
 
-__all__ = ["Config", "Problem", "group_of", "shown", "updated", "validated"]
+__all__ = ["Config", "Problem", "entries_of", "group_of", "shown", "updated", "validated"]
 
 Path = tuple[str, ...]
 
@@ -155,7 +155,7 @@ def group_of(field: FieldInfo | None) -> type[Config] | None:
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
 
 
-def _entries_of(field: FieldInfo | None) -> type[Config] | None:
+def entries_of(field: FieldInfo | None) -> type[Config] | None:
     """Return the class of a field that holds a list of groups of settings, or null; None for
     others.
     """
@@ -204,7 +204,7 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
     field: FieldInfo | None = None
     group: type[Config] | None = model
     for part in entry["loc"]:
-        if group is None and isinstance(part, int) and (group := _entries_of(field)):
+        if group is None and isinstance(part, int) and (group := entries_of(field)):
             path += (str(part),)
             values = values[part] if isinstance(values, list | tuple) else None
             continue

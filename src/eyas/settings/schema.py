@@ -10,7 +10,7 @@ from eyas.core.config import Config
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import SCHEMA_KEY
 
-__all__ = ["config_schema"]
+__all__ = ["config_schema", "field_texts"]
 
 Schema = dict[str, Any]
 
@@ -28,7 +28,7 @@ def config_schema() -> Schema:
     definitions = schema["$defs"]
     for group in _groups(EyasConfig, set()):
         there = schema if group is EyasConfig else definitions[group.__name__]
-        for name, text in _descriptions(group).items():
+        for name, text in field_texts(group).items():
             if name in there["properties"]:
                 there["properties"][name]["description"] = text
         if group.named_by is not None:
@@ -55,7 +55,7 @@ def _parts(annotation: Any) -> Iterator[Any]:  # noqa: ANN401  # a type
         yield from _parts(part)
 
 
-def _descriptions(group: type[Config]) -> dict[str, str]:
+def field_texts(group: type[Config]) -> dict[str, str]:
     """Return the docstring of each field, on one line."""
     above = [base for base in group.__mro__ if base is not Config and issubclass(base, Config)]
     return {name: text for base in reversed(above) for name, text in _own(base).items()}

@@ -1,0 +1,80 @@
+"""Record the films of the site's gallery: python tools/site_films.py [NAME ...]
+
+Each is one episode of one drone, of `eyas video` with the settings below; `docs/films` gets them.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+import av
+from PIL import Image
+
+import eyas
+
+FILMS = Path(__file__).parents[1] / "docs" / "films" / "films"
+COMMON = {
+    "camera": {"width": 480, "height": 360, "samples": 4},
+    "video": {"channels": 1, "episode_frames": 150, "writers": ["mp4", "labels"]},
+}
+CHOSEN: dict[str, dict[str, object]] = {
+    "follow": {"seed": 4},
+    "orbit": {"video.flight": "orbit", "world.map": "village", "seed": 2},
+    "search": {"video.flight": "search", "world.map": "downtown", "seed": 3},
+    "night": {"world.weather": "night", "world.map": "downtown", "seed": 5},
+    "snow": {"world.weather": "snow", "seed": 6},
+    "people": {"target": "Pedestrian", "start.height": 9.0, "seed": 3},
+}
+"""Settings of each film, by the names that `--set` takes."""
+
+
+def nested(settings: dict[str, object]) -> dict[str, object]:
+    """Return settings as nested dictionaries."""
+    tree: dict[str, object] = {}
+    for key, value in settings.items():
+        *groups, name = key.split(".")
+        place = tree
+        for group in groups:
+            place = place.setdefault(group, {})  # type: ignore[assignment]
+        place[name] = value
+    return tree
+
+
+def frames(film: Path) -> list[Image.Image]:
+    """Return the pictures of a film."""
+    with av.open(str(film)) as container:
+        return [frame.to_image() for frame in container.decode(video=0)]
+
+
+def write_film(path: Path, pictures: list[Image.Image]) -> None:
+    """Write pictures as a film that is small enough to be kept in the repository."""
+    with av.open(str(path), "w", options={"movflags": "+faststart"}) as container:
+        stream = container.add_stream("libx264", rate=25, options={"crf": "32", "preset": "slow"})
+        stream.width, stream.height, stream.pix_fmt = *pictures[0].size, "yuv420p"
+        for picture in pictures:
+            container.mux(stream.encode(av.VideoFrame.from_image(picture)))
+        container.mux(stream.encode())
+
+
+def write_animation(path: Path, pictures: list[Image.Image]) -> None:
+    """Write every second picture, smaller, as an animated WebP."""
+    small = [picture.resize((320, 240), Image.Resampling.LANCZOS) for picture in pictures[::2]]
+    small[0].save(path, save_all=True, append_images=small[1:], duration=80, loop=0, quality=45)
+
+
+def main() -> None:
+    """Record those that are asked for, or all."""
+    FILMS.mkdir(parents=True, exist_ok=True)
+    for name in sys.argv[1:] or CHOSEN:
+        settings = eyas.updated(eyas.make_config(COMMON), nested(CHOSEN[name]))
+        with tempfile.TemporaryDirectory() as folder:
+            run = eyas.record(settings, Path(folder) / "run")
+            pictures = frames(run / "DRONE0" / "episode0" / "episode.mp4")
+        write_film(FILMS / f"{name}.mp4", pictures)
+        if name == "follow":  # README's, which plays on GitHub
+            write_animation(FILMS.parents[1] / "images" / "follow.webp", pictures)
+        print(FILMS / f"{name}.mp4")
+
+
+if __name__ == "__main__":
+    main()
