@@ -17,7 +17,7 @@ import site_reference  # noqa: E402  # of tools
 
 project = "Eyas"
 author = "The Eyas developers"
-copyright = "The Eyas developers; MIT licence"  # noqa: A001  # Sphinx's word
+copyright = "The Eyas developers; MIT licence"  # Sphinx's word
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 source_suffix = [".md"]
 

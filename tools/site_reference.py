@@ -79,7 +79,9 @@ def commands() -> str:
 
     from eyas.cli.app import app
 
-    return "\n\n".join(_command(path, one) for path, one in _leaves("eyas", typer.main.get_command(app)))
+    return "\n\n".join(
+        _command(path, one) for path, one in _leaves("eyas", typer.main.get_command(app))
+    )
 
 
 def _leaves(path: str, command: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401  # click's
@@ -173,7 +175,9 @@ def _group(path: str, group: type[Config]) -> Iterator[str]:
         yield from _group(inner_path, one)
 
 
-UNIT = re.compile(r"\[((?:m|s|h|rad|kg|Hz|K|lx|N|V|A|px|pixels|ms|us|1|°)[^\]\d]{0,8}[\^²³\d]*[^\]]{0,6})\]")
+UNIT = re.compile(
+    r"\[((?:m|s|h|rad|kg|Hz|K|lx|N|V|A|px|pixels|ms|us|1|°)[^\]\d]{0,8}[\^²³\d]*[^\]]{0,6})\]"
+)
 """A unit in square brackets, as docstrings have it."""
 
 
