@@ -3,6 +3,7 @@
 import importlib.util
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -54,3 +55,13 @@ def test_tags_tell_the_version(copy):
 def test_an_sdist_says_which_version_it_is(copy):
     (copy / "PKG-INFO").write_text("Metadata-Version: 2.4\nName: eyas\nVersion: 3.1.4\n")
     assert loaded(copy).version() == "3.1.4"
+
+
+def test_the_texts_that_name_a_version_are_ready_for_it():
+    sys.path.insert(0, str(ROOT / "tools"))
+    try:
+        release = importlib.import_module("release")
+    finally:
+        sys.path.pop(0)
+    assert release.texts_of(loaded(ROOT).NEXT) == []
+    assert len(release.texts_of("9.9.9")) == 2
