@@ -4,15 +4,14 @@ from pathlib import Path
 
 import pytest
 
-nbclient = pytest.importorskip("nbclient", reason="extra docs")
-nbformat = pytest.importorskip("nbformat", reason="extra docs")
-
 NOTEBOOK = Path(__file__).parents[1] / "docs/tutorials/notebook.ipynb"
 
 
 @pytest.mark.thorough
 @pytest.mark.filterwarnings("default")
 def test_the_notebook_runs_and_shows_its_environments(tmp_path):
+    nbclient = pytest.importorskip("nbclient", reason="extra docs")
+    nbformat = pytest.importorskip("nbformat", reason="extra docs")
     book = nbformat.read(NOTEBOOK, as_version=4)
     assert not any(cell.get("outputs") for cell in book.cells), "clear the outputs"
     nbclient.NotebookClient(

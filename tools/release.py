@@ -80,7 +80,7 @@ def build() -> list[Path]:
     for old in DIST.glob("eyas-*"):
         old.unlink()
     run("python", "-m", "build", "--outdir", DIST)  # the wheel from the sdist
-    packages = sorted(DIST.glob("eyas-*"))
+    packages = sorted(DIST.glob("eyas-*"), reverse=True)  # the wheel is last
     run("python", "-m", "twine", "check", "--strict", *packages)
     (wheel,) = DIST.glob("*.whl")
     if wheel.stat().st_size > LARGEST_WHEEL:
