@@ -7,6 +7,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import eyas
@@ -198,7 +199,16 @@ def _json(value: object) -> object:
     return getattr(value, "value", value)
 
 
-MADE = {"api": api, "commands": commands, "settings": settings}
+def history() -> str:
+    """Return the speed of earlier commits, as `bench/history.py` has recorded it."""
+    bench = Path(__file__).parents[1] / "bench"
+    sys.path.insert(0, str(bench))
+    from history import page
+
+    return str(page(bench / "history"))
+
+
+MADE = {"api": api, "commands": commands, "settings": settings, "history": history}
 """What a page gets in the place of `<!-- site: NAME -->`."""
 
 if __name__ == "__main__":
