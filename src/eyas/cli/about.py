@@ -3,12 +3,14 @@
 import json
 import re
 from collections.abc import Iterator
-from importlib.metadata import Distribution, PackageNotFoundError, distribution
-from typing import Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from eyas.cli.options import AsJson
+
+if TYPE_CHECKING:
+    from importlib.metadata import Distribution
 
 __all__ = ["Part", "about", "parts"]
 
@@ -56,6 +58,8 @@ def about(
 
 def parts() -> list[Part]:
     """Return the packages that Eyas needs, and those that they need, without extras."""
+    from importlib.metadata import PackageNotFoundError, distribution  # slow to import
+
     known: dict[str, Part] = {}
     todo = ["eyas"]
     while todo:
@@ -72,7 +76,7 @@ def parts() -> list[Part]:
     return [known[name] for name in sorted(known)]
 
 
-def _needed(found: Distribution) -> Iterator[str]:
+def _needed(found: "Distribution") -> Iterator[str]:
     """Yield the packages that one needs, whatever the system, without its extras."""
     for line in found.requires or ():
         name = re.match(r"[\w.-]+", line)
@@ -80,8 +84,9 @@ def _needed(found: Distribution) -> Iterator[str]:
             yield re.sub(r"[-_.]+", "-", name[0]).lower()
 
 
-def _licence(found: Distribution) -> str:
+def _licence(found: "Distribution") -> str:
     """Return a package's licence: an expression of SPDX, or what its metadata say instead."""
+
     def told(key: str) -> list[str]:
         return found.metadata.get_all(key) or []
 

@@ -88,7 +88,7 @@ def _picture() -> str:
     try:
         env = make(render_mode="rgb_array")
         env.reset(seed=0)
-        height, width, _ = np.shape(env.render())
+        height, width, _ = np.asarray(env.render()).shape
         env.close()
     except (EyasError, OSError) as error:
         return f"cannot be drawn: {error}"
