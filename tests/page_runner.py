@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 BLOCK = re.compile(r"(?:^<!-- ([^>]*) -->\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-AFTER = "\nset +x; env -0 > \"$RUNNER_ENV\""
+AFTER = '\nset +x; env -0 > "$RUNNER_ENV"'
 
 
 class Block(NamedTuple):
@@ -43,7 +43,7 @@ def main() -> None:
     sys.path.insert(0, os.getcwd())
     session: dict[str, object] = {"__name__": "__main__"}
     for block in blocks(page):
-        if block.mark.startswith("not run:"):
+        if block.mark.startswith(("not run:", "test command")):
             continue
         print(f"+ {page.name}:{block.line}", flush=True)
         if block.mark.startswith("file:"):

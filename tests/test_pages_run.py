@@ -10,11 +10,15 @@ import pytest
 ROOT = Path(__file__).parents[1]
 RUNNER = Path(__file__).with_name("page_runner.py")
 FIRST = [ROOT / "README.md", ROOT / "docs/start.md"]
-TUTORIALS = sorted(ROOT.glob("docs/tutorials/*.md"))
+TUTORIALS = sorted([*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/zh/*.md")])
 QUICK = ("sensor.md",)
 """Those that take a few seconds; the others are tried before a release."""
 PAGES = [
-    pytest.param(page, id=page.name, marks=[] if page.name in QUICK else [pytest.mark.thorough])
+    pytest.param(
+        page,
+        id=page.relative_to(ROOT).as_posix(),
+        marks=[] if page.name in QUICK else [pytest.mark.thorough],
+    )
     for page in (*FIRST, *TUTORIALS)
 ]
 

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("furo", reason="extra docs")
-
 ROOT = Path(__file__).parents[1]
 LOADED = re.compile(r'<(?:script|link|img|video|iframe)\b[^>]*?\b(?:src|href)="([^"]+)"')
 
@@ -17,6 +15,7 @@ pytestmark = pytest.mark.thorough
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
+    pytest.importorskip("furo", reason="extra docs")
     folder = tmp_path_factory.mktemp("site")
     command = (sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", ROOT / "docs", folder)
     done = subprocess.run(command, capture_output=True, text=True)

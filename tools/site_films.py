@@ -1,4 +1,4 @@
-"""Record the films of the site's gallery: python tools/site_films.py [NAME ...]
+"""Record the films of the gallery of the site: `python tools/site_films.py [NAME ...]`.
 
 Each is one episode of one drone, of `eyas video` with the settings below; `docs/films` gets them.
 """

@@ -7,6 +7,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import eyas
@@ -79,7 +80,9 @@ def commands() -> str:
 
     from eyas.cli.app import app
 
-    return "\n\n".join(_command(path, one) for path, one in _leaves("eyas", typer.main.get_command(app)))
+    return "\n\n".join(
+        _command(path, one) for path, one in _leaves("eyas", typer.main.get_command(app))
+    )
 
 
 def _leaves(path: str, command: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401  # click's
@@ -173,7 +176,9 @@ def _group(path: str, group: type[Config]) -> Iterator[str]:
         yield from _group(inner_path, one)
 
 
-UNIT = re.compile(r"\[((?:m|s|h|rad|kg|Hz|K|lx|N|V|A|px|pixels|ms|us|1|°)[^\]\d]{0,8}[\^²³\d]*[^\]]{0,6})\]")
+UNIT = re.compile(
+    r"\[((?:m|s|h|rad|kg|Hz|K|lx|N|V|A|px|pixels|ms|us|1|°)[^\]\d]{0,8}[\^²³\d]*[^\]]{0,6})\]"
+)
 """A unit in square brackets, as docstrings have it."""
 
 
@@ -194,7 +199,16 @@ def _json(value: object) -> object:
     return getattr(value, "value", value)
 
 
-MADE = {"api": api, "commands": commands, "settings": settings}
+def history() -> str:
+    """Return the speed of earlier commits, as `bench/history.py` has recorded it."""
+    bench = Path(__file__).parents[1] / "bench"
+    sys.path.insert(0, str(bench))
+    from history import page
+
+    return str(page(bench / "history"))
+
+
+MADE = {"api": api, "commands": commands, "settings": settings, "history": history}
 """What a page gets in the place of `<!-- site: NAME -->`."""
 
 if __name__ == "__main__":

@@ -113,7 +113,9 @@ if TYPE_CHECKING:
     from eyas.world.weather import Season as Season
     from eyas.world.weather import Weather as Weather
 
-__version__ = "0.1.0"
+__version__: str
+"""Version of this Eyas, by the tags of git (`tools/version.py`), without what marks one in
+development: `build_id` tells exactly which it is."""
 
 build_id: str
 """Identifies code and data of this Eyas, see `eyas.core.build`: results of the same build, settings
@@ -189,6 +191,15 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
         from eyas.core.build import this_build
 
         return this_build().id
+    if name == "__version__":
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            told = version("eyas")
+        except PackageNotFoundError:  # run from a folder that is not installed
+            told = "0"
+        globals()[name] = told.partition(".dev")[0]
+        return globals()[name]
     if name in _MODULE_OF:
         from importlib import import_module
 

@@ -242,7 +242,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert len(seen) == 6
+    assert len(seen) == 8
     assert all(seen.values())
 
 

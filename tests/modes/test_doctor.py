@@ -29,6 +29,16 @@ def test_json_and_lines_tell_the_same(monkeypatch, capsys):
     assert platform.python_version() in found["Python"]
     assert f"numpy {np.__version__}" in found["packages"]
     assert found["graphics card"] == gpu_line()
+    assert found["a picture"] == "drawn, 320x240 pixels"
+
+
+def test_an_extra_that_is_not_whole_is_named_with_what_it_lacks(monkeypatch):
+    here = doctor._version
+    gone = {"osmium", "pygame"}
+    monkeypatch.setattr(doctor, "_version", lambda name: "missing" if name in gone else here(name))
+    assert "osm lacks osmium" in doctor.facts()["extras"]
+    assert "play lacks pygame" in doctor.facts()["extras"]
+    assert "dev lacks" not in doctor.facts()["extras"]
 
 
 def test_the_cache_and_who_has_moved_it(monkeypatch, tmp_path):

@@ -1,6 +1,8 @@
 """Code that settings name: run only if its user has named it, or trusts the file that does."""
 
 import json
+import os
+import subprocess
 import sys
 
 import pytest
@@ -172,8 +174,26 @@ def test_user_s_code_that_ends_the_program_is_an_error(tmp_path, monkeypatch):
         RewardTerms(RewardConfig(terms={"ends:it": 1.0}))
 
 
-def test_a_module_in_the_current_folder_is_told_with_the_variable(tmp_path, monkeypatch):
+def test_a_module_in_the_current_folder_is_found_last(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "calm_term.py").write_text(HARMFUL)
-    with pytest.raises(ConfigError, match=r"no module 'calm_term'; .*PYTHONPATH=\. is set"):
-        RewardTerms(RewardConfig(terms={"calm_term:calm": 1.0}))
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    (tmp_path / "calm_term.py").write_text("def calm(offset):\n    return offset\n")
+    (tmp_path / "colorsys.py").write_text(HARMFUL)  # has the name of a module of Python
+    RewardTerms(RewardConfig(terms={"calm_term:calm": 1.0}))
+    assert sys.path[-1] == str(tmp_path)
+    with pytest.raises(ConfigError, match=r"the module 'colorsys' has no 'calm'"):
+        RewardTerms(RewardConfig(terms={"colorsys:calm": 1.0}))
+
+
+def test_a_module_in_the_current_folder_is_not_looked_for_where_that_is_forbidden(tmp_path):
+    (tmp_path / "calm_term.py").write_text("def calm(offset):\n    return offset\n")
+    asked = ("--set", 'reward.terms={"calm_term:calm": 1.0}', "--set", "video.total_time=0.1")
+    done = subprocess.run(
+        [sys.executable, "-m", "eyas", "video", *asked, "--out", tmp_path / "out"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONSAFEPATH": "1"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert "Python does not look because of PYTHONSAFEPATH" in done.stderr

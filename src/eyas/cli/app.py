@@ -3,15 +3,18 @@
 import logging
 import os
 import sys
+import traceback
 import warnings
 from typing import Annotated, Any
 
 import typer
 import typer.core
 
-from eyas import __version__
 from eyas.cli import data, evaluate, maps, reproduce, runs, targets, tools, traffic
+from eyas.cli.about import about
+from eyas.cli.completion import completion
 from eyas.cli.said import say
+from eyas.cli.switches import as_switches
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
 
@@ -54,6 +57,8 @@ app.command("webots-shim")(tools.webots_shim)
 app.command("bench")(tools.bench)
 app.command("verify")(tools.verify)
 app.command("doctor")(tools.doctor)
+app.command("about")(about)
+app.command("completion")(completion)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)
 app.add_typer(evaluate.leaderboard, name="leaderboard")
@@ -69,19 +74,41 @@ app.add_typer(traffic.app, name="traffic")
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
+        from eyas import __version__  # reads the metadata, so only when it is asked for
+
         typer.echo(f"eyas {__version__}")
         raise typer.Exit
 
 
 @app.callback()
 def _options(
+    context: typer.Context,
     version: Annotated[  # used by its callback
         bool,
         typer.Option(
             "--version", callback=_print_version, is_eager=True, help="Print the version."
         ),
     ] = False,
-) -> None: ...
+    verbose: Annotated[
+        bool,
+        typer.Option("--verbose", "-v", help="Print a traceback with an error, and more of a run."),
+    ] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print nothing but errors, and what is asked for.")
+    ] = False,
+) -> None:
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
+        context.default_map = _quiet(context.command)
+    elif verbose:
+        logging.getLogger("eyas").setLevel(logging.DEBUG)
+
+
+def _quiet(command: Any) -> dict[str, Any]:  # noqa: ANN401  # Typer's
+    """Return the defaults of a command, and of those in it, where each that can be is quiet."""
+    inner = {name: _quiet(each) for name, each in getattr(command, "commands", {}).items()}
+    own = any("--quiet" in option.opts for option in command.params)
+    return inner | ({"quiet": True} if own and not inner else {})
 
 
 class _Line(logging.Formatter):
@@ -100,9 +127,11 @@ def run() -> int:
     logging.basicConfig(handlers=[lines], level=logging.WARNING)
     logging.getLogger("eyas").setLevel(logging.INFO)
     try:
-        status = app(standalone_mode=False)
+        status = as_switches(typer.main.get_command(app))(standalone_mode=False)
         sys.stdout.flush()  # here, so that a closed pipe is caught below
     except EyasError as error:
+        if logging.getLogger("eyas").isEnabledFor(logging.DEBUG):
+            traceback.print_exception(error)
         return _failed(str(error))
     except _UsageError as error:
         return _misused(error)

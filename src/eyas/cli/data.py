@@ -49,7 +49,7 @@ def export(  # noqa: PLR0913  # one parameter for each option
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="First delete an export that is in the folder.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Export a recording in the formats of other tools: COCO, MOTChallenge, GOT-10k, YOLO, ..."""
     from eyas.core.errors import ConfigError
@@ -98,7 +98,7 @@ def track(  # noqa: PLR0913  # one parameter for each option
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
     from eyas.core.errors import ConfigError
@@ -133,7 +133,7 @@ _Workers = Annotated[
     typer.Option("--workers", min=1, max=1024, help="Processes; by default one for each core."),
 ]
 _Continue = Annotated[bool, typer.Option("--resume", help="Continue an interrupted data set.")]
-_Silent = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
+_Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
 @dataset_app.command("make")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from eyas.cli.options import SEVERAL
+from eyas.cli.options import POLICIES, SEVERAL
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -20,9 +20,7 @@ _Policy = Annotated[
     str,
     typer.Option(
         "--policy",
-        help="random, hover, follow, sighted, constant-velocity, road-graph, servo, a box tracker "
-        "(csrt, kcf, mosse, medianflow, nano, stay), a shipped network, a file (.onnx, .zip, "
-        ".pt, .pt2), or package.module:name.",
+        help=f"{POLICIES}, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
     ),
 ]
 _Protocol = Annotated[
@@ -106,7 +104,7 @@ _Overwrite = Annotated[
 _Ray = Annotated[
     bool, typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster).")
 ]
-_Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
 def evaluate(  # noqa: PLR0913  # one parameter for each option

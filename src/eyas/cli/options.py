@@ -10,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.settings.preset import DAT_MODES, TRAININGS, WORLDS
 
 __all__ = [
+    "POLICIES",
     "SEVERAL",
     "AsJson",
     "ConfigFile",
@@ -43,6 +44,13 @@ Overrides = Annotated[
         "--set", metavar="KEY=VALUE", help="Change a setting; may be given several times."
     ),
 ]
+POLICIES = (
+    "random, hover, follow (an oracle), sighted, constant-velocity, road-graph, relay, servo, "
+    "attribute-servo, salient-servo, csrt, kcf, mosse, medianflow, nano, stay, eyas, eyas-flown, "
+    "fast"
+)
+"""The policies that come with Eyas, for help, which must not load what knows them; a test holds
+the two equal."""
 SEVERAL = "may be given several times"
 
 MapName = Annotated[

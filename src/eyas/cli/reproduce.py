@@ -15,7 +15,9 @@ def reproduce(
     out: Annotated[
         Path, typer.Option("--out", help="Folder for their evaluations; continued if interrupted.")
     ] = Path("runs/reproduce"),
-    quiet: Annotated[bool, typer.Option("--quiet", help="Do not tell what is flown.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Do not tell what is flown.")
+    ] = False,
 ) -> None:
     """Fly tables of the documents again, and tell whether every printed digit is equal."""
     from eyas.modes.reproduce.run import listing, run

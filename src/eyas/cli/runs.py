@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from eyas.cli.options import (
+    POLICIES,
     SEVERAL,
     ConfigFile,
     MapName,
@@ -35,7 +36,10 @@ def demo(  # noqa: PLR0913  # one parameter for each option
     trust: Trust = False,
     policy: Annotated[
         str | None,
-        typer.Option("--policy", help="A policy that may fly too: a file, or module:name."),
+        typer.Option(
+            "--policy",
+            help=f"A policy that may fly, too: {POLICIES}, a file, or package.module:name.",
+        ),
     ] = None,
     host: Annotated[
         str,
@@ -85,8 +89,15 @@ def video(  # noqa: PLR0913  # one parameter for each option
         str | None,
         typer.Option(
             "--policy",
-            help="Let a policy of eyas evaluate fly: a name such as follow (the oracle), servo or "
-            "fast, a file, or package.module:name. Else video.flight says how drones fly.",
+            help=f"Let a policy fly: {POLICIES}, a file, or package.module:name.",
+        ),
+    ] = None,
+    camera: Annotated[
+        str | None,
+        typer.Option(
+            "--camera",
+            help="How the drones fly (video.flight): follow, orbit, fly-by, rise, zoom, "
+            "hover-and-pan, search, exact, random, or package.module:Class; policy: as --policy.",
         ),
     ] = None,
     resume: Annotated[
@@ -95,7 +106,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="First delete a recording that is in the folder.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Record labelled pictures and videos of drones that film their targets."""
     from eyas.settings.config import Mode
@@ -104,6 +115,10 @@ def video(  # noqa: PLR0913  # one parameter for each option
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
     overrides = gathered(set_, map_name, weather, seed)
+    if (camera == "policy") != (policy is not None) and camera is not None:
+        raise ConfigError("--camera: 'policy' goes with --policy, and other flights without it")
+    if camera is not None and policy is None:
+        overrides = ["video.policy=null", *overrides, f"video.flight={json.dumps(camera)}"]
     if policy is not None:
         # The flight of a file gives way to a policy; one that is asked for beside it does not.
         overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
@@ -157,7 +172,7 @@ def train(  # noqa: PLR0913  # one parameter for each option
         bool,
         typer.Option("--ray", help="Spread the shards over a Ray cluster (extra cluster)."),
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Teach a network to track, and write it as an ONNX file."""
     from eyas.settings.file import load_settings

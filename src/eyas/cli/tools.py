@@ -153,11 +153,11 @@ cache_app = typer.Typer(
 
 
 @cache_app.command("info")
-def cache_info() -> None:
+def cache_info(*, as_json: AsJson = False) -> None:
     """Print the folder, size, size limit and contents of the cache."""
     from eyas.modes import cache
 
-    cache.run_info()
+    cache.run_info(as_json=as_json)
 
 
 @cache_app.command("clear")

@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
+from importlib import import_module, invalidate_caches
 from importlib.util import find_spec
 from traceback import extract_tb
 
@@ -40,6 +40,21 @@ def imported(path: str, setting: str) -> object:
 
 
 def _exists(module: str) -> bool:
+    """Return whether Python finds a module; in the current folder, it does from now on.
+
+    That folder is looked into last, and only for what is nowhere else: no file in it takes the
+    place of a module of Python or of a package.
+    """
+    if _found(module):
+        return True
+    if sys.flags.safe_path or not _lies_here(module):
+        return False
+    sys.path.append(os.getcwd())
+    invalidate_caches()
+    return _found(module)
+
+
+def _found(module: str) -> bool:
     if module in sys.modules:
         return True
     try:
@@ -48,15 +63,16 @@ def _exists(module: str) -> bool:
         return False
 
 
-def _where(module: str) -> str:
-    """Return what to do about a module that Python does not find."""
+def _lies_here(module: str) -> bool:
     here = module.partition(".")[0]
-    if not (os.path.isdir(here) or os.path.isfile(f"{here}.py")):
+    return os.path.isdir(here) or os.path.isfile(f"{here}.py")
+
+
+def _where(module: str) -> str:
+    """Return why a module is not found that seems to be there."""
+    if not sys.flags.safe_path or not _lies_here(module):
         return ""
-    return (
-        "; it lies in the current folder, where Python looks only if the environment variable "
-        "PYTHONPATH=. is set"
-    )
+    return "; it lies in the current folder, where Python does not look because of PYTHONSAFEPATH"
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from eyas.envs.choice import (
 )
 from eyas.envs.information import Info, by_term, of_one
 from eyas.envs.keys import keys_to_action
+from eyas.envs.notebook import strip_html
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
 from eyas.settings.config import EyasConfig
@@ -146,6 +147,14 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         self._batch.close()
         if self._window is not None:
             self._window.close()
+
+    def _repr_html_(self) -> str:
+        """Return the camera's picture and what it is of, for notebooks."""
+        name = f"{self._batch.config.world.map}, {self._batch.config.world.weather}"
+        if self._closed or not self._begun:
+            return strip_html([], f"{name}: {'closed' if self._closed else 'call reset'}")
+        pictures = self._batch.render(overlay=self._overlay)
+        return strip_html(list(pictures), f"{name}: {self._batch.words_of(0)}")
 
     def _enter(self, config: EyasConfig) -> None:
         """Make the next episode one with these settings."""

@@ -17,6 +17,7 @@ from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_setting
 from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.mixed_batch import MixedBatch
+from eyas.envs.notebook import LONGEST_STRIP, strip_html
 from eyas.envs.observation import Observation
 from eyas.envs.sub_env import SubEnv
 from eyas.lanes.device import Device
@@ -254,6 +255,14 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def render_one(self, index: int) -> NDArray[np.uint8]:
         """Return the picture of one camera in its configured size, shape (H, W, 3)."""
         return self._batch.render(index, overlay=self._overlay)
+
+    def _repr_html_(self) -> str:
+        """Return a strip of the first cameras' pictures, for notebooks."""
+        name = f"{self.num_envs} environments: {self.config.world.map}, {self.config.world.weather}"
+        if self._here is None or self.closed or not self._begun:
+            return strip_html([], name)
+        shown = range(min(self.num_envs, LONGEST_STRIP))
+        return strip_html([self.render_one(index) for index in shown], name)
 
     def close_extras(self, **_: Any) -> None:  # noqa: ANN401  # Gymnasium's
         """Close the logs and end live traffic."""

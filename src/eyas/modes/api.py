@@ -46,6 +46,9 @@ def make(name: str = "citystreet-day", **choices: Any) -> "gymnasium.Env[Any, An
     """
     import gymnasium
 
+    from eyas.envs.notebook import show_wrapped
+
+    show_wrapped()
     return gymnasium.make(f"eyas/{name}-v0", **choices)
 
 

@@ -1,5 +1,6 @@
 """Show, delete and make the contents of the cache."""
 
+import json
 import time
 from collections.abc import Iterable, Sequence
 
@@ -24,13 +25,22 @@ from eyas.world.maps import MAPS
 __all__ = ["run_clear", "run_info", "run_warm"]
 
 
-def run_info() -> None:
+def run_info(*, as_json: bool = False) -> None:
     """Print the folder, size and size limit of the cache, and its contents by kind.
+
+    Args:
+        as_json: Whether to print one JSON object, with sizes in bytes.
 
     Raises:
         ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit, found = cache_limit(), entries(cache_folder())
+    if as_json:
+        kinds = {str(kind): [entry for entry in found if entry.kind == kind] for kind in Kind}
+        told = {kind: {"entries": len(of), "size": _total(of)} for kind, of in kinds.items()}
+        said = {"folder": str(cache_folder()), "limit": limit, "size": _total(found)}
+        print(json.dumps(said | {"kinds": told}, indent=1))
+        return
     print(f"{cache_folder()} ({FOLDER_VARIABLE} moves it)")
     print(f"{_shown(_total(found))} of at most {_shown(limit)} ({LIMIT_VARIABLE} changes it)")
     if not found:

@@ -3,10 +3,14 @@
 import json
 import os
 import platform
-from importlib.metadata import PackageNotFoundError, version
+import re
+from importlib.metadata import PackageNotFoundError, requires, version
 from importlib.util import find_spec
 
+import numpy as np
+
 from eyas import __version__
+from eyas.core.errors import EyasError
 from eyas.core.machine import describe_machine
 from eyas.lanes import thread_count
 from eyas.lanes.cuda import gpu_line
@@ -29,6 +33,9 @@ __all__ = ["facts", "run"]
 
 _NEEDED = ("numpy", "numba", "llvmlite")
 _EXTRAS = ("torch", "onnxruntime")
+_EXTRA = re.compile(r"([\w.-]+)[^;]*;.*\bextra == ['\"]([\w-]+)['\"].*")
+"""A requirement of an extra: package and extra."""
+_FOR_DEVELOPERS = ("dev", "docs", "peers", "release")
 
 
 def run(*, as_json: bool = False) -> None:
@@ -37,7 +44,7 @@ def run(*, as_json: bool = False) -> None:
     Args:
         as_json: Whether to print one JSON object.
     """
-    found = facts()
+    found = facts() | {"a picture": _picture()}
     if as_json:
         print(json.dumps(found, indent=2))
         return
@@ -58,7 +65,34 @@ def facts() -> dict[str, str]:
         "cache": _cache(),
         "shipped kernels": _shipped(),
         "graphics card": gpu_line(),
+        "extras": _lacking(),
     }
+
+
+def _lacking() -> str:
+    """Return which extras are not whole, and what they lack."""
+    lacking: dict[str, list[str]] = {}
+    for line in requires("eyas") or ():
+        found = _EXTRA.fullmatch(line)
+        if found and found[2] not in _FOR_DEVELOPERS and _version(found[1]) == "missing":
+            lacking.setdefault(found[2], []).append(found[1])
+    if not lacking:
+        return "all are whole"
+    return "; ".join(f"{extra} lacks {', '.join(names)}" for extra, names in lacking.items())
+
+
+def _picture() -> str:
+    """Draw a picture of the default settings, and return how that went."""
+    from eyas.modes.api import make
+
+    try:
+        env = make(render_mode="rgb_array")
+        env.reset(seed=0)
+        height, width, _ = np.asarray(env.render()).shape
+        env.close()
+    except (EyasError, OSError) as error:
+        return f"cannot be drawn: {error}"
+    return f"drawn, {width}x{height} pixels"
 
 
 def _version(package: str) -> str:

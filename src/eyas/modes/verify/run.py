@@ -13,13 +13,12 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from rich.console import Console
-
 from eyas import __version__
 from eyas.core.errors import DataFileError, UnknownNameError
 from eyas.core.machine import describe_machine
 from eyas.lanes import thread_count
 from eyas.lanes.folder import FOLDER_VARIABLE
+from eyas.modes.progress import frames_bar
 from eyas.modes.verify.cases import Case, cases
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
@@ -132,17 +131,18 @@ def run(*, quick: bool = False, map_name: str | None = None, as_json: bool = Fal
 
 
 def measured(chosen: Iterable[Case]) -> Hashes:
-    """Return the hashes of cases, and show meanwhile on a screen which one is computed.
+    """Return the hashes of cases, and show meanwhile on a screen how many are computed.
 
     Nothing is taken from the cache, which another machine may have filled, but compiled kernels.
     """
     found: Hashes = {}
-    with Console(stderr=True).status("verifying") as status:
-        for _, of_map in groupby(chosen, key=lambda case: case.map):
+    listed = list(chosen)
+    with frames_bar("verifying", len(listed), quiet=False) as told:
+        for _, of_map in groupby(listed, key=lambda case: case.map):
             with _empty_cache():
                 for case in of_map:
-                    status.update(f"verifying: {case.name}")
                     found[case.name] = case.measure()
+                    told(len(found))
     return found
 
 

@@ -1,0 +1,121 @@
+"""`eyas completion`: what a shell needs to complete commands, options and names."""
+
+from collections.abc import Callable, Iterator, Sequence
+from enum import StrEnum
+from typing import Annotated, Any
+
+import typer
+
+__all__ = ["Shell", "completion", "script"]
+
+
+class Shell(StrEnum):
+    """Shells that can complete."""
+
+    BASH = "bash"
+    ZSH = "zsh"
+    FISH = "fish"
+
+
+def completion(
+    shell: Annotated[Shell, typer.Argument(help="bash, zsh or fish.", show_default=False)],
+) -> None:
+    """Print a script by which a shell completes commands, options, and names of maps or policies.
+
+    For bash: eval "$(eyas completion bash)", in ~/.bashrc.
+    """
+    from eyas.cli.app import app
+
+    typer.echo(script(shell, typer.main.get_command(app)), nl=False)
+
+
+def script(shell: Shell, command: Any) -> str:  # noqa: ANN401  # Typer's own copy of click, or click
+    """Return the script for a shell.
+
+    Args:
+        shell: The shell.
+        command: The program's command, with all others in it.
+    """
+    known = list(_leaves("", command))
+    if shell is Shell.FISH:
+        return "\n".join(_fish(known)) + "\n"
+    return "\n".join(_bash(known, zsh=shell is Shell.ZSH)) + "\n"
+
+
+Known = tuple[str, list[str], list[tuple[str, str]]]
+"""Path of a command, names of the commands in it, its options with their help."""
+
+
+def _leaves(path: str, command: Any) -> Iterator[Known]:  # noqa: ANN401
+    inner = getattr(command, "commands", {})
+    options = [
+        (word, getattr(each, "help", "") or "")
+        for each in command.params
+        for word in (*each.opts, *each.secondary_opts)
+        if word.startswith("--")
+    ]
+    yield path, list(inner), [*options, ("--help", "Show this message and exit.")]
+    for name, each in inner.items():
+        yield from _leaves(f"{path} {name}".strip(), each)
+
+
+def _names() -> dict[str, Sequence[str]]:
+    """Return the names that options take, by option."""
+    from eyas.modes import api
+
+    lists: dict[str, Callable[[], Sequence[str]]] = {
+        "--map": api.list_maps,
+        "--weather": api.list_weathers,
+        "--preset": api.list_presets,
+        "--policy": api.list_policies,
+        "--target": api.list_targets,
+        "--format": api.list_formats,
+    }
+    return {option: listed() for option, listed in lists.items()}
+
+
+def _bash(known: Sequence[Known], *, zsh: bool) -> Iterator[str]:
+    """Yield the lines of a script for bash, which zsh can run, too."""
+    if zsh:
+        yield "autoload -U +X compinit && compinit"
+        yield "autoload -U +X bashcompinit && bashcompinit"
+    yield "_eyas() {"
+    yield '  local path="" word i words="" last="${COMP_WORDS[COMP_CWORD-1]}"'
+    yield '  local current="${COMP_WORDS[COMP_CWORD]}"'
+    yield "  COMPREPLY=()"
+    yield "  for ((i = 1; i < COMP_CWORD; i++)); do"
+    yield '    word="${path:+$path }${COMP_WORDS[i]}"'
+    yield '    case "$word" in'
+    paths = "|".join(f'"{path}"' for path, _, _ in known if path)
+    yield f'      {paths}) path="$word" ;;'
+    yield "    esac"
+    yield "  done"
+    yield '  case "$last" in'
+    for option, names in _names().items():
+        yield f'    {option}) words="{" ".join(names)}" ;;'
+    yield "  esac"
+    yield '  if [ -z "$words" ]; then case "$path" in'
+    for path, inner, options in known:
+        words = " ".join((*inner, *(word for word, _ in options)))
+        yield f'    "{path}") words="{words}" ;;'
+    yield "  esac; fi"
+    yield '  COMPREPLY=($(compgen -W "$words" -- "$current"))'
+    yield "}"
+    yield "complete -o default -F _eyas eyas"
+
+
+def _fish(known: Sequence[Known]) -> Iterator[str]:
+    """Yield the lines of a script for fish."""
+    names = _names()
+    yield "complete -c eyas -f -n '__fish_use_subcommand'"
+    for path, inner, options in known:
+        here = "; and ".join(f"__fish_seen_subcommand_from {word}" for word in path.split())
+        when = here or "__fish_use_subcommand"
+        if inner and path:
+            when += f"; and not __fish_seen_subcommand_from {' '.join(inner)}"
+        for name in inner:
+            yield f"complete -c eyas -f -n '{when}' -a {name}"
+        for word, help_ in options:
+            said = help_.replace("\\", "").replace("'", "\\'")
+            takes = f" -x -a '{' '.join(names[word])}'" if word in names else ""
+            yield f"complete -c eyas -n '{when}' -l {word[2:]} -d '{said}'{takes}"
