@@ -348,4 +348,4 @@ def test_all_components_tell_that_it_follows_as_mavsdks_follow_me_wants(bench):
     bench.fly_up()
     assert {at: mode for at, mode in modes().items() if at != 1} == {100: (0, 0), 154: (0, 0)}
     assert bench.command("DO_SET_MODE", 1, 4, 8) == 0
-    assert modes() == {at: (1, 4 << 16 | 8 << 24) for at in (1, 100, 154)}
+    assert modes() == dict.fromkeys((1, 100, 154), (1, 4 << 16 | 8 << 24))

@@ -4,7 +4,7 @@ import json
 import logging
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -21,6 +21,9 @@ from eyas.cli.options import (
     gathered,
 )
 from eyas.core.errors import ConfigError
+
+if TYPE_CHECKING:
+    from eyas.settings.config import EyasConfig
 
 __all__ = ["demo", "serve", "train", "video"]
 
@@ -208,6 +211,22 @@ def serve(  # noqa: PLR0913  # one parameter for each option
             f"udpin:HOST:PORT to listen on; {SEVERAL}.",
         ),
     ] = None,
+    px4: Annotated[
+        str | None,
+        typer.Option(
+            "--px4",
+            metavar="HOST:PORT",
+            help="Wait on this TCP port for PX4, which flies the drone's rotors; its own is 4560.",
+        ),
+    ] = None,
+    ardupilot: Annotated[
+        str | None,
+        typer.Option(
+            "--ardupilot",
+            metavar="HOST:PORT",
+            help="The same for ArduPilot's JSON simulator, on this UDP port; its own is 9002.",
+        ),
+    ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -218,10 +237,14 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     overrides = gathered(set_, map_name, weather, seed)
-    if (root is None) == (not mavlink):
-        raise ConfigError("either --root or --mavlink must be given")
+    if sum(bool(each) for each in (root, mavlink, px4, ardupilot)) != 1:
+        raise ConfigError("one of --root, --mavlink, --px4 and --ardupilot must be given")
     if root is None:
-        _fly(mavlink or [], chosen_file(config, preset), overrides, trust=trust)
+        from eyas.modes.serve.mavlink import AS_FLOWN
+        from eyas.settings.file import load_settings
+
+        file = chosen_file(config, preset)
+        _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
         return
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
@@ -242,9 +265,15 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     run(settings, root, load if file == root / SETTINGS_FILE else None)
 
 
-def _fly(addresses: list[str], file: Path | None, overrides: list[str], *, trust: bool) -> None:
-    """Fly vehicles that speak MAVLink, until Ctrl-C."""
-    from eyas.modes.serve.mavlink import AS_FLOWN, run
-    from eyas.settings.file import load_settings
+def _fly(
+    settings: "EyasConfig", addresses: list[str] | None, px4: str | None, ardupilot: str | None
+) -> None:
+    """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
+    if addresses:
+        from eyas.modes.serve.mavlink import run
 
-    run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), addresses)
+        run(settings, addresses)
+        return
+    from eyas.modes.serve import hil
+
+    hil.run(settings, px4=px4, ardupilot=ardupilot)
