@@ -227,6 +227,16 @@ def serve(  # noqa: PLR0913  # one parameter for each option
             help="The same for ArduPilot's JSON simulator, on this UDP port; its own is 9002.",
         ),
     ] = None,
+    ros: Annotated[
+        int | None,
+        typer.Option(
+            "--ros",
+            metavar="DOMAIN",
+            min=0,
+            max=232,
+            help="Fly a drone for nodes of ROS 2 that run in this domain (ROS_DOMAIN_ID), by DDS.",
+        ),
+    ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -237,8 +247,12 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     overrides = gathered(set_, map_name, weather, seed)
-    if sum(bool(each) for each in (root, mavlink, px4, ardupilot)) != 1:
-        raise ConfigError("one of --root, --mavlink, --px4 and --ardupilot must be given")
+    chosen = (root, mavlink or None, px4, ardupilot, ros)
+    if sum(each is not None for each in chosen) != 1:
+        raise ConfigError("one of --root, --mavlink, --px4, --ardupilot and --ros must be given")
+    if ros is not None:
+        _tell_ros(ros, chosen_file(config, preset), overrides, trust=trust)
+        return
     if root is None:
         from eyas.modes.serve.mavlink import AS_FLOWN
         from eyas.settings.file import load_settings
@@ -263,6 +277,14 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     from eyas.modes.serve.run import run  # after all checks
 
     run(settings, root, load if file == root / SETTINGS_FILE else None)
+
+
+def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
+    """Fly a drone for nodes of ROS 2, until Ctrl-C."""
+    from eyas.modes.serve.ros import AS_FLOWN, run
+    from eyas.settings.file import load_settings
+
+    run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
 
 
 def _fly(
