@@ -8,10 +8,16 @@ from eyas.core.errors import ConfigError
 from eyas.mavlink.dialect import dialect
 from eyas.mavlink.hil.sockets import bound, listening
 from eyas.settings.config import EyasConfig
-from eyas.trackers.config import TrackerKind
+from eyas.trackers.config import TrackerConfig, TrackerKind
 from eyas.world.maps import MAPS
 
 __all__ = ["run"]
+
+_TAKEN = {
+    *("kind", "supervised", "flight", "judged", "inertial_time_constant"),
+    *("motor_time_constant", "drag_area", "ground_contact", "wind"),
+}
+"""Settings of the tracker that hold for a driven drone, or do nothing to any flown one."""
 
 _LOG = logging.getLogger("eyas")
 
@@ -28,11 +34,7 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
         EyasError: An address or a setting cannot be used, or pymavlink is missing.
         KeyboardInterrupt: The user stopped it.
     """
-    if config.tracker.supervised or config.tracker.kind is not TrackerKind.DRONE:
-        raise ConfigError(
-            "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "
-            "an autopilot could turn; allowed: tracker.kind 'drone' with tracker.supervised false"
-        )
+    _check_tracker(config.tracker)
     if px4:
         dialect()
     MAPS.get(config.world.map).light(config.world.weather)  # raises before anything is built
@@ -60,3 +62,23 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
             Px4(drone, config.mavlink.hil.speed).serve(heard)
         _LOG.info("waiting for ArduPilot on UDP %s; start it with --home=%s", address, place)
         ArduPilot(drone, config.mavlink.hil.speed).serve(heard)
+
+
+def _check_tracker(config: TrackerConfig) -> None:
+    """Refuse a tracker without rotors, and what a driven drone does not have.
+
+    Raises:
+        ConfigError: There is such a setting.
+    """
+    if config.supervised or config.kind is not TrackerKind.DRONE:
+        raise ConfigError(
+            "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "
+            "an autopilot could turn; allowed: tracker.kind 'drone' with tracker.supervised false"
+        )
+    usual = TrackerConfig()
+    for name in sorted(TrackerConfig.model_fields.keys() - _TAKEN):
+        if getattr(config, name) != getattr(usual, name):
+            raise ConfigError(
+                f"tracker.{name}: a value of its own is not there with an autopilot outside; "
+                f"allowed: {getattr(usual, name)}"
+            )
