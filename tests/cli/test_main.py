@@ -50,7 +50,19 @@ def run(monkeypatch, capsys, *arguments):
             "world.weather: 'snow' is not allowed on the map 'simpleway-clinker'",
         ),
         (["serve", "--root", "nowhere"], "nowhere: no such folder; give the one that holds "),
-        (["serve"], "either --root or --mavlink must be given"),
+        (["serve"], "one of --root, --mavlink, --px4, --ardupilot and --ros must be given"),
+        (["serve", "--px4", "4560"], "--px4: '4560' is not of the form HOST:PORT"),
+        (
+            ["serve", "--ardupilot", "a:99999"],
+            "--ardupilot: 'a:99999' is not of the form HOST:PORT",
+        ),
+        (
+            [
+                *("serve", "--px4", "127.0.0.1:4560", "--set", "tracker.supervised=true"),
+                *("--set", "tracker.ground_contact=false"),
+            ],
+            "tracker: a supervised drone, a car or a tracker of one's own has no rotors",
+        ),
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
         (["video", "--seed", "x"], "Invalid value for '--seed'"),
         (["video", "--foo"], "No such option: --foo"),

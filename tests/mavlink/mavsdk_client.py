@@ -1,15 +1,18 @@
 """A program that flies by MAVSDK, which knows nothing of Eyas: prints what it sees, as JSON.
 
-python mavsdk_client.py PORT flight|lost
+python mavsdk_client.py PORT flight|lost|follow
 """
 
 import json
 import sys
 import time
+from contextlib import suppress
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.camera.camera import Camera, CameraError
+from mavsdk.plugins.follow_me import FollowMe
+from mavsdk.plugins.follow_me.follow_me import Config, FollowMeError, TargetLocation
 from mavsdk.plugins.gimbal.gimbal import ControlMode, Gimbal, GimbalMode, SendMode
 from mavsdk.plugins.mission_raw.mission_raw import MissionRaw
 from mavsdk.plugins.offboard import Offboard
@@ -93,6 +96,30 @@ class Client:
              height=parameters.get_param_float("MIS_TAKEOFF_ALT"))  # fmt: skip
         said(mission=list(MissionRaw(self.system).download_mission()))
 
+    def follow(self):
+        """Let it follow someone who walks north; the plugin sends where only while it is active."""
+        me = FollowMe(self.system)
+        me.set_config(Config(8.0, 8.0, 0.5, Config.FollowAltitudeMode.CONSTANT, 5.0, 180.0))
+        home = self.telemetry.home()
+        north = 10.0
+
+        def walk():
+            nonlocal north
+            north += 0.05
+            there = home.latitude_deg + north / 111_195.0
+            place = there, home.longitude_deg, home.absolute_altitude_m
+            with suppress(FollowMeError):  # until it is active
+                me.set_target_location(TargetLocation(*place, 1.0, 0.0, 0.0))
+            time.sleep(0.05)
+            return abs(self.place()[0] - (north - 8.0)) < 1.0 and north > 15.0
+
+        walk()
+        me.start()
+        followed = until(walk, 30.0)
+        said(active=me.is_active(), followed=followed, place=self.place(), north=north)
+        me.stop()
+        said(stopped=until(lambda: not me.is_active(), 5.0))
+
     def land(self):
         self.action.land()
         said(landed=until(lambda: not self.telemetry.armed(), 30.0))
@@ -108,6 +135,10 @@ def main():
         client.offboard.start()
         said(offboard=True)
         time.sleep(600.0)  # it is killed
+    if what == "follow":
+        client.follow()
+        client.land()
+        return
     client.fly_square()
     client.turn_gimbal()
     client.use_camera()

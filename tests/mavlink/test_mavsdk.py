@@ -105,3 +105,14 @@ def test_when_its_client_dies_it_holds_and_another_takes_over():
         assert listener.until(lambda m: m.get_type() == "COMMAND_ACK").result == 0
         assert server.poll() is None
     listener.socket.close()
+
+
+@pytest.mark.slow
+@pytest.mark.thorough
+def test_mavsdks_follow_me_stays_active_and_is_followed():
+    port = free_port()
+    with serving(f"udp:127.0.0.1:{port}"), running(str(CLIENT), str(port), "follow") as client:
+        told = [json.loads(line) for line in client.stdout if line.startswith("{")]
+        assert client.wait() == 0
+    facts = {key: value for line in told for key, value in line.items()}
+    assert (facts["active"], facts["followed"], facts["stopped"]) == (True, True, True)

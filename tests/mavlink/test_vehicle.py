@@ -336,3 +336,16 @@ def test_messages_of_all_kinds_with_any_content_change_nothing(bench):
     bench.fly(0.5)
     assert np.isfinite(bench.simulation.snapshot.trackers.position).all()
     assert bench.taken()
+
+
+def test_all_components_tell_that_it_follows_as_mavsdks_follow_me_wants(bench):
+    def modes():
+        bench.taken()
+        bench.fly(1.1)
+        beats = [m for m in bench.taken() if m.get_type() == "HEARTBEAT"]
+        return {m.get_srcComponent(): (m.base_mode & 1, m.custom_mode) for m in beats}
+
+    bench.fly_up()
+    assert {at: mode for at, mode in modes().items() if at != 1} == {100: (0, 0), 154: (0, 0)}
+    assert bench.command("DO_SET_MODE", 1, 4, 8) == 0
+    assert modes() == dict.fromkeys((1, 100, 154), (1, 4 << 16 | 8 << 24))

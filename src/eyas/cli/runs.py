@@ -4,7 +4,7 @@ import json
 import logging
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -22,6 +22,9 @@ from eyas.cli.options import (
     gathered,
 )
 from eyas.core.errors import ConfigError
+
+if TYPE_CHECKING:
+    from eyas.settings.config import EyasConfig
 
 __all__ = ["demo", "serve", "train", "video"]
 
@@ -223,6 +226,32 @@ def serve(  # noqa: PLR0913  # one parameter for each option
             f"udpin:HOST:PORT to listen on; {SEVERAL}.",
         ),
     ] = None,
+    px4: Annotated[
+        str | None,
+        typer.Option(
+            "--px4",
+            metavar="HOST:PORT",
+            help="Wait on this TCP port for PX4, which flies the drone's rotors; its own is 4560.",
+        ),
+    ] = None,
+    ardupilot: Annotated[
+        str | None,
+        typer.Option(
+            "--ardupilot",
+            metavar="HOST:PORT",
+            help="The same for ArduPilot's JSON simulator, on this UDP port; its own is 9002.",
+        ),
+    ] = None,
+    ros: Annotated[
+        int | None,
+        typer.Option(
+            "--ros",
+            metavar="DOMAIN",
+            min=0,
+            max=232,
+            help="Fly a drone for nodes of ROS 2 that run in this domain (ROS_DOMAIN_ID), by DDS.",
+        ),
+    ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -233,10 +262,18 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     overrides = gathered(set_, map_name, weather, seed)
-    if (root is None) == (not mavlink):
-        raise ConfigError("either --root or --mavlink must be given")
+    chosen = (root, mavlink or None, px4, ardupilot, ros)
+    if sum(each is not None for each in chosen) != 1:
+        raise ConfigError("one of --root, --mavlink, --px4, --ardupilot and --ros must be given")
+    if ros is not None:
+        _tell_ros(ros, chosen_file(config, preset), overrides, trust=trust)
+        return
     if root is None:
-        _fly(mavlink or [], chosen_file(config, preset), overrides, trust=trust)
+        from eyas.modes.serve.mavlink import AS_FLOWN
+        from eyas.settings.file import load_settings
+
+        file = chosen_file(config, preset)
+        _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
         return
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
@@ -257,9 +294,23 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     run(settings, root, load if file == root / SETTINGS_FILE else None)
 
 
-def _fly(addresses: list[str], file: Path | None, overrides: list[str], *, trust: bool) -> None:
-    """Fly vehicles that speak MAVLink, until Ctrl-C."""
-    from eyas.modes.serve.mavlink import AS_FLOWN, run
+def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
+    """Fly a drone for nodes of ROS 2, until Ctrl-C."""
+    from eyas.modes.serve.ros import AS_FLOWN, run
     from eyas.settings.file import load_settings
 
-    run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), addresses)
+    run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
+
+
+def _fly(
+    settings: "EyasConfig", addresses: list[str] | None, px4: str | None, ardupilot: str | None
+) -> None:
+    """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
+    if addresses:
+        from eyas.modes.serve.mavlink import run
+
+        run(settings, addresses)
+        return
+    from eyas.modes.serve import hil
+
+    hil.run(settings, px4=px4, ardupilot=ardupilot)

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from eyas.core.allowed import Said
 from eyas.core.config import Config
+from eyas.mavlink.hil.config import HilConfig
 
 __all__ = ["MavlinkConfig"]
 
@@ -32,3 +33,4 @@ class MavlinkConfig(Config):
     """Pictures per second [Hz], and how often a camera measures the target that it tracks."""
     video_quality: Annotated[int, Field(ge=0, le=51)] = 28
     """Constant rate factor of H.264: higher is smaller and blurrier."""
+    hil: HilConfig = HilConfig()

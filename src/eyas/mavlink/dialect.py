@@ -6,7 +6,7 @@ from typing import Any
 
 from eyas.core.errors import MissingExtraError
 
-__all__ = ["Packer", "Parser", "dialect"]
+__all__ = ["Packer", "Parser", "StreamParser", "dialect"]
 
 
 def dialect() -> ModuleType:
@@ -55,4 +55,17 @@ class Parser:
         reader = self._dialect.MAVLink(None)
         reader.robust_parsing = True
         found: list[Any] = reader.parse_buffer(datagram) or []
+        return [message for message in found if message.get_type() != "BAD_DATA"]
+
+
+class StreamParser:
+    """Finds messages in a stream, whose pieces end anywhere."""
+
+    def __init__(self) -> None:
+        self._reader = dialect().MAVLink(None)
+        self._reader.robust_parsing = True
+
+    def messages(self, piece: bytes) -> list[Any]:
+        """Return the messages that end in the next piece; what is no valid packet is left out."""
+        found: list[Any] = self._reader.parse_buffer(piece) or []
         return [message for message in found if message.get_type() != "BAD_DATA"]

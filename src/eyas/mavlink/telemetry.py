@@ -10,7 +10,7 @@ from eyas.mavlink.modes import Mode
 from eyas.mavlink.pilot import Pilot
 from eyas.mavlink.readings import Instant
 
-__all__ = ["RATES", "Telemetry", "degrees_e7"]
+__all__ = ["RATES", "Telemetry", "degrees_e7", "pressure"]
 
 RATES = {
     "heartbeat": 1.0,
@@ -248,7 +248,7 @@ class Telemetry:
         named = {f"{axis[-1]}{axis[:-1]}": value for axis, value in axes.items()}
         altitude = at.global_place[2]
         return {
-            **{"time_usec": at.microseconds, **named, "abs_pressure": _pressure(altitude)},
+            **{"time_usec": at.microseconds, **named, "abs_pressure": pressure(altitude)},
             **{"diff_pressure": 0.0, "pressure_alt": altitude, "temperature": 15.0},
             "fields_updated": 0x1BFF,  # all but the difference of pressures
         }
@@ -292,7 +292,7 @@ def _speeds(at: Instant) -> dict[str, Any]:
     return dict(zip(("rollspeed", "pitchspeed", "yawspeed"), at.rates, strict=True))
 
 
-def _pressure(altitude: float) -> float:
+def pressure(altitude: float) -> float:
     """Return the pressure of the International Standard Atmosphere, 1013.25 (1 - 2.25577e-5
     altitude)^5.25588, by the first five terms of its series [hPa]: good to 0.02 up to 2,000 m.
     """

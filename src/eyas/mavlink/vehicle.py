@@ -1,12 +1,13 @@
 """One vehicle: its components, its pilot, and who of them a message is for."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from eyas.core import exact
 from eyas.mavlink import autopilot, camera, gimbal
-from eyas.mavlink.component import Component
+from eyas.mavlink.component import Component, Fields
 from eyas.mavlink.frames import Vector
+from eyas.mavlink.modes import Mode
 from eyas.mavlink.parameters import Parameters
 from eyas.mavlink.pilot import Pilot
 from eyas.mavlink.readings import Instant, Readings
@@ -15,6 +16,8 @@ from eyas.mavlink.telemetry import Telemetry
 
 __all__ = ["Vehicle"]
 
+CUSTOM_MODE = 1
+"""`MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`"""
 _COMMANDS = ("COMMAND_LONG", "COMMAND_INT")
 
 
@@ -62,6 +65,25 @@ class Vehicle:
         self.camera = camera.Camera(
             parts[camera.COMPONENT], lens, self._now, self._choose, self._subject
         )
+        for id_ in (camera.COMPONENT, gimbal.DEVICE):
+            parts[id_].told["heartbeat"] = self._following(parts[id_].told["heartbeat"])
+
+    def _following(self, told: Callable[[], Iterable[Fields]]) -> Callable[[], Iterable[Fields]]:
+        """Return what tells heartbeats that have the mode while the vehicle follows.
+
+        MAVSDK's FollowMe takes the mode from the heartbeats of all components, and sends nothing
+        after one that has another (follow_me_impl.cpp, `process_heartbeat`).
+        """
+
+        def beats() -> Iterable[Fields]:
+            for fields in told():
+                mode = self.pilot.mode
+                if mode is Mode.FOLLOW:
+                    yield {**fields, "base_mode": CUSTOM_MODE, "custom_mode": mode.custom}
+                else:
+                    yield fields
+
+        return beats
 
     def _now(self) -> Instant:
         return self._instant

@@ -1,0 +1,84 @@
+"""Serve a drone to PX4 or ArduPilot, which fly it."""
+
+import logging
+from contextlib import ExitStack
+
+from eyas.core.config import updated
+from eyas.core.errors import ConfigError
+from eyas.mavlink.dialect import dialect
+from eyas.mavlink.hil.sockets import bound, listening
+from eyas.settings.config import EyasConfig
+from eyas.trackers.config import TrackerConfig, TrackerKind
+from eyas.world.maps import MAPS
+
+__all__ = ["run"]
+
+_TAKEN = {
+    *("kind", "supervised", "flight", "judged", "inertial_time_constant"),
+    *("motor_time_constant", "drag_area", "ground_contact", "wind"),
+}
+"""Settings of the tracker that hold for a driven drone, or do nothing to any flown one."""
+
+_LOG = logging.getLogger("eyas")
+
+
+def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = None) -> None:
+    """Let an autopilot fly until the user stops it.
+
+    Args:
+        config: The settings.
+        px4: Address on which PX4 is waited for, `HOST:PORT`.
+        ardupilot: The same for ArduPilot; one of both is given.
+
+    Raises:
+        EyasError: An address or a setting cannot be used, or pymavlink is missing.
+        KeyboardInterrupt: The user stopped it.
+    """
+    _check_tracker(config.tracker)
+    if px4:
+        dialect()
+    MAPS.get(config.world.map).light(config.world.weather)  # raises before anything is built
+    config = updated(config, {"start": {"velocity": "rest"}})
+    with ExitStack() as stack:
+        address = px4 or ardupilot or ""
+        heard = stack.enter_context(listening(address) if px4 else bound(address))
+
+        # Slow to import, so only when all else is right.
+        from eyas.mavlink.hil.ardupilot import ArduPilot
+        from eyas.mavlink.hil.drone import DrivenDrone
+        from eyas.mavlink.hil.px4 import Px4
+        from eyas.sim.build import build_simulation, in_one_wind
+        from eyas.sim.worlds import together
+        from eyas.trackers.driven import driven_drone
+
+        tracker = driven_drone(in_one_wind(config))
+        simulation = build_simulation(config, together(1), tracker=tracker)
+        drone = DrivenDrone(simulation, config.mavlink)
+        stack.callback(drone.close)
+        latitude, longitude, altitude = drone.home()
+        place = f"{latitude:.7f},{longitude:.7f},{altitude:.1f},90"
+        if px4:
+            _LOG.info("waiting for PX4 on TCP %s; it stands at %s", address, place)
+            Px4(drone, config.mavlink.hil.speed).serve(heard)
+        _LOG.info("waiting for ArduPilot on UDP %s; start it with --home=%s", address, place)
+        ArduPilot(drone, config.mavlink.hil.speed).serve(heard)
+
+
+def _check_tracker(config: TrackerConfig) -> None:
+    """Refuse a tracker without rotors, and what a driven drone does not have.
+
+    Raises:
+        ConfigError: There is such a setting.
+    """
+    if config.supervised or config.kind is not TrackerKind.DRONE:
+        raise ConfigError(
+            "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "
+            "an autopilot could turn; allowed: tracker.kind 'drone' with tracker.supervised false"
+        )
+    usual = TrackerConfig()
+    for name in sorted(TrackerConfig.model_fields.keys() - _TAKEN):
+        if getattr(config, name) != getattr(usual, name):
+            raise ConfigError(
+                f"tracker.{name}: a value of its own is not there with an autopilot outside; "
+                f"allowed: {getattr(usual, name)}"
+            )
