@@ -62,6 +62,9 @@ class TrackerConfig(Config):
     flight: Flight = Flight.MENDED
     """What a flown drone does where a rotor or its gimbal is at a limit; the original's files mean
     `original`."""
+    off_centre: bool = False
+    """Whether gimbal and lidar pull the centre of mass of a flown drone out of its middle, as in
+    the original, whose files mean `true`."""
     judged: bool | None = None
     """Whether its view is rewarded, and limits of its body end the episode; if not, the reward is
     1. None: a drone's are, a car's not, as in the original."""

@@ -27,7 +27,20 @@ from eyas.trackers.steady import launch
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.wind import WindMemory, begin_wind, blow
 
-__all__ = ["FlightMemory", "flown_drone"]
+__all__ = [
+    "FlightMemory",
+    "aim",
+    "air_around",
+    "arrive",
+    "body_of",
+    "carry",
+    "flown_drone",
+    "start",
+    "wanted_thrusts",
+    "with_options",
+]
+
+Vector = tuple[float, float, float]
 
 
 class FlightMemory(NamedTuple):
@@ -127,21 +140,35 @@ def advance(
     has no part upwards: a command to climb moves only the commanded position.
     """
     east, north, _ = follow_command(trackers, memory, n, command)
-    wanted = _wanted(trackers, memory, n, east, north)
-    frame, wind = memory.frame, memory.wind
-    before = _body(trackers, n)
-    air = (0.0, 0.0, 0.0)
-    if frame.drag_area > 0.0:
-        height = before.position[2]
-        if memory.turbulence > 0.0:
-            height -= ground_at(memory.terrain, before.position[0], before.position[1])
-        air = blow(wind, n, memory.turbulence, height, before.velocity)
+    wanted = wanted_thrusts(trackers, memory, n, east, north)
+    frame, before = memory.frame, body_of(trackers, n)
+    air = air_around(memory, n, before)
     pushed = spun_up(frame, memory.rotor[n], wanted)
     after = moved(frame, before, pushed, air, memory.terrain, PHYSICS_STEP)
+    arrive(trackers, memory, n, before, after)
+
+
+@kernel(inline=True)
+def air_around(memory: FlightMemory, n: int, body: RigidBody) -> Vector:
+    """Return the wind at drone `n` in this step, world frame [m/s]; its gusts are advanced."""
+    air = (0.0, 0.0, 0.0)
+    if memory.frame.drag_area > 0.0:
+        height = body.position[2]
+        if memory.turbulence > 0.0:
+            height -= ground_at(memory.terrain, body.position[0], body.position[1])
+        air = blow(memory.wind, n, memory.turbulence, height, body.velocity)
+    return air
+
+
+@kernel(inline=True)
+def arrive(
+    trackers: TrackerState, memory: FlightMemory, n: int, before: RigidBody, after: RigidBody
+) -> None:
+    """Write the state of drone `n` after a step of 2 ms, and move its gimbal."""
     _write(trackers, memory, n, before, after)
     a, b = before.rate, after.rate
     change = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
-    advance_servo(trackers, memory.gimbal, memory.servo, frame, n, change)
+    advance_servo(trackers, memory.gimbal, memory.servo, memory.frame, n, change)
 
 
 @kernel(inline=True)
@@ -155,7 +182,7 @@ def aim(trackers: TrackerState, memory: FlightMemory, cameras: CameraState, n: i
 
 
 @kernel(inline=True)
-def _wanted(
+def wanted_thrusts(
     trackers: TrackerState, memory: FlightMemory, n: int, east: float, north: float
 ) -> Thrusts:
     """Return the thrusts that the controller asks of the rotors [N]."""
@@ -173,7 +200,8 @@ def _wanted(
 
 
 @kernel
-def _body(trackers: TrackerState, n: int) -> RigidBody:
+def body_of(trackers: TrackerState, n: int) -> RigidBody:
+    """Return the state of drone `n`."""
     p, v = trackers.position[n], trackers.velocity[n]
     q, w = trackers.orientation[n], trackers.angular_velocity[n]
     return RigidBody(
@@ -201,20 +229,24 @@ def _write(
     euler[2] = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
+def with_options(config: TrackerConfig, frame: Airframe) -> Airframe:
+    """Return an airframe with the options of some settings; what they leave at 0 is its own."""
+    return frame._replace(
+        motor_time_constant=float(config.motor_time_constant) or frame.motor_time_constant,
+        drag_area=float(config.drag_area) or frame.drag_area,
+        as_original=int(config.flight is Flight.ORIGINAL),
+        contact_stiffness=FIRM_GROUND if config.ground_contact else 0.0,
+    )
+
+
 def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
     """Return the drone that its flight controller flies.
 
     Args:
         config: The options: motors, drag, contact, wind.
-        frame: The constants; options replace its own.
+        frame: The constants; options other than 0 replace its own.
     """
-    wind = config.wind
-    frame = frame._replace(
-        motor_time_constant=float(config.motor_time_constant),
-        drag_area=float(config.drag_area),
-        as_original=int(config.flight is Flight.ORIGINAL),
-        contact_stiffness=FIRM_GROUND if config.ground_contact else 0.0,
-    )
+    wind, frame = config.wind, with_options(config, frame)
     blows = wind.turbulence > 0.0 or bounds(wind.speed) != (0.0, 0.0)
 
     def sample(memory: FlightMemory, n: int, key: EpisodeKey) -> None:

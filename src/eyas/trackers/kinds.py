@@ -6,9 +6,11 @@ from typing import Any
 from eyas.core.errors import ConfigError
 from eyas.core.own_code import running, takes
 from eyas.core.registry import Registry
+from eyas.trackers.airframe import ORIGINAL
 from eyas.trackers.car import CAR
 from eyas.trackers.config import TrackerConfig, TrackerKind
 from eyas.trackers.drone import DRONE
+from eyas.trackers.equipped import equipped_drone, is_equipped
 from eyas.trackers.flown import flown_drone
 from eyas.trackers.tracker import Tracker
 
@@ -17,7 +19,9 @@ __all__ = ["TRACKERS", "car", "drone", "tracker_of"]
 
 def drone(config: TrackerConfig) -> Tracker:
     """Return the drone: supervised, or flown by its controller."""
-    return DRONE if config.supervised else flown_drone(config)
+    if config.supervised:
+        return DRONE
+    return equipped_drone(config, ORIGINAL) if is_equipped(config) else flown_drone(config)
 
 
 def car(config: TrackerConfig) -> Tracker:

@@ -55,8 +55,9 @@ class Tracker:
     """`sample(memory, n, key)`, a function of Python, samples what is random in an episode, before
     `start`; None: nothing is."""
     sampled: str | None = None
-    """The field of the memory that `sample` writes, the whole row `n` of each of its arrays, and
-    reads nothing of; None: it is not known, so that this tracker cannot be on a device."""
+    """The field of the memory that `sample` writes, or a field of a record in it (`record.field`):
+    the whole row `n` of each of its arrays; it reads nothing of them. None: it is not known, so
+    that this tracker cannot be on a device."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
     visible: bool = True

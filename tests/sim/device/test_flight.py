@@ -36,6 +36,7 @@ CASES = {
     "car": {"tracker": {"kind": "car"}},
     "varied": VARIED,
     "windy": {"tracker": WINDY},
+    "equipped": {"tracker": WINDY | {"off_centre": True}},
 }
 
 

@@ -1,0 +1,150 @@
+"""The flown drone with what it carries: `eyas.trackers.flown`, with more in its step.
+
+Only a drone with such an option flies by these kernels, so it costs others nothing.
+"""
+
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.rng import EpisodeKey
+from eyas.lanes import kernel
+from eyas.state.snapshot import CameraState, TrackerState
+from eyas.state.terrain import Terrain
+from eyas.trackers.airframe import Airframe
+from eyas.trackers.commands import follow_command
+from eyas.trackers.config import TrackerConfig
+from eyas.trackers.equipment import MOUNTED, Equipment, Part, loaded
+from eyas.trackers.flown import (
+    FlightMemory,
+    air_around,
+    arrive,
+    body_of,
+    flown_drone,
+    wanted_thrusts,
+    with_options,
+)
+from eyas.trackers.flown import aim as aim_flown
+from eyas.trackers.flown import carry as carry_flown
+from eyas.trackers.flown import start as start_flown
+from eyas.trackers.loaded_body import moved_with_load
+from eyas.trackers.rigid_body import spun_up
+from eyas.trackers.steady import launch as launch_flown
+from eyas.trackers.tracker import Tracker
+
+__all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
+
+
+class EquippedMemory(NamedTuple):
+    """What N flown drones with equipment remember."""
+
+    flight: FlightMemory
+    equipment: Equipment
+
+    @classmethod
+    def create(
+        cls, equipment: Equipment, turbulence: float, count: int, terrain: Terrain
+    ) -> "EquippedMemory":
+        """Return the memory of drones at rest."""
+        flight = FlightMemory.create(equipment.frame, turbulence, count, terrain)
+        return cls(flight, equipment)
+
+
+@kernel(inline=True)
+def start(
+    trackers: TrackerState,
+    memory: EquippedMemory,
+    n: int,
+    x: float,
+    y: float,
+    z: float,
+    yaw: float,
+    pitch: float,
+) -> None:
+    """Place drone `n` at rest, see `Tracker.start`."""
+    start_flown(trackers, memory.flight, n, x, y, z, yaw, pitch)
+
+
+@kernel(inline=True)
+def launch(
+    trackers: TrackerState, memory: EquippedMemory, n: int, east: float, north: float
+) -> None:
+    """Let drone `n` fly on at a velocity, see `Tracker.launch`.
+
+    What pulls its centre of mass aside tilts it only then: it begins as if that were its middle.
+    """
+    launch_flown(trackers, memory.flight, n, east, north)
+
+
+@kernel(inline=True)
+def carry(
+    trackers: TrackerState, memory: EquippedMemory, n: int, x: float, y: float, z: float, yaw: float
+) -> None:
+    """Move a level drone to a pose within one physics step."""
+    carry_flown(trackers, memory.flight, n, x, y, z, yaw)
+
+
+@kernel(inline=True)
+def advance(
+    trackers: TrackerState, memory: EquippedMemory, n: int, command: NDArray[np.float64]
+) -> None:
+    """Fly drone `n` for one physics step of 2 ms, see `Tracker.advance`."""
+    flight, equipment = memory.flight, memory.equipment
+    east, north, _ = follow_command(trackers, flight, n, command)
+    wanted = wanted_thrusts(trackers, flight, n, east, north)
+    before = body_of(trackers, n)
+    air = air_around(flight, n, before)
+    pushed = spun_up(flight.frame, flight.rotor[n], wanted)
+    after = moved_with_load(equipment, before, pushed, air, flight.terrain, PHYSICS_STEP)
+    arrive(trackers, flight, n, before, after)
+
+
+@kernel(inline=True)
+def aim(trackers: TrackerState, memory: EquippedMemory, cameras: CameraState, n: int) -> None:
+    """Write the pose of the camera on the gimbal."""
+    aim_flown(trackers, memory.flight, cameras, n)
+
+
+def is_equipped(config: TrackerConfig) -> bool:
+    """Return whether a flown drone has an option that these kernels fly."""
+    return config.off_centre
+
+
+def equipped_drone(config: TrackerConfig, frame: Airframe) -> Tracker:
+    """Return the flown drone with what it carries.
+
+    Args:
+        config: The options.
+        frame: The constants of the drone with its gimbal and lidar; options replace its own.
+    """
+    plain, equipment = flown_drone(config, frame), _equipment(config, with_options(config, frame))
+    draw = plain.sample
+
+    def sample(memory: EquippedMemory, n: int, key: EpisodeKey) -> None:
+        assert draw is not None
+        draw(memory.flight, n, key)
+
+    return replace(
+        plain,
+        memory=partial(EquippedMemory.create, equipment, float(config.wind.turbulence)),
+        start=start,
+        advance=advance,
+        carry=carry,
+        aim=aim,
+        launch=launch,
+        sample=None if draw is None else sample,
+        sampled="flight.wind",
+    )
+
+
+def _equipment(config: TrackerConfig, frame: Airframe) -> Equipment:
+    """Return what a drone of some settings carries, on an airframe that has the options."""
+    parts: tuple[Part, ...] = ()
+    if config.off_centre:
+        parts = MOUNTED
+        frame = frame._replace(mass=frame.mass - sum(part.mass for part in MOUNTED))
+    return loaded(frame, parts)
