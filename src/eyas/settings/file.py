@@ -109,6 +109,7 @@ def read_settings(path: Path) -> Nested:
     try:
         text = path.read_text(encoding="utf-8-sig")
         values = json.loads(text, object_pairs_hook=_without_doubles)
+        json.dumps(values, ensure_ascii=False).encode()  # half a pair of UTF-16 is no text
     except OSError as error:
         raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:

@@ -56,7 +56,7 @@ def assets_of(config: SimConfig, world_of: NDArray[np.integer]) -> Assets:
 def in_one_wind(config: SimConfig) -> TrackerConfig:
     """Return the settings of the tracker, in the wind of the world if it is one that feels it."""
     wind, tracker = config.world.wind, config.tracker
-    if wind is None or tracker.drag_area == 0.0:
+    if wind is None or not tracker.has_drag:
         return tracker
     update = {"speed": wind.speed, "direction": wind.direction}
     return tracker.model_copy(update={"wind": tracker.wind.model_copy(update=update)})

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from eyas.trackers.airframe import ORIGINAL, Airframe
+from eyas.trackers.battery import Battery
 from eyas.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, YAW_JOINT
 
 __all__ = ["MOUNTED", "Equipment", "Part", "Symmetric", "loaded"]
@@ -47,6 +48,9 @@ class Equipment(NamedTuple):
     """Moments of inertia about the centre of mass, body frame [kg m^2]."""
     inverse: Symmetric = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
     """Inverse of `inertia`."""
+    radius: float = 0.0
+    """Of the rotors, for the ground effect [m]; 0: there is none."""
+    battery: Battery = Battery()
 
 
 def loaded(frame: Airframe, parts: Iterable[Part]) -> Equipment:

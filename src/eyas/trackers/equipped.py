@@ -14,8 +14,15 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
 from eyas.lanes import kernel
 from eyas.state.snapshot import CameraState, TrackerState
-from eyas.state.terrain import Terrain
-from eyas.trackers.airframe import Airframe
+from eyas.state.terrain import Terrain, ground_at
+from eyas.trackers.airframes import Model
+from eyas.trackers.battery import (
+    Battery,
+    discharge,
+    open_voltage,
+    strongest_thrust,
+    within_power,
+)
 from eyas.trackers.commands import follow_command
 from eyas.trackers.config import TrackerConfig
 from eyas.trackers.equipment import MOUNTED, Equipment, Part, loaded
@@ -31,12 +38,16 @@ from eyas.trackers.flown import (
 from eyas.trackers.flown import aim as aim_flown
 from eyas.trackers.flown import carry as carry_flown
 from eyas.trackers.flown import start as start_flown
+from eyas.trackers.ground_effect import ROTOR_HEIGHT, ground_effect
 from eyas.trackers.loaded_body import moved_with_load
-from eyas.trackers.rigid_body import spun_up
+from eyas.trackers.rigid_body import Thrusts, spun_up
 from eyas.trackers.steady import launch as launch_flown
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
+
+
+_TOLD = {"battery": "charge", "battery_voltage": "voltage"}
 
 
 class EquippedMemory(NamedTuple):
@@ -44,6 +55,10 @@ class EquippedMemory(NamedTuple):
 
     flight: FlightMemory
     equipment: Equipment
+    charge: NDArray[np.float64]
+    """Of their batteries, of 1, shape (N,)."""
+    voltage: NDArray[np.float64]
+    """Of their batteries under load [V], shape (N,); 0 without batteries."""
 
     @classmethod
     def create(
@@ -51,7 +66,7 @@ class EquippedMemory(NamedTuple):
     ) -> "EquippedMemory":
         """Return the memory of drones at rest."""
         flight = FlightMemory.create(equipment.frame, turbulence, count, terrain)
-        return cls(flight, equipment)
+        return cls(flight, equipment, np.ones(count), np.zeros(count))
 
 
 @kernel(inline=True)
@@ -67,6 +82,9 @@ def start(
 ) -> None:
     """Place drone `n` at rest, see `Tracker.start`."""
     start_flown(trackers, memory.flight, n, x, y, z, yaw, pitch)
+    battery = memory.equipment.battery
+    memory.charge[n] = battery.charge
+    memory.voltage[n] = battery.cells * open_voltage(battery.charge)
 
 
 @kernel(inline=True)
@@ -96,11 +114,26 @@ def advance(
     flight, equipment = memory.flight, memory.equipment
     east, north, _ = follow_command(trackers, flight, n, command)
     wanted = wanted_thrusts(trackers, flight, n, east, north)
-    before = body_of(trackers, n)
+    frame, battery, before = flight.frame, equipment.battery, body_of(trackers, n)
+    if battery.cells > 0.0:
+        most = strongest_thrust(frame, battery, memory.charge[n], memory.voltage[n])
+        wanted = within_power(wanted, most)
+    pushed = spun_up(frame, flight.rotor[n], wanted)
+    if battery.cells > 0.0:
+        discharge(frame, battery, memory.charge, memory.voltage, n, pushed[2])
+    if equipment.radius > 0.0:
+        x, y, z = before.position
+        height = z + ROTOR_HEIGHT - ground_at(flight.terrain, x, y)
+        share = ground_effect(frame, equipment.radius, height)
+        pushed = _times(pushed[0], share), _times(pushed[1], share), _times(pushed[2], share)
     air = air_around(flight, n, before)
-    pushed = spun_up(flight.frame, flight.rotor[n], wanted)
     after = moved_with_load(equipment, before, pushed, air, flight.terrain, PHYSICS_STEP)
     arrive(trackers, flight, n, before, after)
+
+
+@kernel
+def _times(thrusts: Thrusts, share: float) -> Thrusts:
+    return share * thrusts[0], share * thrusts[1], share * thrusts[2], share * thrusts[3]
 
 
 @kernel(inline=True)
@@ -111,17 +144,19 @@ def aim(trackers: TrackerState, memory: EquippedMemory, cameras: CameraState, n:
 
 def is_equipped(config: TrackerConfig) -> bool:
     """Return whether a flown drone has an option that these kernels fly."""
-    return config.off_centre
+    carries = config.off_centre or config.payload.mass > 0.0
+    return carries or config.ground_effect or config.battery.enabled
 
 
-def equipped_drone(config: TrackerConfig, frame: Airframe) -> Tracker:
+def equipped_drone(config: TrackerConfig, model: Model) -> Tracker:
     """Return the flown drone with what it carries.
 
     Args:
         config: The options.
-        frame: The constants of the drone with its gimbal and lidar; options replace its own.
+        model: The drone with its gimbal and lidar; options replace its own constants.
     """
-    plain, equipment = flown_drone(config, frame), _equipment(config, with_options(config, frame))
+    equipment = _equipment(config, model)
+    plain = flown_drone(config, model.frame)
     draw = plain.sample
 
     def sample(memory: EquippedMemory, n: int, key: EpisodeKey) -> None:
@@ -138,13 +173,21 @@ def equipped_drone(config: TrackerConfig, frame: Airframe) -> Tracker:
         launch=launch,
         sample=None if draw is None else sample,
         sampled="flight.wind",
+        told=_TOLD if config.battery.enabled else {},
     )
 
 
-def _equipment(config: TrackerConfig, frame: Airframe) -> Equipment:
-    """Return what a drone of some settings carries, on an airframe that has the options."""
-    parts: tuple[Part, ...] = ()
+def _equipment(config: TrackerConfig, model: Model) -> Equipment:
+    """Return what a drone of some settings carries."""
+    parts: list[Part] = []
+    frame, payload = with_options(config, model.frame), config.payload
     if config.off_centre:
-        parts = MOUNTED
+        parts += MOUNTED
         frame = frame._replace(mass=frame.mass - sum(part.mass for part in MOUNTED))
-    return loaded(frame, parts)
+    if payload.mass > 0.0:
+        parts.append(Part(float(payload.mass), payload.position))
+    battery = model.battery._replace(charge=float(config.battery.charge))
+    return loaded(frame, parts)._replace(
+        radius=model.radius if config.ground_effect else 0.0,
+        battery=battery if config.battery.enabled else Battery(),
+    )

@@ -6,7 +6,7 @@ from typing import Any
 from eyas.core.errors import ConfigError
 from eyas.core.own_code import running, takes
 from eyas.core.registry import Registry
-from eyas.trackers.airframe import ORIGINAL
+from eyas.trackers.airframes import AIRFRAMES
 from eyas.trackers.car import CAR
 from eyas.trackers.config import TrackerConfig, TrackerKind
 from eyas.trackers.drone import DRONE
@@ -21,7 +21,10 @@ def drone(config: TrackerConfig) -> Tracker:
     """Return the drone: supervised, or flown by its controller."""
     if config.supervised:
         return DRONE
-    return equipped_drone(config, ORIGINAL) if is_equipped(config) else flown_drone(config)
+    model = AIRFRAMES[config.airframe]
+    if is_equipped(config):
+        return equipped_drone(config, model)
+    return flown_drone(config, model.frame)
 
 
 def car(config: TrackerConfig) -> Tracker:

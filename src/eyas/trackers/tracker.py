@@ -1,7 +1,7 @@
 """A kind of tracker: the kernels that move it and its camera."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from eyas.core.rng import EpisodeKey
@@ -58,6 +58,9 @@ class Tracker:
     """The field of the memory that `sample` writes, or a field of a record in it (`record.field`):
     the whole row `n` of each of its arrays; it reads nothing of them. None: it is not known, so
     that this tracker cannot be on a device."""
+    told: Mapping[str, str] = field(default_factory=dict)
+    """What environments tell of it besides: for each name in their `info` the field of the memory,
+    an array of N numbers."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
     visible: bool = True

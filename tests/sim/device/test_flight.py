@@ -30,13 +30,19 @@ WINDY = {
     "drag_area": 0.02,
     "wind": {"speed": {"uniform": [1.0, 4.0]}, "turbulence": 3.0},
 }
+EQUIPPED = {
+    "off_centre": True,
+    "ground_effect": True,
+    "payload": {"mass": 0.4},
+    "battery": {"enabled": True, "charge": 0.5},
+}
 CASES = {
     "drone": {},
     "flown": {"tracker": {"supervised": False}},
     "car": {"tracker": {"kind": "car"}},
     "varied": VARIED,
     "windy": {"tracker": WINDY},
-    "equipped": {"tracker": WINDY | {"off_centre": True}},
+    "equipped": {"tracker": WINDY | EQUIPPED},
 }
 
 
