@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import data, evaluate, maps, reproduce, runs, targets, tools, traffic
+from eyas.cli import data, drone, evaluate, maps, reproduce, runs, targets, tools, traffic
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
@@ -61,6 +61,7 @@ app.command("reproduce")(reproduce.reproduce)
 app.add_typer(tools.cache_app, name="cache")
 app.add_typer(tools.config_app, name="config")
 app.add_typer(data.dataset_app, name="dataset")
+app.add_typer(drone.app, name="drone")
 app.add_typer(maps.app, name="maps")
 app.add_typer(tools.policies_app, name="policies")
 app.add_typer(targets.app, name="targets")

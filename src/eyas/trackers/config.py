@@ -119,6 +119,8 @@ class TrackerConfig(Config):
     """Whether a flown drone lands on the ground; otherwise it passes through."""
     ground_effect: bool = False
     """Whether the rotors of a flown drone push more near the ground."""
+    tells_rotors: bool = False
+    """Whether environments and recordings tell which rates a flown drone asks of its rotors."""
     payload: PayloadConfig = PayloadConfig()
     battery: BatteryConfig = BatteryConfig()
     wind: WindConfig = WindConfig()
@@ -146,6 +148,7 @@ class TrackerConfig(Config):
             "ground_contact": self.ground_contact,
             "ground_effect": self.ground_effect,
             "airframe": self.airframe is not AirframeName.M100,
+            "tells_rotors": self.tells_rotors,
             "payload.mass": self.payload.mass,
             "battery.enabled": self.battery.enabled,
         }

@@ -3,6 +3,7 @@
 Only a drone with such an option flies by these kernels, so it costs others nothing.
 """
 
+import math
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -42,12 +43,13 @@ from eyas.trackers.ground_effect import ROTOR_HEIGHT, ground_effect
 from eyas.trackers.loaded_body import moved_with_load
 from eyas.trackers.rigid_body import Thrusts, spun_up
 from eyas.trackers.steady import launch as launch_flown
-from eyas.trackers.tracker import Tracker
+from eyas.trackers.tracker import ROTORS, Tracker
 
 __all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
 
 
-_TOLD = {"battery": "charge", "battery_voltage": "voltage"}
+_BATTERY = {"battery": "charge", "battery_voltage": "voltage"}
+_ROTORS = {ROTORS: "asked"}
 
 
 class EquippedMemory(NamedTuple):
@@ -57,6 +59,8 @@ class EquippedMemory(NamedTuple):
     equipment: Equipment
     charge: NDArray[np.float64]
     """Of their batteries, of 1, shape (N,)."""
+    asked: NDArray[np.float64]
+    """Rates that the controller asks of the rotors [rad/s], shape (N, 4)."""
     voltage: NDArray[np.float64]
     """Of their batteries under load [V], shape (N,); 0 without batteries."""
 
@@ -66,7 +70,7 @@ class EquippedMemory(NamedTuple):
     ) -> "EquippedMemory":
         """Return the memory of drones at rest."""
         flight = FlightMemory.create(equipment.frame, turbulence, count, terrain)
-        return cls(flight, equipment, np.ones(count), np.zeros(count))
+        return cls(flight, equipment, np.ones(count), np.zeros((count, 4)), np.zeros(count))
 
 
 @kernel(inline=True)
@@ -118,6 +122,8 @@ def advance(
     if battery.cells > 0.0:
         most = strongest_thrust(frame, battery, memory.charge[n], memory.voltage[n])
         wanted = within_power(wanted, most)
+    for rotor in range(4):
+        memory.asked[n, rotor] = math.sqrt(wanted[rotor] / frame.thrust_constant)
     pushed = spun_up(frame, flight.rotor[n], wanted)
     if battery.cells > 0.0:
         discharge(frame, battery, memory.charge, memory.voltage, n, pushed[2])
@@ -145,7 +151,7 @@ def aim(trackers: TrackerState, memory: EquippedMemory, cameras: CameraState, n:
 def is_equipped(config: TrackerConfig) -> bool:
     """Return whether a flown drone has an option that these kernels fly."""
     carries = config.off_centre or config.payload.mass > 0.0
-    return carries or config.ground_effect or config.battery.enabled
+    return carries or config.tells_rotors or config.ground_effect or config.battery.enabled
 
 
 def equipped_drone(config: TrackerConfig, model: Model) -> Tracker:
@@ -173,7 +179,8 @@ def equipped_drone(config: TrackerConfig, model: Model) -> Tracker:
         launch=launch,
         sample=None if draw is None else sample,
         sampled="flight.wind",
-        told=_TOLD if config.battery.enabled else {},
+        told=(_BATTERY if config.battery.enabled else {})
+        | (_ROTORS if config.tells_rotors else {}),
     )
 
 

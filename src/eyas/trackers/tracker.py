@@ -9,7 +9,10 @@ from eyas.lanes import kernel
 from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 
-__all__ = ["Tracker", "stand"]
+__all__ = ["ROTORS", "Tracker", "stand"]
+
+ROTORS = "rotor_command"
+"""Name under which trackers tell what they ask of their rotors, see `Tracker.told`."""
 
 Kernel = Callable[..., Any]
 
@@ -60,7 +63,7 @@ class Tracker:
     that this tracker cannot be on a device."""
     told: Mapping[str, str] = field(default_factory=dict)
     """What environments tell of it besides: for each name in their `info` the field of the memory,
-    an array of N numbers."""
+    an array with N rows."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
     visible: bool = True
