@@ -64,6 +64,9 @@ class WindConfig(Config):
     turbulence: Annotated[float, Field(ge=0, le=60)] = 0.0
     """Strength of gusts by Dryden's model: speed of the wind 6 m (20 ft) above the ground that
     makes them [m/s]; 7.7 is light, 15.4 moderate, 23 severe."""
+    buildings: bool = False
+    """Whether the mean wind goes round and over buildings; its speed is then that 10 m over open
+    ground."""
 
 
 class PayloadConfig(Config):
@@ -137,7 +140,8 @@ class TrackerConfig(Config):
 
     @model_validator(mode="after")
     def _only_where_it_acts(self) -> Self:
-        calm = bounds(self.wind.speed) == (0.0, 0.0) and self.wind.turbulence == 0.0
+        wind = self.wind
+        calm = bounds(wind.speed) == (0.0, 0.0) and wind.turbulence == 0.0 and not wind.buildings
         if self.off_centre and self.airframe is not AirframeName.M100:
             raise ValueError("off_centre must be off unless the airframe is the original's, m100")
         if not calm and not self.has_drag:
@@ -149,6 +153,7 @@ class TrackerConfig(Config):
             "ground_effect": self.ground_effect,
             "airframe": self.airframe is not AirframeName.M100,
             "tells_rotors": self.tells_rotors,
+            "wind.buildings": self.wind.buildings,
             "payload.mass": self.payload.mass,
             "battery.enabled": self.battery.enabled,
         }

@@ -44,9 +44,12 @@ from eyas.trackers.loaded_body import moved_with_load
 from eyas.trackers.rigid_body import Thrusts, spun_up
 from eyas.trackers.steady import launch as launch_flown
 from eyas.trackers.tracker import ROTORS, Tracker
+from eyas.trackers.wind_field import OPEN, WindField, wind_among
 
 __all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
 
+
+Vector = tuple[float, float, float]
 
 _BATTERY = {"battery": "charge", "battery_voltage": "voltage"}
 _ROTORS = {ROTORS: "asked"}
@@ -59,6 +62,8 @@ class EquippedMemory(NamedTuple):
     equipment: Equipment
     charge: NDArray[np.float64]
     """Of their batteries, of 1, shape (N,)."""
+    field: WindField
+    """The mean wind among buildings."""
     asked: NDArray[np.float64]
     """Rates that the controller asks of the rotors [rad/s], shape (N, 4)."""
     voltage: NDArray[np.float64]
@@ -66,11 +71,23 @@ class EquippedMemory(NamedTuple):
 
     @classmethod
     def create(
-        cls, equipment: Equipment, turbulence: float, count: int, terrain: Terrain
+        cls,
+        equipment: Equipment,
+        turbulence: float,
+        count: int,
+        terrain: Terrain,
+        field: WindField = OPEN,
     ) -> "EquippedMemory":
         """Return the memory of drones at rest."""
         flight = FlightMemory.create(equipment.frame, turbulence, count, terrain)
-        return cls(flight, equipment, np.ones(count), np.zeros((count, 4)), np.zeros(count))
+        return cls(
+            flight,
+            equipment,
+            charge=np.ones(count),
+            field=field,
+            asked=np.zeros((count, 4)),
+            voltage=np.zeros(count),
+        )
 
 
 @kernel(inline=True)
@@ -133,8 +150,28 @@ def advance(
         share = ground_effect(frame, equipment.radius, height)
         pushed = _times(pushed[0], share), _times(pushed[1], share), _times(pushed[2], share)
     air = air_around(flight, n, before)
+    if memory.field.known == 1:
+        air = _among(memory, n, before.position, air)
     after = moved_with_load(equipment, before, pushed, air, flight.terrain, PHYSICS_STEP)
     arrive(trackers, flight, n, before, after)
+
+
+@kernel
+def _among(memory: EquippedMemory, n: int, place: Vector, air: Vector) -> Vector:
+    """Return the wind at a place with the mean wind there [m/s].
+
+    Args:
+        memory: Wind and ground are read.
+        n: Index of the drone.
+        place: Of the drone, world frame [m].
+        air: The wind, with the same mean wind everywhere [m/s].
+    """
+    flight, x, y = memory.flight, place[0], place[1]
+    (east, north), along = flight.wind.mean[n], flight.wind.along[n]
+    speed = math.sqrt(east * east + north * north)
+    height = place[2] - ground_at(flight.terrain, x, y)
+    a, b, c = wind_among(memory.field, along[0], along[1], x, y, height)
+    return air[0] - east + speed * a, air[1] - north + speed * b, air[2] + speed * c
 
 
 @kernel
@@ -151,6 +188,7 @@ def aim(trackers: TrackerState, memory: EquippedMemory, cameras: CameraState, n:
 def is_equipped(config: TrackerConfig) -> bool:
     """Return whether a flown drone has an option that these kernels fly."""
     carries = config.off_centre or config.payload.mass > 0.0
+    carries = carries or config.wind.buildings
     return carries or config.tells_rotors or config.ground_effect or config.battery.enabled
 
 
