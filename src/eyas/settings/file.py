@@ -82,7 +82,12 @@ def _loaded(path: Path) -> EyasConfig:
             "env.speeds here)"
         )
     if not is_legacy(values):
-        return validated(EyasConfig, values)
+        config = validated(EyasConfig, values)
+        try:
+            "".join(_texts(values)).encode()
+        except UnicodeEncodeError as error:
+            raise DataFileError(f"{path}: half a character of UTF-16: {error}") from error
+        return config
     values, own = with_own_target(values, own_target_folders(path))
     return _with_custom(from_legacy(values), own)
 
@@ -109,7 +114,6 @@ def read_settings(path: Path) -> Nested:
     try:
         text = path.read_text(encoding="utf-8-sig")
         values = json.loads(text, object_pairs_hook=_without_doubles)
-        json.dumps(values, ensure_ascii=False).encode()  # half a pair of UTF-16 is no text
     except OSError as error:
         raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
