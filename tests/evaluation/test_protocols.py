@@ -88,6 +88,7 @@ def test_the_rules_are_those_that_results_were_published_with():
 def test_a_flown_drone_flies_as_in_the_original_unless_told_and_its_results_are_apart():
     flown = PROTOCOLS["paper"].changed({"tracker": {"supervised": False}})
     assert flown.settings.tracker.flight == "original"
+    assert not flown.settings.tracker.off_centre  # as when the first results were published
     mended = flown.changed({"tracker": {"flight": "mended"}})
     assert len({PROTOCOLS["paper"].hash, flown.hash, mended.hash}) == 3
 

@@ -81,3 +81,8 @@ def test_readings_have_the_names_of_packets(run, episode, frame):
     row = dict(zip(header.split(","), first.split(","), strict=True))
     assert (row["frame"], row["step"], row["position_x"]) == ("0", "31", "0")
     assert (row["orientation_w"], row["yaw"]) == ("12", "18")
+    told = [frame(0, sensors=np.arange(19.0), rotors=np.arange(4.0) + 500.0)]
+    written("sensors", run, episode, *told)
+    header, first = (episode.folder / "sensors.csv").read_text().splitlines()
+    row = dict(zip(header.split(","), first.split(","), strict=True))
+    assert (row["yaw"], row["rotor_1"], row["rotor_4"]) == ("18", "500", "503")

@@ -115,8 +115,13 @@ def test_a_stage_compiles_for_cuda(launches, name, tmp_path, capsys):
         assert registers <= 128
 
 
-FLOWN, CAR = (
-    tracker_of(TrackerConfig(**values)) for values in ({"supervised": False}, {"kind": "car"})
+FLOWN, CAR, EQUIPPED = (
+    tracker_of(TrackerConfig(**values))
+    for values in (
+        {"supervised": False},
+        {"kind": "car"},
+        {"supervised": False, "battery": {"enabled": True}},
+    )
 )
 
 
@@ -129,6 +134,7 @@ FLOWN, CAR = (
         (FLOWN, False, "begin"),
         (FLOWN, True, "fly"),
         (CAR, False, "fly"),
+        (EQUIPPED, False, "fly"),
     ],
 )
 def test_the_step_compiles_for_cuda(tracker, mounted, kernel):

@@ -114,7 +114,8 @@ def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
     assert EyasConfig().tracker.flight == "mended"
     config = from_legacy(values)
     assert (config.start.velocity, config.extras) == ("rest", ())
-    assert config.tracker.flight == "original"
+    assert (config.tracker.flight, config.tracker.off_centre) == ("original", True)
+    assert not EyasConfig().tracker.off_centre
     assert (config.traffic.signals, config.traffic.lamps) == ("amber", "dark")
     config = from_legacy(values, EyasConfig())
     assert (config.start.velocity, config.extras) == ("target", None)

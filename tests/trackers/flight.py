@@ -1,12 +1,12 @@
 """Flown drones without a world: commands in, motion out."""
 
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import compiled
+from eyas.lanes import compiled, specialised
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.config import TrackerConfig
@@ -40,14 +40,12 @@ class Log(NamedTuple):
         )
 
 
-@compiled
-def begin(trackers, memory, poses):
+def _begin(trackers, memory, poses):
     for n in range(poses.shape[0]):
         start(trackers, memory, n, poses[n, 0], poses[n, 1], poses[n, 2], poses[n, 3], poses[n, 4])
 
 
-@compiled
-def fly(trackers, memory, cameras, commands, log):
+def _fly(trackers, memory, cameras, rotor, commands, log):
     for k in range(commands.shape[0]):
         for n in range(commands.shape[1]):
             advance(trackers, memory, n, commands[k, n])
@@ -63,13 +61,22 @@ def fly(trackers, memory, cameras, commands, log):
                     log.camera[k, n, axis, column] = cameras.rotation[n, axis, column]
             for part in range(4):
                 log.attitude[k, n, part] = trackers.orientation[n, part]
-                log.rotor[k, n, part] = memory.rotor[n, part]
+                log.rotor[k, n, part] = rotor[n, part]
 
 
-@compiled
-def set_going(trackers, memory, velocities):
+def _set_going(trackers, memory, velocities):
     for n in range(velocities.shape[0]):
         launch(trackers, memory, n, velocities[n, 0], velocities[n, 1])
+
+
+@cache
+def kernels_of(begins, moves, aims, launches):
+    """Kernels that begin, fly and launch drones of a kind."""
+    return (
+        compiled(specialised(_begin, start=begins)),
+        compiled(specialised(_fly, advance=moves, aim=aims)),
+        compiled(specialised(_set_going, launch=launches)),
+    )
 
 
 class Drones:
@@ -84,15 +91,20 @@ class Drones:
         self.trackers = TrackerState.create(count)
         self.memory = memory(count, terrain)
         self.cameras = CameraState.create(count)
+        kind = self.tracker
+        kernels = kernels_of(kind.start, kind.advance, kind.aim, kind.launch)
+        self._begin, self._fly, self._launch = kernels
+        flight = getattr(self.memory, "flight", self.memory)
+        self.rotor = flight.rotor
         self.start(np.tile([0.0, 0.0, height, 0.0, pitch], (count, 1)))
 
     def start(self, poses):
         """Place them at x, y, z, yaw, pitch, shape (N, 5)."""
-        begin(self.trackers, self.memory, poses)
+        self._begin(self.trackers, self.memory, poses)
 
     def launch(self, velocities):
         """Let them fly on at velocities towards east and north [m/s], shape (N, 2)."""
-        set_going(self.trackers, self.memory, np.asarray(velocities, np.float64))
+        self._launch(self.trackers, self.memory, np.asarray(velocities, np.float64))
 
     def fly(self, commands):
         """Fly commands, shape (K, 4) for all or (K, N, 4), one for each step of 2 ms."""
@@ -101,7 +113,7 @@ class Drones:
             commands = np.repeat(commands[:, None], self.count, axis=1)
         commands = np.ascontiguousarray(commands)
         log = Log.create(*commands.shape[:2])
-        fly(self.trackers, self.memory, self.cameras, commands, log)
+        self._fly(self.trackers, self.memory, self.cameras, self.rotor, commands, log)
         return log
 
 

@@ -2,7 +2,8 @@
 
 The reference has rotation matrices in place of quaternions, vectors in place of scalars, the
 original's quadratic equation for the tilt limit, and scipy's integrator of order 8 between the
-instants of the controller.
+instants of the controller. What is off its centre moves it by the equations of Newton and Euler
+about the origin, in six unknowns, where the code goes by the centre of mass.
 """
 
 import math
@@ -10,6 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+
+from eyas.trackers.config import TrackerConfig
 
 from .flight import Drones, held
 
@@ -45,7 +48,7 @@ def limited(force):
     return force * (-b + math.sqrt(b * b - 4 * a * c)) / (2 * a) + weight * UP
 
 
-def rotor_thrusts(force, yaw, attitude, rate):
+def rotor_thrusts(force, yaw, attitude, rate, as_original=False):
     b3 = force / np.linalg.norm(force)
     b2 = np.cross(b3, [math.cos(yaw), math.sin(yaw), 0])
     b2 /= np.linalg.norm(b2)
@@ -58,12 +61,28 @@ def rotor_thrusts(force, yaw, attitude, rate):
     mixing = np.array([np.ones(4), ARM * roll, ARM * pitch, KAPPA * yaw])
     thrusts = np.linalg.solve(mixing, [total, *torque])
     for i in range(4):
+        if as_original and thrusts[i] < 0.0:  # in place, as its loop
+            for rotor in range(4):
+                thrusts[rotor] -= thrusts[i]
         thrusts = thrusts - min(thrusts[i], 0.0)
     return mixing @ thrusts
 
 
-def flown(commands):
+def massed(parts):
+    """The matrix of masses about the origin, shape (6, 6), of a body with parts (mass, place)."""
+    mass = MASS - sum(m for m, _ in parts)
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3], matrix[3:, 3:] = mass * np.eye(3), INERTIA
+    for m, place in parts:
+        arm = np.vstack([np.eye(3), hat(place)])
+        matrix += m * arm @ arm.T
+    return matrix
+
+
+def flown(commands, parts=(), *, as_original=False):
     """Positions and attitudes after each step of 2 ms, shapes (K, 3) and (K, 3, 3)."""
+    matrix = massed(parts)
+    first_moment = np.array([matrix[5, 1], matrix[3, 2], matrix[4, 0]])
     integrate = pytest.importorskip("scipy.integrate").solve_ivp
     shaped = zip(*(filtered(commands[:, axis]) for axis in (0, 1, 3)), strict=True)
     position, velocity, rate = np.array([0.0, 0.0, 20.0]), np.zeros(3), np.zeros(3)
@@ -76,13 +95,17 @@ def flown(commands):
         yaw += turn * 0.002
         force = np.diag([8, 8, 17]) @ (goal - position) + 10 * (wanted - measured)
         force, last = force + 3.0 * (wanted - last) / 0.002, wanted
-        total, *torque = rotor_thrusts(limited(force), yaw, attitude, rate)
+        total, *torque = rotor_thrusts(limited(force), yaw, attitude, rate, as_original)
 
         def change(_, state, total=total, torque=torque):
             turned, spin = state[6:15].reshape(3, 3), state[15:]
-            push = turned @ UP * total / MASS - 9.81 * UP
-            spun = np.linalg.solve(INERTIA, torque - np.cross(spin, INERTIA @ spin))
-            return np.concatenate([state[3:6], push, np.ravel(turned @ hat(spin)), spun])
+            down = -9.81 * turned.T @ UP
+            swung = np.cross(spin, np.cross(spin, first_moment))
+            push = total * UP + MASS * down - swung
+            turn = torque + np.cross(first_moment, down) - np.cross(spin, matrix[3:, 3:] @ spin)
+            told = np.linalg.solve(matrix, np.concatenate([push, turn]))
+            moves = [state[3:6], turned @ told[:3], np.ravel(turned @ hat(spin)), told[3:]]
+            return np.concatenate(moves)
 
         first = np.concatenate([position, velocity, np.ravel(attitude), rate])
         state = integrate(change, (0, 0.002), first, "DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
@@ -116,6 +139,19 @@ def test_a_flight_is_that_of_the_reference(name):
     commands = FLIGHTS[name]
     places, attitudes = flown(commands)
     log = Drones().fly(commands)
+    assert log.position[:, 0] == pytest.approx(places, abs=1e-6)
+    assert matrices(log.attitude[:, 0]) == pytest.approx(attitudes, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_a_flight_with_gimbal_and_lidar_off_its_centre_is_that_of_the_reference(name):
+    commands = FLIGHTS[name][:200]
+    gimbal = [(0.13, -0.00469654, -0.013), (0.130625212, -0.01, -0.0337448)]
+    gimbal.append((0.138172072, 0.0060388, -0.03960881))
+    parts = [*((0.0333, np.array(place)) for place in gimbal), (0.2, np.array([0.0, 0.0, 0.02]))]
+    places, attitudes = flown(commands, parts, as_original=True)
+    config = TrackerConfig(supervised=False, flight="original", off_centre=True)
+    log = Drones(config=config).fly(commands)
     assert log.position[:, 0] == pytest.approx(places, abs=1e-6)
     assert matrices(log.attitude[:, 0]) == pytest.approx(attitudes, abs=1e-6)
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
-from eyas.cli import data, evaluate, maps, reproduce, runs, targets, tools, traffic
+from eyas.cli import data, drone, evaluate, maps, reproduce, runs, targets, tools, traffic
 from eyas.cli.about import about
 from eyas.cli.completion import completion
 from eyas.cli.said import say
@@ -66,6 +66,7 @@ app.command("reproduce")(reproduce.reproduce)
 app.add_typer(tools.cache_app, name="cache")
 app.add_typer(tools.config_app, name="config")
 app.add_typer(data.dataset_app, name="dataset")
+app.add_typer(drone.app, name="drone")
 app.add_typer(maps.app, name="maps")
 app.add_typer(tools.policies_app, name="policies")
 app.add_typer(targets.app, name="targets")

@@ -53,6 +53,9 @@ def information(simulation: Simulation) -> Info:
       nothing was within range);
     - where the camera's sensor is modelled, exposure time (`exposure_time` [s]) and speed (`iso`)
       of its last picture; 0 before the first;
+    - what a tracker tells of itself (`Tracker.told`): of a flown drone with a battery its charge,
+      of 1 (`battery`), and its voltage (`battery_voltage` [V]), and
+      with `tracker.tells_rotors` the rates that it asks of its rotors (`rotor_command` [rad/s]);
     - the events of the event camera since the last time, if there is one (`events`, for each
       tracker a row for each: column, row, time since the reset [us], and 1 for more light or
       0 for less).
@@ -79,7 +82,7 @@ def information(simulation: Simulation) -> Info:
         info["iso"] = exposure.iso.copy()
     if simulation.config.camera.events.enabled:
         info["events"] = _events(simulation)
-    return info
+    return info | simulation.told()
 
 
 def _events(simulation: Simulation) -> NDArray[np.object_]:

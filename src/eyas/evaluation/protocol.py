@@ -52,6 +52,7 @@ _PLACED = ("world.map", "world.seed", "world.weather", "target", "start.directio
 _IDLE: Mapping[str, Callable[[SimConfig], bool]] = {
     "lidar": lambda config: not config.lidar.enabled,
     "tracker.flight": lambda config: config.tracker.supervised,
+    "tracker.off_centre": lambda config: config.tracker.supervised,
     "traffic.group_size": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
     "traffic.group_interval": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
     "traffic.route_length": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
@@ -63,6 +64,10 @@ _IDLE: Mapping[str, Callable[[SimConfig], bool]] = {
 
 _AS_PUBLISHED: Mapping[str, str] = {"signals": "amber", "lamps": "dark"}
 """Defaults of `traffic` when the first hashes were published, where it has others now."""
+
+_SINCE: Mapping[str, Any] = {"tracker": {"off_centre": False}}
+"""What the original's files have come to mean since then, and the presets with them, but protocols
+do not."""
 
 
 def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
@@ -137,7 +142,7 @@ class Protocol:
     @cached_property
     def settings(self) -> EyasConfig:
         """The settings, without place, direction, seed and `env`."""
-        return updated(load_settings(preset_file("dat-eval")), self.changes)
+        return updated(load_settings(preset_file("dat-eval")), _joined(_SINCE, self.changes))
 
     def changed(self, changes: Mapping[str, Any]) -> "Protocol":
         """Return a protocol with other settings, and so with another hash."""

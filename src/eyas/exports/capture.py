@@ -34,6 +34,7 @@ from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 from eyas.task.done import DoneReason
 from eyas.task.packet_rows import SENSOR_COLUMNS
+from eyas.trackers.tracker import ROTORS
 
 __all__ = ["Moment", "frame_of", "moment_of", "others_of"]
 
@@ -72,6 +73,8 @@ class Moment(NamedTuple):
     """The lens of its camera; None: it is a pinhole."""
     lamps: NDArray[np.uint8] | None = None
     """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
+    rotors: Floats | None = None
+    """See `Frame.rotors`; nothing changes it later."""
 
 
 def moment_of(
@@ -111,7 +114,9 @@ def moment_of(
     now = simulation.snapshot.episodes
     lens = seen.lens_of(tracker)
     known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
-    return Moment(shown, now, *known, seen.lamps(tracker))
+    asked = simulation.told().get(ROTORS)
+    rotors = None if asked is None else asked[tracker]
+    return Moment(shown, now, *known, seen.lamps(tracker), rotors)
 
 
 def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
@@ -165,6 +170,7 @@ def frame_of(
         normal=None if picture.normal is None else picture.normal[view].copy(),
         lidar=moment.lidar,
         sensors=moment.sensors,
+        rotors=moment.rotors,
         parts=moment.parts,
         clean=moment.clean,
         cameras=moment.cameras,

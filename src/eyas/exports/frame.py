@@ -254,6 +254,9 @@ class Frame:
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
+    rotors: Floats | None = None
+    """Rates that the tracker asks of its rotors, front right, front left, rear left, rear right
+    [rad/s], shape (4,); None: it does not tell."""
     exposure: tuple[float, float] | None = None
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
     events: NDArray[np.void] | None = None

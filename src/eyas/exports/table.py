@@ -13,7 +13,11 @@ from eyas.exports.writer import Episode, Files, Gather, Run, Summary, Writer
 from eyas.task.packet_rows import SENSOR_COLUMNS
 from eyas.task.packets import BASIC_FIELDS
 
-__all__ = ["LidarWriter", "SensorWriter"]
+__all__ = ["ROTOR_COLUMNS", "LidarWriter", "SensorWriter"]
+
+
+ROTOR_COLUMNS = ("rotor_1", "rotor_2", "rotor_3", "rotor_4")
+"""Columns of `Frame.rotors`."""
 
 
 class TableWriter(Writer):
@@ -83,7 +87,9 @@ class LidarWriter(TableWriter):
 
 
 class SensorWriter(TableWriter):
-    """`sensors.csv`: what GPS, accelerometer, gyroscope and IMU tell, with their errors."""
+    """`sensors.csv`: what GPS, accelerometer, gyroscope and IMU tell, with their errors; and what a
+    tracker asks of its rotors, if it tells (`tracker.tells_rotors`).
+    """
 
     table = "sensors.csv"
     files = Files(episode=(table,))
@@ -91,8 +97,11 @@ class SensorWriter(TableWriter):
     def numbers(self, frame: Frame) -> Floats:
         """Return the readings."""
         assert frame.sensors is not None
-        return frame.sensors
+        if frame.rotors is None:
+            return frame.sensors
+        return np.concatenate([frame.sensors, frame.rotors])
 
     def names(self, count: int) -> Sequence[str]:
-        """Return their names, as in packets, which are always as many."""
-        return BASIC_FIELDS[SENSOR_COLUMNS]
+        """Return their names, as in packets."""
+        fields = BASIC_FIELDS[SENSOR_COLUMNS]
+        return fields if count == len(fields) else (*fields, *ROTOR_COLUMNS)

@@ -82,7 +82,12 @@ def _loaded(path: Path) -> EyasConfig:
             "env.speeds here)"
         )
     if not is_legacy(values):
-        return validated(EyasConfig, values)
+        config = validated(EyasConfig, values)
+        try:
+            "".join(_texts(values)).encode()
+        except UnicodeEncodeError as error:
+            raise DataFileError(f"{path}: half a character of UTF-16: {error}") from error
+        return config
     values, own = with_own_target(values, own_target_folders(path))
     return _with_custom(from_legacy(values), own)
 

@@ -1,6 +1,9 @@
 """Builds a simulation from its settings."""
 
 import logging
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,12 +12,13 @@ from eyas.sim.assets import Assets, load_assets
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
+from eyas.sim.urban_wind import wind_field
 from eyas.sim.worlds import ALONE, largest_world
 from eyas.trackers.config import TrackerConfig
 from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["assets_of", "build_simulation", "in_one_wind"]
+__all__ = ["assets_of", "build_simulation", "in_one_wind", "tracker_in"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -34,7 +38,7 @@ def build_simulation(
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
     assets = assets_of(config, world_of)
-    chosen = tracker_of(in_one_wind(config)) if tracker is None else tracker
+    chosen = tracker_in(config, assets) if tracker is None else tracker
     return Simulation(config, assets, chosen, world_of)
 
 
@@ -53,10 +57,20 @@ def assets_of(config: SimConfig, world_of: NDArray[np.integer]) -> Assets:
     return assets
 
 
+def tracker_in(config: SimConfig, assets: Assets) -> Tracker:
+    """Return the kind of tracker of some settings, in the wind of the map that it flies over."""
+    own = in_one_wind(config)
+    made = tracker_of(own)
+    if not own.wind.buildings:
+        return made
+    memory: Any = made.memory  # that of a drone with equipment
+    return replace(made, memory=partial(memory, field=wind_field(assets.scene)))
+
+
 def in_one_wind(config: SimConfig) -> TrackerConfig:
     """Return the settings of the tracker, in the wind of the world if it is one that feels it."""
     wind, tracker = config.world.wind, config.tracker
-    if wind is None or tracker.drag_area == 0.0:
+    if wind is None or not tracker.has_drag:
         return tracker
     update = {"speed": wind.speed, "direction": wind.direction}
     return tracker.model_copy(update={"wind": tracker.wind.model_copy(update=update)})

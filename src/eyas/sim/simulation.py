@@ -301,6 +301,10 @@ class Simulation:
         """Return the models and colours of all actors of a tracker's world, one world."""
         return self._worlds.looks_around(tracker)
 
+    def told(self) -> dict[str, Floats]:
+        """Return copies of what the trackers tell of themselves, by name, see `Tracker.told`."""
+        return {name: values.copy() for name, values in self._stepper.told.items()}
+
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60).
 

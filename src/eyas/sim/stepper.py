@@ -62,6 +62,7 @@ class Stepper:
     Attributes:
         sensors: What is sensed after each physics step.
         seen: The state that agents see.
+        told: What the trackers tell of themselves, see `Tracker.told`.
         samplers: Called with each tracker and the key of its episode that begins.
 
     Args:
@@ -98,6 +99,7 @@ class Stepper:
         vibration = Vibration.of(config.camera.vibration, count)
         self.seen = SeenState(latency, camera, snapshot, self.sensors.told, vibration)
         self.samplers: list[Sampler] = [late.sample for late in (self._late, self.seen) if late]
+        self.told = {name: getattr(self._memory, at) for name, at in tracker.told.items()}
         if tracker.sample:
             self.samplers.insert(0, partial(tracker.sample, self._memory))
 

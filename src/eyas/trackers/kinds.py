@@ -6,9 +6,11 @@ from typing import Any
 from eyas.core.errors import ConfigError
 from eyas.core.own_code import running, takes
 from eyas.core.registry import Registry
+from eyas.trackers.airframes import AIRFRAMES
 from eyas.trackers.car import CAR
 from eyas.trackers.config import TrackerConfig, TrackerKind
 from eyas.trackers.drone import DRONE
+from eyas.trackers.equipped import equipped_drone, is_equipped
 from eyas.trackers.flown import flown_drone
 from eyas.trackers.tracker import Tracker
 
@@ -17,7 +19,12 @@ __all__ = ["TRACKERS", "car", "drone", "tracker_of"]
 
 def drone(config: TrackerConfig) -> Tracker:
     """Return the drone: supervised, or flown by its controller."""
-    return DRONE if config.supervised else flown_drone(config)
+    if config.supervised:
+        return DRONE
+    model = AIRFRAMES[config.airframe]
+    if is_equipped(config):
+        return equipped_drone(config, model)
+    return flown_drone(config, model.frame)
 
 
 def car(config: TrackerConfig) -> Tracker:

@@ -13,7 +13,19 @@ from eyas.lanes.elementary import exp, sin_cos
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.airframe import Airframe
 
-__all__ = ["RigidBody", "Thrusts", "moved", "spun_up", "turned"]
+__all__ = [
+    "Change",
+    "RigidBody",
+    "Thrusts",
+    "cross",
+    "loads",
+    "moved",
+    "plus",
+    "rotation_rate",
+    "spun_up",
+    "stage",
+    "turned",
+]
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -33,7 +45,7 @@ class RigidBody(NamedTuple):
     """Angular velocity, body frame [rad/s]."""
 
 
-class _Change(NamedTuple):
+class Change(NamedTuple):
     """Rates of change of a body; those of the attitude as a rotation vector since the step began.
 
     The change of a rotation vector is that of Bortz, "A new mathematical formulation for strapdown
@@ -71,11 +83,11 @@ def moved(
     """
     first, middle, last = thrusts
     still = (0.0, 0.0, 0.0)
-    a = _change(frame, body, still, first, wind, terrain)
+    a = change_of(frame, body, still, first, wind, terrain)
     half = 0.5 * step
-    b = _stage(frame, body, a, half, middle, wind, terrain)
-    c = _stage(frame, body, b, half, middle, wind, terrain)
-    d = _stage(frame, body, c, step, last, wind, terrain)
+    b = stage(frame, body, a, half, middle, wind, terrain)
+    c = stage(frame, body, b, half, middle, wind, terrain)
+    d = stage(frame, body, c, step, last, wind, terrain)
     attitude = turned(
         body.attitude, _sum(still, a.rotation, b.rotation, c.rotation, d.rotation, step)
     )
@@ -110,35 +122,73 @@ def turned(attitude: Quaternion, rotation: Vector) -> Quaternion:
 
 
 @kernel
-def _stage(
+def stage(
     frame: Airframe,
     body: RigidBody,
-    change: _Change,
+    change: Change,
     step: float,
     thrusts: Thrusts,
     wind: Vector,
     terrain: Terrain,
-) -> _Change:
+) -> Change:
     """Return the rates of change of a body that has changed for a time at other rates."""
-    rotation = _plus((0.0, 0.0, 0.0), change.rotation, step)
+    rotation = plus((0.0, 0.0, 0.0), change.rotation, step)
     there = RigidBody(
-        _plus(body.position, change.position, step),
-        _plus(body.velocity, change.velocity, step),
+        plus(body.position, change.position, step),
+        plus(body.velocity, change.velocity, step),
         turned(body.attitude, rotation),
-        _plus(body.rate, change.rate, step),
+        plus(body.rate, change.rate, step),
     )
-    return _change(frame, there, rotation, thrusts, wind, terrain)
+    return change_of(frame, there, rotation, thrusts, wind, terrain)
 
 
 @kernel
-def _change(
+def change_of(
     frame: Airframe,
     body: RigidBody,
     rotation: Vector,
     thrusts: Thrusts,
     wind: Vector,
     terrain: Terrain,
-) -> _Change:
+) -> Change:
+    """Return the rates of change of a body whose centre of mass is its origin."""
+    (fx, fy, fz), torque = loads(frame, body, thrusts, wind, terrain)
+    p, q, r = body.rate
+    jx, jy, jz = frame.inertia
+    return Change(
+        body.velocity,
+        (fx / frame.mass, fy / frame.mass, fz / frame.mass - frame.gravity),
+        rotation_rate(body.rate, rotation),
+        (
+            (torque[0] - (jz - jy) * q * r) / jx,
+            (torque[1] - (jx - jz) * r * p) / jy,
+            (torque[2] - (jy - jx) * p * q) / jz,
+        ),
+    )
+
+
+@kernel
+def rotation_rate(rate: Vector, rotation: Vector) -> Vector:
+    """Return the rate of change of a rotation vector [rad/s], body frame, see `Change`."""
+    once = cross(rotation, rate)
+    twice = cross(rotation, once)
+    return plus(plus(rate, once, 0.5), twice, 1.0 / 12.0)
+
+
+@kernel
+def loads(
+    frame: Airframe, body: RigidBody, thrusts: Thrusts, wind: Vector, terrain: Terrain
+) -> tuple[Vector, Vector]:
+    """Return what acts on a body but its weight: force, world frame [N], and torque about its
+    origin, body frame [N m].
+
+    Args:
+        frame: Constants of the body.
+        body: State of its origin.
+        thrusts: Of the rotors [N].
+        wind: Velocity of the air, world frame [m/s].
+        terrain: The ground.
+    """
     front_right, front_left, rear_left, rear_right = thrusts
     right, left = front_right + rear_right, front_left + rear_left
     front, rear = front_right + front_left, rear_left + rear_right
@@ -151,27 +201,14 @@ def _change(
         * (front_left - front_right + rear_right - rear_left),
     )
     if frame.drag_area > 0.0:
-        x, y, z = _plus(wind, body.velocity, -1.0)
+        x, y, z = plus(wind, body.velocity, -1.0)
         drag = 0.5 * frame.air_density * frame.drag_area * math.sqrt(x * x + y * y + z * z)
         fx, fy, fz = fx + drag * x, fy + drag * y, fz + drag * z
     if frame.contact_stiffness > 0.0:
         force, moment = _contact(frame, body, terrain)
         fx, fy, fz = fx + force[0], fy + force[1], fz + force[2]
-        torque = _plus(torque, moment, 1.0)
-    p, q, r = body.rate
-    jx, jy, jz = frame.inertia
-    once = _cross(rotation, body.rate)
-    twice = _cross(rotation, once)
-    return _Change(
-        body.velocity,
-        (fx / frame.mass, fy / frame.mass, fz / frame.mass - frame.gravity),
-        _plus(_plus(body.rate, once, 0.5), twice, 1.0 / 12.0),
-        (
-            (torque[0] - (jz - jy) * q * r) / jx,
-            (torque[1] - (jx - jz) * r * p) / jy,
-            (torque[2] - (jy - jx) * p * q) / jz,
-        ),
-    )
+        torque = plus(torque, moment, 1.0)
+    return (fx, fy, fz), torque
 
 
 @kernel
@@ -191,14 +228,14 @@ def _contact(frame: Airframe, body: RigidBody, terrain: Terrain) -> tuple[Vector
         depth = ground - (body.position[2] + up)
         if depth <= 0.0:
             continue
-        turning = _cross(body.rate, place)
+        turning = cross(body.rate, place)
         slip = rotate(body.attitude, turning[0], turning[1], turning[2])
-        vx, vy, vz = _plus(slip, body.velocity, 1.0)
+        vx, vy, vz = plus(slip, body.velocity, 1.0)
         push = max(0.0, frame.contact_stiffness * depth - frame.contact_damping * vz)
         speed = math.sqrt(vx * vx + vy * vy)
         hold = min(frame.contact_damping, frame.contact_friction * push / max(speed, 1e-9))
         fx, fy, fz = fx - hold * vx, fy - hold * vy, fz + push
-        moment = _cross(place, rotate_back(body.attitude, -hold * vx, -hold * vy, push))
+        moment = cross(place, rotate_back(body.attitude, -hold * vx, -hold * vy, push))
         tx, ty, tz = tx + moment[0], ty + moment[1], tz + moment[2]
     return (fx, fy, fz), (tx, ty, tz)
 
@@ -223,12 +260,14 @@ def _sum(start: Vector, a: Vector, b: Vector, c: Vector, d: Vector, step: float)
 
 
 @kernel
-def _plus(a: Vector, b: Vector, factor: float) -> Vector:
+def plus(a: Vector, b: Vector, factor: float) -> Vector:
+    """Return a vector and a multiple of another, added."""
     return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
 
 
 @kernel
-def _cross(a: Vector, b: Vector) -> Vector:
+def cross(a: Vector, b: Vector) -> Vector:
+    """Return the vector product."""
     return (
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],

@@ -1,7 +1,7 @@
 """A kind of tracker: the kernels that move it and its camera."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from eyas.core.rng import EpisodeKey
@@ -9,7 +9,10 @@ from eyas.lanes import kernel
 from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 
-__all__ = ["Tracker", "stand"]
+__all__ = ["ROTORS", "Tracker", "stand"]
+
+ROTORS = "rotor_command"
+"""Name under which trackers tell what they ask of their rotors, see `Tracker.told`."""
 
 Kernel = Callable[..., Any]
 
@@ -57,8 +60,12 @@ class Tracker:
     """`sample(memory, n, key)`, a function of Python, samples what is random in an episode, before
     `start`; None: nothing is."""
     sampled: str | None = None
-    """The field of the memory that `sample` writes, the whole row `n` of each of its arrays, and
-    reads nothing of; None: it is not known, so that this tracker cannot be on a device."""
+    """The field of the memory that `sample` writes, or a field of a record in it (`record.field`):
+    the whole row `n` of each of its arrays; it reads nothing of them. None: it is not known, so
+    that this tracker cannot be on a device."""
+    told: Mapping[str, str] = field(default_factory=dict)
+    """What environments tell of it besides: for each name in their `info` the field of the memory,
+    an array with N rows."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
     visible: bool = True

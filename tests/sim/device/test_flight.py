@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from eyas.sim.worlds import each_alone
 from eyas.targets.catalogue import kind_index
 from eyas.targets.rig import Rigs
 from eyas.trackers.kinds import tracker_of
+from eyas.trackers.wind_field import WindField
 
 SHORT = {"done": {"total_steps": 120, "grace_steps": 0, "no_reward_steps": 60}}
 VARIED = {
@@ -30,17 +32,35 @@ WINDY = {
     "drag_area": 0.02,
     "wind": {"speed": {"uniform": [1.0, 4.0]}, "turbulence": 3.0},
 }
+_SIDES = np.random.default_rng(3).integers(-900, 900, (16, 3, 8, 8, 3)).astype(np.int16)
+AMONG = WindField(_SIDES, -30.0, -30.0, 10.0, 1)
+EQUIPPED = {
+    "wind": WINDY["wind"] | {"buildings": True},
+    "off_centre": True,
+    "ground_effect": True,
+    "payload": {"mass": 0.4},
+    "battery": {"enabled": True, "charge": 0.5},
+}
 CASES = {
     "drone": {},
     "flown": {"tracker": {"supervised": False}},
     "car": {"tracker": {"kind": "car"}},
     "varied": VARIED,
     "windy": {"tracker": WINDY},
+    "equipped": {"tracker": WINDY | EQUIPPED},
 }
 
 
+def kind_of(config):
+    """The tracker of a simulation, in a small field of wind."""
+    kind = tracker_of(in_one_wind(config))
+    if config.tracker.wind.buildings:
+        return dataclasses.replace(kind, memory=partial(kind.memory, field=AMONG))
+    return kind
+
+
 def on_device(config, count, workers) -> DeviceSimulation:
-    assets, tracker = assets_of(config, each_alone(count)), tracker_of(in_one_wind(config))
+    assets, tracker = assets_of(config, each_alone(count)), kind_of(config)
     size = (84, 84)
     return DeviceSimulation(config, assets, tracker, count, HostDevice(workers), size=size, steps=4)
 
@@ -53,7 +73,8 @@ def arrays(snapshot):
 @pytest.mark.parametrize(("count", "workers"), [(1, 1), (7, 3), (64, 64)])
 def test_the_state_has_the_same_bytes_step_by_step_and_after_resets(case, count, workers):
     config = SimConfig.model_validate(SHORT | CASES[case])
-    ours, usual = on_device(config, count, workers), build_simulation(config, each_alone(count))
+    ours = on_device(config, count, workers)
+    usual = build_simulation(config, each_alone(count), tracker=kind_of(config))
     ours.reset(np.arange(count))
     usual.reset()
     rng, begun, ends = np.random.default_rng(count), np.zeros(count, np.bool_), 0

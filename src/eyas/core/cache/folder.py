@@ -43,6 +43,7 @@ class Kind(StrEnum):
     TRAFFIC = "traffic"
     MOTION = "motion"
     OCCLUSION = "occlusion"
+    WIND = "wind"
     DEFINITIONS = "definitions"
     KERNELS = "kernels"
 

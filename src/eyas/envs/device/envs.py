@@ -17,12 +17,11 @@ from eyas.envs.device.tensors import as_bool, copied, tensor_of
 from eyas.lanes.device import Device
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
-from eyas.sim.build import assets_of, in_one_wind
+from eyas.sim.build import assets_of, tracker_in
 from eyas.sim.device.records import downloaded
 from eyas.sim.device.simulation import DeviceSimulation
 from eyas.sim.device.view import DeviceView
 from eyas.sim.worlds import each_alone
-from eyas.trackers.kinds import tracker_of
 
 __all__ = ["DeviceEnvs"]
 
@@ -58,7 +57,7 @@ class DeviceEnvs:
             simulation = self._simulation = DeviceSimulation(
                 config,
                 assets,
-                tracker_of(in_one_wind(config)),
+                tracker_in(config, assets),
                 count,
                 where,
                 size=(seen.height, seen.width),

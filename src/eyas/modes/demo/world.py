@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.settings.config import EyasConfig
 from eyas.sim.assets import Assets, load_assets
+from eyas.sim.build import tracker_in
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import Crowd, crowd_of
 from eyas.sim.simulation import Simulation
@@ -20,7 +21,6 @@ from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import kind_index, models_of
 from eyas.targets.rig import Rigs
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
-from eyas.trackers.kinds import tracker_of
 from eyas.traffic.config import VehicleType
 from eyas.traffic.replay import Replay
 
@@ -142,7 +142,7 @@ class DemoSimulation(Simulation):
     """A simulation whose parked car has the look of the original's."""
 
     def __init__(self, config: SimConfig, assets: Assets, parked: int) -> None:
-        super().__init__(config, assets, tracker_of(config.tracker), together(1))
+        super().__init__(config, assets, tracker_in(config, assets), together(1))
         self._parked = parked
 
     def reset(self, trackers: None = None) -> None:  # type: ignore[override]

@@ -38,7 +38,7 @@ LIKE_THE_ORIGINAL = updated(
     EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=()),
     {
         "video": {"jpeg_quality": 100, "flight": "exact"},
-        "tracker": {"flight": Flight.ORIGINAL.value},
+        "tracker": {"flight": Flight.ORIGINAL.value, "off_centre": True},
         "traffic": {"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
     },
 )

@@ -1,6 +1,7 @@
 """Episodes of trackers on a device, drawn on the host by the code of all simulations."""
 
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -84,7 +85,7 @@ class HostEpisodes:
 
     def sampled_of(self, memory: Any) -> list[Any]:  # noqa: ANN401  # the trackers' record
         """Return those arrays of a memory, here or on a device, in which episodes are drawn."""
-        return [] if self._sampled is None else arrays_of(getattr(memory, self._sampled))
+        return [] if self._sampled is None else arrays_of(attrgetter(self._sampled)(memory))
 
     def _focal(self, field: float) -> tuple[float, float]:
         """Return the focal lengths of pictures that show a camera's whole view [pixels]."""

@@ -1,0 +1,1 @@
+"""Drones from flights: the constants that a log tells."""
