@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -17,7 +16,7 @@ from eyas.core.files import refusals, write_atomic
 from eyas.core.scratch import scratch
 from eyas.exports.gltf.world import CANDELAS, towards
 from eyas.exports.scene_parts import copies_of, parts_of, prototypes_of
-from eyas.mesh.flat import flat_polygon
+from eyas.modes.maps.prisms import prism
 from eyas.modes.maps.usd_materials import Materials
 from eyas.sim.scenes import load_scene, load_textures
 from eyas.state.mesh import Material, Mesh, Surface
@@ -300,7 +299,7 @@ class _Stage:
         for number, (low, high) in enumerate(pairwise(solids.prism_first.tolist())):
             span = float(solids.prism_bottom[number]), float(solids.prism_top[number])
             made = UsdGeom.Mesh.Define(self.stage, self._place("colliders", f"prism_{number}"))
-            self._shape(made, *_prism(solids.prism_points[low:high], span))
+            self._shape(made, *prism(solids.prism_points[low:high], span))
             self._facet(made)
             UsdPhysics.MeshCollisionAPI.Apply(made.GetPrim()).CreateApproximationAttr(
                 UsdPhysics.Tokens.none
@@ -333,21 +332,3 @@ def _valid(name: str) -> str:
 
     valid: str = Tf.MakeValidIdentifier(name)
     return valid
-
-
-def _prism(
-    outline: NDArray[np.float64], span: tuple[float, float]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the points and triangles of a prism on a counter-clockwise outline."""
-    count = len(outline)
-    sides = np.concatenate([np.column_stack([outline, np.full(count, z)]) for z in span])
-    here, there = np.arange(count), (np.arange(count) + 1) % count
-    walls = [[here, there, there + count], [here, there + count, here + count]]
-    floor, roof = (flat_polygon(shapely.Polygon(outline), z, Material(), 1.0) for z in span)
-    below = 2 * count
-    above = below + len(floor.positions)
-    triangles: list[NDArray[np.signedinteger]] = [np.stack(wall, axis=1) for wall in walls]
-    triangles += [floor.triangles[:, ::-1] + below, roof.triangles + above]
-    every = np.concatenate([sides, floor.positions, roof.positions])
-    points, welded = np.unique(every, axis=0, return_inverse=True)
-    return points, welded.ravel()[np.concatenate(triangles)].astype(np.int32)
