@@ -72,6 +72,8 @@ class Moment(NamedTuple):
     """The lens of its camera; None: it is a pinhole."""
     lamps: NDArray[np.uint8] | None = None
     """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
+    traffic: ActorView | None = None
+    """See `Frame.traffic`; nothing changes it later."""
 
 
 def moment_of(
@@ -88,8 +90,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is asked for besides: "parts", "clean", "cameras", "events"; others are in the
-            picture.
+        wanted: What is asked for besides: "parts", "clean", "cameras", "events", "traffic"; others
+            are in the picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -111,7 +113,13 @@ def moment_of(
     now = simulation.snapshot.episodes
     lens = seen.lens_of(tracker)
     known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
-    return Moment(shown, now, *known, seen.lamps(tracker))
+    traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
+    return Moment(shown, now, *known, seen.lamps(tracker), traffic)
+
+
+def _kept(actors: ActorView) -> ActorView:
+    """Return actors with looks that the next reset does not change."""
+    return actors._replace(model=actors.model.copy(), colour=actors.colour.copy())
 
 
 def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
@@ -170,6 +178,7 @@ def frame_of(
         cameras=moment.cameras,
         exposure=moment.exposure,
         events=moment.events,
+        traffic=moment.traffic,
     )
 
 
