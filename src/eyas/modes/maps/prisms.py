@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.exports.welding import distinct
 from eyas.mesh.flat import flat_polygon
 from eyas.state.mesh import Material
 
@@ -24,5 +25,6 @@ def prism(
     triangles: list[NDArray[np.signedinteger]] = [np.stack(wall, axis=1) for wall in walls]
     triangles += [floor.triangles[:, ::-1] + below, roof.triangles + above]
     every = np.concatenate([sides, floor.positions, roof.positions])
-    points, welded = np.unique(every, axis=0, return_inverse=True)
-    return points, welded.ravel()[np.concatenate(triangles)].astype(np.int32)
+    # Floor and roof have single numbers: so must the sides, or they share no point with these.
+    points, where = distinct(every.astype(np.float32).astype(np.float64))
+    return points, where[np.concatenate(triangles)].astype(np.int32)
