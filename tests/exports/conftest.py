@@ -48,15 +48,18 @@ POSE = CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8, 64, 48)
 
 
 def traffic_at(number: int) -> ActorView:
-    """Two cars and a person: the first car drives east, the other comes after the first frame and
-    is gone after the third."""
-    state = ActorState.create(1, 3)
-    state.position[0] = [[14.0 + 0.5 * number, 2.0, 0.0], [30.0, 5.0, 0.0], [3.0, -4.0, 0.0]]
-    state.yaw[0] = [0.0, 0.25, -1.5]
-    state.slope[0] = [0.125, 0.0, 0.0]
-    state.present[0] = [True, number in (1, 2), True]
-    models = [model_index(name) for name in ("BmwX5Simple", "BusSimple", "Pedestrian")]
-    return ActorView(state, state, np.array(models, np.int32), np.ones((3, 3), np.float32))
+    """A car that drives east, a bus that comes after the first frame and is gone after the third,
+    a person, and seven who are not there.
+    """
+    state = ActorState.create(1, 10)
+    state.position[0, :3] = [[14.0 + 0.5 * number, 2.0, 0.0], [30.0, 5.0, 0.0], [3.0, -4.0, 0.0]]
+    state.yaw[0, :3] = [0.0, 0.25, -1.5]
+    state.slope[0, :3] = [0.125, 0.0, 0.0]
+    state.present[0, :3] = [True, number in (1, 2), True]
+    models = np.full(10, model_index("BmwX5Simple"), np.int32)
+    models[1:3] = model_index("BusSimple"), model_index("Pedestrian")
+    colours = np.tile(np.float32([0.75, 0.5, 0.25]), (10, 1))
+    return ActorView(state, state, models, colours)
 
 
 def made(number: int, **changes: object) -> Frame:

@@ -17,6 +17,7 @@ from eyas.exports.gltf.file import GltfFile
 from eyas.exports.gltf.world import add_lamps, add_world
 from eyas.exports.welding import welded
 from eyas.mesh.assembly import transformed
+from eyas.modes.maps import plan_files
 from eyas.modes.maps.export import ExportOptions, MapFormat, export, format_named
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Lamps, ObjectClass, Scene
@@ -338,3 +339,27 @@ def test_the_validators_of_usd_have_nothing_to_remark(stage):
 def test_other_endings_than_those_of_stages_are_refused(tmp_path):
     with pytest.raises(ConfigError, match=r"^--out: 'a\.glb' is not allowed: .*\.usdc"):
         list(export(MapFormat.USD, tmp_path / "a.glb", ExportOptions("citystreet")))
+
+
+def test_few_cells_are_filled_as_many_are(monkeypatch, scene):
+    """One by one, or as arrays: the same numbers, also where shapes overlap."""
+    rng = np.random.default_rng(7)
+    corners = rng.uniform(-6, 6, (200, 1, 3)) + rng.normal(0.0, 1.5, (200, 3, 3))
+    heap = replace(
+        square(0, 0),
+        positions=corners.reshape(-1, 3).astype(np.float32),
+        normals=np.zeros((600, 3), np.float32),
+        uvs=np.zeros((600, 2), np.float32),
+        triangles=np.arange(600, dtype=np.int32).reshape(-1, 3),
+        materials=np.zeros(200, np.int32),
+    )
+    owner = rng.integers(0, 4, 200).astype(np.int32)
+    messy = replace(scene, static=heap, static_object=owner, size=(14.0, 14.0))
+    ways = []
+    for few in (0, plan_files._FEW, 10**6):
+        monkeypatch.setattr(plan_files, "_FEW", few)
+        ways.append(plan_files.rasters_of(messy, 0.5))
+    for occupancy, height in ways[1:]:
+        assert (occupancy == ways[0][0]).all()
+        assert (height == ways[0][1]).all()
+    assert len(np.unique(ways[0][0])) > 2

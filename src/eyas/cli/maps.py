@@ -175,11 +175,14 @@ def export_map(  # noqa: PLR0913  # each option is a parameter
     ] = 1,
     lamps: Annotated[bool, typer.Option(help="gltf: street lamps are lights.")] = True,
     cell: Annotated[
-        float,
+        float | None,
         typer.Option(
-            "--cell", min=0.1, max=100.0, help="geojson: side of a raster cell in metres."
+            "--cell",
+            min=0.1,
+            max=100.0,
+            help="geojson: side of a raster cell in metres; by default 0.5, on large maps 1.",
         ),
-    ] = 0.5,
+    ] = None,
     weather: Annotated[
         str | None, typer.Option("--weather", help="webots: of the world; by default the first.")
     ] = None,

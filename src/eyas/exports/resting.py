@@ -1,17 +1,19 @@
 """Meshes of the models of the catalogue as they stand, for files of other programs."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from eyas.mesh.assembly import concatenate, transformed
-from eyas.state.mesh import Mesh
+from eyas.sim.scenes import load_parts
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.motion import ActorState
-from eyas.targets.catalogue import KINDS, MODELS, kind_index, model_index
+from eyas.targets.catalogue import MODELS, kind_index, model_index
 from eyas.targets.kind import Looks
-from eyas.targets.rig import Rigs, part_library
+from eyas.targets.rig import Rigs
 
-__all__ = ["resting_mesh"]
+__all__ = ["painted", "resting_mesh"]
 
 
 @lru_cache(maxsize=64)
@@ -31,7 +33,7 @@ def resting_mesh(model: str, detail: int) -> Mesh:
     drawn = rigs.draw_list(1)
     looks = Looks(np.array([[index]], np.int32), np.ones((1, 1, 3), np.float32))
     rigs.pose(actors, looks, drawn)
-    parts = _parts(kind)
+    parts = load_parts((kind,)).parts
     slots = np.flatnonzero(drawn.part[0] >= 0)
     return concatenate(
         [
@@ -41,6 +43,14 @@ def resting_mesh(model: str, detail: int) -> Mesh:
     )
 
 
-@lru_cache(maxsize=8)
-def _parts(kind: int) -> tuple[tuple[Mesh, ...], ...]:
-    return part_library((KINDS[kind],)).parts
+def painted(mesh: Mesh, colour: tuple[float, ...]) -> Mesh:
+    """Return a mesh in the colour of an instance, sRGB."""
+    palette = tuple(_painted(material, colour) for material in mesh.palette)
+    return replace(mesh, palette=palette)
+
+
+def _painted(material: Material, colour: tuple[float, ...]) -> Material:
+    if material.surface is not Surface.PAINT:
+        return material
+    red, green, blue = (a * b for a, b in zip(material.tint, colour, strict=True))
+    return replace(material, tint=(red, green, blue))

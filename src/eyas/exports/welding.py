@@ -1,6 +1,6 @@
 """Meshes for files of other programs: each point once, and no triangles without area."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ _LEAST = 1e-8
 """Area below which a triangle is left out [m^2]: a tenth of a millimetre squared."""
 
 Floats = NDArray[np.float64]
+Number = TypeVar("Number", bound=np.floating)
 
 
 class Indexed(NamedTuple):
@@ -76,9 +77,7 @@ def _rounded(values: NDArray[np.floating], step: float) -> NDArray[np.floating]:
     return whole + 0.0  # never -0, which is another number to a reader of bytes
 
 
-def distinct(
-    rows: NDArray[np.floating],
-) -> tuple[NDArray[np.floating], NDArray[np.int64]]:
+def distinct(rows: NDArray[Number]) -> tuple[NDArray[Number], NDArray[np.int64]]:
     """Return the different rows in order, and which of them each row is.
 
     Several times as fast as `np.unique` of rows, which compares them byte by byte.

@@ -49,8 +49,8 @@ class ExportOptions(NamedTuple):
     """Level of detail of trees and furniture; 0 is the finest."""
     lamps: bool = True
     """Whether street lamps are lights."""
-    cell: float = 0.5
-    """Side of a raster cell [m]."""
+    cell: float | None = None
+    """Side of a raster cell [m]; None: 0.5, or 1 on a large map."""
     weather: str | None = None
     """Weather of a world of Webots; None: the map's first."""
     hour: float | None = None
