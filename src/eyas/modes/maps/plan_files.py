@@ -62,9 +62,7 @@ def write_layers(name: str, seed: int, folder: Path, cell: float | None) -> list
         EyasError: The map cannot be built, or a file not written.
     """
     recipe, scene = MAPS.get(name), load_scene(name, seed)
-    if cell is None:
-        fine = scene.size[0] * scene.size[1] / (_FINE * _FINE)
-        cell = _FINE if fine <= _MOST else _COARSE
+    cell = cell or _cell_of(scene)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
     layers = {"roads": _roads(scene), "buildings": _buildings(scene)}
@@ -97,6 +95,12 @@ def write_layers(name: str, seed: int, folder: Path, cell: float | None) -> list
         write_atomic(folder / ATTRIBUTION_FILE, recipe.attribution().encode())
         made.append(folder / ATTRIBUTION_FILE)
     return made
+
+
+def _cell_of(scene: Scene) -> float:
+    """Return the side of a cell where none is asked for [m]."""
+    fine = scene.size[0] * scene.size[1] / (_FINE * _FINE)
+    return _FINE if fine <= _MOST else _COARSE
 
 
 def _write(path: Path, content: dict[str, Any]) -> Path:

@@ -116,23 +116,6 @@ def drone_proto(width: int, height: int, field_of_view: float) -> str:
         height: Of the picture [pixels].
         field_of_view: Horizontal [rad].
     """
-    camera = Node(
-        "Camera",
-        {
-            "width": Is("cameraWidth"),
-            "height": Is("cameraHeight"),
-            "fieldOfView": Is("fieldOfView"),
-        },
-    )
-    roll = _joint("roll", (1.0, 0.0, 0.0), ROLL_JOINT, 0.5, [camera])
-    pitch = _joint("pitch", (0.0, 1.0, 0.0), PITCH_JOINT, 1.7, [roll])
-    yaw = _joint("yaw", (0.0, 0.0, 1.0), YAW_JOINT, 1.7, [pitch])
-    shapes = Shapes("../worlds/textures")
-    lidar: dict[str, Value] = {
-        "translation": (0.0, 0.0, 0.031), "horizontalResolution": 400,
-        "fieldOfView": 6.283185307, "verticalFieldOfView": 0.01, "numberOfLayers": 1,
-        "near": 0.05, "minRange": 0.2, "maxRange": 12.0, "noise": 0.000833, "resolution": 0.01,
-    }  # fmt: skip
     body = Node(
         "Robot",
         {
@@ -140,9 +123,9 @@ def drone_proto(width: int, height: int, field_of_view: float) -> str:
             "controller": Is("controller"), "controllerArgs": Is("controllerArgs"),
             "customData": Is("customData"), "supervisor": True, "synchronization": True,
             "children": [
-                Node("Group", {"children": shapes.of(quadrotor_levels()[0])}),
+                Node("Group", {"children": Shapes("").of(quadrotor_levels()[0])}),
                 Node("GPS"), Node("InertialUnit"), Node("Gyro"), Node("Accelerometer"),
-                Node("Lidar", lidar), yaw,
+                _lidar(), _gimbal(),
             ],
             "boundingObject": Node("Box", {"size": (0.806, 0.806, 0.366)}),
         },
@@ -155,6 +138,31 @@ def drone_proto(width: int, height: int, field_of_view: float) -> str:
         ("SFFloat", "fieldOfView", field_of_view),
     ]  # fmt: skip
     return proto(DRONE, "The drone, with the original's places of its camera", fields, body)
+
+
+def _gimbal() -> Node:
+    """Return the joints of the gimbal, with the camera on the last."""
+    camera = Node(
+        "Camera",
+        {
+            "width": Is("cameraWidth"),
+            "height": Is("cameraHeight"),
+            "fieldOfView": Is("fieldOfView"),
+        },
+    )
+    roll = _joint("roll", (1.0, 0.0, 0.0), ROLL_JOINT, 0.5, [camera])
+    pitch = _joint("pitch", (0.0, 1.0, 0.0), PITCH_JOINT, 1.7, [roll])
+    return _joint("yaw", (0.0, 0.0, 1.0), YAW_JOINT, 1.7, [pitch])
+
+
+def _lidar() -> Node:
+    """Return the lidar of the original's drone."""
+    lidar: dict[str, Value] = {
+        "translation": (0.0, 0.0, 0.031), "horizontalResolution": 400,
+        "fieldOfView": 6.283185307, "verticalFieldOfView": 0.01, "numberOfLayers": 1,
+        "near": 0.05, "minRange": 0.2, "maxRange": 12.0, "noise": 0.000833, "resolution": 0.01,
+    }  # fmt: skip
+    return Node("Lidar", lidar)
 
 
 def _joint(
