@@ -20,7 +20,9 @@ from eyas.sensors.camera.events import EventsConfig
 from eyas.sensors.config import CameraConfig, FurtherCameraConfig, LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.draw import MovingParts
+from eyas.state.motion import ActorState, ActorView
 from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import model_index
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -43,6 +45,21 @@ TARGET = Subject(
 
 
 POSE = CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8, 64, 48)
+
+
+def traffic_at(number: int) -> ActorView:
+    """A car that drives east, a bus that comes after the first frame and is gone after the third,
+    a person, and seven who are not there.
+    """
+    state = ActorState.create(1, 10)
+    state.position[0, :3] = [[14.0 + 0.5 * number, 2.0, 0.0], [30.0, 5.0, 0.0], [3.0, -4.0, 0.0]]
+    state.yaw[0, :3] = [0.0, 0.25, -1.5]
+    state.slope[0, :3] = [0.125, 0.0, 0.0]
+    state.present[0, :3] = [True, number in (1, 2), True]
+    models = np.full(10, model_index("BmwX5Simple"), np.int32)
+    models[1:3] = model_index("BusSimple"), model_index("Pedestrian")
+    colours = np.tile(np.float32([0.75, 0.5, 0.25]), (10, 1))
+    return ActorView(state, state, models, colours)
 
 
 def made(number: int, **changes: object) -> Frame:
@@ -81,6 +98,7 @@ def made(number: int, **changes: object) -> Frame:
         "clean": np.full((48, 64, 3), 41, np.uint8),
         "cameras": (CameraPicture("right", POSE, np.full((48, 64, 3), 42, np.uint8)),),
         "events": np.array([(3, 4, 1, 1000 * number + 5)], EVENT),
+        "traffic": traffic_at(number),
     }
     return Frame(**{**values, **changes})  # type: ignore[arg-type]
 

@@ -85,7 +85,7 @@ def test_an_unknown_name_is_one_line_with_the_nearest():
         (
             ["HERE:Greedy"],
             "'HERE:Greedy' wants 'RGB'; there is only: rgb, depth, object_id, class_id, normal,"
-            " others, parts, clean, cameras, events",
+            " others, parts, clean, cameras, events, traffic",
         ),
         (["HERE:Listed"], "the files of 'HERE:Listed' are a tuple, not a Files"),
         (["HERE:WithoutRead"], "'HERE:WithoutRead' is not a writer: it has no 'read'"),

@@ -6,12 +6,22 @@ import struct
 import numpy as np
 import pytest
 
-from eyas.exports.frame import CameraPose
+from eyas.exports.boxes import box_of
+from eyas.exports.capture import frame_of, moment_of
+from eyas.exports.frame import CameraPose, RecordedAction
 from eyas.exports.gltf import flight
 from eyas.exports.gltf.boxes import box_mesh
 from eyas.exports.gltf.flight import SceneWriter
+from eyas.exports.gltf.movers import mover_mesh, pose_of
 from eyas.exports.writer import Summary
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import together
+from eyas.state.draw import Picture
+from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass, Scene
+from eyas.targets.kind import Looks
+from eyas.targets.rig import Rigs
 
 
 @pytest.fixture
@@ -97,9 +107,62 @@ def test_movers_are_there_while_they_are_seen(film):
     _, scale = track(told, values, "bus-65545", "scale")
     assert scale[:, 0].tolist() == [0.0, 1.0, 1.0, 0.0]
     _, places = track(told, values, "target-65539", "translation")
-    assert places[0] == pytest.approx([13.0, 2.0, 0.85])
+    assert places[0] == pytest.approx([14.0, 2.0, 0.0])  # on the road
     with pytest.raises(KeyError):
         track(told, values, "target-65539", "scale")
+
+
+def test_movers_have_the_shapes_of_their_models_or_boxes_where_their_boxes_are(film, frame):
+    told, _ = opened(film())
+
+    def extent(name):
+        (node,) = (node for node in told["nodes"] if node["name"] == name)
+        primitives = told["meshes"][node["mesh"]]["primitives"]
+        ends = [told["accessors"][one["attributes"]["POSITION"]] for one in primitives]
+        looks = [told["materials"][one["material"]] for one in primitives]
+        colours = [look["pbrMetallicRoughness"]["baseColorFactor"][:3] for look in looks]
+        low = np.min([end["min"] for end in ends], axis=0) + node["translation"]
+        return low, np.max([end["max"] for end in ends], axis=0) + node["translation"], colours
+
+    low, high, colours = extent("target-65539")
+    assert np.abs(high - low - (4.85, 1.9, 1.8)).max() < 0.05
+    assert low[2] == pytest.approx(0.0, abs=0.01)
+    assert abs(0.5 * (low + high)[0] - 13.0) < 0.01
+    red, green, blue = (1.1028 * part for part in (0.75, 0.5, 0.25))  # paint of its texture
+    assert any(np.allclose(each, np.power([red, green, blue], 2.2), atol=1e-4) for each in colours)
+    low, high, _ = extent("bus-65545")  # "Bus" is no model
+    corners = frame(0).target.corners
+    assert low == pytest.approx(corners.min(axis=0), abs=1e-5)
+    assert high == pytest.approx(corners.max(axis=0), abs=1e-5)
+
+
+def test_the_shape_of_a_model_fills_its_box():
+    """In a true simulation."""
+    sim = build_simulation(SimConfig(world={"map": "simpleway-grass"}), together(1))
+    sim.reset()
+    picture = Picture.create(1, 48, 64, subject=True)
+    moment = moment_of(sim, 0, picture, 0, {"traffic"})
+    subject = frame_of(moment, 0, picture, 0, 0, RecordedAction(-1, None)).target
+    place, axes = pose_of(subject)
+    points = mover_mesh(subject, (1.0, 1.0, 1.0)).positions.astype(float) @ axes.T + place
+    box = box_of(subject.corners)
+    inside = (points - box.centre) @ box.rotation
+    assert np.abs(inside).max(axis=0) == pytest.approx(0.5 * box.size, abs=0.1)
+
+
+def test_movers_tilt_as_the_renderer_draws_them(frame):
+    subject = frame(0).target
+    motion = dataclasses.replace(subject.motion, slope=0.3)
+    subject = dataclasses.replace(subject, yaw=0.8, motion=motion)
+    rigs, actors = Rigs(np.zeros(1, np.int32)), ActorState.create(1, 1)
+    actors.position[0, 0] = subject.position - [0.0, 0.0, motion.rise]
+    actors.yaw[:], actors.slope[:], actors.present[:] = 0.8, 0.3, True
+    drawn = rigs.draw_list(1)
+    looks = Looks(np.zeros((1, 1), np.int32), np.ones((1, 1, 3), np.float32))
+    rigs.pose(actors, looks, drawn)
+    place, axes = pose_of(subject)
+    body = place - axes[:, 0]  # its middle is 1 m behind the reference point
+    np.testing.assert_allclose(drawn.pose[0, 0], np.column_stack([axes, body]), atol=1e-5)
 
 
 def test_a_scene_tells_how_many_frames_it_has(film, run, episode):

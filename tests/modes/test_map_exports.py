@@ -15,7 +15,9 @@ import pytest
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.exports.gltf.file import GltfFile
 from eyas.exports.gltf.world import add_lamps, add_world
+from eyas.exports.welding import welded
 from eyas.mesh.assembly import transformed
+from eyas.modes.maps import plan_files
 from eyas.modes.maps.export import ExportOptions, MapFormat, export, format_named
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Lamps, ObjectClass, Scene
@@ -281,11 +283,31 @@ def test_a_stage_holds_every_shape_in_its_place_with_its_class(stage, scene):
     )
     whole = np.array(UsdGeom.Xformable(shape).ComputeLocalToWorldTransform(0))
     points = np.column_stack([np.array(shape.GetPointsAttr().Get()), np.ones(4)]) @ whole
-    ours = transformed(scene.fixtures.levels[0][1], scene.fixtures.pose[2]).positions
-    np.testing.assert_allclose(points[:, :3], ours, atol=1e-5)
+    ours = transformed(scene.fixtures.levels[0][1], scene.fixtures.pose[2])
+    corners = np.array(shape.GetFaceVertexIndicesAttr().Get())
+    drawn = ours.positions[ours.triangles.ravel()]
+    np.testing.assert_allclose(points[corners, :3], drawn, atol=1e-5)
+    primvars = UsdGeom.PrimvarsAPI(shape)
+    normals = np.array(primvars.GetPrimvar("normals").ComputeFlattened())
+    np.testing.assert_allclose(normals, np.tile([0, 0, 1], (6, 1)))  # before it is turned
+    uvs = np.array(primvars.GetPrimvar("st").ComputeFlattened())
+    np.testing.assert_allclose(uvs, ours.uvs[ours.triangles.ravel()])
     light = stage.GetPrimAtPath("/small/lamps/lamp_1")
     turn = np.array(UsdGeom.Xformable(light).ComputeLocalToWorldTransform(0))
     np.testing.assert_allclose([0, 0, -1] @ turn[:3, :3], scene.lamps.axis[1], atol=1e-5)
+
+
+def test_shapes_share_their_points_and_have_no_empty_triangles():
+    """Two squares side by side that share no vertex, and a third without width."""
+    narrow = square(4, 0)
+    narrow.positions[:, 0] = 4.0
+    shape = welded(joined(square(0, 0), square(2, 0, 1), narrow))
+    assert len(shape.points.values) == 6
+    assert shape.materials.tolist() == [0, 0, 1, 1]
+    corners = shape.points.values[shape.points.corners]
+    area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert area[:, 2].tolist() == [4.0] * 4
+    assert len(shape.normals.values) == 1
 
 
 def test_colliders_of_a_stage_are_closed_and_not_drawn(stage):
@@ -295,6 +317,7 @@ def test_colliders_of_a_stage_are_closed_and_not_drawn(stage):
     prism = UsdGeom.Mesh(stage.GetPrimAtPath("/small/colliders/prism_0"))
     faces = np.array(prism.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
     body = trimesh.Trimesh(np.array(prism.GetPointsAttr().Get()), faces)
+    assert len(body.vertices) == len(prism.GetPointsAttr().Get())  # none merged while read
     assert body.is_watertight
     assert body.volume == pytest.approx(3.0 * 5.0)
     trunk = UsdGeom.Cylinder(stage.GetPrimAtPath("/small/colliders/cylinder_0"))
@@ -316,3 +339,27 @@ def test_the_validators_of_usd_have_nothing_to_remark(stage):
 def test_other_endings_than_those_of_stages_are_refused(tmp_path):
     with pytest.raises(ConfigError, match=r"^--out: 'a\.glb' is not allowed: .*\.usdc"):
         list(export(MapFormat.USD, tmp_path / "a.glb", ExportOptions("citystreet")))
+
+
+def test_few_cells_are_filled_as_many_are(monkeypatch, scene):
+    """One by one, or as arrays: the same numbers, also where shapes overlap."""
+    rng = np.random.default_rng(7)
+    corners = rng.uniform(-6, 6, (200, 1, 3)) + rng.normal(0.0, 1.5, (200, 3, 3))
+    heap = replace(
+        square(0, 0),
+        positions=corners.reshape(-1, 3).astype(np.float32),
+        normals=np.zeros((600, 3), np.float32),
+        uvs=np.zeros((600, 2), np.float32),
+        triangles=np.arange(600, dtype=np.int32).reshape(-1, 3),
+        materials=np.zeros(200, np.int32),
+    )
+    owner = rng.integers(0, 4, 200).astype(np.int32)
+    messy = replace(scene, static=heap, static_object=owner, size=(14.0, 14.0))
+    ways = []
+    for few in (0, plan_files._FEW, 10**6):
+        monkeypatch.setattr(plan_files, "_FEW", few)
+        ways.append(plan_files.rasters_of(messy, 0.5))
+    for occupancy, height in ways[1:]:
+        assert (occupancy == ways[0][0]).all()
+        assert (height == ways[0][1]).all()
+    assert len(np.unique(ways[0][0])) > 2

@@ -159,7 +159,11 @@ def export_map(  # noqa: PLR0913  # each option is a parameter
     name: Name,
     kind: Annotated[
         str,
-        typer.Option("--format", help="gltf, usd, opendrive, sumo or geojson.", show_default=False),
+        typer.Option(
+            "--format",
+            help="gltf, usd, opendrive, sumo, geojson or webots.",
+            show_default=False,
+        ),
     ],
     out: Annotated[
         Path | None,
@@ -167,20 +171,29 @@ def export_map(  # noqa: PLR0913  # each option is a parameter
     ] = None,
     seed: Seed = 0,
     detail: Annotated[
-        int, typer.Option("--detail", min=0, max=9, help="gltf, usd: trees; 0 is the finest.")
+        int, typer.Option("--detail", min=0, max=9, help="gltf, usd, webots: trees; 0: finest.")
     ] = 1,
     lamps: Annotated[bool, typer.Option(help="gltf: street lamps are lights.")] = True,
     cell: Annotated[
-        float,
+        float | None,
         typer.Option(
-            "--cell", min=0.1, max=100.0, help="geojson: side of a raster cell in metres."
+            "--cell",
+            min=0.1,
+            max=100.0,
+            help="geojson: side of a raster cell in metres; by default 0.5, on large maps 1.",
         ),
-    ] = 0.5,
+    ] = None,
+    weather: Annotated[
+        str | None, typer.Option("--weather", help="webots: of the world; by default the first.")
+    ] = None,
+    hour: Annotated[
+        float | None, typer.Option("--hour", min=0.0, max=24.0, help="webots: of the day.")
+    ] = None,
 ) -> None:
     """Write a map for other programs: shapes, roads, or a plan."""
     from eyas.modes.maps.export import ExportOptions, export, format_named
 
-    options = ExportOptions(name, seed, detail, lamps, cell)
+    options = ExportOptions(name, seed, detail, lamps, cell, weather, hour)
     for line in export(format_named(kind), out, options):
         typer.echo(line)
 

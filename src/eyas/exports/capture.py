@@ -75,6 +75,8 @@ class Moment(NamedTuple):
     """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
     rotors: Floats | None = None
     """See `Frame.rotors`; nothing changes it later."""
+    traffic: ActorView | None = None
+    """See `Frame.traffic`; nothing changes it later."""
 
 
 def moment_of(
@@ -91,8 +93,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is asked for besides: "parts", "clean", "cameras", "events"; others are in the
-            picture.
+        wanted: What is asked for besides: "parts", "clean", "cameras", "events", "traffic"; others
+            are in the picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -116,7 +118,13 @@ def moment_of(
     known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
     asked = simulation.told().get(ROTORS)
     rotors = None if asked is None else asked[tracker]
-    return Moment(shown, now, *known, seen.lamps(tracker), rotors)
+    traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
+    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic)
+
+
+def _kept(actors: ActorView) -> ActorView:
+    """Return actors with looks that the next reset does not change."""
+    return actors._replace(model=actors.model.copy(), colour=actors.colour.copy())
 
 
 def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
@@ -176,6 +184,7 @@ def frame_of(
         cameras=moment.cameras,
         exposure=moment.exposure,
         events=moment.events,
+        traffic=moment.traffic,
     )
 
 

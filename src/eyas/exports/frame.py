@@ -10,6 +10,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
 from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
 from eyas.state.draw import MovingParts
+from eyas.state.motion import ActorView
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
@@ -39,9 +40,10 @@ Output = Literal[
     "clean",
     "cameras",
     "events",
+    "traffic",
 ]
 """Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts,
-pictures of other cameras, or events.
+pictures of other cameras, events, or all actors.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
@@ -262,6 +264,9 @@ class Frame:
     events: NDArray[np.void] | None = None
     """Events of the event camera since the last frame, in the order of time, of dtype
     `eyas.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants it."""
+    traffic: ActorView | None = None
+    """All actors of the tracker's world, seen or not, at the instant that the picture shows; None
+    if no writer wants it."""
 
     @property
     def episode_time(self) -> float:

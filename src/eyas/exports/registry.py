@@ -33,6 +33,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "lidar": "eyas.exports.table:LidarWriter",
         "events": "eyas.exports.events:EventWriter",
         "scene": "eyas.exports.gltf.flight:SceneWriter",
+        "openscenario": "eyas.exports.scenario:ScenarioWriter",
         "rosbag": "eyas.exports.ros.bag:RosbagWriter",
         "rosbag-mcap": "eyas.exports.ros.bag:RosbagMcapWriter",
     },

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.exports.boxes import box_of, quaternion_of
+from eyas.exports.boxes import quaternion_of
 from eyas.exports.frame import CameraPose, Frame, Subject
 from eyas.exports.gltf.boxes import box_mesh
 from eyas.exports.gltf.file import GltfFile
+from eyas.exports.gltf.movers import mover_mesh, pose_of
 from eyas.exports.gltf.world import add_world
 from eyas.exports.writer import Episode, Files, Gather, Run, Summary, Writer
 from eyas.sim.scenes import load_scene, load_textures
-from eyas.state.scene import ObjectClass
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.world.maps import MAPS
 
 __all__ = ["SceneWriter"]
@@ -45,9 +46,9 @@ class _Pose(NamedTuple):
 class _Mover(NamedTuple):
     """A moving object in a frame."""
 
-    type: str
-    kind: ObjectClass
-    size: tuple[float, float, float]
+    subject: Subject
+    colour: tuple[float, ...]
+    """Of its body, sRGB."""
     pose: _Pose
 
 
@@ -69,7 +70,7 @@ class SceneWriter(Writer):
         run: The recording.
     """
 
-    wants = frozenset({"others"})
+    wants = frozenset({"others", "traffic"})
     files = Files(episode=(NAME,))
 
     def __init__(self, run: Run) -> None:
@@ -107,16 +108,17 @@ class SceneWriter(Writer):
 def _moment(frame: Frame) -> _Moment:
     w, x, y, z = frame.tracker.orientation.tolist()
     body = _Pose(tuple(frame.tracker.position.tolist()), (x, y, z, w))
-    movers = {each.object_id: _mover(each) for each in (frame.target, *frame.others)}
+    movers = {each.object_id: _mover(each, frame) for each in (frame.target, *frame.others)}
     target = frame.target.object_id
     return _Moment(frame.episode_time, frame.camera, body, target, movers)
 
 
-def _mover(subject: Subject) -> _Mover:
-    box = box_of(subject.corners)
-    length, width, height = subject.size.tolist()
-    pose = _Pose(tuple(box.centre.tolist()), _turn(box.rotation))
-    return _Mover(subject.type, subject.object_class, (length, width, height), pose)
+def _mover(subject: Subject, frame: Frame) -> _Mover:
+    assert frame.traffic is not None  # as it is wanted
+    colour = frame.traffic.colour[subject.object_id - ACTOR_OBJECT].tolist()
+    place, axes = pose_of(subject)
+    rounded = tuple(round(part, 4) for part in colour)
+    return _Mover(subject, rounded, _Pose(tuple(place.tolist()), _turn(axes)))
 
 
 def _turn(rotation: Floats) -> tuple[float, ...]:
@@ -155,20 +157,23 @@ class _Flight:
 
     def add_movers(self) -> None:
         """Add all that moves; what is not seen in a frame has no size in it."""
-        shapes: dict[str, int] = {}
+        shapes: dict[tuple[str, tuple[float, ...]], int] = {}
         for number in sorted({number for each in self._moments for number in each.movers}):
             found = [each.movers.get(number) for each in self._moments]
             first = next(each for each in found if each is not None)
-            if first.type not in shapes:
-                shapes[first.type] = self._file.mesh(box_mesh(first.size, first.kind), first.type)
+            looks = first.subject.type, first.colour
+            if looks not in shapes:
+                mesh = mover_mesh(first.subject, first.colour)
+                shapes[looks] = self._file.mesh(mesh, first.subject.type)
             poses, last = [], first.pose
             for each in found:
                 last = last if each is None else each.pose
                 poses.append(last)
             is_target = number == self._moments[0].target
-            name = f"target-{number}" if is_target else f"{first.kind.name.lower()}-{number}"
-            extras = {"class": first.kind.name.lower(), "type": first.type}
-            node = self._move(name, {"mesh": shapes[first.type], "extras": extras}, poses)
+            kind = first.subject.object_class.name.lower()
+            name = f"target-{number}" if is_target else f"{kind}-{number}"
+            extras = {"class": kind, "type": first.subject.type}
+            node = self._move(name, {"mesh": shapes[looks], "extras": extras}, poses)
             seen = np.array([[float(each is not None)] * 3 for each in found])
             if not seen.all():
                 self._file.animate(

@@ -24,6 +24,8 @@ class MapFormat(StrEnum):
     """A folder: roads and traffic for SUMO."""
     GEOJSON = "geojson"
     """A folder: streets, buildings and rasters."""
+    WEBOTS = "webots"
+    """A folder: a project of Webots, laid out as the original's."""
 
 
 _ENDINGS = {
@@ -32,6 +34,7 @@ _ENDINGS = {
     MapFormat.OPENDRIVE: ".xodr",
     MapFormat.SUMO: "-sumo",
     MapFormat.GEOJSON: "-geojson",
+    MapFormat.WEBOTS: "-webots",
 }
 
 
@@ -46,8 +49,12 @@ class ExportOptions(NamedTuple):
     """Level of detail of trees and furniture; 0 is the finest."""
     lamps: bool = True
     """Whether street lamps are lights."""
-    cell: float = 0.5
-    """Side of a raster cell [m]."""
+    cell: float | None = None
+    """Side of a raster cell [m]; None: 0.5, or 1 on a large map."""
+    weather: str | None = None
+    """Weather of a world of Webots; None: the map's first."""
+    hour: float | None = None
+    """Its hour, 0 to 24; None: the weather's own."""
 
 
 def format_named(name: str) -> MapFormat:
@@ -93,6 +100,12 @@ def export(kind: MapFormat, out: Path | None, options: ExportOptions) -> Iterato
         from eyas.modes.maps.roads import write_sumo
 
         yield from map(str, write_sumo(name, seed, path))
+    elif kind is MapFormat.WEBOTS:
+        from eyas.modes.maps.webots.project import Condition
+        from eyas.modes.maps.webots.project import run as write_webots
+
+        condition = Condition(options.weather, options.hour)
+        yield from map(str, write_webots(name, seed, path, options.detail, condition))
     else:
         from eyas.modes.maps.plan_files import write_layers
 

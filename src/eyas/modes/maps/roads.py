@@ -1,5 +1,6 @@
 """The roads of a map for other programs: SUMO's network with its traffic, and OpenDRIVE."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from eyas.core.files import refusals, write_atomic
@@ -10,7 +11,7 @@ from eyas.traffic.record import resolved
 from eyas.traffic.road_files import opendrive_xml, sumo_files
 from eyas.world.maps import MAPS
 
-__all__ = ["write_opendrive", "write_sumo"]
+__all__ = ["sumo_files_of", "write_opendrive", "write_sumo"]
 
 
 def write_sumo(name: str, seed: int, folder: Path) -> list[Path]:
@@ -24,14 +25,27 @@ def write_sumo(name: str, seed: int, folder: Path) -> list[Path]:
     Raises:
         EyasError: SUMO is not installed, or a file cannot be written.
     """
-    recipe = MAPS.get(name)
-    config = resolved(TrafficConfig(signals=Signals.WORKING), CANONICAL_SEED)
-    files = sumo_files(recipe.name, _network(name, seed), config, STANDARD_DURATION)
+    files = sumo_files_of(name, seed, MAPS.get(name).name)
     with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
     for file, content in files.items():
         write_atomic(folder / file, content)
     return [folder / file for file in files]
+
+
+def sumo_files_of(name: str, seed: int, stem: str) -> Mapping[str, bytes]:
+    """Return SUMO's network, routes and configuration of a map, by the names of the files.
+
+    Args:
+        name: Name of the map.
+        seed: Seed of the map.
+        stem: Of the names of the files.
+
+    Raises:
+        EyasError: SUMO is not installed.
+    """
+    config = resolved(TrafficConfig(signals=Signals.WORKING), CANONICAL_SEED)
+    return sumo_files(stem, _network(name, seed), config, STANDARD_DURATION)
 
 
 def write_opendrive(name: str, seed: int, path: Path) -> None:

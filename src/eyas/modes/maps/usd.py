@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -17,7 +16,8 @@ from eyas.core.files import refusals, write_atomic
 from eyas.core.scratch import scratch
 from eyas.exports.gltf.world import CANDELAS, towards
 from eyas.exports.scene_parts import copies_of, parts_of, prototypes_of
-from eyas.mesh.flat import flat_polygon
+from eyas.exports.welding import welded
+from eyas.modes.maps.prisms import prism
 from eyas.modes.maps.usd_materials import Materials
 from eyas.sim.scenes import load_scene, load_textures
 from eyas.state.mesh import Material, Mesh, Surface
@@ -148,13 +148,14 @@ class _Stage:
 
         for part in parts_of(self._scene):
             kind = part.object_class
-            prim = self._mesh(self._place(kind.name.lower(), part.name), part.mesh)
+            place = self._place(kind.name.lower(), part.name)
+            prim, triangles = self._mesh(place, part.mesh)
             self._label(prim, kind)
             if kind in _TOUCHED:
                 UsdPhysics.CollisionAPI.Apply(prim)
                 solid = UsdPhysics.MeshCollisionAPI.Apply(prim)
                 solid.CreateApproximationAttr(UsdPhysics.Tokens.none)
-            self.triangles += len(part.mesh.triangles)
+            self.triangles += triangles
 
     def _add_copies(self) -> None:
         from pxr import Sdf, UsdGeom
@@ -162,7 +163,7 @@ class _Stage:
         prototypes = prototypes_of(self._scene.fixtures, self._detail)
         above = f"{self._root}/prototypes"
         self.stage.CreateClassPrim(above)
-        drawn: dict[int, str] = {}
+        drawn: dict[int, tuple[str, int]] = {}
         for copies in copies_of(self._scene):
             shape, group = prototypes[copies.prototype], copies.object_class.name.lower()
             if not len(shape.triangles):
@@ -170,16 +171,16 @@ class _Stage:
             if copies.prototype not in drawn:
                 path = f"{above}/{_valid(copies.name)}_{copies.prototype}"
                 UsdGeom.Xform.Define(self.stage, path)
-                self._mesh(f"{path}/shape", shape)
-                drawn[copies.prototype] = path
+                drawn[copies.prototype] = path, self._mesh(f"{path}/shape", shape)[1]
+            path, triangles = drawn[copies.prototype]
             places = [
                 self._place(group, f"{copies.name}_{number}") for number in range(len(copies.pose))
             ]
             # Object by object through the stage, thousands of copies would take a minute.
             with Sdf.ChangeBlock():
                 for place, pose in zip(places, copies.pose, strict=True):
-                    self._copy(place, drawn[copies.prototype], pose, group)
-            self.triangles += len(shape.triangles) * len(copies.pose)
+                    self._copy(place, path, pose, group)
+            self.triangles += triangles * len(copies.pose)
 
     def _copy(self, path: str, prototype: str, pose: NDArray[np.float32], kind: str) -> None:
         """Add an instance of a prototype, with the label of its class."""
@@ -202,19 +203,26 @@ class _Stage:
         label = Sdf.AttributeSpec(spec, "semantics:labels:class", types.TokenArray)
         label.default = Vt.TokenArray([kind])
 
-    def _mesh(self, path: str, mesh: Mesh) -> "Usd.Prim":
-        """Add a mesh with its materials, a subset of the faces for each."""
+    def _mesh(self, path: str, mesh: Mesh) -> tuple["Usd.Prim", int]:
+        """Add a mesh with its materials, a subset of the faces for each; return it, and its number
+        of triangles.
+        """
         from pxr import Sdf, UsdGeom, UsdShade, Vt
 
-        made = UsdGeom.Mesh.Define(self.stage, path)
-        self._shape(made, mesh.positions, mesh.triangles)
-        made.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(mesh.normals)))
-        made.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
-        uvs = UsdGeom.PrimvarsAPI(made).CreatePrimvar(
-            "st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex
-        )
-        uvs.Set(Vt.Vec2fArray.FromNumpy(np.ascontiguousarray(mesh.uvs, np.float32)))
-        used = np.unique(mesh.materials).tolist()
+        made, shape = UsdGeom.Mesh.Define(self.stage, path), welded(mesh)
+        self._shape(made, *shape.points)
+        types = Sdf.ValueTypeNames
+        for name, type_, told in (
+            ("normals", types.Normal3fArray, shape.normals),
+            ("st", types.TexCoord2fArray, shape.uvs),
+        ):
+            corners = UsdGeom.PrimvarsAPI(made).CreatePrimvar(
+                name, type_, UsdGeom.Tokens.faceVarying
+            )
+            array = Vt.Vec3fArray if name == "normals" else Vt.Vec2fArray
+            corners.Set(array.FromNumpy(np.ascontiguousarray(told.values, np.float32)))
+            corners.SetIndices(Vt.IntArray.FromNumpy(told.corners.ravel().astype(np.int32)))
+        used = np.unique(shape.materials).tolist()
         if any(mesh.palette[index].surface is Surface.FOLIAGE for index in used):
             made.CreateDoubleSidedAttr(defaultValue=True)
         for index in used:
@@ -222,7 +230,7 @@ class _Stage:
             material = UsdShade.Material.Get(self.stage, place)
             prim = made.GetPrim()
             if len(used) > 1:
-                faces = np.flatnonzero(mesh.materials == index).astype(np.int32)
+                faces = np.flatnonzero(shape.materials == index).astype(np.int32)
                 subset = UsdGeom.Subset.CreateGeomSubset(
                     made, f"material_{index}", UsdGeom.Tokens.face,
                     Vt.IntArray.FromNumpy(faces), UsdShade.Tokens.materialBind,
@@ -232,7 +240,7 @@ class _Stage:
             UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)
         if len(used) > 1:
             UsdShade.MaterialBindingAPI.Apply(made.GetPrim())
-        return made.GetPrim()
+        return made.GetPrim(), len(shape.materials)
 
     def _shape(self, made: Any, points: NDArray[Any], triangles: NDArray[Any]) -> None:  # noqa: ANN401
         from pxr import UsdGeom, Vt
@@ -300,7 +308,7 @@ class _Stage:
         for number, (low, high) in enumerate(pairwise(solids.prism_first.tolist())):
             span = float(solids.prism_bottom[number]), float(solids.prism_top[number])
             made = UsdGeom.Mesh.Define(self.stage, self._place("colliders", f"prism_{number}"))
-            self._shape(made, *_prism(solids.prism_points[low:high], span))
+            self._shape(made, *prism(solids.prism_points[low:high], span))
             self._facet(made)
             UsdPhysics.MeshCollisionAPI.Apply(made.GetPrim()).CreateApproximationAttr(
                 UsdPhysics.Tokens.none
@@ -333,21 +341,3 @@ def _valid(name: str) -> str:
 
     valid: str = Tf.MakeValidIdentifier(name)
     return valid
-
-
-def _prism(
-    outline: NDArray[np.float64], span: tuple[float, float]
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the points and triangles of a prism on a counter-clockwise outline."""
-    count = len(outline)
-    sides = np.concatenate([np.column_stack([outline, np.full(count, z)]) for z in span])
-    here, there = np.arange(count), (np.arange(count) + 1) % count
-    walls = [[here, there, there + count], [here, there + count, here + count]]
-    floor, roof = (flat_polygon(shapely.Polygon(outline), z, Material(), 1.0) for z in span)
-    below = 2 * count
-    above = below + len(floor.positions)
-    triangles: list[NDArray[np.signedinteger]] = [np.stack(wall, axis=1) for wall in walls]
-    triangles += [floor.triangles[:, ::-1] + below, roof.triangles + above]
-    every = np.concatenate([sides, floor.positions, roof.positions])
-    points, welded = np.unique(every, axis=0, return_inverse=True)
-    return points, welded.ravel()[np.concatenate(triangles)].astype(np.int32)

@@ -67,7 +67,7 @@ class VideoConfig(ActionSpeeds):
     )
     """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `clean`, `cameras`, `masks`,
     `classes`, `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, `scene`,
-    `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`."""
+    `openscenario`, `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
     """Quality of the JPEG pictures; one of 320 x 240 takes some 36 kB at 95, and 93 kB at 100,
     which an `env_config.json` means."""
