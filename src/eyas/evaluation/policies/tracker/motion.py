@@ -54,6 +54,16 @@ class MotionFilter:
             (np.full(len(rows), spread * spread), np.zeros(len(rows)), speed * speed), axis=-1
         )
 
+    def stop(self, rows: Rows, speed: float) -> None:
+        """Expect K targets to stand or to move from where they are now, in any direction.
+
+        Args:
+            rows: Which they are, shape (K,).
+            speed: Standard deviation of their velocities [m/s].
+        """
+        self.velocity[rows] = 0.0
+        self._variance[rows, 1:] = 0.0, speed * speed
+
     def spread(self, rows: Rows) -> Floats:
         """Return the standard deviation of places [m], shape (K,)."""
         spread: Floats = np.sqrt(self._variance[rows, 0])

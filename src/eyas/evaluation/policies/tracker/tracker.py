@@ -104,6 +104,8 @@ class Tracker:
         """What the network was told last, see `Clue`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
+        self._left = np.zeros((count, 2))
+        """Where each target was when it was seen last, east and north [m]."""
         self._key = np.zeros((count, self.detector.keys), np.float32)
         self._renewed = np.zeros(count)
         """How often each memory of how the target looks was renewed."""
@@ -143,6 +145,7 @@ class Tracker:
         if new.any():
             self._show(rows[new], place[new], yaw[new])
         self.motion.predict(rows, np.where(new, 0.0, since))
+        self._wait(rows)
         clue = self._clue(rows, place, yaw)
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
         found = self.detector.find(pictures, clue)
@@ -150,10 +153,21 @@ class Tracker:
         noise = found.spread / self.ground.pixels_per_metre
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
-        taken = near & (found.belief > self.settings.believed)
+        wide = self.motion.spread(rows) > 0.5 * self.settings.widest
+        least = np.where(wide, self.settings.remembered, self.settings.believed)
+        taken = near & (found.belief > least)
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
+        self._left[rows[taken]] = self.motion.place[rows[taken]]
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
+
+    def _wait(self, rows: Rows) -> None:
+        """Wait for targets that are followed unseen for too long: most covers have ended before,
+        and a driver who stopped below one comes out where the drone is.
+        """
+        away = self.motion.place[rows] - self._left[rows]
+        far = np.asarray(exact.hypot(away[:, 0], away[:, 1])) > self.settings.straight
+        self.motion.stop(rows[far], self.settings.speed)
 
     def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
         """Return what the network is told about targets, see `look`."""
@@ -174,6 +188,7 @@ class Tracker:
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
         where = place + _turned(self.ground.offsets(middle), yaw)
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
+        self._left[rows] = where
 
     def _remember(self, rows: Rows, found: Found, sure: Mask) -> None:
         """Renew the memory of how targets look, by those that are surely seen."""
