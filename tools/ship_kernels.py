@@ -43,6 +43,7 @@ from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.still import StillWorld
+from eyas.sim.urban_wind import winds_over
 from eyas.sim.views.actor_bounds import bounds_of, make_rows
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
@@ -53,10 +54,12 @@ from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
 
 sin(np.zeros(1))
+winds_over(np.zeros((4, 4)))
 picture = Picture.create(1, 84, 84)
 for settings in (
     {},
     {"tracker": {"supervised": False}},
+    {"tracker": {"supervised": False, "airframe": "10-inch", "battery": {"enabled": True}}},
     {"tracker": {"kind": "car"}},
     {
         "lidar": {"enabled": True},
@@ -79,6 +82,8 @@ for settings in (
     simulation = build_simulation(SimConfig(**settings), each_alone(1))
     simulation.reset()
     simulation.advance(np.zeros((1, 4)), 1)
+    if settings in ({}, {"tracker": {"supervised": False}}):
+        simulation.advance(np.zeros((1, 8)), 1)  # turns the camera, too
     simulation.carry(1)
     simulation.packets()
     for _ in range(2):

@@ -80,7 +80,7 @@ def test_what_is_held_is_what_is_seen_soon_after_each_evasion(evade):
     assert scenario.figures(0)["held"] == 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_following_exactly_holds_all_and_hovering_almost_nothing(fly):
     follow, hover = (fly(policy, protocol="evade") for policy in ("follow", "hover"))
     assert np.mean([record.figures["held"] for record in follow]) > 0.9  # crowns

@@ -130,7 +130,5 @@ def test_maps_that_are_too_large_are_refused_in_one_line(monkeypatch):
     heights[5, 5] = heights[5, 395] = 20.0
     monkeypatch.setattr(urban_wind, "height_map", lambda *_: heights)
     scene = SimpleNamespace(size=(2000.0, 50.0), terrain=Terrain.flat(0.0), name="long")
-    with pytest.raises(
-        ConfigError, match=r"^tracker\.wind\.buildings: true is not allowed"
-    ):
+    with pytest.raises(ConfigError, match=r"^tracker\.wind\.buildings: true is not allowed"):
         urban_wind.wind_field(scene)

@@ -85,7 +85,7 @@ def test_shards_of_other_recipes_are_refused(plan, shards, tmp_path):
         merge([shards[0], theirs], tmp_path / "out", Making())
 
 
-@pytest.mark.slow
+@pytest.mark.thorough  # as `test_video_broken_off`, of the same writers
 def test_a_full_disk_is_one_line_and_can_be_continued(recipe_file, made, contents, start, tmp_path):
     disk = tmp_path / "disk"
     disk.mkdir()
