@@ -119,7 +119,8 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
     video = {"fps": 9, "jpeg_quality": 100, "flight": "exact"}
     traffic = {"signals": "amber", "lamps": "dark"}
-    changed = {"video": video, "tracker": {"flight": "original"}, "traffic": traffic}
+    tracker = {"flight": "original", "off_centre": True}
+    changed = {"video": video, "tracker": tracker, "traffic": traffic}
     meant = EyasConfig(**changed, start={"velocity": "rest"}, extras=[], original={})
     assert EyasConfig(**json.loads(native.read_text())) == meant
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
@@ -254,7 +255,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert len(seen) == 8
+    assert len(seen) == 9
     assert all(seen.values())
 
 
