@@ -141,7 +141,7 @@ def updated(
 
 def shown(value: object) -> str:
     """Return a value as error messages show it: on one line, shortened to 80 characters."""
-    text = repr(value) if isinstance(value, str) else json.dumps(value, default=_plain)
+    text = repr(str(value)) if isinstance(value, str) else json.dumps(value, default=_plain)
     return text if len(text) <= 80 else f"{text[:76]} ..."
 
 
