@@ -4,9 +4,8 @@
     python tools/translations.py --done      # all have been brought up to date
 
 A translation names its page in its first line. `docs/zh/translated.json` holds the hash of each
-page
-as it was when it was translated, so a changed page makes its translation stale until it is read
-again. Code blocks are compared word by word, whatever the hash says.
+page as it was when it was translated, so a changed page makes its translation stale until it is
+read again. Code blocks are compared word by word, whatever the hash says.
 """
 
 import argparse

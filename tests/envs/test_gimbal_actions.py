@@ -158,7 +158,7 @@ def test_a_copy_goes_on_where_the_other_is():
 
 
 def test_a_camera_fixed_to_the_body_cannot_be_turned():
-    with pytest.raises(ConfigError, match=r"env.actions: 'velocity\+gimbal' turns the camera"):
+    with pytest.raises(ConfigError, match=r"'velocity\+gimbal' is not allowed: must be without"):
         env_of("velocity+gimbal", camera={"mount": {}})
     with pytest.raises(ConfigError, match="least_pitch"):
         env_of("velocity+gimbal", env={"gimbal": {"least_pitch": 1.0, "most_pitch": 0.5}})

@@ -127,3 +127,9 @@ def free_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as some:
         some.bind(("127.0.0.1", 0))
         return some.getsockname()[1]
+
+
+def test_what_is_sent_to_this_machine_hears_only_this_machine():
+    endpoint = Endpoint(f"udp:127.0.0.1:{free_port()}")
+    assert endpoint.socket.getsockname()[0] == "127.0.0.1"
+    endpoint.close()

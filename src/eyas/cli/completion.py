@@ -80,26 +80,27 @@ def _bash(known: Sequence[Known], *, zsh: bool) -> Iterator[str]:
         yield "autoload -U +X compinit && compinit"
         yield "autoload -U +X bashcompinit && bashcompinit"
     yield "_eyas() {"
-    yield '  local path="" word i words="" last="${COMP_WORDS[COMP_CWORD-1]}"'
+    # Not `path` and `words`, which are zsh's own: without the first it finds no program.
+    yield '  local at="" next i offered="" last="${COMP_WORDS[COMP_CWORD-1]}"'
     yield '  local current="${COMP_WORDS[COMP_CWORD]}"'
     yield "  COMPREPLY=()"
     yield "  for ((i = 1; i < COMP_CWORD; i++)); do"
-    yield '    word="${path:+$path }${COMP_WORDS[i]}"'
-    yield '    case "$word" in'
+    yield '    next="${at:+$at }${COMP_WORDS[i]}"'
+    yield '    case "$next" in'
     paths = "|".join(f'"{path}"' for path, _, _ in known if path)
-    yield f'      {paths}) path="$word" ;;'
+    yield f'      {paths}) at="$next" ;;'
     yield "    esac"
     yield "  done"
     yield '  case "$last" in'
     for option, names in _names().items():
-        yield f'    {option}) words="{" ".join(names)}" ;;'
+        yield f'    {option}) offered="{" ".join(names)}" ;;'
     yield "  esac"
-    yield '  if [ -z "$words" ]; then case "$path" in'
+    yield '  if [ -z "$offered" ]; then case "$at" in'
     for path, inner, options in known:
         words = " ".join((*inner, *(word for word, _ in options)))
-        yield f'    "{path}") words="{words}" ;;'
+        yield f'    "{path}") offered="{words}" ;;'
     yield "  esac; fi"
-    yield '  COMPREPLY=($(compgen -W "$words" -- "$current"))'
+    yield '  COMPREPLY=($(compgen -W "$offered" -- "$current"))'
     yield "}"
     yield "complete -o default -F _eyas eyas"
 

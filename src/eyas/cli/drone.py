@@ -1,6 +1,7 @@
 """`eyas drone`."""
 
 import json
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -42,7 +43,7 @@ def fit_log(
 ) -> None:
     """Fit thrust, drag and lag of the rotors to a flight, and say how well."""
     for name, value in (("--mass", mass), ("--thrust-constant", thrust_constant)):
-        if value is not None and not value > 0.0:
+        if value is not None and not 0.0 < value < math.inf:
             raise ConfigError(f"{name}: {value} is not allowed: a number above 0")
     if mass is not None and thrust_constant is not None:
         raise ConfigError("--mass and --thrust-constant: only one of them, which gives the other")

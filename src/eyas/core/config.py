@@ -141,7 +141,7 @@ def updated(
 
 def shown(value: object) -> str:
     """Return a value as error messages show it: on one line, shortened to 80 characters."""
-    text = repr(value) if isinstance(value, str) else json.dumps(value, default=_plain)
+    text = repr(str(value)) if isinstance(value, str) else json.dumps(value, default=_plain)
     return text if len(text) <= 80 else f"{text[:76]} ..."
 
 
@@ -226,8 +226,15 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
 def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:
     """Return the problem of a whole group: it is not a group, or its fields contradict."""
     name, _, must = said.partition(" ")
-    if field := group.model_fields.get(name):
-        return Problem((*path, name), _value(values, name, field), must)
+    there, value = path, values
+    inner: type[Config] | None = group
+    for part in name.split("."):
+        field = None if inner is None else inner.model_fields.get(part)
+        if field is None:
+            break
+        there, value, inner = (*there, part), _value(value, part, field), group_of(field)
+    else:
+        return Problem(there, value, must)
     return Problem(path, values, said or f"an object with {', '.join(group.model_fields)}")
 
 

@@ -49,7 +49,8 @@ def _exists(module: str) -> bool:
         return True
     if sys.flags.safe_path or not _lies_here(module):
         return False
-    sys.path.append(os.getcwd())
+    if os.getcwd() not in sys.path:
+        sys.path.append(os.getcwd())
     invalidate_caches()
     return _found(module)
 

@@ -65,7 +65,7 @@ class GimbalConfig(Config):
     @model_validator(mode="after")
     def _range(self) -> Self:
         if self.least_pitch >= self.most_pitch:
-            raise ValueError(f"least_pitch: {self.least_pitch} is not below most_pitch")
+            raise ValueError("least_pitch must be below most_pitch")
         return self
 
 

@@ -4,6 +4,7 @@ import logging
 import re
 import socket
 import time
+from ipaddress import ip_address
 from typing import Any
 
 from eyas.core.errors import ConfigError, OutputError
@@ -64,6 +65,8 @@ class Endpoint:
             except OSError as error:
                 self.socket.close()
                 raise OutputError(f"--mavlink {text}: cannot listen: {error.strerror}") from None
+        elif ip_address(place[0]).is_loopback:
+            self.socket.bind((place[0], 0))  # else other machines are heard, too
         self._parser = Parser()
 
     def close(self) -> None:

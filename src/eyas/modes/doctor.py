@@ -72,13 +72,20 @@ def facts() -> dict[str, str]:
 def _lacking() -> str:
     """Return which extras are not whole, and what they lack."""
     lacking: dict[str, list[str]] = {}
-    for line in requires("eyas") or ():
+    for line in _requirements():
         found = _EXTRA.fullmatch(line)
         if found and found[2] not in _FOR_DEVELOPERS and _version(found[1]) == "missing":
             lacking.setdefault(found[2], []).append(found[1])
     if not lacking:
         return "all are whole"
     return "; ".join(f"{extra} lacks {', '.join(names)}" for extra, names in lacking.items())
+
+
+def _requirements() -> list[str]:
+    try:
+        return requires("eyas") or []
+    except PackageNotFoundError:  # run from a folder that is not installed
+        return []
 
 
 def _picture() -> str:

@@ -56,8 +56,7 @@ class EyasConfig(SimConfig):
     def _gimbal_there(self) -> Self:
         if self.env.actions.gimbal and self.camera.mount is not None:
             raise ValueError(
-                f"env.actions: '{self.env.actions}' turns the camera, which camera.mount fixes to "
-                "the body; allowed: one of the two"
+                "env.actions must be without '+gimbal': camera.mount fixes the camera to the body"
             )
         return self
 

@@ -141,6 +141,8 @@ def test_the_command_prints_what_follows_from_a_known_constant(tmp_path, monkeyp
         (lambda text: "\n".join(text.splitlines()[:50]), "49 rows; at least 200"),
         (lambda text: text.replace("0.004,", "nan,", 1), "line 3: 'time' is no number"),
         (lambda text: text.replace("0.004,", "7,", 1), "do not rise"),
+        (lambda text: text.replace("rotor_4", "rotor_3"), "'rotor_3' is there twice"),
+        (lambda text: text + "1" * 200_000, "not a table: field larger"),
     ],
 )
 def test_what_is_no_log_is_told_in_one_line(tmp_path, change, said):
@@ -151,6 +153,13 @@ def test_what_is_no_log_is_told_in_one_line(tmp_path, change, said):
     with pytest.raises(DataFileError, match=said) as caught:
         fit(read_log(path))
     assert "\n" not in str(caught.value)
+
+
+def test_a_log_in_other_frames_is_refused(tmp_path):
+    rows, _ = flight(seconds=2.0, **SLOW)
+    rows[:, [2, 3, 6, 7, 9, 10]] *= -1.0  # the body's frame: forward, right, down
+    with pytest.raises(DataFileError, match="body frame of forward, left, up"):
+        fit(read_log(saved(tmp_path / "log.csv", rows)))
 
 
 def test_a_flight_that_tells_nothing_is_refused(tmp_path):

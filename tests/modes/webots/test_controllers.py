@@ -206,6 +206,7 @@ def test_clients_of_the_original_are_served(project, world, traffic, monkeypatch
     serving.start()
     while not (files / "start.txt").exists():
         pass
+    client.Client.announce(port, 2, b"two\n")  # passed over
     client.Client.announce(port, 2)
     serving.join(60.0)
     assert [node.name for node in world.nodes[-2:]] == ["DRONE0", "DRONE1"]

@@ -9,6 +9,7 @@ import logging
 import math
 import socket
 import struct
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from eyas.core.clock import PHYSICS_RATE
@@ -71,7 +72,9 @@ class ArduPilot:
             servos = servos_of(packet)
             if servos is None:
                 continue
-            heard.sendto(self.answer(servos), peer)
+            answer = self.answer(servos)
+            with suppress(OSError):  # it came from where nobody can be answered, such as port 0
+                heard.sendto(answer, peer)
 
     def answer(self, servos: Servos) -> bytes:
         """Fly for a frame, and return what is sensed then; for a packet that comes again, time

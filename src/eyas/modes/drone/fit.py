@@ -39,6 +39,11 @@ _LONGEST_LAG, _STEPS = 0.4, 33
 
 _NOTHING = "the flight tells neither thrust nor drag: its rotors never turned, or it never moved"
 
+_DOWN = (
+    "its rotors would pull down; allowed: a world frame of east, north, up and a body frame of "
+    "forward, left, up"
+)
+
 _GRAVITY = ORIGINAL.gravity
 _DENSITY = ORIGINAL.air_density
 
@@ -94,7 +99,8 @@ def fit(log: FlightLog) -> Fit:
     """Return what a flight tells of its drone.
 
     Raises:
-        DataFileError: It tells nothing: the rotors never turned, or it never moved.
+        DataFileError: It tells nothing: the rotors never turned, or it never moved; or its frames
+            are others.
     """
     data = _Data(log)
     lags = _LONGEST_LAG * np.linspace(0.0, 1.0, _STEPS) ** 2
@@ -103,6 +109,8 @@ def fit(log: FlightLog) -> Fit:
     lags = np.linspace(lags[at - 1], lags[at + 1], 2 * _STEPS)
     sums = data.sums(lags)
     best = _best(lags, sums.sum(axis=1))
+    if not best[1] > 0.0:
+        raise DataFileError(_DOWN)
     without = (np.delete(sums, block, axis=1).sum(axis=1) for block in range(_BLOCKS))
     left_out = np.array([_best(lags, each) for each in without])
     spread = left_out - left_out.mean(axis=0)

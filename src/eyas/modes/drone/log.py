@@ -2,6 +2,7 @@
 
 import csv
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -95,15 +96,25 @@ def _joined(columns: dict[str, Floats], names: tuple[str, ...]) -> Floats:
     return np.stack([columns[name] for name in names], axis=1)
 
 
+def _rows(path: Path, text: str) -> Iterator[list[str]]:
+    try:
+        yield from csv.reader(io.StringIO(text))
+    except csv.Error as error:
+        raise DataFileError(f"{path}: not a table: {error}") from error
+
+
 def _columns(path: Path) -> dict[str, Floats]:
     """Return the columns of a table that are read; others may hold anything."""
     try:
         text = read_limited(path, _LARGEST).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
-    rows = csv.reader(io.StringIO(text))
+    rows = _rows(path, text)
     names = [name.strip() for name in next(rows, [])]
     wanted = [(place, name) for place, name in enumerate(names) if name in _READ]
+    for place, name in wanted:
+        if name in names[:place]:
+            raise DataFileError(f"{path}: the column '{name}' is there twice")
     values: dict[str, list[float]] = {name: [] for _, name in wanted}
     for number, row in enumerate(rows, start=2):
         if not row:

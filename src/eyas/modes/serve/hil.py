@@ -3,7 +3,7 @@
 import logging
 from contextlib import ExitStack
 
-from eyas.core.config import updated
+from eyas.core.config import shown, updated
 from eyas.core.errors import ConfigError
 from eyas.mavlink.dialect import dialect
 from eyas.mavlink.hil.sockets import bound, listening
@@ -18,6 +18,9 @@ _TAKEN = {
     *("motor_time_constant", "drag_area", "ground_contact", "wind"),
 }
 """Settings of the tracker that hold for a driven drone, or do nothing to any flown one."""
+
+_ALWAYS = {"start": {"velocity": "rest"}, "tracker": {"ground_contact": True}}
+"""It begins on the ground, through which its body would fall while no rotor turns."""
 
 _LOG = logging.getLogger("eyas")
 
@@ -38,7 +41,7 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
     if px4:
         dialect()
     MAPS.get(config.world.map).light(config.world.weather)  # raises before anything is built
-    config = updated(config, {"start": {"velocity": "rest"}})
+    config = updated(config, _ALWAYS)
     with ExitStack() as stack:
         address = px4 or ardupilot or ""
         heard = stack.enter_context(listening(address) if px4 else bound(address))
@@ -75,10 +78,12 @@ def _check_tracker(config: TrackerConfig) -> None:
             "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "
             "an autopilot could turn; allowed: tracker.kind 'drone' with tracker.supervised false"
         )
+    if config.wind.buildings:
+        raise ConfigError("tracker.wind.buildings: true is not allowed with --px4 or --ardupilot")
     usual = TrackerConfig()
     for name in sorted(TrackerConfig.model_fields.keys() - _TAKEN):
         if getattr(config, name) != getattr(usual, name):
             raise ConfigError(
-                f"tracker.{name}: a value of its own is not there with an autopilot outside; "
-                f"allowed: {getattr(usual, name)}"
+                f"tracker.{name}: {shown(getattr(config, name))} is not allowed with --px4 or "
+                f"--ardupilot; allowed: {shown(getattr(usual, name))}"
             )

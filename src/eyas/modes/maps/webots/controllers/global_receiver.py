@@ -11,6 +11,8 @@ __all__ = ["main", "serve"]
 
 _STEP = 2
 """[ms]"""
+_MOST = 1024
+"""Largest number of drones, as in Eyas."""
 _SPAWN = 'DEF {name} Drone {{ name "{name}" translation {at} {at} 0.15 controllerArgs [ "{k}" ] }}'
 
 
@@ -30,9 +32,9 @@ def serve(robot: Any, project: Path) -> None:  # noqa: ANN401  # Webots' `Superv
         if re.fullmatch(r"(DRONE\d+_|recv_action|start).*\.(txt|jpeg|part)", old.name):
             old.unlink()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as port:
-        port.bind(("", settings["Config_Agen_Num_Port"]))
+        port.bind(("127.0.0.1", settings["Config_Agen_Num_Port"]))
         (files / "start.txt").write_text("b'1\\n'\n")
-        count = int(port.recv(256))
+        count = _announced(port)
     warm = int(settings["Drone_Random_Config"]["start_time_bias_ms"]) + 6 * count
     for _ in range(warm):
         robot.step(_STEP)
@@ -42,6 +44,15 @@ def serve(robot: Any, project: Path) -> None:  # noqa: ANN401  # Webots' `Superv
         children.importMFNodeFromString(-1, text)
     while robot.step(_STEP) != -1:
         pass
+
+
+def _announced(port: socket.socket) -> int:
+    """Wait until clients tell how many they are; other messages are passed over."""
+    while True:
+        text = port.recv(256).strip()
+        if text.isdigit() and len(text) <= 4 and 1 <= int(text) <= _MOST:
+            return int(text)
+        print(f"message {text[:40]!r} ignored: not a number of agents, 1 to {_MOST}")
 
 
 def main() -> None:

@@ -46,5 +46,5 @@ def settings_of(project: Path) -> dict[str, Any]:
     whole: dict[str, Any] = json.loads((folder / "env_config_backup.json").read_text())
     changed = json.loads((folder / "env_config.json").read_text())
     for key, value in changed.items():
-        whole[key] = {**whole[key], **value} if isinstance(value, dict) else value
+        whole[key] = {**whole.get(key, {}), **value} if isinstance(value, dict) else value
     return whole
