@@ -1,6 +1,7 @@
 # python -m build --wheel && docker build -t eyas .
 # docker run --rm -v "$PWD/runs:/home/eyas/runs" eyas video --out runs/first
 #
+# Make `runs` first and pass `--user "$(id -u)"` if it is not the container's user who owns it.
 # It has not been built where it was written. Packages alone take 430 MB, 172 MB of them llvmlite.
 FROM python:3.13-slim
 RUN useradd --create-home eyas

@@ -137,6 +137,9 @@ def _entities(tracker: str, moments: Sequence[_Moment]) -> Iterator[_Entity]:
 
 
 def _actor(actor: int, moments: Sequence[_Moment], there: Sequence[bool], start: float) -> _Entity:
+    number = int(moments[0].traffic.model[actor])
+    model, kind = MODELS[number], kind_of(number)
+    leans = 0.0 if kind.object_class is ObjectClass.PERSON else -1.0
     stays: list[list[_Place]] = []
     for each, here, before in zip(moments, there, [False, *there[:-1]], strict=True):
         if not here:
@@ -146,9 +149,7 @@ def _actor(actor: int, moments: Sequence[_Moment], there: Sequence[bool], start:
         state = each.traffic.state
         x, y, z = state.position[0, actor].tolist()
         yaw, slope = float(state.yaw[0, actor]), float(state.slope[0, actor])
-        stays[-1].append(_Place(each.time - start, x, y, z, yaw, -slope))
-    number = int(moments[0].traffic.model[actor])
-    model, kind = MODELS[number], kind_of(number)
+        stays[-1].append(_Place(each.time - start, x, y, z, yaw, leans * slope + 0.0))
     name = f"{kind.object_class.name.lower()}-{ACTOR_OBJECT + actor}"
     return _Entity(
         name, model.name, kind.object_class, model.size, kind.ahead, 0.0,

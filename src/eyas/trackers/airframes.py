@@ -63,7 +63,7 @@ _FIVE = _airframe(
 """The quadrotor of Agilicious (Foehn et al., "Agilicious: open-source and open-hardware agile
 quadrotor for vision-based flight", Science Robotics 7, 2022): mass, inertia, rotor constants, time
 constant, 8.5 N for each rotor; its arms, 0.075 and 0.10 m, are taken as equal. The drag area is
-that of its 131 km/h at full thrust. Tilt limit and feet are ours."""
+an estimate, with which it flies 36 m/s at full thrust. Tilt limit and feet are ours."""
 
 _TEN = _airframe(
     ORIGINAL._replace(

@@ -63,7 +63,10 @@ class Bus:
         """Return a reader of a topic, for `heard`."""
         from cyclonedds.sub import DataReader
 
-        return DataReader(self._participant, self._topic(name, kind), qos=_quality(name))
+        # Best effort hears every writer; one that wants to be reliable would not hear the others.
+        return DataReader(
+            self._participant, self._topic(name, kind), qos=_quality(name, sure=False)
+        )
 
     @staticmethod
     def heard(reader: Any) -> Iterable[Any]:  # noqa: ANN401  # Cyclone's
@@ -109,16 +112,17 @@ class Bus:
         return idl.sequence[own, count] if count else idl.sequence[own]
 
 
-def _quality(name: str) -> Any:  # noqa: ANN401  # Cyclone's
-    """Return the quality of service of a topic: reliable, so that every node may listen; what is
-    told once is kept for late listeners.
+def _quality(name: str, *, sure: bool = True) -> Any:  # noqa: ANN401  # Cyclone's
+    """Return the quality of service of a topic: reliable, so that every node may listen, unless it
+    is not `sure`; what is told once is kept for late listeners.
     """
     from cyclonedds.qos import Policy, Qos
     from cyclonedds.util import duration
 
     late = Policy.Durability.TransientLocal if name == _LATCHED else Policy.Durability.Volatile
+    reliable = Policy.Reliability.Reliable(duration(milliseconds=100))
     return Qos(
-        Policy.Reliability.Reliable(duration(milliseconds=100)),
+        reliable if sure else Policy.Reliability.BestEffort,
         late,
         Policy.History.KeepLast(_KEPT),
         Policy.DataRepresentation(use_cdrv0_representation=True),
