@@ -14,6 +14,7 @@ from eyas.sensors.camera.events import EventsConfig
 from eyas.sensors.config import CameraConfig, LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.draw import MovingParts, Picture
+from eyas.state.motion import ActorState, ActorView
 from eyas.state.snapshot import Snapshot
 
 SENSORS = SimConfig(
@@ -39,13 +40,17 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
         ),
     )
     snapshot.targets.actor[:] = 0
+    car, looks = ActorState.create(1, 1), (np.zeros(1, np.int32), np.zeros((1, 3), np.float32))
+    car.present[:] = True
+    traffic = ActorView(car, car, *looks)
     snapshot.episodes.reward[:] = 0.5
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):
         picture.rgb[:] = 40 * number
         action, now = RecordedAction(-1, None), snapshot.episodes
         told = {"lidar": np.ones(400), "sensors": np.ones(19), "events": np.zeros(0, EVENT)}
-        moment = Moment(snapshot, now, parts=PARTS, clean=picture.rgb[0].copy(), **told)
+        told |= {"parts": PARTS, "clean": picture.rgb[0].copy(), "traffic": traffic}
+        moment = Moment(snapshot, now, **told)
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 
