@@ -148,6 +148,26 @@ def test_one_drone_alone_flies_as_in_a_batch(flown, row):
     np.testing.assert_allclose(alone, together, atol=2e-3)
 
 
+def test_it_flies_on_unseen_for_40_metres_and_waits_there(flown):
+    policy = open_policy("eyas", {})
+    policy.begin(Start(np.zeros(4, np.int64), lambda: flown.boxes))
+    covered = np.zeros(4, np.bool_)
+    shown = [seen for seen, _, _ in flown.seen]
+    clocks = [clock for _, _, clock in flown.seen]
+    dark = {**shown[-1], "image": np.zeros_like(shown[-1]["image"])}
+    for seen, clock in zip(shown, clocks, strict=True):
+        policy.act(PolicyInput(seen, ~covered, unknown, unknown, covered, clock=clock))
+    drove = np.hypot(*policy.motion.velocity.T) > 5.0
+    assert drove.any()
+    for look in range(1, 401):
+        clock = clocks[-1] + 0.032 * look
+        policy.act(PolicyInput(dark, ~covered, unknown, unknown, covered, clock=clock))
+    away = np.hypot(*(policy.motion.place - policy.left).T)
+    assert (away[drove] >= 40.0).all()
+    assert (away < 41.0).all()
+    assert (policy.motion.velocity[drove] == 0.0).all()
+
+
 def test_without_a_first_box_it_fails_in_one_line(fly):
     (record,) = {record.error for record in fly("eyas", protocol="search")}
     assert "first box" in record

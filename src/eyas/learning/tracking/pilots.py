@@ -111,6 +111,7 @@ class Pupil:
         place, velocity = targets.centre[rows, :2], targets.velocity[rows, :2]
         speed = np.minimum(motion.acceleration[rows], wrong)
         motion.begin(rows, place + noise[0], velocity + noise[1], wrong, speed)
+        self._tracker.left[rows] = motion.place[rows]
 
 
 def _shot(

@@ -104,7 +104,7 @@ class Tracker:
         """What the network was told last, see `Clue`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
-        self._left = np.zeros((count, 2))
+        self.left = np.zeros((count, 2))
         """Where each target was when it was seen last, east and north [m]."""
         self._key = np.zeros((count, self.detector.keys), np.float32)
         self._renewed = np.zeros(count)
@@ -158,14 +158,14 @@ class Tracker:
         taken = near & (found.belief > least)
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
-        self._left[rows[taken]] = self.motion.place[rows[taken]]
+        self.left[rows[taken]] = self.motion.place[rows[taken]]
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
 
     def _wait(self, rows: Rows) -> None:
         """Wait for targets that are followed unseen for too long: most covers have ended before,
         and a driver who stopped below one comes out where the drone is.
         """
-        away = self.motion.place[rows] - self._left[rows]
+        away = self.motion.place[rows] - self.left[rows]
         far = np.asarray(exact.hypot(away[:, 0], away[:, 1])) > self.settings.straight
         self.motion.stop(rows[far], self.settings.speed)
 
@@ -188,7 +188,7 @@ class Tracker:
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
         where = place + _turned(self.ground.offsets(middle), yaw)
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
-        self._left[rows] = where
+        self.left[rows] = where
 
     def _remember(self, rows: Rows, found: Found, sure: Mask) -> None:
         """Renew the memory of how targets look, by those that are surely seen."""
