@@ -1,6 +1,7 @@
 """Agents that turn their camera."""
 
 import math
+from dataclasses import fields
 
 import gymnasium
 import numpy as np
@@ -12,6 +13,10 @@ from eyas.envs.actions import make_actions, turn_rates
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.envs.vector_env import EyasVectorEnv
+from eyas.trackers.config import TrackerConfig
+from eyas.trackers.drone import DRONE
+from eyas.trackers.gimbal_command import with_gimbal
+from eyas.trackers.tracker import Tracker
 
 SMALL = {"width": 16, "height": 16}
 KINDS = [kind for kind in ActionKind if kind.gimbal]
@@ -162,3 +167,16 @@ def test_a_camera_fixed_to_the_body_cannot_be_turned():
         env_of("velocity+gimbal", camera={"mount": {}})
     with pytest.raises(ConfigError, match="least_pitch"):
         env_of("velocity+gimbal", env={"gimbal": {"least_pitch": 1.0, "most_pitch": 0.5}})
+
+
+class Own(Tracker):
+    """A tracker of a user's own is made of settings."""
+
+    def __init__(self, config):
+        super().__init__(**{field.name: getattr(DRONE, field.name) for field in fields(Tracker)})
+
+
+def test_a_tracker_of_ones_own_turns_its_camera_too():
+    turning = with_gimbal(Own(TrackerConfig()))
+    assert turning.advance is with_gimbal(DRONE).advance
+    assert turning.start is DRONE.start

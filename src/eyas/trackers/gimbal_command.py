@@ -1,7 +1,7 @@
 """Commands that turn the camera, for trackers of any kind that carry it on a gimbal."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields
 from functools import lru_cache
 from typing import Any
 
@@ -52,7 +52,9 @@ def advance_and_turn(
 
 def with_gimbal(tracker: Tracker) -> Tracker:
     """Return a tracker whose commands have eight numbers, see `WITH_GIMBAL`."""
-    return replace(tracker, advance=_turning(tracker.advance))
+    # Not by `dataclasses.replace`: a class of a user's own may be made of other arguments.
+    own = {field.name: getattr(tracker, field.name) for field in fields(Tracker)}
+    return Tracker(**own | {"advance": _turning(tracker.advance)})
 
 
 @lru_cache(maxsize=16)
