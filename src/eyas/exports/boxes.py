@@ -1,5 +1,6 @@
 """Boxes and cameras of labels, as other tools want them."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -29,14 +30,12 @@ def box_of(corners: ArrayLike) -> Box3D:
     rectangular.
     """
     points = np.array(corners, np.float64)
-    edges = points[1] - points[0], points[3] - points[0], points[4] - points[0]
+    first, ahead, _, left, above, *_ = points.tolist()
+    edges = [[a - b for a, b in zip(end, first, strict=True)] for end in (ahead, left, above)]
+    (a, b, c), (d, e, f) = _scaled(edges[0]), _scaled(edges[1])
+    g, h, i = _scaled([b * f - c * e, c * d - a * f, a * e - b * d])
     size = np.array([_length(edge) for edge in edges])
-    ahead = edges[0] / max(size[0], 1e-9)
-    left = edges[1] / max(size[1], 1e-9)
-    (a, b, c), (d, e, f) = ahead.tolist(), left.tolist()
-    up = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
-    rotation = np.column_stack([ahead, left, up / max(_length(up), 1e-9)])
-    return Box3D(points.mean(axis=0), size, rotation)
+    return Box3D(points.mean(axis=0), size, np.array([[a, d, g], [b, e, h], [c, f, i]]))
 
 
 def camera_pose(label: Label) -> tuple[Floats, Floats]:
@@ -53,32 +52,40 @@ def quaternion_of(rotation: Floats) -> tuple[float, float, float, float]:
 
     By the largest of its four numbers (Shepperd, 1978), so that nothing small is divided by.
     """
-    m, trace = rotation, float(np.trace(rotation))
-    squares = [trace, m[0, 0], m[1, 1], m[2, 2]]
-    largest = int(np.argmax(squares))
+    m = rotation.tolist()  # nine numbers are slow to compute with as arrays
+    trace = m[0][0] + m[1][1] + m[2][2]
+    squares = [trace, m[0][0], m[1][1], m[2][2]]
+    largest = squares.index(max(squares))
     if largest == 0:
         w = _root(1.0 + trace)
-        found = (w, (m[2, 1] - m[1, 2]) / w, (m[0, 2] - m[2, 0]) / w, (m[1, 0] - m[0, 1]) / w)
+        found = (w, (m[2][1] - m[1][2]) / w, (m[0][2] - m[2][0]) / w, (m[1][0] - m[0][1]) / w)
     else:
         i = largest - 1
         j, k = (i + 1) % 3, (i + 2) % 3
-        length = _root(1.0 + m[i, i] - m[j, j] - m[k, k])
+        length = _root(1.0 + m[i][i] - m[j][j] - m[k][k])
         axes = [0.0, 0.0, 0.0]
         axes[i], axes[j], axes[k] = (
             length,
-            (m[j, i] + m[i, j]) / length,
-            (m[k, i] + m[i, k]) / length,
+            (m[j][i] + m[i][j]) / length,
+            (m[k][i] + m[i][k]) / length,
         )
-        found = ((m[k, j] - m[j, k]) / length, *axes)
+        found = ((m[k][j] - m[j][k]) / length, *axes)
     sign = -0.5 if found[0] < 0.0 else 0.5
-    w, x, y, z = (sign * float(each) for each in found)
+    w, x, y, z = (sign * each for each in found)
     return w, x, y, z
 
 
 def _root(value: float) -> float:
     """Return the square root; of what rounding has made negative 0."""
-    return float(np.sqrt(max(value, 0.0)))
+    return math.sqrt(max(value, 0.0))
 
 
-def _length(edge: Floats) -> float:
-    return _root(float((edge * edge).sum()))
+def _length(vector: list[float]) -> float:
+    x, y, z = vector
+    return math.sqrt(x * x + y * y + z * z)
+
+
+def _scaled(vector: list[float]) -> list[float]:
+    """Return a vector with a length of 1."""
+    length = max(_length(vector), 1e-9)
+    return [each / length for each in vector]

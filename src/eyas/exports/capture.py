@@ -23,7 +23,6 @@ from eyas.lanes import interpreted
 from eyas.render.outputs import picture_size
 from eyas.sim.simulation import Simulation
 from eyas.sim.views.view import View
-from eyas.sim.views.words import target_in_words
 from eyas.state.draw import MovingParts, Picture
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import ActorState, ActorView
@@ -77,6 +76,8 @@ class Moment(NamedTuple):
     """See `Frame.rotors`; nothing changes it later."""
     traffic: ActorView | None = None
     """See `Frame.traffic`; nothing changes it later."""
+    words: str = ""
+    """The target in words that nothing else in view shares."""
 
 
 def moment_of(
@@ -93,8 +94,8 @@ def moment_of(
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
-        wanted: What is asked for besides: "parts", "clean", "cameras", "events", "traffic"; others
-            are in the picture.
+        wanted: What is asked for besides: "words", "parts", "clean", "cameras", "events",
+            "traffic"; others are in the picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -119,7 +120,8 @@ def moment_of(
     asked = simulation.told().get(ROTORS)
     rotors = None if asked is None else asked[tracker]
     traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
-    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic)
+    words = seen.words(tracker, picture.aspect, actors) if "words" in wanted else ""
+    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, words)
 
 
 def _kept(actors: ActorView) -> ActorView:
@@ -154,10 +156,8 @@ def frame_of(
         action: The tracker's action.
     """
     shown, now = moment.shown, moment.now
-    words = ""
     others: tuple[Subject, ...] = ()
     if moment.actors is not None:
-        words = target_in_words(shown, moment.actors, tracker, picture.aspect, moment.lens)
         others = others_of(moment, tracker, picture, view)
     return Frame(
         number=number,
@@ -165,7 +165,7 @@ def frame_of(
         step=int(shown.episodes.step_count[tracker]),
         tracker=_body(shown.trackers, tracker),
         camera=_camera(shown.cameras, tracker, picture, moment.lens),
-        target=_target(moment, tracker, picture, view, words),
+        target=_target(moment, tracker, picture, view),
         others=others,
         action=action,
         reward=float(now.reward[tracker]),
@@ -211,7 +211,7 @@ def _camera(cameras: CameraState, tracker: int, picture: Picture, lens: Lens | N
     )
 
 
-def _target(moment: Moment, tracker: int, picture: Picture, view: int, words: str) -> Subject:
+def _target(moment: Moment, tracker: int, picture: Picture, view: int) -> Subject:
     targets = moment.shown.targets
     assert picture.subject_box is not None
     assert picture.subject_visible_box is not None
@@ -245,7 +245,7 @@ def _target(moment: Moment, tracker: int, picture: Picture, view: int, words: st
         whole_box=_whole_box(moment, actor),
         seen_pixels=seen,
         covered_pixels=covered,
-        words=words,
+        words=moment.words,
         sections=sections_of(model),
         lamps=_lamps(moment, actor),
     )

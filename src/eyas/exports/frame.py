@@ -36,14 +36,15 @@ Output = Literal[
     "class_id",
     "normal",
     "others",
+    "words",
     "parts",
     "clean",
     "cameras",
     "events",
     "traffic",
 ]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, their parts,
-pictures of other cameras, events, or all actors.
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, the target in
+words, moving parts, pictures of other cameras, events, or all actors.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
@@ -165,7 +166,7 @@ class Subject:
     """Pixels that would show it if nothing hid it; 0 outside the picture."""
     words: str = ""
     """What it looks like, "a red car". The target's words are shared by nothing else in view; empty
-    if no writer wants `others`."""
+    if no writer wants `words`."""
     sections: tuple[Section, ...] = ()
     """The sections of an articulated vehicle; empty for all others."""
     lamps: int = 0

@@ -357,7 +357,7 @@ LABELS = "labels.jsonl"
 class LabelWriter(Writer):
     """`labels.jsonl`."""
 
-    wants = frozenset({"others"})
+    wants = frozenset({"others", "words"})
     files = Files(episode=(LABELS,))
 
     def begin(self, episode: Episode) -> Gather[Label]:

@@ -214,8 +214,9 @@ class Writer(Protocol):
     """
 
     wants: ClassVar[AbstractSet[Output]] = frozenset()
-    """Pictures that it needs, and `others` if it needs `Frame.others`. What no writer wants is not
-    drawn or measured; box and pixels of the target always exist."""
+    """Pictures that it needs, `others` if it needs `Frame.others`, and `words` if it needs those of
+    the target. What no writer wants is not drawn or measured; box and pixels of the target always
+    exist."""
     files: ClassVar[Files]
     """All files that it writes."""
 

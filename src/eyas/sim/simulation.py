@@ -193,14 +193,13 @@ class Simulation:
         self._stepper.carry(physics_steps)
         return self._result()
 
-    def place(self, poses: Floats) -> StepResult:
+    def place(self, poses: Floats) -> None:
         """Move all trackers to poses, within one physics step.
 
         Args:
             poses: East, north, up [m], heading [rad], shape (N, 4).
         """
         self._stepper.place(poses)
-        return self._result()
 
     def start_at(self, trackers: NDArray[np.integer], poses: Floats, pitch: Floats) -> None:
         """Begin the episodes of trackers that have just been reset at other poses.

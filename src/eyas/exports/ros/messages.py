@@ -65,6 +65,9 @@ _POSITION, _FELT, _TURNING, _ATTITUDE = slice(0, 3), slice(6, 9), slice(9, 12), 
 _GPS, _UNKNOWN, _DIAGONAL_KNOWN = 1, 0, 2
 """`NavSatStatus.SERVICE_GPS`, `NavSatFix.COVARIANCE_TYPE_...`."""
 
+_EXACTLY, _NOT_RECTIFIED = np.zeros(36), np.eye(3).ravel()
+"""The covariance of what is true; the rectification of cameras that have none."""
+
 _PER_SECOND = float(PHYSICS_RATE)
 
 
@@ -91,7 +94,10 @@ class Messages:
     def __init__(self, types: "Typestore", run: Run) -> None:
         self._types, self._quality = types.types, run.jpeg_quality
         config = run.config
-        self._sensors, self._lidar = config.sensors, config.lidar
+        self._lidar, errors = config.lidar, config.sensors
+        self._turned, self._turning = _covariance(errors.imu), _covariance(errors.gyroscope)
+        self._felt = _covariance(errors.accelerometer)
+        self._placed = _covariance(errors.gps_position)
         car = config.tracker.kind is TrackerKind.CAR
         mount = config.lidar.mount or (CAR_MOUNT if car else MOUNT)
         self._laser = Pose(np.array([mount.x, mount.y, mount.z]), turn_of(mount))
@@ -181,7 +187,6 @@ class Messages:
     def _odometry(
         self, stamp: _Stamp, frames: tuple[str, str], pose: Pose, moves: tuple[Floats, Floats]
     ) -> Message:
-        exactly = np.zeros(36)
         twist = self._make(
             "geometry_msgs/msg/Twist",
             linear=self._vector(moves[0]),
@@ -192,16 +197,16 @@ class Messages:
             header=self._header(stamp, frames[0]),
             child_frame_id=frames[1],
             pose=self._make(
-                "geometry_msgs/msg/PoseWithCovariance", pose=self._pose(pose), covariance=exactly
+                "geometry_msgs/msg/PoseWithCovariance", pose=self._pose(pose), covariance=_EXACTLY
             ),
             twist=self._make(
-                "geometry_msgs/msg/TwistWithCovariance", twist=twist, covariance=exactly
+                "geometry_msgs/msg/TwistWithCovariance", twist=twist, covariance=_EXACTLY
             ),
         )
 
     def _measured(self, frame: Frame, stamp: _Stamp) -> Iterator[tuple[str, Message]]:
         """Yield what IMU and GPS tell."""
-        told, errors = frame.sensors, self._sensors
+        told = frame.sensors
         if told is None:
             return
         w, x, y, z = told[_ATTITUDE].tolist()
@@ -211,16 +216,15 @@ class Messages:
                 "sensor_msgs/msg/Imu",
                 header=self._header(stamp, "base_link"),
                 orientation=self._quaternion((x, y, z, w)),
-                orientation_covariance=_covariance(errors.imu),
+                orientation_covariance=self._turned,
                 angular_velocity=self._vector(told[_TURNING]),
-                angular_velocity_covariance=_covariance(errors.gyroscope),
+                angular_velocity_covariance=self._turning,
                 linear_acceleration=self._vector(told[_FELT]),
-                linear_acceleration_covariance=_covariance(errors.accelerometer),
+                linear_acceleration_covariance=self._felt,
             ),
         )
         east, north, up = told[_POSITION].tolist()
         longitude, latitude = self._projection.degrees([[east, north]])[0].tolist()
-        spread = _covariance(errors.gps_position)
         yield (
             "/gps/fix",
             self._make(
@@ -230,8 +234,8 @@ class Messages:
                 latitude=latitude,
                 longitude=longitude,
                 altitude=up,
-                position_covariance=spread,
-                position_covariance_type=_DIAGONAL_KNOWN if spread.any() else _UNKNOWN,
+                position_covariance=self._placed,
+                position_covariance_type=_DIAGONAL_KNOWN if self._placed.any() else _UNKNOWN,
             ),
         )
 
@@ -264,7 +268,7 @@ class Messages:
                 else "plumb_bob",
                 d=np.array(camera.distortion, np.float64),
                 k=matrix.ravel(),
-                r=np.eye(3).ravel(),
+                r=_NOT_RECTIFIED,
                 p=np.column_stack([matrix, np.zeros(3)]).ravel(),
                 binning_x=0,
                 binning_y=0,
@@ -354,7 +358,7 @@ class Messages:
             pose=self._make(
                 "geometry_msgs/msg/PoseWithCovariance",
                 pose=self._pose(pose),
-                covariance=np.zeros(36),
+                covariance=_EXACTLY,
             ),
         )
 

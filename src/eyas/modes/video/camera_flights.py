@@ -1,6 +1,7 @@
 """Flies the trackers of a recording along planned camera paths."""
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,16 @@ _COURSE = 5
 """The target's course is read once in so many control points: its recording has 10 Hz."""
 
 
+_BLOCK = 500
+"""Physics steps of which poses are computed at once: one by one takes ten times as long."""
+
+_POSE, _ANGLES, _FIELD = slice(0, 4), slice(4, 6), 6
+"""Columns: east, north, up, heading; the camera's pitch and yaw; its field of view."""
+
+_SAMPLED = [0, 1, 2, 3, 4, 6]
+"""Those that a flight has: its cameras turn with the body."""
+
+
 class _Flown(NamedTuple):
     """The flight of a tracker's episode."""
 
@@ -54,8 +65,8 @@ class CameraFlights:
         self._picture = camera.width, camera.height
         self._start_time, self._warm_up_steps = video.start_time, video.warm_up_steps
         self._flown: list[_Flown | None] = [None] * sim.count
-        self._now = np.zeros((sim.count, 6))
-        self._before = np.zeros((sim.count, 6))
+        self._now = self._before = np.zeros((sim.count, 7))
+        self._next = np.zeros((0, sim.count, 7))
 
     def begin(self, trackers: NDArray[np.int64], longest: int) -> None:
         """Plan the flights of these trackers, and put them where they begin."""
@@ -63,20 +74,28 @@ class CameraFlights:
             plan = self._planned(tracker, longest)
             begun = int(self._sim.snapshot.episodes.tick[tracker])
             self._flown[tracker] = _Flown(plan.points, begun)
-            self._now[tracker] = sampled_at(plan.points, 0.0)
-        self._sim.start_at(trackers, self._now[trackers, :4], self._now[trackers, 4])
+            self._now[tracker, _SAMPLED] = sampled_at(plan.points, np.zeros(1))[0]
+        self._sim.start_at(trackers, self._now[trackers, _POSE], self._now[trackers, 4])
+        self._compute(trackers.tolist())
 
     def move(self) -> None:
         """Advance the simulation by one 2 ms step."""
-        ticks = self._sim.snapshot.episodes.tick.tolist()
-        self._before[:] = self._now
-        for tracker, flown in enumerate(self._flown):
+        if not len(self._next):
+            self._next = np.zeros((_BLOCK, *self._now.shape))
+            self._compute(range(self._sim.count))
+        self._before, self._now, self._next = self._now, self._next[0], self._next[1:]
+        self._sim.command_gimbal(self._now[:, _ANGLES])
+        self._sim.set_fields_of_view(self._now[:, _FIELD])
+        self._sim.place(self._now[:, _POSE])
+
+    def _compute(self, trackers: Iterable[int]) -> None:
+        """Compute where some trackers are after the next steps."""
+        ticks, ahead = self._sim.snapshot.episodes.tick, 1 + np.arange(len(self._next))
+        for tracker in trackers:
+            flown = self._flown[tracker]
             assert flown is not None
-            time = (ticks[tracker] + 1 - flown.begun) * PHYSICS_STEP
-            self._now[tracker] = sampled_at(flown.points, time)
-        self._sim.command_gimbal(np.stack([self._now[:, 4], np.zeros(len(ticks))], axis=1))
-        self._sim.set_fields_of_view(self._now[:, 5])
-        self._sim.place(self._now[:, :4])
+            times = (int(ticks[tracker]) - flown.begun + ahead) * PHYSICS_STEP
+            self._next[:, tracker, _SAMPLED] = sampled_at(flown.points, times)
 
     def action(self, tracker: int) -> RecordedAction:
         """Return the command that moves a drone as the path did in the last step."""

@@ -44,11 +44,13 @@ class FrameGrid:
         self._spacing = PHYSICS_RATE / video.fps
         self._origin = np.full(count, -1, np.int64)
         self._frames = np.zeros(count, np.int64)
+        self._soonest = self.first_tick
 
     def restart(self, trackers: NDArray[np.bool_]) -> None:
         """Begin a new episode for the trackers of a mask, shape (N,)."""
         self._origin[trackers] = -1
         self._frames[trackers] = 0
+        self._soonest = self.first_tick
 
     @property
     def frames(self) -> NDArray[np.int64]:
@@ -62,14 +64,19 @@ class FrameGrid:
             tick: 2 ms steps since the start of the run.
             step_count: 2 ms steps since each tracker's reset, shape (N,).
         """
-        if not self.first_tick <= tick <= self.last_tick:
+        if not self._soonest <= tick <= self.last_tick:
             return np.zeros(0, np.int32)
         ready = step_count > self._warm_up_steps
         self._origin[ready & (self._origin < 0)] = tick
-        nearest = np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
-        due = ready & (tick == self._origin + nearest)
+        due = ready & (tick == self._ticks())
         self._frames[due] += 1
+        if (self._origin >= 0).all():  # else a tracker may become ready at any tick
+            self._soonest = int(self._ticks().min())
         return np.flatnonzero(due).astype(np.int32)
+
+    def _ticks(self) -> NDArray[np.int64]:
+        """Return the tick of the next frame of each tracker, shape (N,)."""
+        return self._origin + np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
 
 
 class RecordingEnd:

@@ -126,7 +126,7 @@ class Recorder:
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
-        self._besides = wanted & {"parts", "clean", "cameras", "events", "traffic"}
+        self._besides = wanted & {"words", "parts", "clean", "cameras", "events", "traffic"}
         self._overlay = config.video.overlay and "rgb" in wanted
         pictures = wanted - self._besides - {"others"}
         self._picture = Picture.create(

@@ -130,15 +130,16 @@ def tremor(count: int, columns: int, size: float, rng: np.random.Generator) -> F
     return unrest * (size / 3.0)
 
 
-def sampled_at(points: Floats, time: float) -> Floats:
-    """Return a point of the spline of control points, shape (M, K), at a time [s], shape (K,).
+def sampled_at(points: Floats, times: Floats) -> Floats:
+    """Return points of the spline of control points, shape (M, K), at times [s], shape (T, K).
 
     The second point is that of time 0, since a spline is led by the points on both sides.
     """
-    place = max(time / STEP, 0.0) + 1.0
-    first = min(int(place), len(points) - 1)
-    u = min(place - first, 1.0)
-    near = np.clip(np.arange(first - 1, first + 3), 0, len(points) - 1)
+    last = len(points) - 1
+    place = np.maximum(times / STEP, 0.0) + 1.0
+    first = np.minimum(place.astype(np.int64), last)
+    u = np.minimum(place - first, 1.0)[:, None]
+    a, b, c, d = (points[np.clip(first + k, 0, last)] for k in (-1, 0, 1, 2))
     v = 1.0 - u
     weights = (
         v * v * v / 6.0,
@@ -146,6 +147,5 @@ def sampled_at(points: Floats, time: float) -> Floats:
         (3.0 * v * v * v - 6.0 * v * v + 4.0) / 6.0,
         u * u * u / 6.0,
     )
-    a, b, c, d = points[near]
     sampled: Floats = weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d
     return sampled

@@ -174,10 +174,16 @@ class View:
         """
         return self.pictures.draw_parts(tracker, self._outlines.posed(actors))
 
-    def words(self, tracker: int, aspect: float) -> str:
-        """Return the target of a tracker in words, see `eyas.sim.views.words`."""
-        lens = self.lens_of(tracker)
-        return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect, lens)
+    def words(self, tracker: int, aspect: float, actors: ActorView | None = None) -> str:
+        """Return the target of a tracker in words, see `eyas.sim.views.words`.
+
+        Args:
+            tracker: The tracker.
+            aspect: Height of its camera's picture over its width.
+            actors: The actors around it; None: not known yet.
+        """
+        around, lens = actors or self.actors(tracker), self.lens_of(tracker)
+        return target_in_words(self.state.shown, around, tracker, aspect, lens)
 
     def in_view(self, tracker: int, later: int = 0) -> InView:
         """Return the moving objects in a tracker's view, for phrases about them.
