@@ -77,3 +77,11 @@ def test_there_are_none_where_nobody_wants_them(simulation):
     moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
     frame = frame_of(moment, 0, picture_of(simulation), 0, 0, RecordedAction(-1, None))
     assert (frame.others, frame.target.words) == ((), "")
+
+
+@pytest.mark.parametrize("wanted", [set(), {"words"}])
+def test_the_target_is_in_words_only_where_somebody_wants_them(simulation, wanted):
+    picture = picture_of(simulation, actors=simulation.actors)
+    moment = moment_of(simulation, 0, picture, 0, wanted)
+    words = frame_of(moment, 0, picture, 0, 0, RecordedAction(-1, None)).target.words
+    assert words == (simulation.view.words(0, picture.aspect) if wanted else "")

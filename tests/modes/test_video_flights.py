@@ -52,6 +52,14 @@ def test_the_target_moves_in_the_picture_but_stays_there(tmp_path):
         np.testing.assert_allclose(np.linalg.norm(commands[:, :3], axis=1), speed, atol=0.05)
 
 
+def test_flights_go_on_smoothly_where_their_poses_are_computed_anew(tmp_path):
+    """Poses of 500 steps are computed at once."""
+    (labels,) = labels_of(tmp_path, {"fps": 250, "episode_frames": 400})
+    place = np.array([label["tracker_position"] for label in labels])
+    assert np.abs(np.diff(place, n=2, axis=0)).max() < 1e-3  # a step more or less: 4e-3 and more
+    assert np.ptp(place, axis=0).max() > 1.0
+
+
 @pytest.mark.parametrize(
     "asked",
     [

@@ -94,7 +94,7 @@ class CameraFlights:
         for tracker in trackers:
             flown = self._flown[tracker]
             assert flown is not None
-            times = (int(ticks[tracker]) - flown.begun + ahead) * PHYSICS_STEP
+            times = np.multiply(int(ticks[tracker]) - flown.begun + ahead, PHYSICS_STEP)
             self._next[:, tracker, _SAMPLED] = sampled_at(flown.points, times)
 
     def action(self, tracker: int) -> RecordedAction:

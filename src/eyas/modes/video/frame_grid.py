@@ -76,7 +76,9 @@ class FrameGrid:
 
     def _ticks(self) -> NDArray[np.int64]:
         """Return the tick of the next frame of each tracker, shape (N,)."""
-        return self._origin + np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
+        since = np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
+        ticks: NDArray[np.int64] = self._origin + since
+        return ticks
 
 
 class RecordingEnd:
