@@ -6,23 +6,26 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.envs.config import EnvConfig
 
-__all__ = ["ground_offset", "ground_width", "pixel_offset", "towards"]
+__all__ = ["DEPTH", "PERIOD", "ground_offset", "ground_width", "pixel_offset", "towards"]
 
 Floats = NDArray[np.float64]
 
 _FIELD_OF_VIEW, _ASPECT = 0.7854, 0.75
 """The camera of all protocols: horizontal [rad], and height of the picture over its width."""
 
-_DEPTH = 22.0
+PERIOD = 0.008
+"""Length of a control step of all protocols [s]."""
+
+DEPTH = 22.0
 """Distance of the ground that is assumed where only a picture is known [m]."""
 
-_HALF_WIDTH = _DEPTH * exact.tan(0.5 * _FIELD_OF_VIEW)
+_HALF_WIDTH = DEPTH * exact.tan(0.5 * _FIELD_OF_VIEW)
 """Half the width of the ground that is then in the picture [m]."""
 
 _FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6
 
 
-def towards(offset: Floats, env: EnvConfig, period: float = 0.008) -> NDArray[np.int64]:
+def towards(offset: Floats, env: EnvConfig, period: float = PERIOD) -> NDArray[np.int64]:
     """Return the actions that bring the drones over points, one axis at a time.
 
     The axis with the larger offset is chosen, and none if the action would overshoot.

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
-from eyas.evaluation.steering import pixel_offset, towards
+from eyas.evaluation.steering import DEPTH, PERIOD, pixel_offset, towards
 
-__all__ = ["Servo", "servo"]
+__all__ = ["GimbalServo", "Servo", "gimbal_servo", "servo"]
 
 _SIZE = 84
 _PATCH = 14
@@ -21,6 +22,14 @@ _LEARNING = 0.1
 """Share of a new picture in the pattern, where the match is good."""
 _GOOD = 0.6
 """Least correlation of a good match."""
+
+_GAIN = 5.0
+"""Rate at which a camera is turned, by how far it would have to be [1/s]."""
+_HIGHEST = 0.6
+"""How far it may be turned up [rad]."""
+_SHARES = np.zeros((7, 4))
+_SHARES[:4, :2] = [[1, 0], [-1, 0], [0, 1], [0, -1]]
+"""The seven actions as shares of the speeds."""
 
 Floats = NDArray[np.float64]
 
@@ -34,10 +43,12 @@ class Servo:
     sampled = False
     told: frozenset[str] = frozenset()
 
+    actions = "discrete"
+
     def __init__(self, changes: Mapping[str, Any]) -> None:
         image = {"width": _SIZE, "height": _SIZE, "colours": "rgb", "layout": "chw", "frames": 1}
-        own = {"observation": image, "actions": "discrete", "action_repeat": 4}
-        self.env = env_config(own, {**changes, "observation": image, "actions": "discrete"})
+        own = {"observation": image, "action_repeat": 4}
+        self.env = env_config(own, {**changes, "observation": image, "actions": self.actions})
 
     def begin(self, start: Start) -> None:
         """Forget the patterns."""
@@ -51,7 +62,10 @@ class Servo:
         for row in np.flatnonzero(sight.deciding).tolist():
             self._find(row, pictures[row].astype(np.float64))
         middle = self._place + 0.5 * _PATCH
-        offset = pixel_offset(middle[:, 1], middle[:, 0], (_SIZE, _SIZE))
+        return self._steer(pixel_offset(middle[:, 1], middle[:, 0], (_SIZE, _SIZE)))
+
+    def _steer(self, offset: Floats) -> Decision:
+        """Return the actions towards what is ahead and to the left [m], shape (N, 2)."""
         return Decision(towards(offset, self.env))
 
     def _find(self, row: int, picture: Floats) -> None:
@@ -74,6 +88,33 @@ class Servo:
             self._pattern[row] = (1.0 - _LEARNING) * pattern + _LEARNING * seen
 
 
+class GimbalServo(Servo):
+    """Also turns its camera to the pattern, up and down, which takes less time than to fly there.
+
+    What is far enough ahead to turn the camera to it is still flown to.
+    """
+
+    actions = "shares+gimbal"
+
+    def begin(self, start: Start) -> None:
+        """Forget the patterns, and take the cameras to look as in their first pictures."""
+        super().begin(start)
+        self._raised = np.zeros(len(start.seeds))
+        """How far each camera has been turned up [rad]."""
+
+    def _steer(self, offset: Floats) -> Decision:
+        """Return what flies and turns the camera."""
+        up = exact.atan(offset[:, 0] / DEPTH)
+        period = PERIOD * self.env.action_repeat
+        most = self.env.gimbal.pitch_rate
+        raised = np.clip(self._raised + _GAIN * period * up, 0.0, _HIGHEST)
+        rate = np.clip((raised - self._raised) / period, -most, most)
+        ahead = DEPTH * exact.tan(up + self._raised)
+        self._raised = self._raised + period * rate
+        flown = _SHARES[towards(np.stack((ahead, offset[:, 1]), axis=1), self.env)]
+        return Decision(np.column_stack((flown, -rate / most, np.zeros(len(rate)))))
+
+
 def _correlation(area: Floats, pattern: Floats) -> Floats:
     """Return the normalised correlation of a pattern with each place of an area, -1 to 1."""
     windows = sliding_window_view(area, pattern.shape[1:], axis=(1, 2))
@@ -84,6 +125,11 @@ def _correlation(area: Floats, pattern: Floats) -> Floats:
     ).sum(axis=0)
     match: Floats = dot / np.sqrt(np.maximum(spread, 1.0) * max(np.square(centred).sum(), 1.0))
     return match
+
+
+def gimbal_servo(changes: Mapping[str, Any]) -> GimbalServo:
+    """Return the visual servo that turns its camera, too."""
+    return GimbalServo(changes)
 
 
 def servo(changes: Mapping[str, Any]) -> Servo:

@@ -23,6 +23,7 @@ BUILT_IN = {
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:servo",
+    "gimbal-servo": f"{_ROOM}.servo:gimbal_servo",
     "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
     "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
