@@ -46,8 +46,8 @@ Overrides = Annotated[
 ]
 POLICIES = (
     "random, hover, follow (an oracle), sighted, constant-velocity, road-graph, relay, servo, "
-    "attribute-servo, salient-servo, csrt, kcf, mosse, medianflow, nano, stay, eyas, eyas-flown, "
-    "fast"
+    "gimbal-servo, attribute-servo, salient-servo, csrt, kcf, mosse, medianflow, nano, stay, "
+    "eyas, eyas-flown, fast"
 )
 """The policies that come with Eyas, for help, which must not load what knows them; a test holds
 the two equal."""
