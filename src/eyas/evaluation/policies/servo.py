@@ -62,10 +62,13 @@ class Servo:
         for row in np.flatnonzero(sight.deciding).tolist():
             self._find(row, pictures[row].astype(np.float64))
         middle = self._place + 0.5 * _PATCH
-        return self._steer(pixel_offset(middle[:, 1], middle[:, 0], (_SIZE, _SIZE)))
+        offset = pixel_offset(middle[:, 1], middle[:, 0], (_SIZE, _SIZE))
+        return self._steer(offset, sight.deciding)
 
-    def _steer(self, offset: Floats) -> Decision:
-        """Return the actions towards what is ahead and to the left [m], shape (N, 2)."""
+    def _steer(self, offset: Floats, deciding: NDArray[np.bool_]) -> Decision:
+        """Return the actions towards what is ahead and to the left [m], shape (N, 2), of those who
+        decide, shape (N,).
+        """
         return Decision(towards(offset, self.env))
 
     def _find(self, row: int, picture: Floats) -> None:
@@ -102,7 +105,7 @@ class GimbalServo(Servo):
         self._raised = np.zeros(len(start.seeds))
         """How far each camera has been turned up [rad]."""
 
-    def _steer(self, offset: Floats) -> Decision:
+    def _steer(self, offset: Floats, deciding: NDArray[np.bool_]) -> Decision:
         """Return what flies and turns the camera."""
         up = exact.atan(offset[:, 0] / DEPTH)
         period = PERIOD * self.env.action_repeat
@@ -110,7 +113,7 @@ class GimbalServo(Servo):
         raised = np.clip(self._raised + _GAIN * period * up, 0.0, _HIGHEST)
         rate = np.clip((raised - self._raised) / period, -most, most)
         ahead = DEPTH * exact.tan(up + self._raised)
-        self._raised = self._raised + period * rate
+        self._raised = self._raised + np.where(deciding, period * rate, 0.0)
         flown = _SHARES[towards(np.stack((ahead, offset[:, 1]), axis=1), self.env)]
         return Decision(np.column_stack((flown, -rate / most, np.zeros(len(rate)))))
 
