@@ -81,7 +81,7 @@ def test_only_zoom_zooms():
 
 def test_heights_and_pitches_are_those_asked_for():
     low, high = (
-        flown("desert", "follow", 4, 300, start={"height": h})[0][..., 2].mean()
+        flown("citystreet", "follow", 4, 300, start={"height": h})[0][..., 2].mean()
         for h in (10.0, 30.0)
     )
     assert high - low == pytest.approx(20.0, abs=3.0)
