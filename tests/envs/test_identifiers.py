@@ -10,6 +10,7 @@ import eyas  # noqa: F401  # makes the environments known
 from eyas.world.maps import MAPS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "weathers"),
     [  # one of each kind of winter

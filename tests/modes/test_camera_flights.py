@@ -52,6 +52,7 @@ def smooth(map_name, name, count):
     assert len({*moved.round(6).tolist()}) == count  # each its own way
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PATHS.built_in)
 @pytest.mark.parametrize("map_name", ["citystreet", "village"])
 def test_flights_are_smooth_and_touch_nothing(map_name, name):

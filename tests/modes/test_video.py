@@ -177,6 +177,7 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
     assert kept.stat().st_mtime_ns == drawn_at
 
 
+@pytest.mark.slow
 def test_a_later_start_does_without_numba(tmp_path):
     """Which would take half a second to import, and compile for seconds what it keeps nowhere."""
     with_overlay = CONFIG.video.model_copy(  # with an episode that ends, and one that does not

@@ -52,6 +52,7 @@ def test_the_target_moves_in_the_picture_but_stays_there(tmp_path):
         np.testing.assert_allclose(np.linalg.norm(commands[:, :3], axis=1), speed, atol=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "asked",
     [

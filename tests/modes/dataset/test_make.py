@@ -145,6 +145,7 @@ def test_flights_that_do_not_exist_are_refused(tiny, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_an_interrupt_is_one_line(recipe_file, start, tmp_path):
     process = start("make", recipe_file, "--out", tmp_path / "out", "--workers", "2")
     until = time.monotonic() + 300

@@ -46,6 +46,7 @@ def fetched(files, path, folder):
     return folder
 
 
+@pytest.mark.slow
 def test_it_is_put_there_whole(bucket, recipe_file, made, contents, tmp_path):
     run(str(recipe_file), "s3://sets/tiny", Making(workers=1))
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "got")) == contents(made)
@@ -55,6 +56,7 @@ def test_it_is_put_there_whole(bucket, recipe_file, made, contents, tmp_path):
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "again")) == contents(made)
 
 
+@pytest.mark.slow
 def test_another_machine_continues_it(bucket, recipe_file, made, contents, tmp_path, plan):
     # As a run leaves it that was killed on a machine of which nothing is left.
     half = tmp_path / "half"
