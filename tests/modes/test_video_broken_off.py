@@ -20,6 +20,8 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.file import save_settings
 from eyas.task.config import DoneConfig
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 KILLS = int(os.environ.get("EYAS_TEST_KILLS", "4"))
 
 # Two trackers, seven episodes of 0.3 s each, a frame every 4 ms.
@@ -77,7 +79,6 @@ def check_whole(out, recorded):
             assert data == recorded[name], name
 
 
-@pytest.mark.slow
 def test_killed_at_any_moment_it_continues_to_the_same_bytes(settings, tmp_path, recorded):
     """Each recording is killed a few times before it is done, and the next one goes on there."""
     moments, latest = random.Random(7), 2.0
@@ -105,7 +106,6 @@ def stopped(process: subprocess.Popen[str], reason: str) -> None:
     assert err.endswith("; continue with --resume\n")
 
 
-@pytest.mark.slow
 def test_in_a_folder_made_read_only_it_ends_in_one_line_and_goes_on(settings, tmp_path, recorded):
     out = tmp_path / "out"
     process = start(settings, out, *UNPRIVILEGED)
@@ -122,7 +122,6 @@ def test_in_a_folder_made_read_only_it_ends_in_one_line_and_goes_on(settings, tm
     check_resumed(out, recorded)
 
 
-@pytest.mark.slow
 def test_on_a_full_disk_it_ends_in_one_line_and_goes_on(settings, tmp_path, recorded):
     disk = tmp_path / "disk"
     disk.mkdir()
@@ -152,7 +151,6 @@ def edited(path):
     path.write_text(path.read_text().replace("0.", "1.", 1))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "damage"),
     [

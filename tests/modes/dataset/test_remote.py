@@ -9,6 +9,8 @@ from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.dataset.make import Making
 from eyas.modes.dataset.run import run
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 moto = pytest.importorskip("moto.server")
 s3fs = pytest.importorskip("s3fs")
 
@@ -46,7 +48,6 @@ def fetched(files, path, folder):
     return folder
 
 
-@pytest.mark.slow
 def test_it_is_put_there_whole(bucket, recipe_file, made, contents, tmp_path):
     run(str(recipe_file), "s3://sets/tiny", Making(workers=1))
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "got")) == contents(made)
@@ -56,7 +57,6 @@ def test_it_is_put_there_whole(bucket, recipe_file, made, contents, tmp_path):
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "again")) == contents(made)
 
 
-@pytest.mark.slow
 def test_another_machine_continues_it(bucket, recipe_file, made, contents, tmp_path, plan):
     # As a run leaves it that was killed on a machine of which nothing is left.
     half = tmp_path / "half"
