@@ -67,8 +67,10 @@ def wheel(tmp_path_factory) -> Path:
 def programs(wheel) -> Path:
     """The folder of programs of a virtual environment with the wheel and what it asks for."""
     path = wheel.parent / "venv"
-    venv.create(path, with_pip=True)
-    done(path / "bin/python", "-m", "pip", "install", "-q", wheel, folder=wheel.parent)
+    venv.create(path)
+    # Without compiling the thousands of modules of numba and numpy that nothing here imports.
+    pip = (sys.executable, "-m", "pip", "--python", path / "bin/python")
+    done(*pip, "install", "-q", "--no-compile", wheel, folder=wheel.parent)
     return path / "bin"
 
 

@@ -28,6 +28,7 @@ FIRST = ("video", "--set", "video.channels=1", "--set", "video.total_time=1", "-
 CHECKS: tuple[tuple[str, ...], ...] = (
     ("ruff", "check"),
     ("ruff", "format", "--check"),
+    ("python", "tools/spelling.py"),
     ("mypy",),
     ("lint-imports",),
     ("python", "tools/write_docs.py", "--check"),

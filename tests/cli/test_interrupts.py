@@ -67,6 +67,7 @@ def check_whole(folder):
             json.loads(path.read_text())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", WORDS)
 def test_a_signal_at_any_moment_is_one_line_and_its_own_exit_code(tmp_path, number):
     moments = random.Random(int(number))
@@ -115,6 +116,7 @@ main()
 """
 
 
+@pytest.mark.slow
 def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path):
     for wait in (0.2, 2.0):
         process = started(tmp_path, cache=tmp_path / str(wait), program=COMPILES)

@@ -53,6 +53,7 @@ def shell(line, *arguments, flags=(), **environment):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "flags", "environment"),
     [

@@ -16,6 +16,8 @@ from eyas.core.build import this_build
 from eyas.core.program import UnknownCodeError, closure_of, code_of, definitions_in
 from eyas.lanes import jit
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 PACKAGE = Path(eyas.__file__).parent
 
 SILENT = [

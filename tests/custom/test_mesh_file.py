@@ -153,6 +153,7 @@ def test_what_is_wrong_with_a_shape_is_told():
     assert told(flat)[0].startswith("it has no size: ")
 
 
+@pytest.mark.slow
 def test_a_mesh_that_is_too_large_is_refused_and_simplified_on_request(tmp_path: Path):
     path = tmp_path / "fine.stl"
     trimesh.creation.uv_sphere(count=[225, 225]).export(path)

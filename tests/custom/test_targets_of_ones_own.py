@@ -132,6 +132,7 @@ def test_a_short_trajectory_is_followed_for_ever_by_shorter_episodes(tmp_path: P
     assert simulation.snapshot.episodes.number[0] > 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["own_mesh", "own_target", "own_track"])
 def test_the_examples_run(name: str, capsys: pytest.CaptureFixture[str]):
     if name == "own_mesh":
@@ -223,6 +224,7 @@ class Narrow(Whole):
         return 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("custom", "message"),
     [

@@ -98,6 +98,7 @@ def test_pictures_are_links_or_copies(exported, data):
     assert copied.read_bytes() == linked.read_bytes()
 
 
+@pytest.mark.slow
 def test_killed_at_any_moment_it_continues_to_the_same_bytes(dataset, tmp_path):
     names = FORMATS_OF_PICTURES
     run(dataset, names, tmp_path / "whole", ExportOptions())

@@ -163,6 +163,7 @@ def test_a_missing_library_is_told_in_one_line(recorded, tmp_path, monkeypatch, 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["minari", "rerun", "webdataset"])
 def test_on_a_full_disk_an_export_ends_in_a_line_and_goes_on(recorded, tmp_path, name):
     disk = tmp_path / "disk"

@@ -172,6 +172,7 @@ def test_another_process_goes_on_with_a_copy() -> None:
     process.join()
 
 
+@pytest.mark.slow
 def test_gymnasium_steps_copies_in_spawned_processes() -> None:
     env = gymnasium.vector.AsyncVectorEnv(
         [lambda: TrackingEnv({"env": {"observation": SMALL}})] * 2, context="spawn"

@@ -41,6 +41,7 @@ def test_an_observation_of_ones_own_has_edges_and_motion(capsys):
     assert np.allclose(seen["motion"][:, 0] * 25.0, plain["sensors"][:, 2])
 
 
+@pytest.mark.slow
 def test_a_tracker_of_ones_own_flies_a_curve(capsys):
     import own_tracker
 

@@ -10,10 +10,18 @@ import eyas  # noqa: F401  # makes the environments known
 from eyas.world.maps import MAPS
 
 
-@pytest.mark.parametrize("name", ["citystreet", "village"])  # one of each kind of winter
-def test_each_weather_of_a_map_is_an_environment_of_its_own(name):
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "weathers"),
+    [  # one of each kind of winter
+        ("citystreet", MAPS.get("citystreet").weathers),
+        ("village", ("day", "night", "snow")),
+        pytest.param("village", MAPS.get("village").weathers, marks=pytest.mark.thorough),
+    ],
+)
+def test_each_weather_of_a_map_is_an_environment_of_its_own(name, weathers):
     seen = {}
-    for weather in MAPS.get(name).weathers:
+    for weather in weathers:
         env = gymnasium.make(f"eyas/{name}-{weather}-v0")
         first, _ = env.reset(seed=3)
         second, reward, terminated, truncated, info = env.step(0)

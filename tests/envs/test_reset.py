@@ -12,6 +12,7 @@ from eyas.envs.vector_env import EyasVectorEnv
 SMALL = {"env": {"observation": {"height": 16, "width": 16}}}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "same"),
     [

@@ -184,6 +184,7 @@ def test_the_table_is_printed_as_published_too(tmp_path, capsys):
     assert figures["tsr"]["mean"] < 0.97
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [(), ("--latency-curve",)])
 def test_a_policy_that_fails_in_all_episodes_is_an_error(tmp_path, arguments):
     """Also if nothing else is to be printed: a job on a cluster must not look successful."""

@@ -104,6 +104,7 @@ def test_a_file_does_not_ask_for_pictures_that_take_minutes_unless_the_user_does
     check(EvaluationPlan(policy=path, env={"observation": {"width": 16, "height": 12}}))
 
 
+@pytest.mark.slow
 def test_a_module_of_torch_flies(fly, tmp_path):
     torch = pytest.importorskip("torch")
     from own_policies import hovering_module

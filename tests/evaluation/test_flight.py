@@ -90,6 +90,7 @@ def test_measured_latency_flies_one_by_one(fly):
     assert figure(fly("hover", latency="measured"), "tsr") > 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["forward", "together", "BoxTracker"])
 def test_users_policies_fly(fly, name):
     records = fly(f"own_policies:{name}")
@@ -100,6 +101,7 @@ def test_a_box_tracker_that_hovers_gets_what_hover_gets(fly, hover):
     assert fly("own_policies:BoxTracker") == hover
 
 
+@pytest.mark.slow
 def test_a_policy_that_fails_is_a_record_with_its_error(fly, hover):
     records = sorted(fly("own_policies:Fails"), key=lambda record: record.name)
     failed = [record for record in records if record.error]

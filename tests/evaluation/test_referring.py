@@ -249,6 +249,7 @@ def test_switches_go_from_the_target_to_another_for_a_while():
     assert switches(follows, 9, 1) == 0
 
 
+@pytest.mark.slow
 def test_somebody_in_a_crowd_has_others_near_who_look_the_same():
     protocol = PROTOCOLS["crowd"]
     place = Place("citystreet", "day", "Pedestrian")

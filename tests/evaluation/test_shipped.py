@@ -15,6 +15,7 @@ ON_A_FLOWN_DRONE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_names())
 def test_a_policy_reproduces_the_first_row_of_its_card(name, fly):
     """Other processors may choose another action where two are as good to the last bit."""

@@ -88,6 +88,7 @@ def outside(points, corners) -> float:
     return float(np.maximum(-along, along - length).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [0.3, 1.0])
 def test_everything_that_is_drawn_is_in_the_boxes(simulation, most):
     tick, actor = bends(simulation, most)

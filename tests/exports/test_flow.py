@@ -15,6 +15,8 @@ from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 WIDTH, HEIGHT, COUNT = 160, 120, 6
 NEAR = {"height": {"uniform": [2.0, 4.0]}, "pitch": {"uniform": [0.2, 0.7]}}
 LOW = {"height": {"uniform": [4.0, 8.0]}, "pitch": {"uniform": [0.2, 0.6]}}

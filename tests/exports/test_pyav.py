@@ -32,6 +32,7 @@ def test_what_needs_it_says_so_in_one_line(run, tmp_path):
         Stream(48, 64, 30)
 
 
+@pytest.mark.slow
 def test_recordings_without_films_import_it_nowhere(tmp_path):
     (tmp_path / "av.py").write_text("raise ImportError('not here')")
     command = ["video", "--quiet"]

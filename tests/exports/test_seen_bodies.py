@@ -11,6 +11,8 @@ from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 WIDTH, HEIGHT, COUNT = 320, 240, 12
 
 

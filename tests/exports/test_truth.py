@@ -12,6 +12,8 @@ from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 SIZE, TRACKERS, TIMES = 84, 12, 17
 NEAR = {"height": {"uniform": [3.0, 9.0]}, "pitch": {"uniform": [0.2, 1.2]}}
 HIGH = {"height": {"uniform": [6.0, 30.0]}, "pitch": {"uniform": [0.3, 1.3]}}

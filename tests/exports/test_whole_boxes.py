@@ -32,6 +32,7 @@ def frames_of(**settings) -> list:
     return seen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "settings",
     [

@@ -57,7 +57,10 @@ def edited(tmp_path_factory):
     seconds = itertools.count(1)
 
     def write(path, text):
-        """Write a file with a time of its own: Python takes an old .pyc of the same size and second for current."""
+        """Write a file with a time of its own.
+
+        Python takes an old .pyc of the same size and second for current.
+        """
         path.write_text(text)
         os.utime(path, (second := next(seconds), second))
 

@@ -42,6 +42,7 @@ def trained(folder, **changes):
     return {name: (folder / name).read_bytes() for name in ("curve.csv", "policy.onnx")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("memory", [False, True])
 def test_a_run_on_a_device_gives_the_same_bytes(memory, tmp_path):
     usual = trained(tmp_path / "usual", memory=memory)

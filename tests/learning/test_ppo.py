@@ -43,6 +43,7 @@ def test_advantages_are_the_weighted_sum_of_later_errors():
             assert got[t, n] == pytest.approx(total, abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("memory", [False, True])
 def test_an_action_that_is_rewarded_becomes_likely(memory):
     """Two pictures, each with one action that is rewarded."""

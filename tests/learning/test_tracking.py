@@ -206,6 +206,7 @@ def test_steps_are_pictures_in_lessons():
         updated(tracker, {"rounds": [{"flights": 0, "steps": 5}]})
 
 
+@pytest.mark.slow
 def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     """The command with short flights, of the second round by what the first has taught."""
     monkeypatch.setattr(flights, "_STEPS", 400)

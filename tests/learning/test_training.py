@@ -124,6 +124,7 @@ def test_the_default_folder_is_numbered(tmp_path, monkeypatch):
     assert str(_default_folder(resume=True)) == "runs/train-3"
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
     folder = tmp_path / "run"
     script = (

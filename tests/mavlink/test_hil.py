@@ -27,6 +27,8 @@ from eyas.sim.build import build_simulation
 from eyas.sim.worlds import together
 from eyas.trackers.driven import driven_drone
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 AUTOPILOT = Path(__file__).with_name("small_autopilot.py")
 HOVER = math.sqrt(0.5)
 

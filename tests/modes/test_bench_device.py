@@ -11,6 +11,7 @@ from eyas.modes.bench.device import ON_DEVICES, measure_on_device
 from eyas.modes.bench.pictures import PictureBatch
 
 
+@pytest.mark.slow
 def test_pictures_are_measured_on_any_device():
     found = measure_on_device(HostDevice(), PictureBatch(2, 48, 48, samples=2), 0.0)
     assert found.name == "pictures 48x48, 2 views, 2 samples, host"

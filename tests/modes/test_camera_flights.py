@@ -52,6 +52,7 @@ def smooth(map_name, name, count):
     assert len({*moved.round(6).tolist()}) == count  # each its own way
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PATHS.built_in)
 @pytest.mark.parametrize("map_name", ["citystreet", "village"])
 def test_flights_are_smooth_and_touch_nothing(map_name, name):
@@ -81,7 +82,7 @@ def test_only_zoom_zooms():
 
 def test_heights_and_pitches_are_those_asked_for():
     low, high = (
-        flown("desert", "follow", 4, 300, start={"height": h})[0][..., 2].mean()
+        flown("citystreet", "follow", 4, 300, start={"height": h})[0][..., 2].mean()
         for h in (10.0, 30.0)
     )
     assert high - low == pytest.approx(20.0, abs=3.0)

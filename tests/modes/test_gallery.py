@@ -30,6 +30,8 @@ from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 SUN = CITYSTREET.light("day").sun_direction
 WEATHERS = ("day", "foggy")
 
@@ -200,7 +202,6 @@ def test_all_streets_are_in_the_horizon_view(still, views):
     assert np.isfinite(depth[24:, 32]).all()
 
 
-@pytest.mark.slow
 def test_a_second_run_replaces_the_first_with_the_same_bytes(drawn):
     before = files(drawn)
     gallery.run(drawn, ["citystreet"], WEATHERS)
@@ -223,7 +224,6 @@ def test_a_page_of_another_maker_or_any_foreign_file_is_refused_untouched(drawn,
         gallery.run(drawn / gallery.INDEX)
 
 
-@pytest.mark.slow
 def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatch):
     (tmp_path / "citystreet-day").mkdir()
     (tmp_path / "citystreet-day" / "horizon.png").write_bytes(b"")

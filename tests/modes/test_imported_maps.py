@@ -212,6 +212,7 @@ def test_cars_drive_on_the_streets_and_stop_at_signals(town, scene):
     assert 0.01 < standing < 0.7
 
 
+@pytest.mark.slow
 def test_signals_are_seen_in_their_state_which_changes_with_time(town):
     people = Crowd(target=TargetName.PEDESTRIAN, objects=ObjectsConfig(max_count=2))
     assets = load_assets(WorldConfig(map=NAME, weather="night"), TrafficConfig(), crowd=people)

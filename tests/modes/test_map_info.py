@@ -38,6 +38,7 @@ def test_the_originals_figures_stand_beside_ours():
     assert all(MAPS.get(name).original is not None for name in MAPS.built_in)
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 def test_a_new_map_of_a_kind_is_made_at_once_with_its_traffic(
     monkeypatch, capsys, caplog, tmp_path

@@ -145,6 +145,7 @@ def test_a_plan_drawn_by_hand_is_completed(hamlet):
     assert recipe.complete_plan(network, 0).layers[1] == made.layers[1]
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 def test_a_plan_drawn_by_hand_flies(hamlet):
     settings = {"world": {"map": str(hamlet)}, "traffic": {"max_vehicles": 3}}

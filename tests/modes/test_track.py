@@ -96,6 +96,7 @@ def test_any_number_of_processes_and_an_interruption_give_the_same_bytes(folder,
     assert everything(tmp_path / "1") == files[1]
 
 
+@pytest.mark.slow
 def test_the_order_of_episodes_changes_no_box_of_opencv(folder):
     pytest.importorskip("cv2")
     from eyas.evaluation.box_trackers import box_tracker

@@ -38,6 +38,7 @@ def test_several_processes_write_the_same_files_as_one(tmp_path: Path):
         recording.run(WorldConfig(), MIXED, 5.0, tmp_path / "one", seeds=(4,))
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 @pytest.mark.usefixtures("sumo")
 def test_an_error_in_a_process_is_told_as_in_this_one(tmp_path: Path):

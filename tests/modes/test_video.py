@@ -177,10 +177,11 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
     assert kept.stat().st_mtime_ns == drawn_at
 
 
+@pytest.mark.slow
 def test_a_later_start_does_without_numba(tmp_path):
     """Which would take half a second to import, and compile for seconds what it keeps nowhere."""
-    with_overlay = CONFIG.video.model_copy(
-        update={"overlay": True, "writers": tuple(WRITERS.built_in)}
+    with_overlay = CONFIG.video.model_copy(  # with an episode that ends, and one that does not
+        update={"overlay": True, "writers": tuple(WRITERS.built_in), "fps": 50.0, "total_time": 0.3}
     )
     lidar = CONFIG.lidar.model_copy(update={"enabled": True})  # for its writer
     events = CONFIG.camera.events.model_copy(update={"enabled": True})  # for its writer, too

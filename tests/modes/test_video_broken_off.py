@@ -20,6 +20,8 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.file import save_settings
 from eyas.task.config import DoneConfig
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 KILLS = int(os.environ.get("EYAS_TEST_KILLS", "4"))
 
 # Two trackers, seven episodes of 0.3 s each, a frame every 4 ms.

@@ -1,3 +1,4 @@
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -78,9 +79,23 @@ def names_in(folder: Path) -> list[str]:
     )
 
 
-def test_a_finished_episode_is_complete(tmp_path):
-    write(tmp_path / "episode0", 3).finish()
-    found = read_complete(writers_of(), tmp_path / "episode0")
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """Finished episodes of two and of three frames."""
+    folder = tmp_path_factory.mktemp("kept")
+    for frames in (2, 3):
+        write(folder / str(frames), frames).finish()
+    return folder
+
+
+@pytest.fixture
+def finished(kept, tmp_path):
+    """A function that lays a finished episode of so many frames in `tmp_path`."""
+    return lambda name, frames: shutil.copytree(kept / str(frames), tmp_path / name)
+
+
+def test_a_finished_episode_is_complete(finished):
+    found = read_complete(writers_of(), finished("episode0", 3))
     assert found == Summary(3, Scores(3, 1.5, 3))
 
 
@@ -88,10 +103,10 @@ def test_a_finished_episode_is_complete(tmp_path):
     "name",
     ["mark.json", "labels.jsonl", "episode.mp4", "000001.jpeg", "masks/000001.png", "sensors.csv"],
 )
-def test_an_episode_that_misses_a_file_is_not_complete(tmp_path, name):
-    write(tmp_path / "episode0", 3).finish()
-    (tmp_path / "episode0" / name).unlink()
-    assert read_complete(writers_of(), tmp_path / "episode0") is None
+def test_an_episode_that_misses_a_file_is_not_complete(finished, name):
+    episode = finished("episode0", 3)
+    (episode / name).unlink()
+    assert read_complete(writers_of(), episode) is None
 
 
 @pytest.mark.parametrize(
@@ -105,11 +120,11 @@ def test_an_episode_that_misses_a_file_is_not_complete(tmp_path, name):
         "flow/000002.png",
     ],
 )
-def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete(tmp_path, name):
-    write(tmp_path / "episode0", 2).finish()
-    write(tmp_path / "other", 3).finish()
-    (tmp_path / "other" / name).replace(tmp_path / "episode0" / name)
-    assert read_complete(writers_of(), tmp_path / "episode0") is None
+def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete(finished, name):
+    episode, other = finished("episode0", 2), finished("other", 3)
+    assert read_complete(writers_of(), episode) is not None
+    (other / name).replace(episode / name)
+    assert read_complete(writers_of(), episode) is None
 
 
 @pytest.mark.parametrize("name", ["mark", "mp4"])

@@ -60,6 +60,7 @@ def test_flights_go_on_smoothly_where_their_poses_are_computed_anew(tmp_path):
     assert np.ptp(place, axis=0).max() > 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "asked",
     [

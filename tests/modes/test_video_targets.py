@@ -119,6 +119,7 @@ def assert_pixels_agree(recorded: Recorded, kind: ObjectClass) -> None:
         assert np.ptp(corners[:, 2]) == pytest.approx(label["target_size"][2], abs=0.1)
 
 
+@pytest.mark.slow
 def test_a_pedestrian(record):
     recorded = record(target="Pedestrian", seed=3)
     assert_pixels_agree(recorded, ObjectClass.PERSON)
@@ -148,6 +149,7 @@ def crate(path: Path) -> None:
     trimesh.Trimesh(box.vertices, box.faces, visual=visual, process=False).export(path)
 
 
+@pytest.mark.slow
 def test_a_mesh_file_in_the_settings_alone(record, tmp_path: Path):
     crate(tmp_path / "blue_red_crate.glb")
     mesh = {"mesh": str(tmp_path / "blue_red_crate.glb"), "behaviour": "straight", "speed": 1.5}

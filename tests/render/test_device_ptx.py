@@ -125,6 +125,7 @@ FLOWN, CAR, EQUIPPED = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("tracker", "mounted", "kernel"),
     [

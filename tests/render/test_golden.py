@@ -86,6 +86,7 @@ PICTURES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PICTURES)
 def test_it_looks_as_it_did(name, regenerate, tmp_path):
     path = FOLDER / f"{name}.png"

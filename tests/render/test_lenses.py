@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -53,6 +54,14 @@ def same(one: Picture, other: Picture, rows=slice(None)) -> None:
 
 def rays_of_opencv(rotation, lens, fov) -> np.ndarray:
     """Directions of all pixels by OpenCV's inverse, of any length; NaN where it has none."""
+    flat = undistorted(lens, fov)
+    right, down, ahead = -rotation[:, 1], -rotation[:, 2], rotation[:, 0]
+    return (ahead + flat[:, :1] * right + flat[:, 1:] * down).reshape(*SIZE, 3)
+
+
+@lru_cache
+def undistorted(lens, fov) -> np.ndarray:
+    """Where the rays of all pixels meet the plane one ahead, to the right and down."""
     height, width = SIZE
     matrix, distortion = camera_matrix(lens, width, height, fov), np.array(coefficients(lens))
     columns, rows = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
@@ -61,16 +70,15 @@ def rays_of_opencv(rotation, lens, fov) -> np.ndarray:
         angle = np.hypot(*((places[:, 0] - matrix[:2, 2]) / matrix[0, 0]).T)
         flat = cv2.fisheye.undistortPoints(places, matrix, distortion)[:, 0]
         flat[angle > 1.5] = np.nan
-    else:
-        # Its own inverse stops after five steps.
-        flat = cv2.undistortPoints(places, matrix, distortion)[:, 0]
-        for _ in range(60):
-            points = np.column_stack([flat, np.ones(len(flat))])
-            shown, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), matrix, distortion)
-            flat += (places - shown)[:, 0] / matrix[0, 0]
-        assert np.abs(places - shown).max() < 1e-3
-    right, down, ahead = -rotation[:, 1], -rotation[:, 2], rotation[:, 0]
-    return (ahead + flat[:, :1] * right + flat[:, 1:] * down).reshape(height, width, 3)
+        return flat
+    # Its own inverse stops after five steps.
+    flat = cv2.undistortPoints(places, matrix, distortion)[:, 0]
+    for _ in range(60):
+        points = np.column_stack([flat, np.ones(len(flat))])
+        shown, _ = cv2.projectPoints(points, np.zeros(3), np.zeros(3), matrix, distortion)
+        flat += (places - shown)[:, 0] / matrix[0, 0]
+    assert np.abs(places - shown).max() < 1e-3
+    return flat
 
 
 @pytest.fixture

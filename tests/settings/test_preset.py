@@ -15,6 +15,7 @@ from eyas.settings.legacy.layout import flat
 from eyas.settings.preset import PRESETS, preset_file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PRESETS)
 def test_an_environment_runs_with_each(name):
     env = TrackingEnv(name)

@@ -10,6 +10,7 @@ from .wild import try_case
 CASES = 2000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(4))
 def test_wild_settings_load_or_are_refused_in_one_line(tmp_path, part):
     loaded = sum(try_case(number, tmp_path) for number in range(part, CASES, 4))

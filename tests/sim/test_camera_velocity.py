@@ -21,6 +21,7 @@ def flown(**camera):
     return simulation
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mount", [None, MountConfig(x=0.1, pitch=0.9)])
 def test_poses_change_by_the_velocities(mount):
     simulation = flown(shutter=ShutterConfig(blur=True), mount=mount)

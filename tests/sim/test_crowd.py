@@ -89,6 +89,7 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
         assert np.allclose(corners.mean(axis=0)[:2], label["target_centre"][:2], atol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["Pedestrian", "BB-8", "SUMO_VEHICLE"])
 def test_truth_agrees_with_its_own_differences(target):
     off_road = {**FEW, "offset": {"mirrored": [30, 90]}}

@@ -25,6 +25,7 @@ OTHERS = [kind for kind in LOOKS_LIKE if kind is not VehicleType.TRUCK]
 """SUMO drives ten minutes of each; all are drawn in a mixed fleet below."""
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 @pytest.mark.parametrize(
     "vehicle",
@@ -51,6 +52,7 @@ def test_a_fleet_is_followed_and_drawn_as_what_it_is(vehicle):
         assert picture.rgb[n].std() > 3
 
 
+@pytest.mark.slow
 def test_a_mixed_fleet_shares_one_world_and_each_is_drawn_as_what_it_is():
     """The shipped recording of citystreet, found by its settings; no SUMO."""
     mix = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)

@@ -69,6 +69,7 @@ def flown(settings, variables) -> str:
     return run.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not NEWER, reason="this processor has no newer instructions to do without")
 @pytest.mark.parametrize("tracker", [{}, FLOWN], ids=["supervised", "flown"])
 def test_a_flight_has_the_same_bytes_on_another_processor(tracker):

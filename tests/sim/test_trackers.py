@@ -206,6 +206,7 @@ def test_settings_without_effect_or_out_of_range_are_told_in_one_line(values, li
     assert str(caught.value).startswith(line)
 
 
+@pytest.mark.slow
 def test_a_fixed_camera_is_carried_by_the_body_and_tilts_with_it(config):
     camera = config.camera.model_copy(
         update={"mount": MountConfig(x=0.2, y=-0.1, z=0.3, pitch=1.37)}

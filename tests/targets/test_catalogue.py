@@ -180,6 +180,7 @@ print(told_apart(seen, [seen._replace(model=0), seen._replace(model=2)]))
 """
 
 
+@pytest.mark.slow
 def test_a_new_car_in_one_file_of_the_package_is_everywhere(tmp_path):
     copy = tmp_path / "eyas"
     shutil.copytree(Path(eyas.__file__).parent, copy, copy_function=os.link,

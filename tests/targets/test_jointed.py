@@ -80,6 +80,7 @@ def test_every_target_of_the_original_is_a_kind_of_its_name():
         assert KINDS[kind_index(kind.name)] is kind
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_it_has_its_size_and_stands_on_the_ground(name):
     for level in range(3):
@@ -291,6 +292,7 @@ def test_front_wheels_of_a_rover_steer_into_the_curve_and_rear_wheels_against_it
         assert np.arctan(-across[0] / across[1]) == pytest.approx(np.arctan(joint.steers), abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slope", [0.0, 0.2])
 @pytest.mark.parametrize("name", NAMES)
 def test_the_box_of_a_moment_holds_it_and_is_as_small_as_may_be(name, slope):

@@ -94,6 +94,7 @@ def test_from_every_road_of_a_city_every_other_can_be_reached_without_turning_ro
         assert len(reached) == 64
 
 
+@pytest.mark.slow
 @needs_sumo
 @pytest.mark.parametrize("seed", [1, 4])
 def test_other_seeds_become_whole_cities(seed):

@@ -215,6 +215,7 @@ def test_servers_side_by_side_keep_apart(serve, tmp_path):
     assert shared.ended() == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("moment", "number"),
     [

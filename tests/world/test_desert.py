@@ -22,6 +22,8 @@ from eyas.world.weather import Season
 
 from .hills import in_the_way, recorded_off_road, relief_on_lanes, surface_heights
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 SEEDS = range(6)
 
 

@@ -60,6 +60,7 @@ def _middles(scene: Scene, apart: float) -> np.ndarray:
     return np.concatenate(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_no_lane_leads_through_anything_solid(name):
     scene = _scene(name)
@@ -128,6 +129,7 @@ def _arrays(thing: object) -> list[np.ndarray]:
     return []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "weather"), CONDITIONS)
 def test_pictures_from_the_drones_start_show_a_road_and_are_not_flat(name, weather):
     recipe = MAPS.get(name)

@@ -28,6 +28,7 @@ def test_there_are_as_many_as_in_the_original_and_as_far_apart(scene):
     assert np.linalg.norm(scene.lamps.axis, axis=1) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 @pytest.mark.parametrize("seed", [1, 2])
 def test_other_cities_have_as_many_also_where_there_is_less_room(seed):

@@ -92,6 +92,7 @@ def digest(scene):
     return made.hexdigest()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "season"), HASHES, ids=map("-".join, HASHES))
 def test_scenes_have_the_bytes_that_they_had(name, season):
     assert digest(load_scene(name, 0, Season(season))) == HASHES[name, season]
@@ -110,6 +111,7 @@ def round_trip(name, tmp_path):
         assert digest(found) == digest(expected)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", QUICK)
 def test_a_scene_of_a_file_is_that_of_its_planner(name, tmp_path):
     round_trip(name, tmp_path)
@@ -140,6 +142,7 @@ def areas_of(made, season):
                         yield piece.area
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in MAPS.built_in if "simpleway" not in name])
 def test_no_two_covers_overlap_and_nothing_on_the_floor_is_bare(name):
     recipe = MAPS.get(name)
@@ -209,6 +212,7 @@ def told_of(tmp_path, content):
     return path, problems(path)
 
 
+@pytest.mark.slow
 def test_every_layer_is_in_the_sample(tmp_path):
     assert told_of(tmp_path, sample())[1] == []
     layers = {part["layer"] for part in sample()["layers"]}
@@ -230,6 +234,7 @@ def places(value, path=""):
 WRONG = (float("nan"), {"no": "such"}, "no such thing", -1e9, [], None, [["x"]])
 
 
+@pytest.mark.slow
 def test_every_field_is_refused_in_one_line_when_it_is_wrong(tmp_path):
     whole = sample()
     checked = 0

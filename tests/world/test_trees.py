@@ -69,6 +69,7 @@ def hidden_share(mesh, radius, holes, cells=48):
     return hidden.mean()
 
 
+@pytest.mark.slow
 def test_a_crown_hides_what_stands_under_it_at_every_level(levels):
     levels = levels[:3]  # under the last one a car is a pixel
     half_width = np.abs(levels[0].positions[:, :2]).max()

@@ -86,6 +86,7 @@ def cache(made, tmp_path):
     return Path(shutil.copytree(made, tmp_path / "cache"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
 def test_damaged_entries_are_told_in_a_line_each_and_made_anew(cache, damage, tmp_path):
     files = [path for path in cache.rglob("*") if path.suffix in (".eyk", ".eym", ".npy")]

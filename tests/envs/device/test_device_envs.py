@@ -73,6 +73,7 @@ def rows_of(observation, index):
     return observation[index]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
     ("count", "workers", "mode"),

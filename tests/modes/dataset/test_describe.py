@@ -17,6 +17,8 @@ import eyas
 from eyas.datasets.format import CLASS_NAMES
 from eyas.datasets.statistics import EDGES
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 
 @pytest.fixture(scope="module")
 def statistics(made):

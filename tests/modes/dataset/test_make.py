@@ -15,8 +15,9 @@ from eyas.modes.dataset.make import Making, make
 from eyas.modes.dataset.merge import merge
 from eyas.modes.dataset.run import run
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
-@pytest.mark.slow
+
 def test_a_killed_one_is_continued_to_the_same_bytes(recipe_file, made, contents, start, tmp_path):
     out = tmp_path / "killed"
     process = start("make", recipe_file, "--out", out, "--workers", "2")

@@ -9,6 +9,8 @@ from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.dataset.make import Making
 from eyas.modes.dataset.run import run
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 moto = pytest.importorskip("moto.server")
 s3fs = pytest.importorskip("s3fs")
 

@@ -2,10 +2,14 @@
 
 import json
 
+import pytest
+
 from eyas.core.config import validated
 from eyas.settings.config import EyasConfig
 
 from .conftest import Viewer, moved
+
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 
 def test_a_recording_is_a_whole_folder_of_eyas_video(viewer, served):

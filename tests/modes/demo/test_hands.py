@@ -8,6 +8,8 @@ import pytest
 
 from .conftest import until
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 KEYS = {
     "ArrowUp": "forward",
     "ArrowDown": "back",

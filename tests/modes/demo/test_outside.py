@@ -5,6 +5,10 @@ import importlib.util
 import threading
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 EXAMPLE = Path(__file__).parents[3] / "examples/demo_tracker.py"
 
 

@@ -8,6 +8,8 @@ import pytest
 from .conftest import Viewer, restore, until
 from .slow_line import SlowLine
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 
 @pytest.fixture
 def page(browser, served):

@@ -8,6 +8,8 @@ from PIL import Image
 
 from .conftest import Viewer
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 av = pytest.importorskip("av")
 
 

@@ -8,6 +8,8 @@ import pytest
 
 from eyas.settings.legacy.adapter import from_legacy
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 
 def test_rewards_follow_their_settings_at_once(viewer):
     viewer.say("do", what="parked_target")

@@ -14,6 +14,8 @@ from websockets.sync.client import connect
 
 from .conftest import QUICK, Viewer
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 
 def test_what_is_no_message_is_refused_with_a_line(viewer):
     for bad in (

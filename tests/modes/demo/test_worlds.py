@@ -3,9 +3,12 @@
 import io
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from .conftest import WORLD
+
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 
 def test_a_click_chooses_the_car_under_it(viewer):

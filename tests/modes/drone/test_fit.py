@@ -62,6 +62,7 @@ def saved(path, rows, names=NAMES):
 SLOW = {"motor_time_constant": 0.03, "drag_area": 0.05}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "every"),
     [(SLOW, 1), (SLOW, 5), ({"airframe": "5-inch"}, 2), ({"airframe": "20-inch"}, 1)],

@@ -69,6 +69,7 @@ def arrays(snapshot):
     return {name: a for record in snapshot for name, a in record._asdict().items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(("count", "workers"), [(1, 1), (7, 3), (64, 64)])
 def test_the_state_has_the_same_bytes_step_by_step_and_after_resets(case, count, workers):

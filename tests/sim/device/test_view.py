@@ -71,6 +71,7 @@ def steps(usual, ours, count):
             yield chosen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(("count", "workers"), [(1, 1), (7, 3)])
 def test_pictures_are_the_same(case, count, workers):
