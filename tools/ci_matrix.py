@@ -29,7 +29,10 @@ TESTS = (
 )
 """Quick tests that a plain install can run: they need no extras."""
 
-TESTERS = ("pytest>=8", "hypothesis>=6.100", "pytest-xdist>=3.6", "pygame>=2.6", "jsonschema>=4.20")
+TESTERS = (
+    *("pytest>=8", "hypothesis>=6.100", "pytest-xdist>=3.6", "jsonschema>=4.20"),
+    *("pygame>=2.6; python_version < '3.14'", "pygame-ce>=2.5; python_version >= '3.14'"),
+)
 
 LEFT_OUT = "not (test_each_command_refuses_and_is_told_to_trust_by_a_flag and train)"
 """All but a test that needs the extra `train`."""
@@ -79,6 +82,7 @@ PARTS = (
     ("newest", "3.11", ("Nehalem, 5 threads",)),
     ("newest", "3.12", ("Haswell, 2 threads",)),
     ("newest", "3.13", ("SkylakeX, 1 thread", "old libraries, 1 thread")),
+    ("newest", "3.14", ("Haswell, 2 threads",)),
     ("oldest", "3.11", ("old libraries, 1 thread",)),
     ("oldest", "3.12", ("this processor, 1 thread",)),
     ("oldest", "3.13", ("this processor, 2 threads",)),
@@ -333,6 +337,8 @@ def main() -> int:
             done.append(Tried(name, time.monotonic() - start, fault))
             if fault:
                 print(fault, flush=True)
+    for version in sorted({version for _, version, _ in PARTS} - interpreters().keys()):
+        print(f"missing: Python {version}, so nothing was tried under it")
     failed = [one for one in done if one.fault and not one.fault.startswith("skipped")]
     for one in done:
         word = "failed" if one in failed else "skipped" if one.fault else "ok"

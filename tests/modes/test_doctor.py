@@ -34,11 +34,23 @@ def test_json_and_lines_tell_the_same(monkeypatch, capsys):
 
 def test_an_extra_that_is_not_whole_is_named_with_what_it_lacks(monkeypatch):
     here = doctor._version
-    gone = {"osmium", "pygame"}
+    gone = {"osmium", "pygame", "pygame-ce"}
     monkeypatch.setattr(doctor, "_version", lambda name: "missing" if name in gone else here(name))
     assert "osm lacks osmium" in doctor.facts()["extras"]
     assert "play lacks pygame" in doctor.facts()["extras"]
     assert "dev lacks" not in doctor.facts()["extras"]
+
+
+def test_what_an_extra_needs_under_another_python_is_not_lacking(monkeypatch):
+    minor = sys.version_info[1]
+    lines = [
+        f'no-{number}; python_version {sign} "3.{number}" and extra == "play"'
+        for number in (minor, minor + 1)
+        for sign in ("<", ">=")
+    ]
+    lines[0], lines[3] = lines[0].replace("no", "other"), lines[3].replace("no", "other")
+    monkeypatch.setattr(doctor, "requires", lambda _: lines)
+    assert doctor.facts()["extras"] == f"play lacks no-{minor}, no-{minor + 1}"
 
 
 def test_the_cache_and_who_has_moved_it(monkeypatch, tmp_path):

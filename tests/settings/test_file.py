@@ -1,4 +1,5 @@
 import json
+import re
 
 import pytest
 
@@ -53,7 +54,7 @@ def test_no_file_and_no_keys_give_the_defaults(tmp_path):
         ("[1, 2]", "not a JSON object"),
         ('{"seed": 1, "seed": 2}', "'seed' appears twice"),
         (b"\xff\xfe\x00", "UTF-8"),
-        ("[" * 100_000, "recursion"),
+        ("[" * 100_000, "recursion|overflow"),  # older Pythons, 3.14
         ('{"seed": ' + "9" * 5000 + "}", "digits"),
     ],
 )
@@ -63,7 +64,7 @@ def test_a_file_that_is_no_object_is_told_with_its_name(tmp_path, text, said):
         load_settings(path)
     line = str(caught.value)
     assert line.startswith(f"{path}: ")
-    assert said in line
+    assert re.search(said, line)
     assert "\n" not in line
 
 

@@ -108,12 +108,19 @@ def _bash(known: Sequence[Known], *, zsh: bool) -> Iterator[str]:
 def _fish(known: Sequence[Known]) -> Iterator[str]:
     """Yield the lines of a script for fish."""
     names = _names()
-    yield "complete -c eyas -f -n '__fish_use_subcommand'"
+    # fish's own __fish_seen_subcommand_from takes `maps export` for `export`.
+    yield "function __eyas_at"
+    yield "  set -l at ''"
+    yield "  for word in (commandline -opc)[2..-1]"
+    yield "    set -l next (string trim -- $at' '$word)"
+    paths = " ".join(f"'{path}'" for path, _, _ in known if path)
+    yield f"    contains -- $next {paths}; and set at $next"
+    yield "  end"
+    yield '  test "$at" = "$argv[1]"'
+    yield "end"
+    yield "complete -c eyas -f -n '__eyas_at \"\"'"
     for path, inner, options in known:
-        here = "; and ".join(f"__fish_seen_subcommand_from {word}" for word in path.split())
-        when = here or "__fish_use_subcommand"
-        if inner and path:
-            when += f"; and not __fish_seen_subcommand_from {' '.join(inner)}"
+        when = f'__eyas_at "{path}"'
         for name in inner:
             yield f"complete -c eyas -f -n '{when}' -a {name}"
         for word, help_ in options:

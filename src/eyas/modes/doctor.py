@@ -4,6 +4,7 @@ import json
 import os
 import platform
 import re
+import sys
 from importlib.metadata import PackageNotFoundError, requires, version
 from importlib.util import find_spec
 
@@ -35,6 +36,8 @@ _NEEDED = ("numpy", "numba", "llvmlite")
 _EXTRAS = ("torch", "onnxruntime")
 _EXTRA = re.compile(r"([\w.-]+)[^;]*;.*\bextra == ['\"]([\w-]+)['\"].*")
 """A requirement of an extra: package and extra."""
+_PYTHON = re.compile(r"\bpython_version (<|>=) ['\"]3\.(\d+)['\"]")
+"""Which Pythons a requirement is for, if not for all."""
 _FOR_DEVELOPERS = ("dev", "docs", "peers", "release")
 
 
@@ -74,11 +77,19 @@ def _lacking() -> str:
     lacking: dict[str, list[str]] = {}
     for line in _requirements():
         found = _EXTRA.fullmatch(line)
-        if found and found[2] not in _FOR_DEVELOPERS and _version(found[1]) == "missing":
+        if not found or not _of_this_python(line):
+            continue
+        if found[2] not in _FOR_DEVELOPERS and _version(found[1]) == "missing":
             lacking.setdefault(found[2], []).append(found[1])
     if not lacking:
         return "all are whole"
     return "; ".join(f"{extra} lacks {', '.join(names)}" for extra, names in lacking.items())
+
+
+def _of_this_python(requirement: str) -> bool:
+    found = _PYTHON.search(requirement)
+    older = found is not None and sys.version_info[1] < int(found[2])
+    return found is None or older == (found[1] == "<")
 
 
 def _requirements() -> list[str]:
