@@ -21,7 +21,7 @@ from version import version
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
-LARGEST_WHEEL = 35e6
+LARGEST_WHEEL = 25e6
 """[bytes]"""
 FIRST = ("video", "--set", "video.channels=1", "--set", "video.total_time=1", "--out", "first")
 """The README's first command, shortened."""

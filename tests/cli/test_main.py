@@ -16,6 +16,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy, to_legacy
 from eyas.settings.preset import PRESETS
 from eyas.wire.exchange import SETTINGS_FILE
+from eyas.world.maps import MAPS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -165,6 +166,25 @@ def test_listings_are_json_too(monkeypatch, capsys):
     assert targets["BmwX5Simple"]["size"] == [4.85, 1.9, 1.8]
 
 
+def test_what_a_map_and_a_recording_are_is_json_too(monkeypatch, capsys):
+    def told(*words):
+        code, out, err = run(monkeypatch, capsys, *words)
+        assert (code, err) == (0, [])
+        return out
+
+    town = json.loads(told("maps", "info", "simpleway-clinker", "--json"))
+    assert town["name"] == "simpleway-clinker"
+    assert town["weathers"] == list(eyas.list_weathers("simpleway-clinker"))
+    assert "traffic.npz" in town["recorded_traffic"]
+    assert f"lanes: {town['figures']['lanes']:.2f} km" in told("maps", "info", "simpleway-clinker")
+    file = str(MAPS.get("simpleway-clinker").shipped("traffic.npz"))
+    drive = json.loads(told("traffic", "info", file, "--json"))
+    assert (drive["map"], drive["map_seed"], drive["rate"]) == ("simpleway", 0, 10.0)
+    assert drive["vehicles"]["passenger"]["most"] == 40
+    assert "passenger: 40 at most, 40.0 on average; " in told("traffic", "info", file)
+    assert "traffic: demand=keep_alive" in told("traffic", "info", file)
+
+
 def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():
     command = [*COMMAND, "config", "show", "--set", "control.frequency=150"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -255,7 +275,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert len(seen) == 9
+    assert len(seen) == 11
     assert all(seen.values())
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.traffic import recording
-from eyas.modes.traffic.recording import describe
+from eyas.modes.traffic.about import about, lines_of
 from eyas.traffic.config import Mix, TrafficConfig
 from eyas.traffic.sumo_install import import_libsumo
 from eyas.world.config import WorldConfig
@@ -49,7 +49,7 @@ def test_an_error_in_a_process_is_told_as_in_this_one(tmp_path: Path):
 
 def test_info_tells_origin_and_figures():
     shipped = {file.name: Path(str(file)) for file in CITYSTREET.shipped_traffic()}
-    lines = list(describe(shipped["traffic-mixed.npz"]))
+    lines = list(lines_of(about(shipped["traffic-mixed.npz"])))
     assert lines[0].startswith("map: citystreet, seed 0 (roads ")
     assert lines[1] == (
         'traffic: demand=keep_alive vehicle_type={"passenger": 0.7, "bus": 0.1, "truck": 0.1, '
@@ -59,6 +59,6 @@ def test_info_tells_origin_and_figures():
     assert lines[3].startswith("duration: 1260 s at 10 Hz")
     assert [line.split()[1] for line in lines[4:10]] == ["28", "4", "4", "2", "2", "40"]
     assert "of which 40 last 60 s or longer and 40 the whole recording" in lines[10]
-    groups = list(describe(shipped["traffic-groups-of-12.npz"]))
+    groups = list(lines_of(about(shipped["traffic-groups-of-12.npz"])))
     assert groups[4].startswith("passenger: 40 at most, 15.0 on average; 12.7 m/s on average")
     assert "standing 0.4 % of the time" in groups[4]

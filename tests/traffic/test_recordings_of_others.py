@@ -2,6 +2,7 @@
 
 import io
 import json
+import lzma
 import os
 import tracemalloc
 import zipfile
@@ -10,7 +11,14 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.traffic.recording_file import _checksum, from_bytes, load, to_bytes
+from eyas.traffic.recording_file import (
+    _checksum,
+    _expanded,
+    _unpacked_npz,
+    from_bytes,
+    load,
+    to_bytes,
+)
 
 BOMB = 10**12
 
@@ -25,8 +33,7 @@ def packed(arrays) -> bytes:
 
 @pytest.fixture
 def arrays(wandering):
-    with np.load(io.BytesIO(to_bytes(wandering))) as file:
-        return dict(file)
+    return _unpacked_npz(to_bytes(wandering))
 
 
 def with_header(arrays, **changes):
@@ -83,7 +90,7 @@ def test_a_type_in_the_origin_that_is_wrong_is_refused(arrays):
         refused(packed(with_header(arrays, provenance={**origin, **change})))
 
 
-@pytest.mark.parametrize("name", ["position_start", "position_second", "yaw_start", "present"])
+@pytest.mark.parametrize("name", ["origin", "ahead", "aside", "yaw_start", "present"])
 def test_arrays_that_do_not_fit_are_refused(arrays, name):
     array = arrays[name]
     for other in (array[:1], array[..., :1], array.astype(np.float64) + 0.5, array.ravel()):
@@ -93,13 +100,13 @@ def test_arrays_that_do_not_fit_are_refused(arrays, name):
 
 
 def test_vehicles_out_of_the_world_are_refused(arrays):
-    far = np.full_like(arrays["position_second"], 30_000, np.int16)
-    assert "out of the world" in refused(packed({**arrays, "position_second": far}))
+    far = np.full_like(arrays["ahead"], 30_000, np.int16)
+    assert "out of the world" in refused(packed({**arrays, "ahead": far}))
 
 
 def test_larger_changes_than_there_are_places_are_refused(arrays):
-    for place in (arrays["position_second"].size, 2**40):
-        more = {"position_far": np.array([place]), "position_far_second": np.array([1000])}
+    for place in (arrays["ahead"].size, 2**40):
+        more = {"ahead_far": np.array([place]), "ahead_far_value": np.array([1000])}
         refused(packed({**arrays, **more}))
 
 
@@ -144,6 +151,23 @@ def test_a_bomb_is_not_decompressed():
                 member.write(bytes(1 << 20))
     assert len(buffer.getvalue()) < 4 << 20
     refused(buffer.getvalue())
+
+
+def test_a_bomb_of_xz_is_not_decompressed():
+    bomb = np.frombuffer(lzma.compress(bytes(64 << 20), preset=0), np.uint8)
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match="larger than"):
+            _expanded(bomb, 16 << 20)
+        assert tracemalloc.get_traced_memory()[1] < 40 << 20
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("content", [b"", b"no xz", lzma.compress(b"no npz")])
+def test_a_rest_that_is_none_is_refused(arrays, content):
+    rest = np.frombuffer(content, np.uint8)
+    refused(packed({"header": arrays["header"], "rest": rest}))
 
 
 def test_what_is_no_ordinary_file_is_not_read(tmp_path):

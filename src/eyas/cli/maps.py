@@ -1,6 +1,7 @@
 """`eyas maps`."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -93,10 +94,13 @@ def new_map(
 
 
 @app.command("info")
-def show_info(name: Name, seed: Seed = 0) -> None:
+def show_info(name: Name, seed: Seed = 0, *, as_json: AsJson = False) -> None:
     """Print figures of a map: its size, streets, buildings, trees, and whose data it is."""
-    from eyas.modes.maps.info import describe
+    from eyas.modes.maps.info import about, describe
 
+    if as_json:
+        typer.echo(json.dumps(asdict(about(name, seed)), indent=1))
+        return
     for line in describe(name, seed):
         typer.echo(line)
 

@@ -1,12 +1,23 @@
 """`eyas traffic`."""
 
+import json
 import re
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, Trust, chosen_file, gathered
+from eyas.cli.options import (
+    AsJson,
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Trust,
+    chosen_file,
+    gathered,
+)
 from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
@@ -84,11 +95,19 @@ def record(  # noqa: PLR0913  # one parameter for each option
 
 
 @app.command()
-def info(file: Annotated[Path, typer.Argument(help="A recording of traffic.")]) -> None:
+def info(
+    file: Annotated[Path, typer.Argument(help="A recording of traffic.")],
+    *,
+    as_json: AsJson = False,
+) -> None:
     """Print what is in a recording: its map and settings, vehicles, speeds, lasting tracks."""
-    from eyas.modes.traffic.recording import describe
+    from eyas.modes.traffic.about import about, lines_of
 
-    for line in describe(file):
+    said = about(file)
+    if as_json:
+        typer.echo(json.dumps(asdict(said), indent=1))
+        return
+    for line in lines_of(said):
         typer.echo(line)
 
 

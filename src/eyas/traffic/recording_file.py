@@ -1,14 +1,14 @@
-"""The file of a recording: a compressed npz of second differences over time, with a checksum.
+"""The file of a recording: an npz with the header, and the rest as bytes of the format xz.
 
-Cars change their speed slowly, so second differences of whole centimetres are mostly 0 or ±1, and
-a byte holds them; those that are larger, as where an actor appears elsewhere, have a list. A file
-has about 0.5 MB for 20 minutes of 40 cars. Time is the last axis. Equal recordings give equal
-bytes.
+The rest is an npz again, of the poses as `pose_steps` has them, with a checksum; files before 1.0
+(format 2) have all in one npz. A file has about 0.4 MB for 20 minutes of 40 cars. Time is the last
+axis. Equal recordings give equal bytes.
 """
 
 import hashlib
 import io
 import json
+import lzma
 import math
 import zipfile
 from contextlib import suppress
@@ -24,6 +24,7 @@ from eyas.core.config import shown, validated
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited, write_atomic
 from eyas.traffic.config import Mix, Signals, TrafficConfig, VehicleType
+from eyas.traffic.pose_steps import Arrays, packed, unpacked, unpacked_differences
 from eyas.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
@@ -36,16 +37,29 @@ from eyas.traffic.recording import (
 
 __all__ = ["FORMAT", "Outline", "RecordingFile", "from_bytes", "load", "save", "to_bytes"]
 
-FORMAT = "eyas traffic recording 2"
+FORMAT = "eyas traffic recording 3"
 """Format in the header of a file; another layout gets another number."""
+
+_BEFORE = "eyas traffic recording 2"
+"""Format before it, which is read as well."""
 
 _LARGEST = 256 << 20
 """Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
 
+_FILTERS = [
+    {
+        "id": lzma.FILTER_LZMA2,
+        "preset": 9 | lzma.PRESET_EXTREME,
+        "dict_size": 8 << 20,
+        "lc": 4,
+        "pb": 0,
+    }
+]
+"""Settings of LZMA for single bytes: their place says nothing, what stood before them much. With
+the preset's own dictionary it would need 0.7 GB."""
+
 _MOST_ARRAYS = 64
 """Largest number of arrays in a file."""
-
-Arrays = dict[str, NDArray[np.generic]]
 
 
 class Outline(NamedTuple):
@@ -132,13 +146,13 @@ def to_bytes(recording: Recording) -> bytes:
     yaw = quantised(recording.yaw, ANGLE_UNIT).T
     arrays: Arrays = {
         "header": np.frombuffer(json.dumps(header, sort_keys=True).encode(), np.uint8),
-        **_differences("position", position),
-        **_differences("yaw", yaw),
+        **packed(position, yaw),
         "present": np.packbits(recording.present.T, axis=-1),
     }
     arrays["checksum"] = _checksum(arrays)
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **arrays)
+    rest = _condensed({name: array for name, array in arrays.items() if name != "header"})
+    np.savez_compressed(buffer, allow_pickle=False, header=arrays["header"], rest=rest)
     return buffer.getvalue()
 
 
@@ -174,7 +188,7 @@ def from_bytes(data: bytes, source: str) -> Recording:
 def _recording(arrays: Arrays, source: str) -> Recording:
     """Return the recording of arrays that have any shapes and types."""
     header = json.loads(arrays["header"].tobytes())
-    position = restored(_integrated("position", arrays), POSITION_UNIT)
+    position, yaw = _poses(arrays, header["format"])
     samples = position.shape[-1]
     flags = arrays["present"].astype(np.uint8, casting="safe")
     if samples != header["shape"][0] or flags.shape[-1] != -(-samples // 8):
@@ -185,13 +199,20 @@ def _recording(arrays: Arrays, source: str) -> Recording:
     length = np.asarray(header["vehicle_length"], np.float64)
     return Recording(
         rate=outline.rate,
-        position=np.ascontiguousarray(position.transpose(2, 0, 1)),
-        yaw=np.ascontiguousarray(restored(_integrated("yaw", arrays), ANGLE_UNIT).T),
+        position=np.ascontiguousarray(restored(position, POSITION_UNIT).transpose(2, 0, 1)),
+        yaw=np.ascontiguousarray(restored(yaw, ANGLE_UNIT).T),
         present=np.ascontiguousarray(present.T.astype(np.bool_)),
         vehicle_types=outline.vehicle_types,
         vehicle_length=length if length.ndim else np.full(len(present), float(length)),
         provenance=outline.provenance,
     )
+
+
+def _poses(arrays: Arrays, kind: str) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return positions (A, 2, S) and headings (A, S) in whole units."""
+    if kind == _BEFORE:
+        return unpacked_differences("position", arrays), unpacked_differences("yaw", arrays)
+    return unpacked(arrays)
 
 
 def _fleet_header(recording: Recording) -> dict[str, Any]:
@@ -219,7 +240,7 @@ def _provenance(header: dict[str, Any], source: str) -> Provenance:
 
 def _read_arrays(data: bytes, source: str) -> Arrays:
     try:
-        arrays = _read_npz(data, _LARGEST)
+        arrays = _unpacked_npz(data)
     except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
         raise DataFileError(f"{source}: not a complete traffic recording") from error
     if {"header", "checksum"} - set(arrays):
@@ -228,7 +249,7 @@ def _read_arrays(data: bytes, source: str) -> Arrays:
         raise DataFileError(f"{source}: damaged: its checksum does not match its content")
     with suppress(ValueError, TypeError, LookupError, RecursionError):
         kind = json.loads(arrays["header"].tobytes())["format"]
-        if kind == FORMAT:
+        if kind in (FORMAT, _BEFORE):
             return arrays
         raise DataFileError(f"{source}: format {shown(kind)} (allowed: '{FORMAT}')")
     raise DataFileError(f"{source}: not a traffic recording: its header cannot be read")
@@ -243,28 +264,30 @@ def _checksum(arrays: Arrays) -> NDArray[np.uint8]:
     return np.frombuffer(digest.digest(), np.uint8)
 
 
-def _differences(name: str, values: NDArray[np.int64]) -> Arrays:
-    """Return the first two samples and the second differences along the last axis."""
-    second = np.diff(values, n=2, axis=-1)
-    far = np.flatnonzero(np.abs(second) > np.iinfo(np.int8).max)
-    values_far = second.flat[far].astype(np.int32)
-    second.flat[far] = 0
-    return {
-        f"{name}_start": values[..., :2].astype(np.int32),
-        f"{name}_second": second.astype(np.int8),
-        f"{name}_far": far.astype(np.int64),
-        f"{name}_far_second": values_far,
-    }
+def _unpacked_npz(data: bytes) -> Arrays:
+    """Return the arrays of a file, those in the rest among them."""
+    arrays = _read_npz(data, _LARGEST)
+    return arrays | _expanded(arrays.pop("rest"), _LARGEST) if "rest" in arrays else arrays
 
 
-def _integrated(name: str, arrays: Arrays) -> NDArray[np.int64]:
-    start = arrays[f"{name}_start"].astype(np.int64, casting="safe")
-    second = arrays[f"{name}_second"].astype(np.int64, casting="safe")
-    far = arrays[f"{name}_far"].astype(np.int64, casting="safe")
-    second.flat[far] = arrays[f"{name}_far_second"]
-    first = np.concatenate([np.diff(start, axis=-1), second], axis=-1).cumsum(axis=-1)
-    values: NDArray[np.int64] = np.concatenate([start[..., :1], first], axis=-1).cumsum(axis=-1)
-    return values
+def _condensed(arrays: Arrays) -> NDArray[np.uint8]:
+    """Return arrays as an npz file that is compressed with LZMA as a whole."""
+    buffer = io.BytesIO()
+    np.savez(buffer, allow_pickle=False, **arrays)
+    return np.frombuffer(lzma.compress(buffer.getvalue(), filters=_FILTERS), np.uint8)
+
+
+def _expanded(content: NDArray[np.generic], largest: int) -> Arrays:
+    """Return the arrays of `_condensed`, if they have less than so many bytes.
+
+    Raises:
+        Exception: The content is damaged, too large or something else.
+    """
+    machine = lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=largest)
+    data = machine.decompress(content.tobytes(), largest)
+    if not machine.eof:
+        raise ValueError(f"cut off, or larger than {largest} bytes")
+    return _read_npz(data, largest)
 
 
 def _read_npz(data: bytes, largest: int) -> dict[str, NDArray[np.generic]]:

@@ -1,5 +1,6 @@
 """Values that are kept from run to run, by real processes too."""
 
+import gc
 import os
 import re
 import shutil
@@ -286,3 +287,21 @@ def test_nothing_of_ours_is_unpickled():
     sources = list(Path(eyas.__file__).parent.rglob("*.py"))
     assert len(sources) > 100
     assert [path.name for path in sources if unpickles.search(path.read_text())] == []
+
+
+def test_garbage_is_not_looked_for_while_a_value_is_made_and_is_again_after(tmp_path):
+    seen = []
+
+    class Watched(Maker):
+        def __call__(self):
+            seen.append(gc.isenabled())
+            return super().__call__()
+
+    town(Watched(), tmp_path)
+    assert (seen, gc.isenabled()) == ([False], True)
+    gc.disable()
+    try:
+        town(Watched(), tmp_path, (3,))
+        assert not gc.isenabled()
+    finally:
+        gc.enable()

@@ -18,7 +18,7 @@ from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import Original
 
-__all__ = ["Figures", "describe", "figures_of", "make_another", "street_lines"]
+__all__ = ["About", "Figures", "about", "describe", "figures_of", "make_another", "street_lines"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,18 +119,68 @@ def _ways(network: RoadNetwork) -> list[tuple[int, shapely.LineString]]:
     return lines
 
 
+@dataclass(frozen=True, slots=True)
+class About:
+    """What there is to say about a map with a seed."""
+
+    name: str
+    title: str
+    seed: int
+    weathers: tuple[str, ...]
+    figures: Figures
+    crossings: int
+    """From pavement to pavement."""
+    crossings_with_lights: int
+    original: Original | None
+    """Figures of the map of the DAT benchmark that it stands for."""
+    recorded_traffic: list[str]
+    """Names of the recordings that ship with it."""
+    folder: str | None
+    """Where the files of an imported map are."""
+    attribution: list[str]
+    """Whose data it is."""
+
+
+def about(name: str, seed: int) -> About:
+    """Return what there is to say about a map.
+
+    Raises:
+        EyasError: There is no such map, or it cannot be built.
+    """
+    recipe, scene = MAPS.get(name), load_scene(name, seed)
+    lights = usable_crossings(scene)
+    return About(
+        name=recipe.name,
+        title=recipe.title,
+        seed=seed,
+        weathers=tuple(recipe.weathers),
+        figures=figures_of(scene),
+        crossings=len(lights),
+        crossings_with_lights=sum(map(bool, lights)),
+        original=recipe.original,
+        recorded_traffic=[
+            file.name
+            for file in recipe.shipped_traffic()
+            # An imported map has its streets at any seed.
+            if recipe.home is not None or _town_of(file) == seed
+        ],
+        folder=None if recipe.home is None else str(recipe.home),
+        attribution=recipe.attribution().splitlines(),
+    )
+
+
 def describe(name: str, seed: int) -> list[str]:
     """Return what `eyas maps info` prints.
 
     Raises:
         EyasError: There is no such map, or it cannot be built.
     """
-    recipe = MAPS.get(name)
-    said = figures_of(load_scene(name, seed))
+    known = about(name, seed)
+    said, lit = known.figures, known.crossings_with_lights
     area = max(said.area, 1e-9)
     lines = [
-        f"{recipe.name}: {recipe.title}",
-        f"weathers: {', '.join(recipe.weathers)}",
+        f"{known.name}: {known.title}",
+        f"weathers: {', '.join(known.weathers)}",
         f"floor: {said.size[0]:.0f} x {said.size[1]:.0f} m; streets within {said.area:.2f} km2",
         f"streets: {said.road:.2f} km, {said.between:.2f} km without junctions "
         f"({said.road / area:.1f} km per km2)",
@@ -139,25 +189,16 @@ def describe(name: str, seed: int) -> list[str]:
         f"median height {said.height:.0f} m",
         f"trees: {said.trees} ({said.trees / area:.0f} per km2)"
         + (f", in {said.stands} stands" if said.stands else ""),
+        f"crossings from pavement to pavement: {known.crossings}"
+        + (f", of which {lit} have traffic lights" if lit else ""),
     ]
-    lights = usable_crossings(load_scene(name, seed))
-    lit = sum(map(bool, lights))
-    lines.append(
-        f"crossings from pavement to pavement: {len(lights)}"
-        + (f", of which {lit} have traffic lights" if lit else "")
-    )
-    if recipe.original is not None:
-        lines.append(_of_the_original(recipe.original))
-    recorded = [
-        file.name
-        for file in recipe.shipped_traffic()
-        # An imported map has its streets at any seed.
-        if recipe.home is not None or _town_of(file) == seed
-    ]
-    lines.append(f"recorded traffic: {', '.join(recorded) or 'none; recorded on first use'}")
-    if recipe.home is not None:
-        lines.append(f"folder: {recipe.home}")
-    return lines + recipe.attribution().splitlines()
+    if known.original is not None:
+        lines.append(_of_the_original(known.original))
+    recorded = ", ".join(known.recorded_traffic) or "none; recorded on first use"
+    lines.append(f"recorded traffic: {recorded}")
+    if known.folder is not None:
+        lines.append(f"folder: {known.folder}")
+    return lines + known.attribution
 
 
 def _town_of(file: Traversable) -> int:
