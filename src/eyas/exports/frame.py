@@ -43,8 +43,8 @@ Output = Literal[
     "events",
     "traffic",
 ]
-"""Name of a field of `Frame` that costs time: a picture, the other moving objects, the target in
-words, moving parts, pictures of other cameras, events, or all actors.
+"""Name of a field of `Frame`, or of its target, that costs time: a picture, the other moving
+objects, the target in words, moving parts, pictures of other cameras, events, or all actors.
 """
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
