@@ -1,5 +1,6 @@
 """What an edit of the sources changes: kernels that compute something else, and no others."""
 
+import itertools
 import json
 import os
 import shutil
@@ -53,16 +54,23 @@ def edited(tmp_path_factory):
     before = told()
     assert {"_fly", "_carry", "_begin", "draw_views", "_list_actors"} <= set(before)
 
+    seconds = itertools.count(1)
+
+    def write(path, text):
+        """Write a file with a time of its own: Python takes an old .pyc of the same size and second for current."""
+        path.write_text(text)
+        os.utime(path, (second := next(seconds), second))
+
     def others(edits):
         texts = {copy / name: (copy / name).read_text() for name in edits}
         for path, text in texts.items():
             for old, new in edits[path.relative_to(copy).as_posix()].items():
                 assert old in text
                 text = text.replace(old, new, 1)
-            path.write_text(text)
+            write(path, text)
         after = told()
         for path, text in texts.items():
-            path.write_text(text)
+            write(path, text)
         assert set(after) == set(before)
         return {name for name in after if after[name] != before[name]}
 
