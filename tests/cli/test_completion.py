@@ -32,6 +32,7 @@ WORDS = [
     (["eyas", "maps", "export", "--li"], set()),  # `eyas export` has --link
     (["eyas", "leaderboard", "verify", "--s"], {"--seed", "--share"}),
 ]
+IDS = [" ".join(words) for words, _ in WORDS]
 
 
 def _script(shell, folder):
@@ -57,7 +58,7 @@ def fish(tmp_path_factory):
     return _script(Shell.FISH, tmp_path_factory.mktemp("completion"))
 
 
-@pytest.mark.parametrize(("words", "told"), WORDS, ids=lambda each: " ".join(each))
+@pytest.mark.parametrize(("words", "told"), WORDS, ids=IDS)
 def test_bash_completes(bash, words, told):
     done = subprocess.run(
         ["bash", "-c", BASH, "bash", bash, *words], capture_output=True, text=True, check=True
@@ -65,7 +66,7 @@ def test_bash_completes(bash, words, told):
     assert set(done.stdout.split()) == told
 
 
-@pytest.mark.parametrize(("words", "told"), WORDS, ids=lambda each: " ".join(each))
+@pytest.mark.parametrize(("words", "told"), WORDS, ids=IDS)
 def test_fish_completes(fish, words, told, tmp_path):
     done = subprocess.run(
         [_program("fish"), "--no-config", "-c", FISH, fish, *words],
