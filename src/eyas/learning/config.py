@@ -123,6 +123,7 @@ class TrackerTraining(Config):
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
         Round(flights=18, steps=1000),
         Round(flights=12, steps=900),
+        Round(flights=9, steps=900),
         Round(flights=0, steps=1600),
     )
     """Flights and lessons; the first round needs flights."""

@@ -14,8 +14,12 @@ __all__ = ["GROUP", "Sample", "Samples"]
 GROUP = 4
 """Pictures of one flight in a group: some of them show the target whose key others are given."""
 
-_ENOUGH = 0.15
-"""Share of a target that must be visible for it to count as seen."""
+_ENOUGH = 0.3
+"""Share of a target that must be visible for it to count as seen. Of less the network tells the
+place badly: at the edge of cover, where the target has driven on."""
+
+_EITHER = 0.05
+"""Around that share either answer is right."""
 
 _HARD = 0.5
 """Share of the groups that are chosen for a picture in which it is hard."""
@@ -40,7 +44,7 @@ class Sample(NamedTuple):
     seen: Tensor
     """Whether the target is seen, shape (B,)."""
     unclear: Tensor
-    """Whether that is a matter of taste, shape (B,)."""
+    """Whether that is neither right nor wrong, shape (B,)."""
     expected: Tensor
     """Shape (B, 2)."""
     spread: Tensor
@@ -79,7 +83,8 @@ class Samples:
             turned = mirror[:, axis][:, None]
             for each in (place, expected):
                 each[..., axis] = np.where(turned, size[axis] - each[..., axis], each[..., axis])
-        parts = (picture, place, seen, inside & ~seen & (share > 0.0), expected, spread)
+        unclear = inside & (np.abs(share - _ENOUGH) < _EITHER)
+        parts = (picture, place, seen, unclear, expected, spread)
         return Sample(*(torch.from_numpy(_flat(part)) for part in parts))
 
     def _chosen(self, groups: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

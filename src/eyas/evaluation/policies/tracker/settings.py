@@ -33,8 +33,10 @@ class TrackerSettings(Config):
     """Largest standard deviation of a place [m]."""
     floor: Positive = 1.0
     """Standard deviation of what the filter does not know of, which the network is told too [m]."""
-    noise: Positive = 0.3
-    """Of a place that the network finds, besides what it says itself [m]."""
+    noise: Positive = 0.9
+    """Of a place that the network finds, besides what it says itself [m]. Its mistakes last for
+    several looks, which the filter takes for independent: by a smaller noise it would follow them.
+    """
     believed: Share = 0.5
     """Least probability of one place, with those around it, at which the filter takes it."""
     remembered: Share = 0.9
