@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import pickle
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -159,7 +160,8 @@ def _steps(env: TrackingEnv, pipe: Any) -> None:
     pipe.send([env.step(0) for _ in range(3)])
 
 
-def test_another_process_goes_on_with_a_copy() -> None:
+def test_another_process_goes_on_with_a_copy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(Path(__file__).parents[2])  # where it finds `_steps`
     env = TrackingEnv({"env": {"observation": SMALL}})
     env.reset(seed=5)
     env.step(1)

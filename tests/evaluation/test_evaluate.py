@@ -109,11 +109,27 @@ def test_what_the_protocol_fixes_is_refused():
             _changes([text])
 
 
-def test_a_killed_evaluation_continues_to_the_same_bytes(whole, tmp_path):
-    arguments = ["--policy", "random", "--episodes", "2", "--batch", "2", "--out", str(tmp_path)]
-    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", *arguments]
-    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-    records = tmp_path / "episodes.jsonl"
+SLOW = """
+import os, time
+
+def act(picture):
+    time.sleep(float(os.environ.get("EYAS_TEST_SLEEP", 0)))
+    return 6
+"""
+
+
+def test_a_killed_evaluation_continues_to_the_same_bytes(tmp_path, monkeypatch):
+    """Its policy takes its time, so that no machine is fast enough to end before the kill."""
+    (tmp_path / "slow_hover.py").write_text(SLOW)
+    monkeypatch.syspath_prepend(tmp_path)
+    plan = PLAN.model_copy(update={"policy": "slow_hover:act"})
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    run(plan, whole, quiet=True)
+    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", "--policy", plan.policy]
+    command += ["--episodes", "2", "--batch", "2", "--out", str(killed)]
+    own = {"EYAS_TEST_SLEEP": "0.01", "PYTHONPATH": os.pathsep.join(sys.path)}
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL, env={**os.environ, **own})
+    records = killed / "episodes.jsonl"
     while not (records.exists() and records.read_bytes().count(b"\n") >= 2):
         assert process.poll() is None
         time.sleep(0.005)
@@ -123,9 +139,9 @@ def test_a_killed_evaluation_continues_to_the_same_bytes(whole, tmp_path):
     assert flown < 8, "killed too late to test anything"
     with records.open("ab") as file:
         file.write(b'{"name": "torn')  # as a kill in the middle of a line leaves it
-    run(PLAN, tmp_path, resume=True, quiet=True)
+    run(plan, killed, resume=True, quiet=True)
     for name in FILES:
-        assert (tmp_path / name).read_bytes() == (whole / name).read_bytes(), name
+        assert (killed / name).read_bytes() == (whole / name).read_bytes(), name
 
 
 def test_a_batch_of_which_a_part_is_missing_is_flown_again(whole, tmp_path):

@@ -199,16 +199,21 @@ def test_what_would_change_nothing_is_refused(changes, why, tmp_path):
 
 def test_steps_are_pictures_in_lessons():
     tracker = load_settings(preset_file("eyas")).train.tracker
-    assert tracker.pictures == 448_000
+    assert tracker.pictures == 563_200
     small = updated(tracker, {"rounds": tracker.scaled_rounds(12_800)})
-    assert [(each.flights, each.steps) for each in small.rounds] == [(1, 29), (1, 26), (0, 46)]
+    assert [(each.flights, each.steps) for each in small.rounds] == [
+        (1, 23),
+        (1, 20),
+        (1, 20),
+        (0, 36),
+    ]
     with pytest.raises(ConfigError, match=r"rounds.0.flights: 0 is not allowed"):
         updated(tracker, {"rounds": [{"flights": 0, "steps": 5}]})
 
 
 @pytest.mark.slow
 def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
-    """The command with short flights, of the second round by what the first has taught."""
+    """The command with short flights, those of later rounds by what earlier ones have taught."""
     monkeypatch.setattr(flights, "_STEPS", 400)
     monkeypatch.setattr(flights, "_FLIGHTS", 2)
     out = tmp_path / "run"
@@ -217,8 +222,8 @@ def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     result = CliRunner().invoke(app, [*command, *size])
     assert result.exit_code == 0, result.output
     said = result.stdout.splitlines()
-    assert said[0] == "2 batches of 32 flights, 384 pictures in lessons"
-    assert "round 1: flights 2 of 2: " in result.stdout
+    assert said[0] == "3 batches of 32 flights, 512 pictures in lessons"
+    assert "round 2: flights 3 of 3: " in result.stdout
     assert said[-1] == str(out / "policy.onnx")
     assert open_policy(said[-1], {}).env.observation.width == SIZE[1]
     assert open_policy(str(out / "policy-flown.onnx"), {}).settings == FLOWN
