@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from eyas.core.errors import OutputError
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
 from eyas.sensors.config import CameraConfig
@@ -96,6 +97,23 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(settings, tmp_path,
             check_whole(out, recorded)
         if attempt % 3 == 2 or attempt == KILLS - 1:
             check_resumed(out, recorded)
+
+
+@pytest.mark.parametrize("last", ["version.json", "config.json", "env_config.json"])
+def test_broken_off_among_its_first_files_it_goes_on(tmp_path, recorded, last):
+    (tmp_path / "out").mkdir()
+    for name in ("version.json", "config.json", "env_config.json"):
+        (tmp_path / "out" / name).write_bytes(recorded[name])
+        if name == last:
+            break
+    check_resumed(tmp_path / "out", recorded)
+
+
+def test_a_file_of_others_with_the_name_of_its_first_one_is_kept(tmp_path):
+    (tmp_path / "version.json").write_text('{"mine": 1}')
+    with pytest.raises(OutputError, match="unknown version"):
+        video.run(CONFIG, tmp_path, resume=True, quiet=True)
+    assert contents(tmp_path) == {"version.json": b'{"mine": 1}'}
 
 
 def stopped(process: subprocess.Popen[str], reason: str) -> None:

@@ -44,6 +44,10 @@ _NOT_PICTURED = ("learning", "mavlink", "wire")
 
 _OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
 
+_FIRST = frozenset((ORIGIN, ATTRIBUTION_FILE))
+"""Files that are written before the settings: a folder that has no others was broken off there, and
+is begun anew when it is to be continued."""
+
 
 class VideoFolder:
     """The folders and the writers of the episodes of a recording.
@@ -114,14 +118,15 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
             return
         if not path.is_dir():
             raise OutputError(f"{path}: is a file; name a folder")
-        names = [inside.name for inside in path.iterdir()]
-    used = any(name != LOCK and not name.endswith(PART_SUFFIX) for name in names)
+        names = {inside.name for inside in path.iterdir()} - {LOCK}
+    used = {name for name in names if not name.endswith(PART_SUFFIX)}
     if used and overwrite:
         _require_recording(path, _contents(path, config))
     elif used and resume:
         _require_plain(path)
         _require_same_build(path)
-        _require_same_settings(path, config)
+        if not used <= _FIRST:
+            _require_same_settings(path, config)
     elif used:
         raise OutputError(
             f"{path}: not empty; continue its recording with --resume, replace it with"
@@ -149,8 +154,6 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
         if overwrite:
             _delete_recording(path)
         _delete_parts(path, _contents(path, config))
-    save_settings(config, path / SETTINGS)
-    save_legacy(config, path / LEGACY_SETTINGS)
     folder = VideoFolder(path, config)
     files = joined(writer.files for writer in folder.writers)
     build = this_build()
@@ -158,10 +161,12 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
         **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
         "files": asdict(files),
     }
+    write_atomic(path / ORIGIN, (json.dumps(origin) + "\n").encode())
     notice = MAPS.get(config.world.map).attribution()
     if notice:
         write_atomic(path / ATTRIBUTION_FILE, notice.encode())
-    write_atomic(path / ORIGIN, (json.dumps(origin) + "\n").encode())
+    save_settings(config, path / SETTINGS)
+    save_legacy(config, path / LEGACY_SETTINGS)
     return folder
 
 
@@ -219,7 +224,7 @@ def _delete_recording(path: Path) -> None:
 
 def _require_same_build(path: Path) -> None:
     """Refuse to continue a recording of another build of Eyas, whose pictures may differ."""
-    if not (path / SETTINGS).is_file():
+    if not (path / SETTINGS).is_file() and not (path / ORIGIN).is_file():
         return  # not a recording, and refused as such
     try:
         origin = _origin(path)
