@@ -17,10 +17,11 @@ from eyas.exports.gltf.file import GltfFile
 from eyas.exports.gltf.world import add_lamps, add_world
 from eyas.exports.welding import welded
 from eyas.mesh.assembly import transformed
-from eyas.modes.maps import plan_files
+from eyas.modes.maps import plan_files, usd
 from eyas.modes.maps.export import ExportOptions, MapFormat, export, format_named
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Lamps, ObjectClass, Scene
+from eyas.world.plants.wild import WILD
 
 NODE = """
 require("gltf-validator").validateBytes(new Uint8Array(require("fs").readFileSync(process.argv[1])))
@@ -239,8 +240,6 @@ def stage(scene, monkeypatch, tmp_path):
     del pxr
     from pxr import Usd
 
-    from eyas.modes.maps import usd
-
     houses = np.array([[20, 0], [22, 0], [22, 2], [21, 1], [20, 2]], float)
     solid = replace(
         scene.colliders,
@@ -334,6 +333,17 @@ def test_the_validators_of_usd_have_nothing_to_remark(stage):
     assert len(every) >= 20
     errors = UsdValidation.ValidationContext(every).Validate(stage)
     assert [error.GetMessage() for error in errors] == []
+
+
+@pytest.mark.parametrize("plant", WILD)
+def test_faces_in_usd_front_the_side_to_which_their_normals_point(plant):
+    """So says omniverse-asset-validator of each mesh, as a whole."""
+    for level in WILD[plant](np.random.default_rng(1))[:2]:
+        mesh, thin = usd._fronting(level)
+        first, second, third = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
+        front = np.cross(second - first, third - first)
+        assert (front * mesh.normals[mesh.triangles].sum(axis=1)).sum() > 0.0
+        assert thin == ("tuft" in plant or "reeds" in plant)
 
 
 def test_other_endings_than_those_of_stages_are_refused(tmp_path):

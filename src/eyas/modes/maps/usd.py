@@ -3,6 +3,7 @@
 import io
 import math
 from collections import Counter
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,6 +79,10 @@ def _png(pixels: NDArray[np.uint8]) -> bytes:
     png = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).save(png, format="PNG")
     return png.getvalue()
+
+
+_FEW = 0.1
+"""Share of the faces of a smooth solid whose normals may point away from their front."""
 
 
 class _Stage:
@@ -209,6 +214,7 @@ class _Stage:
         """
         from pxr import Sdf, UsdGeom, UsdShade, Vt
 
+        mesh, thin = _fronting(mesh)
         made, shape = UsdGeom.Mesh.Define(self.stage, path), welded(mesh)
         self._shape(made, *shape.points)
         types = Sdf.ValueTypeNames
@@ -223,7 +229,7 @@ class _Stage:
             corners.Set(array.FromNumpy(np.ascontiguousarray(told.values, np.float32)))
             corners.SetIndices(Vt.IntArray.FromNumpy(told.corners.ravel().astype(np.int32)))
         used = np.unique(shape.materials).tolist()
-        if any(mesh.palette[index].surface is Surface.FOLIAGE for index in used):
+        if thin or any(mesh.palette[index].surface is Surface.FOLIAGE for index in used):
             made.CreateDoubleSidedAttr(defaultValue=True)
         for index in used:
             place = self._materials[mesh.palette[index]]
@@ -333,6 +339,19 @@ class _Stage:
         made.CreatePurposeAttr(UsdGeom.Tokens.guide)
         UsdPhysics.CollisionAPI.Apply(made.GetPrim())
         self._label(made.GetPrim(), kind)
+
+
+def _fronting(mesh: Mesh) -> tuple[Mesh, bool]:
+    """Return a mesh whose faces front the side to which their normals point, and whether faces had
+    to be turned: those of blades of grass, which are seen from both sides and lit like the tuft.
+    """
+    first, second, third = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
+    front = np.cross(second - first, third - first)
+    away = (front * mesh.normals[mesh.triangles[:, 0]]).sum(axis=1) < 0.0
+    if not away.sum() > _FEW * len(away):
+        return mesh, False
+    triangles = np.where(away[:, None], mesh.triangles[:, [0, 2, 1]], mesh.triangles)
+    return replace(mesh, triangles=triangles), True
 
 
 def _valid(name: str) -> str:
