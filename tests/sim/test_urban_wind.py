@@ -126,9 +126,9 @@ def test_drones_feel_it_on_a_map():
 
 
 def test_maps_that_are_too_large_are_refused_in_one_line(monkeypatch):
-    heights = np.zeros((10, 400), np.float32)
-    heights[5, 5] = heights[5, 395] = 20.0
+    heights = np.zeros((10, 500), np.float32)
+    heights[5, 5] = heights[5, 495] = 20.0
     monkeypatch.setattr(urban_wind, "height_map", lambda *_: heights)
-    scene = SimpleNamespace(size=(2000.0, 50.0), terrain=Terrain.flat(0.0), name="long")
+    scene = SimpleNamespace(size=(2500.0, 50.0), terrain=Terrain.flat(0.0), name="long")
     with pytest.raises(ConfigError, match=r"^tracker\.wind\.buildings: true is not allowed"):
         urban_wind.wind_field(scene)

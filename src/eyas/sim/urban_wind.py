@@ -33,7 +33,7 @@ _SPACING = 5.0
 _LEVELS, _KEPT = 20, 13
 """Levels that are computed, and those that are kept: up to 65 m."""
 
-_MARGIN, _MOST = 12, 300
+_MARGIN, _MOST = 12, 400
 """Columns around the buildings that are computed, too, and the most on a side."""
 
 _DIRECTIONS = 16
