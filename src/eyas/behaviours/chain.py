@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 
-__all__ = ["Chain", "Poses", "chain_of", "chain_through", "joints", "outline", "poses_on"]
+__all__ = ["Chain", "Poses", "chain_of", "chain_through", "headings", "joints", "outline", "poses_on"]
 
 _SHARP: Final = 2.0
 """Corners sharper than this are turned on the spot [rad]."""
@@ -91,13 +91,18 @@ def chain_through(points: Floats, radius: float, rounds: int) -> Chain:
 
 def joints(chain: Chain) -> Poses:
     """Return the poses at the beginnings of the pieces, after their spins, and at the end."""
-    turned = chain.curvature * chain.length
-    yaw = chain.start[2] + np.cumsum(chain.spin) + np.cumsum(turned) - turned
-    dx, dy = _moved(yaw, chain.length, chain.curvature)
+    yaw = headings(chain)
+    dx, dy = _moved(yaw[:-1], chain.length, chain.curvature)
     x = chain.start[0] + np.concatenate([[0.0], np.cumsum(dx)])
     y = chain.start[1] + np.concatenate([[0.0], np.cumsum(dy)])
-    end = yaw[-1:] + turned[-1:]
-    return Poses(x, y, np.concatenate([yaw, end]))
+    return Poses(x, y, yaw)
+
+
+def headings(chain: Chain) -> Floats:
+    """Return the headings of `joints` alone, which cost a tenth [rad], shape (M + 1,)."""
+    turned = chain.curvature * chain.length
+    yaw: Floats = chain.start[2] + np.cumsum(chain.spin) + np.cumsum(turned) - turned
+    return np.concatenate([yaw, yaw[-1:] + turned[-1:]])
 
 
 def poses_on(chain: Chain, piece: NDArray[np.int64], along: Floats) -> Poses:

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.chain import Chain, Poses, chain_of, chain_through, joints
+from eyas.behaviours.chain import Chain, Poses, chain_of, chain_through, headings
 from eyas.behaviours.crossings import Crossing
 from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.pavements import Walkway
@@ -71,7 +71,7 @@ def crossing_walk(
         made.begins.append(time)
         time += time_of(walk, habit)
         way, along = crossing.way, crossing.along
-        heading, over = float(joints(walk).yaw[-1]), crossing.line[1] - crossing.line[0]
+        heading, over = float(headings(walk)[-1]), crossing.line[1] - crossing.line[0]
         straight = chain_of(
             [(0.0, float(exact.hypot(*over)), 0.0)], (*crossing.line[0].tolist(), heading)
         )
@@ -150,7 +150,7 @@ def _walk(
         first = heading
     path = Chain((*whole.start[:2], first), spin, whole.length[:count], bends)
     over = crossing.line[1] - crossing.line[0]
-    turn = math.remainder(exact.atan2(over[1], over[0]) - joints(path).yaw[-1], 2.0 * math.pi)
+    turn = math.remainder(exact.atan2(over[1], over[0]) - headings(path)[-1], 2.0 * math.pi)
     return Chain(
         path.start,
         np.append(path.spin, turn),

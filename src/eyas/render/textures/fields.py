@@ -4,6 +4,7 @@ Fields have shape (256, 256), pictures (256, 256, 3) with colours 0 to 255 as fl
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,14 +61,20 @@ def fractal(
         longest: Longest wave [pixels]; a short limit hides that the texture repeats.
         stretch: Factors on the length of features in y and x.
     """
-    frequency_y = np.fft.fftfreq(SIZE)[:, None] * stretch[0]
-    frequency_x = np.fft.rfftfreq(SIZE)[None] * stretch[1]
-    frequency = exact.hypot(frequency_y, frequency_x)
-    gain = exact.power(np.maximum(frequency, 1e-9), -slope)
-    gain *= 1.0 / (1.0 + exact.power(1.0 / (np.maximum(frequency, 1e-9) * longest), 6))
+    frequency, gain = _fall(slope, stretch)
+    gain = gain * (1.0 / (1.0 + exact.power(1.0 / (frequency * longest), 6)))
     gain[0, 0] = 0.0
     field = np.fft.irfft2(np.fft.rfft2(white(rng)) * gain, (SIZE, SIZE))
     return np.asarray(field / field.std(), np.float64)
+
+
+@lru_cache(maxsize=16)  # most textures have a few of the same, one after the other
+def _fall(slope: float, stretch: tuple[float, float]) -> tuple[Field, Field]:
+    """Return the frequencies of a field [1/pixel], at least 1e-9, and its amplitudes at them."""
+    frequency_y = np.fft.fftfreq(SIZE)[:, None] * stretch[0]
+    frequency_x = np.fft.rfftfreq(SIZE)[None] * stretch[1]
+    frequency = np.maximum(exact.hypot(frequency_y, frequency_x), 1e-9)
+    return frequency, exact.power(frequency, -slope)
 
 
 def blurred(field: Field, radius: float) -> Field:

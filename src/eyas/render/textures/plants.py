@@ -1,5 +1,6 @@
 """Textures of plants: bark, clusters of leaves with holes between them, and closed foliage."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,7 @@ def bark() -> NDArray[np.uint8]:
     return opaque(mixed(picture, (150.0, 158.0, 128.0), 0.35 * lichen))
 
 
+@cache
 def leaves() -> NDArray[np.uint8]:
     """Return two by two clusters of leaves, alpha 0 around and between them.
 
@@ -46,6 +48,7 @@ def leaves() -> NDArray[np.uint8]:
     return picture.astype(np.uint8)
 
 
+@cache
 def foliage() -> NDArray[np.uint8]:
     """Return leaves without holes: for clipped hedges and the inside of crowns."""
     rng = source("foliage")
@@ -132,11 +135,13 @@ def _leaf(
     low, high = np.floor(middle - half).astype(int), np.ceil(middle + half).astype(int) + 1
     rows, columns = np.arange(low[0], high[0]), np.arange(low[1], high[1])
     dy, dx = rows[:, None] - middle[0], columns - middle[1]
-    along = (dx * exact.cos(way) + dy * exact.sin(way)) / half
-    off = (-dx * exact.sin(way) + dy * exact.cos(way)) / half
-    inside = np.abs(off) < 0.44 * (1 - np.square(along)) * (1 - 0.25 * along)
-    shade = 1 + 0.16 * np.sign(off) * (np.abs(off) > 0.06) + 0.1 * along
-    shade = np.where(np.abs(off) <= 0.06, 1.28, shade)
+    cosine, sine = exact.cos(way), exact.sin(way)
+    along = (dx * cosine + dy * sine) / half
+    off = (-dx * sine + dy * cosine) / half
+    aside = np.abs(off)
+    inside = aside < 0.44 * (1 - np.square(along)) * (1 - 0.25 * along)
+    shade = 1 + 0.16 * np.sign(off) * (aside > 0.06) + 0.1 * along
+    shade = np.where(aside <= 0.06, 1.28, shade)
     rgba = np.full((len(rows), len(columns), 4), 255.0)
     rgba[..., :3] = np.clip(np.round(shade[..., None] * colour), 0.0, 255.0)
     return _Leaf(rows, columns, inside, rgba)
