@@ -79,20 +79,10 @@ def commands() -> str:
     import typer
 
     from eyas.cli.app import app
+    from eyas.cli.completion import commands as all_commands
 
-    return "\n\n".join(
-        _command(path, one) for path, one in _leaves("eyas", typer.main.get_command(app))
-    )
-
-
-def _leaves(path: str, command: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401  # click's
-    """Yield the commands of a group, and of groups in it, that do something."""
-    below = getattr(command, "commands", None)
-    if below is None:
-        yield path, command
-        return
-    for name in sorted(below):
-        yield from _leaves(f"{path} {name}", below[name])
+    every = sorted(all_commands("eyas", typer.main.get_command(app)), key=lambda one: one[0])
+    return "\n\n".join(_command(path, one) for path, one in every if not hasattr(one, "commands"))
 
 
 def _command(path: str, command: Any) -> str:  # noqa: ANN401  # click's

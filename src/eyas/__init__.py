@@ -62,12 +62,6 @@ if TYPE_CHECKING:
     from eyas.mesh.shell import Shell as Shell
     from eyas.modes.api import evaluate as evaluate
     from eyas.modes.api import export as export
-    from eyas.modes.api import list_formats as list_formats
-    from eyas.modes.api import list_maps as list_maps
-    from eyas.modes.api import list_policies as list_policies
-    from eyas.modes.api import list_presets as list_presets
-    from eyas.modes.api import list_targets as list_targets
-    from eyas.modes.api import list_weathers as list_weathers
     from eyas.modes.api import make as make
     from eyas.modes.api import make_config as make_config
     from eyas.modes.api import make_dataset as make_dataset
@@ -75,6 +69,12 @@ if TYPE_CHECKING:
     from eyas.modes.api import record as record
     from eyas.modes.api import track as track
     from eyas.modes.api import train as train
+    from eyas.modes.names import list_formats as list_formats
+    from eyas.modes.names import list_maps as list_maps
+    from eyas.modes.names import list_policies as list_policies
+    from eyas.modes.names import list_presets as list_presets
+    from eyas.modes.names import list_targets as list_targets
+    from eyas.modes.names import list_weathers as list_weathers
     from eyas.settings.config import EyasConfig as EyasConfig
     from eyas.settings.file import load_settings as load_settings
     from eyas.sim.build import build_simulation as build_simulation
@@ -149,9 +149,12 @@ _PLACES = {
     "lanes": ("kernel",),
     "mesh.shell": ("Shell",),
     "modes.api": (
-        *("evaluate", "export", "list_formats", "list_maps", "list_policies", "list_presets"),
-        *("list_targets", "list_weathers", "make", "make_config", "make_dataset", "make_vec"),
+        *("evaluate", "export", "make", "make_config", "make_dataset", "make_vec"),
         *("record", "track", "train"),
+    ),
+    "modes.names": (
+        *("list_formats", "list_maps", "list_policies", "list_presets", "list_targets"),
+        "list_weathers",
     ),
     "settings.config": ("EyasConfig",),
     "settings.file": ("load_settings",),

@@ -4,6 +4,7 @@ import os
 import pty
 import shutil
 import subprocess
+import sys
 
 import pytest
 import typer.main
@@ -118,3 +119,15 @@ def _typed(command, lines, home):
 def test_help_names_all_policies():
     named = {name.split(" ")[0] for name in POLICIES.split(", ")}
     assert named == set(eyas.list_policies())
+
+
+def test_a_shell_that_is_opened_waits_for_no_simulation():
+    code = (
+        "import sys; from eyas.cli.main import main; sys.argv = ['eyas', 'completion', 'bash']\n"
+        "try: main()\n"
+        "except SystemExit as end: assert not end.code\n"
+        "heavy = {'eyas.sim.simulation', 'gymnasium', 'llvmlite', 'shapely'}\n"
+        "print('loaded:', sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("loaded: []\n")

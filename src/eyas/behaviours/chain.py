@@ -8,7 +8,16 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 
-__all__ = ["Chain", "Poses", "chain_of", "chain_through", "headings", "joints", "outline", "poses_on"]
+__all__ = [
+    "Chain",
+    "Poses",
+    "chain_of",
+    "chain_through",
+    "headings",
+    "joints",
+    "outline",
+    "poses_on",
+]
 
 _SHARP: Final = 2.0
 """Corners sharper than this are turned on the spot [rad]."""

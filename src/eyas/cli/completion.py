@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-__all__ = ["Shell", "completion", "script"]
+__all__ = ["Shell", "commands", "completion", "script"]
 
 
 class Shell(StrEnum):
@@ -36,7 +36,10 @@ def script(shell: Shell, command: Any) -> str:  # noqa: ANN401  # Typer's own co
         shell: The shell.
         command: The program's command, with all others in it.
     """
-    known = list(_leaves("", command))
+    known = [
+        (path.removeprefix("eyas").strip(), list(getattr(one, "commands", ())), _options(one))
+        for path, one in commands("eyas", command)
+    ]
     if shell is Shell.FISH:
         return "\n".join(_fish(known)) + "\n"
     return "\n".join(_bash(known, zsh=shell is Shell.ZSH)) + "\n"
@@ -46,30 +49,34 @@ Known = tuple[str, list[str], list[tuple[str, str]]]
 """Path of a command, names of the commands in it, its options with their help."""
 
 
-def _leaves(path: str, command: Any) -> Iterator[Known]:  # noqa: ANN401
-    inner = getattr(command, "commands", {})
+def commands(path: str, command: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+    """Yield a command and all those in it, each with what is typed for it."""
+    yield path, command
+    for name, each in getattr(command, "commands", {}).items():
+        yield from commands(f"{path} {name}", each)
+
+
+def _options(command: Any) -> list[tuple[str, str]]:  # noqa: ANN401
     options = [
         (word, getattr(each, "help", "") or "")
         for each in command.params
         for word in (*each.opts, *each.secondary_opts)
         if word.startswith("--")
     ]
-    yield path, list(inner), [*options, ("--help", "Show this message and exit.")]
-    for name, each in inner.items():
-        yield from _leaves(f"{path} {name}".strip(), each)
+    return [*options, ("--help", "Show this message and exit.")]
 
 
 def _names() -> dict[str, Sequence[str]]:
     """Return the names that options take, by option."""
-    from eyas.modes import api
+    from eyas.modes import names
 
     lists: dict[str, Callable[[], Sequence[str]]] = {
-        "--map": api.list_maps,
-        "--weather": api.list_weathers,
-        "--preset": api.list_presets,
-        "--policy": api.list_policies,
-        "--target": api.list_targets,
-        "--format": api.list_formats,
+        "--map": names.list_maps,
+        "--weather": names.list_weathers,
+        "--preset": names.list_presets,
+        "--policy": names.list_policies,
+        "--target": names.list_targets,
+        "--format": names.list_formats,
     }
     return {option: listed() for option, listed in lists.items()}
 

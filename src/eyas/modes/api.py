@@ -15,12 +15,6 @@ if TYPE_CHECKING:
 __all__ = [
     "evaluate",
     "export",
-    "list_formats",
-    "list_maps",
-    "list_policies",
-    "list_presets",
-    "list_targets",
-    "list_weathers",
     "make",
     "make_config",
     "make_dataset",
@@ -286,13 +280,6 @@ def train(
     return run(chosen_settings(config, **choices), Path(out), resume=resume, quiet=quiet, ray=False)
 
 
-def list_formats() -> tuple[str, ...]:
-    """Return the names of the formats of `export`."""
-    from eyas.datasets.registry import FORMATS
-
-    return FORMATS.names()
-
-
 def make_dataset(
     recipe: Mapping[str, Any] | Path | str,
     out: Path | str,
@@ -335,43 +322,3 @@ def make_dataset(
         trust=choices.get("trust", False),
     )
     return out
-
-
-def list_maps() -> tuple[str, ...]:
-    """Return the names of all maps, imported ones included."""
-    from eyas.world.maps import MAPS
-
-    return tuple(sorted(MAPS.names()))
-
-
-def list_weathers(map: str = "citystreet") -> tuple[str, ...]:  # as the setting
-    """Return the names of the weathers of a map.
-
-    Raises:
-        ConfigError: There is no such map.
-    """
-    from eyas.world.maps import MAPS
-
-    return tuple(MAPS.get(map).weathers)
-
-
-def list_targets() -> tuple[str, ...]:
-    """Return the names of what can be followed, as the setting `target` takes them."""
-    from eyas.targets.config import TargetName
-
-    return tuple(str(name) for name in TargetName)
-
-
-def list_policies() -> tuple[str, ...]:
-    """Return the names of the policies that Eyas brings along."""
-    from eyas.evaluation.policies.shipped import shipped_names
-    from eyas.evaluation.policies.table import BUILT_IN
-
-    return (*BUILT_IN, *shipped_names())
-
-
-def list_presets() -> tuple[str, ...]:
-    """Return the names of the settings that Eyas brings along."""
-    from eyas.settings.preset import PRESETS
-
-    return PRESETS

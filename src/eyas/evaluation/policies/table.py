@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eyas.core.errors import ConfigError, DataFileError, UnknownNameError
-from eyas.evaluation.policies.policy import Policy
 from eyas.evaluation.policies.shipped import file_of, shipped_names
+
+if TYPE_CHECKING:  # its observations know the whole simulation, and here are names
+    from eyas.evaluation.policies.policy import Policy
 
 __all__ = ["BUILT_IN", "FILES", "fingerprint", "open_policy"]
 
@@ -47,7 +49,7 @@ _LARGEST = 1 << 22
 """Largest number of pixels of an observation, with its frames, that a file may ask for."""
 
 
-def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> Policy:
+def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> "Policy":
     """Return a policy.
 
     Args:
@@ -58,7 +60,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
     Raises:
         EyasError: There is no such policy, or it cannot be loaded.
     """
-    policy: Policy
+    policy: "Policy"
     path = file_of(said) if said in shipped_names() else Path(said)
     if said in BUILT_IN:
         _refuse_sampled(said, sampled=sampled)
@@ -93,7 +95,7 @@ def fingerprint(said: str) -> str | None:
     return sha256(path.read_bytes()).hexdigest()[:16]
 
 
-def _refuse_large(path: Path, policy: Policy, changes: Mapping[str, Any]) -> None:
+def _refuse_large(path: Path, policy: "Policy", changes: Mapping[str, Any]) -> None:
     """Refuse pictures that would take minutes, unless the user has asked for them."""
     image = policy.env.observation
     asked = {"width", "height", "frames"} & set(changes.get("observation", {}))
