@@ -1,5 +1,5 @@
 """Write the parts of the documents that are made from the code: of labels, of plans of maps, model
-cards, and tables of figures.
+cards, tables of figures, and the leaderboard of what ships.
 
 python tools/write_docs.py           # writes them
 python tools/write_docs.py --check   # ends with 1 if they are not up to date
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from plan_page import page_of_records, schema_text
+from standings import standings
 
 from eyas.evaluation.policies.model_card import model_card
 from eyas.evaluation.policies.shipped import shipped_names
@@ -48,8 +49,9 @@ def documents() -> dict[Path, str]:
     """Return the texts of all files that are made."""
     labels = DOCS / "labels.md"
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
-    plan = DOCS / "maps" / "plan.md"
+    plan, leaders = DOCS / "maps" / "plan.md", DOCS / "leaderboard.md"
     return {
+        leaders: made(leaders.read_text(), standings()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,
         plan: made(plan.read_text(), page_of_records()),
