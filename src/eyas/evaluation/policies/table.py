@@ -60,7 +60,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
     Raises:
         EyasError: There is no such policy, or it cannot be loaded.
     """
-    policy: "Policy"
+    policy: Policy
     path = file_of(said) if said in shipped_names() else Path(said)
     if said in BUILT_IN:
         _refuse_sampled(said, sampled=sampled)
