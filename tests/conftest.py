@@ -18,9 +18,10 @@ os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
 # when the next one needs it, and be made again and again.
 os.environ.setdefault("EYAS_CACHE_LIMIT", "32G")
 
-# Of the hundreds of programs that tests start, the first compiles the sources for all, also on a
-# machine that asks otherwise.
+# Of the hundreds of programs that tests start, the first compiles the sources for all, and the next
+# run of the tests finds them compiled, also on a machine that asks otherwise.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # No test asserts a time, and a submission meets the same examples as the last; others, and more
 # of them, are tried by `--hypothesis-profile search`.

@@ -118,11 +118,10 @@ main()
 
 @pytest.mark.slow
 def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path):
-    for wait in (0.2, 2.0):
-        process = started(tmp_path, cache=tmp_path / str(wait), program=COMPILES)
-        time.sleep(wait)
-        process.send_signal(signal.SIGINT)
-        assert ended(process, signal.SIGINT) == "eyas: interrupted"
+    process = started(tmp_path, cache=tmp_path / "cache", program=COMPILES)
+    time.sleep(2.0)
+    process.send_signal(signal.SIGINT)
+    assert ended(process, signal.SIGINT) == "eyas: interrupted"
     assert all(map(read_trusted, tmp_path.rglob("*.ey[km]")))
     assert not list(tmp_path.rglob("*.tmp.*"))
 

@@ -187,7 +187,7 @@ def recovered(protocol, episodes, policy):
 @pytest.mark.slow
 def test_who_waits_where_the_target_vanished_does_not_recover_it(things):
     protocol, episodes = things
-    some = episodes[: len(episodes) // 2]
+    some = episodes[: len(episodes) // 4]
     assert recovered(protocol, some, open_policy("follow", {})) == 1.0
     assert recovered(protocol, some, SightOracle({}, Stays())) <= 0.5
 

@@ -48,16 +48,16 @@ class Client:
 
     def take_off(self):
         said(healthy=until(self.telemetry.health_all_ok))
-        self.action.set_takeoff_altitude(3.0)
+        self.action.set_takeoff_altitude(2.0)
         self.action.arm()
         self.action.takeoff()
-        said(flies=until(lambda: self.telemetry.in_air() and self.place()[2] < -2.8))
+        said(flies=until(lambda: self.telemetry.in_air() and self.place()[2] < -1.8))
 
     def fly_square(self):
         self.offboard.set_velocity_body(VelocityBodyYawspeed(0.0, 0.0, 0.0, 0.0))
         self.offboard.start()
-        for corner in ((3, 0), (3, 3), (0, 3), (0, 0)):
-            self.offboard.set_position_ned(PositionNedYaw(*map(float, corner), -3.0, 0.0))
+        for corner in ((2, 0), (2, 2), (0, 2), (0, 0)):
+            self.offboard.set_position_ned(PositionNedYaw(*map(float, corner), -2.0, 0.0))
             until(lambda to=corner: max(abs(a - b) for a, b in zip(self.place(), to)) < 0.15)  # noqa: B905
             said(corner=corner, place=self.place())
         self.offboard.stop()

@@ -79,10 +79,10 @@ def test_mavsdk_finds_it_flies_a_square_and_lands():
     corners = [line for line in told if "corner" in line]
     assert len(corners) == 4
     for line in corners:
-        assert line["place"] == pytest.approx([*line["corner"], -3.0], abs=0.3)
+        assert line["place"] == pytest.approx([*line["corner"], -2.0], abs=0.3)
     assert facts["gimbal"] == pytest.approx([-35.0, 20.0], abs=0.6)
     assert (facts["camera"], facts["size"]) == (100, [96, 54])
-    assert (facts["parameters"], facts["height"], facts["mission"]) == (20, 3.0, [])
+    assert (facts["parameters"], facts["height"], facts["mission"]) == (20, 2.0, [])
     assert facts["landed"] is True
     assert landed is not None
 

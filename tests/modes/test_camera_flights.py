@@ -56,7 +56,7 @@ def smooth(map_name, name, count):
 @pytest.mark.parametrize("name", PATHS.built_in)
 @pytest.mark.parametrize("map_name", ["citystreet", "village"])
 def test_flights_are_smooth_and_touch_nothing(map_name, name):
-    smooth(map_name, name, 6)
+    smooth(map_name, name, 3)
 
 
 @pytest.mark.thorough

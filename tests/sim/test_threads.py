@@ -21,7 +21,7 @@ for weather in ("day", "snow"):
         simulation = build_simulation(SimConfig(**settings), each_alone(1))
         simulation.reset()
         rng, found = np.random.default_rng(2), hashlib.sha256()
-        for _ in range(40):
+        for _ in range(15):
             simulation.advance(rng.uniform(-1.0, 1.0, (1, 4)) * (8.0, 8.0, 2.0, 1.0), 100)
             simulation.draw(np.zeros(1, np.int32), picture)
             for part in (picture.rgb, picture.depth, picture.object_id, picture.class_id):

@@ -51,7 +51,7 @@ HASHES = {
     ("simpleway-city", "winter"): "2e1a44e44c3e3876",
 }
 """Of all arrays of the scenes, without roads and footways."""
-QUICK = ("desert", "farmland", "village-bare")
+QUICK = ("farmland", "village-bare")
 """Maps that are planned and built in a second."""
 SLOW = [
     name

@@ -137,10 +137,8 @@ of stones just below the grass."""
     "name",
     [
         *("farmland", "desert", "lake"),
-        *(
-            pytest.param(name, marks=pytest.mark.slow)
-            for name in ("citystreet", "downtown", "village")
-        ),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("citystreet", "village")),
+        pytest.param("downtown", marks=pytest.mark.thorough),
     ],
 )
 def test_no_two_looks_of_a_scene_lie_in_one_plane(name):
