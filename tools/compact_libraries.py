@@ -1,5 +1,5 @@
-"""Take out of shared libraries the zeros that some linkers leave between the parts that are loaded, up
-to two megabytes each; what a process loads stays the same.
+"""Take out of shared libraries the zeros that some linkers leave between the parts that are loaded,
+up to two megabytes each; what a process loads stays the same.
 
 python compact_libraries.py FOLDER     # all below it, in place; prints what it has saved
 """
@@ -10,7 +10,8 @@ from pathlib import Path
 
 PAGE = 4096
 PART = struct.Struct("<IIQQQQQQ")
-"""Type, flags, offset in the file, address, another address, size there, size in memory, alignment."""
+"""Type, flags, offset in the file, address, another address, size there, size in memory, and
+alignment."""
 LOADED = 1
 """The type of parts that are loaded; all others lie within those."""
 WORTH = 1 << 20
