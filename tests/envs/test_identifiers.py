@@ -11,6 +11,7 @@ from eyas.world.maps import MAPS
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "weathers"),
     [  # one of each kind of winter

@@ -93,6 +93,7 @@ def block(renderer_of):
     return renderer_of(scene, car_parts()), np.array([[-3.0, -3.0, 0.0], [3.0, 3.0, 9.0]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LENSES)
 def test_a_house_is_drawn_where_the_rays_of_opencv_meet_it(block, name):
     renderer, box = block

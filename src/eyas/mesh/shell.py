@@ -1,6 +1,7 @@
 """Meshes of panels with smooth shading across gentle edges, for the bodies of vehicles."""
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +10,7 @@ from eyas.core import exact
 from eyas.mesh.panels import box_panels, cells, closed, fan, halves, mirrored
 from eyas.state.mesh import Material, Mesh
 
-__all__ = ["DETAILS", "Shape", "Shell", "levels_of"]
+__all__ = ["DETAILS", "Shape", "Shell", "levels_of", "shell_of"]
 
 _CREASE = 0.75
 """Panels that meet at a larger angle keep a hard edge [rad]."""
@@ -263,9 +264,12 @@ DETAILS = (2, 1, 0)
 
 def levels_of(shape: Shape) -> tuple[Mesh, ...]:
     """Return the meshes of a shape, the finest first."""
-    levels = []
-    for detail in DETAILS:
-        shell = Shell()
-        shape(shell, detail)
-        levels.append(shell.mesh())
-    return tuple(levels)
+    return tuple(shell_of(shape, detail).mesh() for detail in DETAILS)
+
+
+@lru_cache(maxsize=1024)  # people share most shapes, whose meshes and extents are both wanted
+def shell_of(shape: Shape, detail: int) -> Shell:
+    """Return the panels of a shape, which must not be changed."""
+    shell = Shell()
+    shape(shell, detail)
+    return shell

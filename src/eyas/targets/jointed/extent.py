@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.mesh.shell import DETAILS, Shape, Shell
+from eyas.mesh.shell import DETAILS, Shape, shell_of
 from eyas.targets.jointed.cycle import frames_of, shapes_of
 from eyas.targets.jointed.figure import Figure
 
@@ -82,11 +82,7 @@ def _corners(shape: Shape) -> Floats:
     """Return the corners of a shape at all levels of detail [m], shape (P, 3); people share most
     shapes, and meshes take ten times as long.
     """
-    corners = []
-    for detail in DETAILS:
-        shell = Shell()
-        shape(shell, detail)
-        corners.append(shell.corners())
+    corners = [shell_of(shape, detail).corners() for detail in DETAILS]
     return np.unique(np.concatenate(corners), axis=0)
 
 
