@@ -9,7 +9,7 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.state.mesh import Surface
 from eyas.targets.catalogue import MODELS, model_index
 from eyas.targets.vehicles.models import VEHICLES
-from eyas.world.cars.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
+from eyas.world.cars.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP, TRIM
 from eyas.world.cars.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
@@ -165,6 +165,13 @@ def test_variants_differ_in_detail_and_have_the_size_and_roof_of_their_model(veh
         looks = [(other.palette, other.materials.tolist()) for other in seen]
         assert (mesh.palette, mesh.materials.tolist()) not in looks
         seen.append(mesh)
+
+
+def test_the_dark_bumper_of_a_van_is_no_wall():
+    mesh = levels_of("MercedesBenzSprinterSimple")[0]
+    dark = mesh.positions[mesh.triangles[mesh.materials == mesh.palette.index(TRIM)]]
+    tail = dark[np.all(dark[..., 0] < mesh.positions[:, 0].min() + 0.04, axis=1)]
+    assert 0.3 < np.ptp(tail[..., 2]) < 0.5
 
 
 def test_silhouettes_differ():

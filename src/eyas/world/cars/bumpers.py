@@ -22,6 +22,9 @@ _ASIDE = 0.025
 _TOP = 0.565
 """Height of its upper edge, as a share of that of the belt line above the floor."""
 
+_TALLEST = 0.5
+"""Height of a bumper at most [m]: those of vans are no taller than those of cars."""
+
 
 def add_bumpers(shell: Shell, frame: Frame, shape: CarShape, wrap: Wrap, paint: Material) -> None:
     """Add both bumpers.
@@ -38,7 +41,7 @@ def add_bumpers(shell: Shell, frame: Frame, shape: CarShape, wrap: Wrap, paint: 
         end, belt = (shape.top[-1 if front else 0][0], shape.belt[-1 if front else 0][1])
         axle = frame.axles[0 if front else 1].x
         start = axle + reach if front else axle - reach
-        top = shape.clearance + _TOP * (belt - shape.clearance)
+        top = shape.clearance + min(_TOP * (belt - shape.clearance), _TALLEST)
         rows = _rows(shape.clearance, top)
         grid = np.array([_ring(frame, shape, (start, end), row) for row in rows])
         if front:
