@@ -1,0 +1,209 @@
+"""The vehicles that one drone sees, followed from look to look, and what is known of each."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.evaluation.policies.listener.detector import BODIES, NAMES, Detections
+from eyas.evaluation.policies.tracker.motion import MotionFilter
+
+__all__ = ["Candidates", "Seen"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+_MOST: Final = 64
+"""Vehicles that are followed at once."""
+
+_NOISE: Final = 0.4
+"""Standard deviation of a place that the network finds [m]."""
+
+_ACCELERATION: Final = 5.0
+"""Of vehicles, in each direction [m/s^2]."""
+
+_SPEED: Final = 8.0
+"""Of vehicles that have just been seen for the first time, in each direction [m/s]."""
+
+_WIDEST: Final = 8.0
+"""Largest standard deviation of a place [m]."""
+
+_GATE: Final = 3.5
+"""Largest distance of a vehicle from where it is expected, in standard deviations."""
+
+_ALIKE: Final = 0.7
+"""Weight of its looks, against that of its place."""
+
+_UNLIKE: Final = -6.0
+"""Least logarithm of how alike two looks are."""
+
+_NEW: Final = 0.35
+"""Least belief in a vehicle that has not been seen before."""
+
+_FORGOTTEN: Final = 1.0
+"""Time unseen after which a vehicle is forgotten, unless it is the target [s]."""
+
+_REMEMBERED: Final = 0.05
+"""Least share of the latest look in what is known of a vehicle's looks."""
+
+
+class Seen(NamedTuple):
+    """K vehicles."""
+
+    row: Rows
+    """Their numbers, shape (K,)."""
+    colour: Floats
+    """Logarithms of probabilities of `NAMES`, shape (K, 22)."""
+    body: Floats
+    """Logarithms of probabilities of `BODIES`, shape (K, 9)."""
+    heading: Floats
+    """Mean direction east and north, and of twice the angle, shape (K, 4)."""
+    first: Floats
+    """When each was seen first [s], shape (K,)."""
+    begin: Floats
+    """Where each was then, east and north [m], shape (K, 2)."""
+    velocity: Floats
+    """[m/s], shape (K, 2)."""
+    ways: list[Floats]
+    """Of each all looks: time [s], east and north [m], direction of its axis [rad], (L, 4)."""
+
+
+class Candidates:
+    """The vehicles around one drone.
+
+    Attributes:
+        target: Number of the chosen one; None: nobody is chosen yet.
+        motion: Where they are and how they move.
+    """
+
+    def __init__(self) -> None:
+        self.target: int | None = None
+        self.motion = MotionFilter(_MOST, _WIDEST)
+        self.motion.acceleration[:] = _ACCELERATION
+        self._alive = np.zeros(_MOST, np.bool_)
+        self._colour, self._body = np.zeros((_MOST, len(NAMES))), np.zeros((_MOST, len(BODIES)))
+        self._heading = np.zeros((_MOST, 4))
+        self._first, self._last = np.zeros(_MOST), np.zeros(_MOST)
+        self._begin = np.zeros((_MOST, 2))
+        self._looks = np.zeros(_MOST)
+        self._ways: list[list[Floats]] = [[] for _ in range(_MOST)]
+        self._time = 0.0
+
+    def look(self, found: Detections, where: Floats, heading: Floats, since: float) -> None:
+        """Take what a picture shows.
+
+        Args:
+            found: D vehicles.
+            where: Where they are, east and north [m], shape (D, 2).
+            heading: As in `Seen`, shape (D, 4).
+            since: Time since the last look [s].
+        """
+        self._time += since
+        rows = np.flatnonzero(self._alive)
+        self.motion.predict(rows, np.full(len(rows), since))
+        pairs = self._pairs(rows, found, where)
+        known = np.array([row for row, _ in pairs], np.int64)
+        mine = np.array([one for _, one in pairs], np.int64)
+        self.motion.update(
+            known, where[mine], np.full(len(known), _NOISE * _NOISE), np.ones(len(known))
+        )
+        self._forget()
+        new = np.setdiff1d(np.flatnonzero(found.belief > _NEW), mine)
+        free = np.flatnonzero(~self._alive)[: len(new)]
+        new = new[: len(free)]
+        self._begin_with(free, where[new])
+        for row, one in (*pairs, *zip(free.tolist(), new.tolist(), strict=True)):
+            self._learn(row, found, one, where[one], heading[one])
+
+    def seen(self) -> Seen:
+        """Return what is known of all of them."""
+        rows = np.flatnonzero(self._alive)
+        return Seen(
+            rows,
+            _shares(self._colour[rows]),
+            _shares(self._body[rows]),
+            self._heading[rows],
+            self._first[rows],
+            self._begin[rows],
+            self.motion.velocity[rows],
+            [np.array(self._ways[row]) for row in rows.tolist()],
+        )
+
+    def _pairs(self, rows: Rows, found: Detections, where: Floats) -> list[tuple[int, int]]:
+        """Return which of the known ones are which of those in a picture: the likeliest first."""
+        if not len(rows) or not len(where):
+            return []
+        variance = np.square(self.motion.spread(rows)) + _NOISE * _NOISE
+        away = np.square(where[None] - self.motion.place[rows][:, None]).sum(axis=-1)
+        away = away / variance[:, None]
+        alike = _alike(_shares(self._colour[rows]), found.colour)
+        alike = alike + _alike(_shares(self._body[rows]), found.body)
+        cost = 0.5 * away + exact.log(variance)[:, None] - _ALIKE * np.maximum(alike, _UNLIKE)
+        cost = np.where(away < _GATE * _GATE, cost, np.inf)
+        pairs = []
+        for index in np.argsort(cost, axis=None, kind="stable").tolist():
+            row, one = divmod(index, len(where))
+            if np.isinf(cost[row, one]):
+                break
+            pairs.append((int(rows[row]), one))
+            cost[row], cost[:, one] = np.nan, np.nan
+        return _unique(pairs)
+
+    def _forget(self) -> None:
+        """Forget those that have not been seen for long."""
+        old = self._alive & (self._time - self._last > _FORGOTTEN)
+        if self.target is not None:
+            old[self.target] = False
+        self._alive[old] = False
+
+    def _begin_with(self, rows: Rows, where: Floats) -> None:
+        """Begin to follow some."""
+        self._alive[rows] = True
+        self.motion.begin(
+            rows, where, np.zeros_like(where), _NOISE, np.full(len(rows), _SPEED)
+        )
+        self._looks[rows], self._first[rows], self._begin[rows] = 0.0, self._time, where
+        for row in rows.tolist():
+            self._ways[row] = []
+
+    def _learn(
+        self, row: int, found: Detections, one: int, where: Floats, heading: Floats
+    ) -> None:
+        """Add a look at one of them to what is known of it."""
+        share = max(1.0 / (self._looks[row] + 1.0), _REMEMBERED)
+        for known, new in (
+            (self._colour, found.colour[one]),
+            (self._body, found.body[one]),
+            (self._heading, heading),
+        ):
+            known[row] += share * (new - known[row])
+        self._looks[row] += 1.0
+        self._last[row] = self._time
+        if self.target is None:
+            axis = 0.5 * float(exact.atan2(heading[3], heading[2]))
+            self._ways[row].append(np.array([self._time, *where, axis]))
+
+
+def _unique(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    rows, ones, kept = set(), set(), []
+    for row, one in pairs:
+        if row not in rows and one not in ones:
+            rows.add(row)
+            ones.add(one)
+            kept.append((row, one))
+    return kept
+
+
+def _shares(logarithms: Floats) -> Floats:
+    """Return logarithms of probabilities that add up to 1, shape (K, n)."""
+    above = logarithms - logarithms.max(axis=1, keepdims=True, initial=-np.inf)
+    shares: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
+    return shares
+
+
+def _alike(known: Floats, found: Floats) -> Floats:
+    """Return the logarithm of the probability that two have the same word, shape (K, D)."""
+    both = exact.exp(known[:, None] + found[None]).sum(axis=-1)
+    alike: Floats = exact.log(np.maximum(both, 1e-6))
+    return alike
