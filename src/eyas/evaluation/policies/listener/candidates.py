@@ -17,10 +17,10 @@ Rows = NDArray[np.int64]
 _MOST: Final = 64
 """Vehicles that are followed at once."""
 
-_NOISE: Final = 0.4
+_NOISE: Final = 0.5
 """Standard deviation of a place that the network finds [m]."""
 
-_ACCELERATION: Final = 5.0
+_ACCELERATION: Final = 6.0
 """Of vehicles, in each direction [m/s^2]."""
 
 _SPEED: Final = 8.0
@@ -46,6 +46,20 @@ _FORGOTTEN: Final = 1.0
 
 _REMEMBERED: Final = 0.05
 """Least share of the latest look in what is known of a vehicle's looks."""
+
+
+_MISSED: Final = 0.2
+"""Time unseen after which another one may be the target [s]."""
+
+_NEAR, _WIDER = 3.0, 4.0
+"""How far it may be from where the target is expected [m], and how much farther for each second in
+which that is not seen [m/s]."""
+
+_CONFIRMED: Final = 2
+"""Looks at which it must have been seen."""
+
+_SURELY: Final = -4.5
+"""Least logarithm of how alike they are, less twice the distance by the farthest."""
 
 
 class Seen(NamedTuple):
@@ -115,6 +129,7 @@ class Candidates:
         self._begin_with(free, where[new])
         for row, one in (*pairs, *zip(free.tolist(), new.tolist(), strict=True)):
             self._learn(row, found, one, where[one], heading[one])
+        self._recover()
 
     def seen(self) -> Seen:
         """Return what is known of all of them."""
@@ -141,14 +156,16 @@ class Candidates:
         alike = alike + _alike(_shares(self._body[rows]), found.body)
         cost = 0.5 * away + exact.log(variance)[:, None] - _ALIKE * np.maximum(alike, _UNLIKE)
         cost = np.where(away < _GATE * _GATE, cost, np.inf)
-        pairs = []
+        pairs: dict[int, int] = {}
+        taken: set[int] = set()
         for index in np.argsort(cost, axis=None, kind="stable").tolist():
             row, one = divmod(index, len(where))
             if np.isinf(cost[row, one]):
                 break
-            pairs.append((int(rows[row]), one))
-            cost[row], cost[:, one] = np.nan, np.nan
-        return _unique(pairs)
+            if row not in pairs and one not in taken:
+                pairs[row] = one
+                taken.add(one)
+        return [(int(rows[row]), one) for row, one in pairs.items()]
 
     def _forget(self) -> None:
         """Forget those that have not been seen for long."""
@@ -156,6 +173,27 @@ class Candidates:
         if self.target is not None:
             old[self.target] = False
         self._alive[old] = False
+
+    def _recover(self) -> None:
+        """Take another one for the target that has vanished: one that has come since, near where
+        the target is expected, and that looks like it.
+        """
+        target = self.target
+        if target is None or (unseen := self._time - self._last[target]) < _MISSED:
+            return
+        rows = np.flatnonzero(self._alive & (self._first >= self._last[target]))
+        rows = rows[self._looks[rows] >= _CONFIRMED]
+        if not len(rows):
+            return
+        away = self.motion.place[rows] - self.motion.place[target]
+        far = np.sqrt(np.square(away).sum(axis=1)) / (_NEAR + _WIDER * unseen)
+        alike = sum(
+            _alike(_shares(known[rows]), _shares(known[[target]]))[:, 0]
+            for known in (self._colour, self._body)
+        )
+        score = np.where(far < 1.0, alike - 2.0 * far, -np.inf)
+        if score.max() > _SURELY:
+            self.target = int(rows[score.argmax()])
 
     def _begin_with(self, rows: Rows, where: Floats) -> None:
         """Begin to follow some."""
@@ -183,16 +221,6 @@ class Candidates:
         if self.target is None:
             axis = 0.5 * float(exact.atan2(heading[3], heading[2]))
             self._ways[row].append(np.array([self._time, *where, axis]))
-
-
-def _unique(pairs: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    rows, ones, kept = set(), set(), []
-    for row, one in pairs:
-        if row not in rows and one not in ones:
-            rows.add(row)
-            ones.add(one)
-            kept.append((row, one))
-    return kept
 
 
 def _shares(logarithms: Floats) -> Floats:

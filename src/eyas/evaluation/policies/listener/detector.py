@@ -14,15 +14,18 @@ and the outputs, of C cells of the picture, of `STRIDE` x `STRIDE` pixels each,
   probabilities of the words in `NAMES` and `BODIES`.
 """
 
+from functools import cache
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+from eyas.targets.catalogue import MODELS
 from eyas.targets.colour_names import COLOUR_NAMES
-from eyas.targets.grammar.in_view import BodyWord
+from eyas.targets.grammar.in_view import BodyWord, body_of
 
-__all__ = ["BODIES", "NAMES", "OUTPUTS", "STRIDE", "Detections", "VehicleDetector"]
+__all__ = ["BODIES", "NAMES", "OUTPUTS", "STRIDE", "Detections", "VehicleDetector", "body_sizes"]
 
 Floats = NDArray[np.float64]
 
@@ -50,8 +53,9 @@ BODIES: Final = (
 _LEAST: Final = -1.4
 """Least logarithm of the odds of a vehicle: a fifth."""
 
-_APART: Final = 5.0
-"""Two vehicles' middles are at least so far apart [pixels]."""
+_APART: Final = 0.8, 1.5
+"""Two vehicles' middles are at least so far apart, as shares of half the length and half the width
+of one of them."""
 
 
 class Detections(NamedTuple):
@@ -74,10 +78,11 @@ class VehicleDetector:
 
     Args:
         session: Of onnxruntime.
+        scale: Pixels of a metre on the ground.
     """
 
-    def __init__(self, session: Any) -> None:  # noqa: ANN401  # no types
-        self._session = session
+    def __init__(self, session: Any, scale: float) -> None:  # noqa: ANN401  # no types
+        self._session, self._scale = session, scale
 
     @staticmethod
     def fits(session: Any) -> bool:  # noqa: ANN401  # the same
@@ -91,37 +96,58 @@ class VehicleDetector:
             pictures: Shape (N, 3, H, W).
         """
         answers = self._session.run(OUTPUTS, {"image": pictures})
-        return [_peaks(*(part[row] for part in answers)) for row in range(len(pictures))]
+        vehicles, *rest = answers
+        return [
+            self._peaks(vehicles[row], tuple(part[row] for part in rest))
+            for row in range(len(pictures))
+        ]
+
+    def _peaks(
+        self, vehicles: NDArray[np.float32], rest: tuple[NDArray[np.float32], ...]
+    ) -> Detections:
+        """Return the vehicles in a picture: of cells that mean the same one, the surest."""
+        cells = np.flatnonzero(vehicles > _LEAST)
+        cells = cells[np.argsort(-vehicles[cells], kind="stable")]
+        places, headings, colours, bodies = (part[cells].astype(np.float64) for part in rest)
+        found = Detections(
+            1.0 / (1.0 + exact.exp(-vehicles[cells].astype(np.float64))),
+            places,
+            headings,
+            _shares(colours),
+            _shares(bodies),
+        )
+        same = self._same(found)
+        kept: list[int] = []
+        for row in range(len(cells)):
+            if not same[row, kept].any():
+                kept.append(row)
+        return Detections(*(part[kept] for part in found))
+
+    def _same(self, found: Detections) -> NDArray[np.bool_]:
+        """Return which would overlap which if both were there, shape (D, D)."""
+        sizes = self._scale * exact.product(exact.exp(found.body), body_sizes())
+        axis = 0.5 * exact.atan2(found.heading[:, 3], found.heading[:, 2])
+        column, row = exact.cos(axis), exact.sin(axis)
+        away = found.place[:, None] - found.place
+        along = np.abs(away[..., 0] * column + away[..., 1] * row)
+        across = np.abs(away[..., 1] * column - away[..., 0] * row)
+        half = 0.5 * sizes
+        same: NDArray[np.bool_] = (along < _APART[0] * half[:, 0]) & (across < _APART[1] * half[:, 1])
+        return same
 
 
-def _peaks(
-    vehicles: NDArray[np.float32],
-    places: NDArray[np.float32],
-    headings: NDArray[np.float32],
-    colours: NDArray[np.float32],
-    bodies: NDArray[np.float32],
-) -> Detections:
-    """Return the vehicles in a picture: of cells that mean the same one, the surest."""
-    cells = np.flatnonzero(vehicles > _LEAST)
-    cells = cells[np.argsort(-vehicles[cells], kind="stable")]
-    where = places[cells].astype(np.float64)
-    near = np.square(where[:, None] - where).sum(axis=-1) < _APART * _APART
-    kept: list[int] = []
-    for row in range(len(cells)):
-        if not near[row, kept].any():
-            kept.append(row)
-    cells = cells[kept]
-    return Detections(
-        1.0 / (1.0 + np.exp(-vehicles[cells].astype(np.float64))),
-        where[kept],
-        headings[cells].astype(np.float64),
-        _shares(colours[cells]),
-        _shares(bodies[cells]),
-    )
+@cache
+def body_sizes() -> Floats:
+    """Return mean length and width of each of `BODIES` [m], shape (9, 2)."""
+    found = []
+    for body in BODIES:
+        sizes = [model.size[:2] for k, model in enumerate(MODELS) if body_of(k) is body]
+        found.append(np.mean(sizes, axis=0))
+    return np.array(found)
 
 
-def _shares(scores: NDArray[np.float32]) -> Floats:
+def _shares(scores: Floats) -> Floats:
     """Return logarithms of probabilities, shape (D, K)."""
-    above = scores.astype(np.float64) - scores.max(axis=1, keepdims=True, initial=-np.inf)
-    shares: Floats = above - np.log(np.exp(above).sum(axis=1, keepdims=True))
+    above = scores - scores.max(axis=1, keepdims=True, initial=-np.inf)
+    shares: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
     return shares

@@ -1,6 +1,5 @@
 """Which of the vehicles in view does a claim mean? As likely as what is known of each makes it."""
 
-from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -8,10 +7,9 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.evaluation.policies.listener.candidates import Seen
-from eyas.evaluation.policies.listener.detector import BODIES, NAMES
-from eyas.targets.catalogue import MODELS
+from eyas.evaluation.policies.listener.detector import BODIES, NAMES, body_sizes
 from eyas.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
-from eyas.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, body_of
+from eyas.targets.grammar.in_view import CAN_BE_CALLED, BodyWord
 
 __all__ = ["judged"]
 
@@ -161,17 +159,7 @@ def _lying(seen: Seen) -> _Lying:
     ahead = np.where(rolls, (seen.velocity * line).sum(axis=1), ahead)
     front = np.where(rolls, 1.0, np.clip(0.5 + 0.5 * np.abs(ahead), 0.5, 1.0))
     heading = axis + np.where(ahead < 0.0, np.pi, 0.0)
-    return _Lying(heading, front, exact.product(exact.exp(seen.body), _sizes()))
-
-
-@cache
-def _sizes() -> Floats:
-    """Return mean length and width of each of `BODIES` [m], shape (9, 2)."""
-    found = []
-    for body in BODIES:
-        sizes = [model.size[:2] for k, model in enumerate(MODELS) if body_of(k) is body]
-        found.append(np.mean(sizes, axis=0))
-    return np.array(found)
+    return _Lying(heading, front, exact.product(exact.exp(seen.body), body_sizes()))
 
 
 def _bears(bearing: Bearing, seen: Seen, other: Floats) -> Floats:

@@ -79,8 +79,8 @@ class Listener:
         if not set(LISTENING["parts"]) <= set(made.observation.parts):
             raise DataFileError(f"{path}: the listener needs the parts 'image' and 'sensors'")
         self._size = made.observation.height, made.observation.width
-        self._detector = VehicleDetector(session)
         self._ground = Ground(self.settings, self._size)
+        self._detector = VehicleDetector(session, self._ground.pixels_per_metre)
 
     def begin(self, start: Start) -> None:
         """Remember what each is told: N episodes begin."""
