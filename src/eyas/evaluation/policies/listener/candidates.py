@@ -20,7 +20,7 @@ _MOST: Final = 64
 _NOISE: Final = 0.5
 """Standard deviation of a place that the network finds [m]."""
 
-_ACCELERATION: Final = 6.0
+_ACCELERATION: Final = 8.0
 """Of vehicles, in each direction [m/s^2]."""
 
 _SPEED: Final = 8.0
@@ -38,11 +38,18 @@ _ALIKE: Final = 0.7
 _UNLIKE: Final = -6.0
 """Least logarithm of how alike two looks are."""
 
+_KNOWN, _LONG = 0.25, 12.0
+"""How much rather one is taken that has been seen so often before, up to so many looks: for that
+one, if another has begun on the same vehicle."""
+
 _NEW: Final = 0.35
 """Least belief in a vehicle that has not been seen before."""
 
 _FORGOTTEN: Final = 1.0
 """Time unseen after which a vehicle is forgotten, unless it is the target [s]."""
+
+_YOUNG: Final = 0.07
+"""The same for each look at which it has been seen [s]."""
 
 _REMEMBERED: Final = 0.05
 """Least share of the latest look in what is known of a vehicle's looks."""
@@ -54,6 +61,9 @@ _MISSED: Final = 0.2
 _NEAR, _WIDER = 3.0, 4.0
 """How far it may be from where the target is expected [m], and how much farther for each second in
 which that is not seen [m/s]."""
+
+_SHADOW: Final = 1.0
+"""How long before the target vanished it may have come: a second one on the same vehicle [s]."""
 
 _CONFIRMED: Final = 2
 """Looks at which it must have been seen."""
@@ -155,6 +165,7 @@ class Candidates:
         alike = _alike(_shares(self._colour[rows]), found.colour)
         alike = alike + _alike(_shares(self._body[rows]), found.body)
         cost = 0.5 * away + exact.log(variance)[:, None] - _ALIKE * np.maximum(alike, _UNLIKE)
+        cost = cost - _KNOWN * np.minimum(self._looks[rows], _LONG)[:, None]
         cost = np.where(away < _GATE * _GATE, cost, np.inf)
         pairs: dict[int, int] = {}
         taken: set[int] = set()
@@ -169,7 +180,8 @@ class Candidates:
 
     def _forget(self) -> None:
         """Forget those that have not been seen for long."""
-        old = self._alive & (self._time - self._last > _FORGOTTEN)
+        patience = np.minimum(_FORGOTTEN, _YOUNG * self._looks)
+        old = self._alive & (self._time - self._last > patience)
         if self.target is not None:
             old[self.target] = False
         self._alive[old] = False
@@ -181,7 +193,7 @@ class Candidates:
         target = self.target
         if target is None or (unseen := self._time - self._last[target]) < _MISSED:
             return
-        rows = np.flatnonzero(self._alive & (self._first >= self._last[target]))
+        rows = np.flatnonzero(self._alive & (self._first > self._last[target] - _SHADOW))
         rows = rows[self._looks[rows] >= _CONFIRMED]
         if not len(rows):
             return
