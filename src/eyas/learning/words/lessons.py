@@ -10,7 +10,7 @@ from torch.nn import functional
 
 from eyas.evaluation.policies.listener.detector import STRIDE
 from eyas.learning.words.network import ListenerNetwork
-from eyas.learning.words.scenes import Scenes, Vehicles
+from eyas.learning.words.scenes import Scenes, Vehicles, chosen
 
 __all__ = ["Lesson", "Loss", "lesson", "loss_of"]
 
@@ -88,8 +88,8 @@ def lesson(
     column, row = (np.floor(moved[:, axis] / STRIDE).astype(np.int64) for axis in (0, 1))
     cell = np.clip(row, 0, grid[0] - 1) * grid[1] + np.clip(column, 0, grid[1] - 1)
     parts = (vehicles.picture, cell, place, heading, vehicles.colour, vehicles.body)
-    chosen = (torch.from_numpy(np.ascontiguousarray(part[seen])) for part in parts)
-    return Lesson(*map(torch.from_numpy, (picture, peaks, weight)), *chosen)
+    taught = (torch.from_numpy(np.ascontiguousarray(part[seen])) for part in parts)
+    return Lesson(*map(torch.from_numpy, (picture, peaks, weight)), *taught)
 
 
 def _chosen(vehicles: Vehicles, rows: NDArray[np.int64]) -> Vehicles:
@@ -97,8 +97,7 @@ def _chosen(vehicles: Vehicles, rows: NDArray[np.int64]) -> Vehicles:
     order = np.argsort(rows)
     at = np.searchsorted(rows[order], vehicles.picture)
     mine = rows[order][np.minimum(at, len(rows) - 1)] == vehicles.picture
-    chosen = Vehicles(*(part[mine] for part in vehicles))
-    return chosen._replace(picture=order[at[mine]])
+    return chosen(vehicles, mine)._replace(picture=order[at[mine]])
 
 
 def _changed(
@@ -131,7 +130,7 @@ def _around(
     nearest = np.round(middle).astype(np.int64)
     for down in (-2, -1, 0, 1, 2):
         for across in (-2, -1, 0, 1, 2):
-            column, row = (nearest + (across, down)).T
+            column, row = (nearest + np.array((across, down))).T
             away = np.square(np.stack((column, row), axis=1) - middle).sum(axis=1)
             if down == across == 0:
                 away = np.zeros_like(away)

@@ -40,7 +40,8 @@ class ListenerNetwork(nn.Module):
         self.fifth = nn.Conv2d(width, width, 3, 1, 2, 2)
         self.norms = nn.ModuleList(nn.BatchNorm2d(n) for n in (16, 32, width, width, width))
         self.head = nn.Conv2d(width, sum(PARTS), 1)
-        nn.init.constant_(self.head.bias[:1], _RARE)  # type: ignore[arg-type]
+        assert self.head.bias is not None
+        nn.init.constant_(self.head.bias[:1], _RARE)
         down, across = (torch.arange(-(-length // STRIDE)) for length in size)
         cells = torch.stack(torch.meshgrid(across, down, indexing="xy"), -1).reshape(-1, 2)
         self.cells: Tensor = (cells + 0.5) * STRIDE

@@ -1,8 +1,8 @@
 """Pictures of dense traffic from above, with what the simulator knows of each vehicle in them."""
 
 import math
-from collections.abc import Iterator
-from typing import Final, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +22,10 @@ from eyas.targets.catalogue import MODELS, kind_index, kind_of, models_of
 from eyas.targets.colour_names import COLOUR_NAMES, colour_distances
 from eyas.targets.grammar.in_view import InView, body_of
 
-__all__ = ["PLACES", "SCENES", "Scenes", "Vehicles", "drawn"]
+__all__ = ["PLACES", "SCENES", "Scenes", "Vehicles", "chosen", "drawn"]
 
 Floats = NDArray[np.float32]
+Item = TypeVar("Item")
 
 PLACES: Final = tuple(
     Place(name, weather, "SUMO_VEHICLE")
@@ -80,6 +81,12 @@ class Vehicles(NamedTuple):
     """Index into `BODIES`, shape (V,)."""
     share: Floats
     """Share that is visible, shape (V,)."""
+
+
+def chosen(vehicles: Vehicles, mask: NDArray[np.bool_]) -> Vehicles:
+    """Return those of a mask, shape (V,)."""
+    parts: tuple[NDArray[Any], ...] = vehicles
+    return Vehicles(*(part[mask] for part in parts))
 
 
 class Scenes(NamedTuple):
@@ -148,18 +155,14 @@ def _begin(simulation: Simulation, tracker: int, rng: np.random.Generator) -> No
         _dress(simulation, tracker, simulation.view.in_view(tracker), rng)
 
 
-def _crowded(
-    here: NDArray[np.int64], place: NDArray[np.float64], rng: np.random.Generator
-) -> int:
+def _crowded(here: NDArray[np.int64], place: NDArray[np.float64], rng: np.random.Generator) -> int:
     """Return one of some vehicles, preferably one among others."""
     tried = rng.choice(here, _TRIED)
     near = np.square(place[tried][:, None] - place[here]).sum(axis=-1) < _NEAR * _NEAR
     return int(tried[near.sum(axis=1).argmax()])
 
 
-def _dress(
-    simulation: Simulation, tracker: int, view: InView, rng: np.random.Generator
-) -> None:
+def _dress(simulation: Simulation, tracker: int, view: InView, rng: np.random.Generator) -> None:
     """Give all in view colours that have names, and cars bodies."""
     cars = models_of(kind_index("passenger"))
     looks: dict[str, list[int]] = {}
@@ -178,7 +181,7 @@ def _dress(
         simulation.dress(tracker, actor, own, COLOUR_NAMES[colour])
 
 
-def _one(items, rng: np.random.Generator):
+def _one(items: Sequence[Item], rng: np.random.Generator) -> Item:
     return items[int(rng.integers(len(items)))]
 
 
@@ -221,7 +224,7 @@ def _labels(
         body,
         share.astype(np.float32),
     )
-    return Vehicles(*(part[inside] for part in labels))
+    return chosen(labels, inside)
 
 
 assert tuple(COLOUR_NAMES) == NAMES

@@ -106,8 +106,11 @@ def _add_row(progress: TrainingProgress, losses: list[Loss], training: WordsTrai
     """Note a block in the curve."""
     progress.block += 1
     progress.decisions = progress.stage_decisions = progress.block * training.block_pictures
-    means = np.mean([(each.total.item(), *each[1:]) for each in losses], axis=0)
-    row = dict(zip(("loss", "found", "colour", "body"), np.round(means, 4).tolist(), strict=True))
+    means = np.mean(
+        [(each.total.item(), each.found, each.colour, each.body) for each in losses], axis=0
+    )
+    loss, found, colour, body = (round(float(mean), 4) for mean in means)
+    row = {"loss": loss, "found": found, "colour": colour, "body": body}
     progress.rows.append({"block": progress.block, "decisions": progress.decisions, **row})
 
 

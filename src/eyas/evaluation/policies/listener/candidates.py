@@ -210,16 +210,12 @@ class Candidates:
     def _begin_with(self, rows: Rows, where: Floats) -> None:
         """Begin to follow some."""
         self._alive[rows] = True
-        self.motion.begin(
-            rows, where, np.zeros_like(where), _NOISE, np.full(len(rows), _SPEED)
-        )
+        self.motion.begin(rows, where, np.zeros_like(where), _NOISE, np.full(len(rows), _SPEED))
         self._looks[rows], self._first[rows], self._begin[rows] = 0.0, self._time, where
         for row in rows.tolist():
             self._ways[row] = []
 
-    def _learn(
-        self, row: int, found: Detections, one: int, where: Floats, heading: Floats
-    ) -> None:
+    def _learn(self, row: int, found: Detections, one: int, where: Floats, heading: Floats) -> None:
         """Add a look at one of them to what is known of it."""
         share = max(1.0 / (self._looks[row] + 1.0), _REMEMBERED)
         for known, new in (

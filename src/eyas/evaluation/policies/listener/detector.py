@@ -8,8 +8,8 @@ and the outputs, of C cells of the picture, of `STRIDE` x `STRIDE` pixels each,
 
 - `vehicles`, float32, (N, C): logarithm of the odds that the middle of a vehicle is in a cell;
 - `places`, float32, (N, C, 2): where it is then, column and row [pixels];
-- `headings`, float32, (N, C, 4): how it lies then: mean direction in which it heads, column and row,
-  and the same of twice the angle, which does not tell front from back;
+- `headings`, float32, (N, C, 4): how it lies then: the direction in which it heads, column and
+  row, and the same of twice the angle, which does not tell front from back;
 - `colours`, float32, (N, C, 22), and `bodies`, float32, (N, C, 9): logarithms of unnormalised
   probabilities of the words in `NAMES` and `BODIES`.
 """
@@ -132,7 +132,9 @@ class VehicleDetector:
         along = np.abs(away[..., 0] * column + away[..., 1] * row)
         across = np.abs(away[..., 1] * column - away[..., 0] * row)
         half = 0.5 * sizes
-        same: NDArray[np.bool_] = (along < _APART[0] * half[:, 0]) & (across < _APART[1] * half[:, 1])
+        same: NDArray[np.bool_] = (along < _APART[0] * half[:, 0]) & (
+            across < _APART[1] * half[:, 1]
+        )
         return same
 
 

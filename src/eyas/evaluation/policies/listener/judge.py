@@ -86,8 +86,8 @@ def _called(body: BodyWord, colour: str | None, seen: Seen) -> Floats:
     called = (exact.exp(seen.body) * fits).sum(axis=1)
     if colour is not None:
         called = called * exact.exp(seen.colour[:, NAMES.index(colour)])
-    called = np.maximum(called, _LEAST)
-    return called
+    least: Floats = np.maximum(called, _LEAST)
+    return least
 
 
 def _step(value: Floats, softness: float) -> Floats:
@@ -182,9 +182,7 @@ def _bears(bearing: Bearing, seen: Seen, other: Floats) -> Floats:
         here = _within(aside, -0.2, 3.3) * _step(0.6 * length - np.abs(ahead), _SOFT)
     else:
         sign = -1.0 if bearing is Bearing.BEHIND else 1.0
-        there, back = (
-            _within(way * sign - length, -0.3, _GAP) for way in (ahead, -ahead)
-        )
+        there, back = (_within(way * sign - length, -0.3, _GAP) for way in (ahead, -ahead))
         front = lying.front[None]
         here = (front * there + (1.0 - front) * back) * _step(1.4 - np.abs(left), 0.4)
     here = here * (other / max(float(other.max(initial=_LEAST)), _LEAST))[None]

@@ -12,7 +12,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.evaluation.policies.listener.candidates import Candidates
@@ -118,9 +117,7 @@ class Listener:
             actions[rows[chosen], :2] = ahead
         return Decision(actions)
 
-    def _look(
-        self, row: int, found: Detections, pose: tuple[Floats, Floats], since: float
-    ) -> None:
+    def _look(self, row: int, found: Detections, pose: tuple[Floats, Floats], since: float) -> None:
         """Take what one drone sees, and choose its target when it has looked for long enough."""
         place, yaw = pose
         count = len(found.belief)
