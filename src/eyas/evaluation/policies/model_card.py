@@ -20,7 +20,11 @@ _HARM = (
     "real place."
 )
 
-_SHOWN = {"pixels": "in the middle of its first picture", "box": "in its first box", "text+pixels": "named"}
+_SHOWN = {
+    "pixels": "in the middle of its first picture",
+    "box": "in its first box",
+    "text+pixels": "named",
+}
 """What a policy follows, by its class."""
 
 

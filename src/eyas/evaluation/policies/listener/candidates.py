@@ -32,6 +32,15 @@ _WIDEST: Final = 8.0
 _GATE: Final = 3.5
 """Largest distance of a vehicle from where it is expected, in standard deviations."""
 
+_FAR: Final = 3.0
+"""The same [m]."""
+
+_OTHER: Final = -4.0
+"""Logarithm of how alike two looks are, below which they are not of the same vehicle, if one of
+them is known from so many pictures."""
+
+_LOOKED: Final = 5
+
 _ALIKE: Final = 0.7
 """Weight of its looks, against that of its place."""
 
@@ -41,6 +50,9 @@ _UNLIKE: Final = -6.0
 _KNOWN, _LONG = 0.25, 12.0
 """How much rather one is taken that has been seen so often before, up to so many looks: for that
 one, if another has begun on the same vehicle."""
+
+_SURER: Final = 1.5
+"""Share of vehicles among things in which the network believes by 1."""
 
 _NEW: Final = 0.35
 """Least belief in a vehicle that has not been seen before."""
@@ -129,9 +141,8 @@ class Candidates:
         pairs = self._pairs(rows, found, where)
         known = np.array([row for row, _ in pairs], np.int64)
         mine = np.array([one for _, one in pairs], np.int64)
-        self.motion.update(
-            known, where[mine], np.full(len(known), _NOISE * _NOISE), np.ones(len(known))
-        )
+        belief = np.minimum(_SURER * found.belief[mine], 1.0)
+        self.motion.update(known, where[mine], np.full(len(known), _NOISE * _NOISE), belief)
         self._forget()
         new = np.setdiff1d(np.flatnonzero(found.belief > _NEW), mine)
         free = np.flatnonzero(~self._alive)[: len(new)]
@@ -160,13 +171,15 @@ class Candidates:
         if not len(rows) or not len(where):
             return []
         variance = np.square(self.motion.spread(rows)) + _NOISE * _NOISE
-        away = np.square(where[None] - self.motion.place[rows][:, None]).sum(axis=-1)
-        away = away / variance[:, None]
+        square = np.square(where[None] - self.motion.place[rows][:, None]).sum(axis=-1)
+        away = square / variance[:, None]
         alike = _alike(_shares(self._colour[rows]), found.colour)
         alike = alike + _alike(_shares(self._body[rows]), found.body)
         cost = 0.5 * away + exact.log(variance)[:, None] - _ALIKE * np.maximum(alike, _UNLIKE)
         cost = cost - _KNOWN * np.minimum(self._looks[rows], _LONG)[:, None]
-        cost = np.where(away < _GATE * _GATE, cost, np.inf)
+        cost = cost - exact.log(found.belief)
+        other = (alike < _OTHER) & (self._looks[rows] >= _LOOKED)[:, None]
+        cost = np.where((away > _GATE * _GATE) | (square > _FAR * _FAR) | other, np.inf, cost)
         pairs: dict[int, int] = {}
         taken: set[int] = set()
         for index in np.argsort(cost, axis=None, kind="stable").tolist():
