@@ -40,7 +40,7 @@ _OF_A_FLOWN_DRONE = {
 }
 
 
-_REFERRING: dict[str, Any] = {"seeds": (11_000_000,), "episodes": 25}
+_REFERRING: dict[str, Any] = {"seeds": (11_000_000,), "episodes": 13}
 """What is flown of `referring`: begins of episodes on which no baseline was tuned, four flights
 each."""
 
