@@ -85,6 +85,6 @@ def _trunk(graph: Graph, network: ListenerNetwork) -> str:
 
 
 def _folded(layer: nn.Conv2d, norm: nn.Module) -> nn.Conv2d:
-    """Return a convolution that does what one and its normalisation do."""
+    """Return a convolution that does what one and the norm behind it do."""
     assert isinstance(norm, nn.BatchNorm2d)
     return torch.nn.utils.fuse_conv_bn_eval(layer.eval(), norm.eval())
