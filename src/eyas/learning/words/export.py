@@ -31,6 +31,23 @@ def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, 
         settings: Of the listener.
         path: The file.
     """
+    body = _graph(network)
+    model = helper.make_model(
+        body,
+        opset_imports=[helper.make_opsetid("", OPSET)],
+        ir_version=8,
+        producer_name="eyas",
+        producer_version=__version__,
+    )
+    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
+    own = settings.model_dump(mode="json")
+    helper.set_model_props(model, {METADATA: json.dumps(said), TRACKER: json.dumps(own)})
+    onnx.checker.check_model(model, full_check=True)
+    write_atomic(path, model.SerializeToString())
+
+
+def _graph(network: ListenerNetwork) -> onnx.GraphProto:
+    """Return what a network computes."""
     graph = Graph()
     cells, (height, width) = len(network.cells), network.size
     answers = graph.convolution("answers", _trunk(graph, network), network.head)
@@ -46,7 +63,7 @@ def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, 
     graph.node("Add", [scaled, graph.weight("cells", network.cells[None])], "places")
     outputs = {"vehicles": [], "places": [2], "headings": [4]}
     outputs |= {"colours": [len(NAMES)], "bodies": [len(BODIES)]}
-    body = helper.make_graph(
+    return helper.make_graph(
         graph.nodes,
         "eyas",
         [helper.make_tensor_value_info("image", TensorProto.UINT8, ["n", 3, height, width])],
@@ -56,18 +73,6 @@ def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, 
         ],
         graph.weights,
     )
-    model = helper.make_model(
-        body,
-        opset_imports=[helper.make_opsetid("", OPSET)],
-        ir_version=8,
-        producer_name="eyas",
-        producer_version=__version__,
-    )
-    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
-    own = settings.model_dump(mode="json")
-    helper.set_model_props(model, {METADATA: json.dumps(said), TRACKER: json.dumps(own)})
-    onnx.checker.check_model(model, full_check=True)
-    write_atomic(path, model.SerializeToString())
 
 
 def _trunk(graph: Graph, network: ListenerNetwork) -> str:
