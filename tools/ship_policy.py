@@ -2,10 +2,12 @@
 
     python tools/ship_policy.py runs/fast fast "citystreet by day" --trained-on "..." --limit "..."
     python tools/ship_policy.py runs/eyas eyas "..." ... # or eyas-flown, of the same run
+    python tools/ship_policy.py runs/eyas-words eyas-words "..." ...
     python tools/ship_policy.py --measure fast eyas      # flies them again, for new scores
 
 The card's rows: `paper` on each map and in each weather that it has learned, and `long` on
-citystreet by day; of a tracker also look-alikes, people, robots, and late actions. If the run
+citystreet by day; of a tracker also look-alikes, people, robots, and late actions; of a listener
+`referring` only, on the maps and in the weathers that it has learned. If the run
 teaches another run's network further, the card has both commands.
 """
 
@@ -22,8 +24,10 @@ from eyas import __version__
 from eyas.envs.choice import settings_of_kinds
 from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 from eyas.evaluation.policies.shipped import TRAINED, Card, Score, card_of, file_of
+from eyas.evaluation.record import EpisodeRecord
 from eyas.learning.config import Method
 from eyas.learning.tracking.flights import MAPS, WEATHERS
+from eyas.learning.words.scenes import PLACES
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 
@@ -34,6 +38,11 @@ _OF_A_FLOWN_DRONE = {
     "tracker": {"supervised": False, "flight": "mended"},
     "start": {"velocity": "target"},
 }
+
+
+_REFERRING: dict[str, Any] = {"seeds": (11_000_000,), "episodes": 13}
+"""What is flown of `referring`: begins of episodes on which no baseline was tuned, four flights
+each."""
 
 
 class Flown(NamedTuple):
@@ -68,8 +77,13 @@ def main() -> None:
     policy = shutil.copy(asked.run / file, TRAINED / f"{asked.name}.onnx")
     curve = shutil.copy(asked.run / "curve.csv", TRAINED / f"{asked.name}.csv")
     config = load_settings(asked.run / "config.json")
-    tracks = config.train.method is Method.TRACKER
-    trained, flown = of_tracker(config) if tracks else of_network(config, curve)
+    match config.train.method:
+        case Method.TRACKER:
+            trained, flown = of_tracker(config)
+        case Method.WORDS:
+            trained, flown = of_listener(config)
+        case _:
+            trained, flown = of_network(config, curve)
     flown = on_flown_drones() if asked.name == _FLOWN else flown
     trained["command"] = command(asked.run, config)
     card = Card(
@@ -100,6 +114,12 @@ def of_tracker(config: EyasConfig) -> tuple[dict[str, Any], list[Flown]]:
     flown += [Flown("paper", MAPS[0], "day", target=name) for name in ("Pedestrian", "GhostDog")]
     flown += [Flown("paper", MAPS[0], "day", latency="80")]
     return {"decisions": config.train.tracker.pictures, "entry_class": "box"}, flown
+
+
+def of_listener(config: EyasConfig) -> tuple[dict[str, Any], list[Flown]]:
+    """Return what a card says of a listener, and what is flown."""
+    flown = [Flown("referring", place.map, place.weather) for place in PLACES]
+    return {"decisions": config.train.words.pictures, "entry_class": "text+pixels"}, flown
 
 
 def on_flown_drones() -> list[Flown]:
@@ -142,6 +162,7 @@ def score(policy: Path, flown: Flown) -> Score:
         weathers=(flown.weather,),
         targets=(flown.target,),
         latency=flown.latency,
+        **(_REFERRING if flown.protocol == "referring" else {}),
         settings=_OF_A_FLOWN_DRONE if flown.flown else {},
     )
     records = [
@@ -150,10 +171,21 @@ def score(policy: Path, flown: Flown) -> Score:
     cr, tsr = (float(np.mean([getattr(each, name) for each in records])) for name in ("cr", "tsr"))
     return Score(
         **flown._asdict(),
+        **in_words(records),
         n=len(records),
         cr=round(cr, 1),
         tsr=round(tsr, 4),
     )
+
+
+def in_words(records: list[EpisodeRecord]) -> dict[str, float]:
+    """Return what only protocols in which targets are named tell."""
+    found = {}
+    for name, figure in (("success", "success_right"), ("language_gap", "language_gap")):
+        told = [value for each in records if (value := each.figures.get(figure)) is not None]
+        if told:
+            found[name] = round(float(np.mean(told)), 4)
+    return found
 
 
 if __name__ == "__main__":

@@ -242,6 +242,12 @@ def test_a_servo_that_listens_has_a_gap_and_its_twin_has_none():
     assert gap(flown("salient-servo", seeds[:4], SHORT)) == 0.0
 
 
+@pytest.mark.slow
+def test_the_listener_listens():
+    pytest.importorskip("onnxruntime")
+    assert gap(flown("eyas-words", range(FIRST, FIRST + 8), SHORT)) > 0.6
+
+
 def test_switches_go_from_the_target_to_another_for_a_while():
     follows = np.array([7, 7, 3, 7, 7, 3, 3, 3, -1, 4, 4, 4, 7, 5, 5, 5])
     assert switches(follows, 7, 3) == 2

@@ -19,6 +19,7 @@ from eyas.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from eyas.evaluation.policies.shipped import Score
     from eyas.settings.config import EyasConfig
 
 
@@ -218,12 +219,18 @@ def list_policies(*, as_json: AsJson = False) -> None:
         typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
         for score in card.scores:
             typer.echo(
-                f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
-                f"CR {score.cr:.1f}  n {score.n}"
+                f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} {_figures_of(score)}  "
+                f"n {score.n}"
                 f"{'' if score.latency == '0' else f'  {score.latency} ms late'}"
                 f"{'' if score.target == 'SUMO_VEHICLE' else f'  {score.target}'}"
                 f"{'  flown drone' if score.flown else ''}"
             )
+
+
+def _figures_of(score: "Score") -> str:
+    if score.language_gap is None:
+        return f"TSR {score.tsr:.3f}  CR {score.cr:.1f}"
+    return f"success {score.success:.3f}  language gap {score.language_gap:.3f}"
 
 
 @policies_app.command("card")

@@ -19,6 +19,7 @@ __all__ = [
     "TeacherKind",
     "TrackerTraining",
     "TrainConfig",
+    "WordsTraining",
 ]
 
 LESSON = 128
@@ -43,6 +44,9 @@ class Method(StrEnum):
     TRACKER = "tracker"
     """The network of a tracker that follows what its first box shows, from pictures of flights
     (docs/following-one-target.md); settings: `tracker`, no others."""
+    WORDS = "words"
+    """The network of a listener that follows what it is told, from pictures of traffic
+    (docs/following-words.md); settings: `words`, no others."""
 
 
 class TeacherKind(StrEnum):
@@ -155,6 +159,33 @@ class TrackerTraining(Config):
         return self
 
 
+class WordsTraining(Config):
+    """How a listener is taught."""
+
+    blocks: Annotated[int, Field(ge=1, le=100_000)] = 60
+    """Blocks of new pictures, after each of which the run can be resumed."""
+    scenes: Annotated[int, Field(ge=32, le=2**16, multiple_of=32)] = 1024
+    """Pictures of a block, as many of each map and weather as of the others."""
+    passes: Annotated[int, Field(ge=1, le=100)] = 2
+    """How often each picture is shown."""
+    learning_rate: Annotated[float, Field(gt=0, le=1)] = 3e-3
+    """Of AdamW; it rises to this and falls to a fiftieth of it."""
+
+    @property
+    def block_pictures(self) -> int:
+        """Pictures in the lessons of a block."""
+        return self.scenes * self.passes
+
+    @property
+    def pictures(self) -> int:
+        """Pictures in all lessons, with those that come more than once."""
+        return self.blocks * self.block_pictures
+
+    def scaled_blocks(self, total: int) -> int:
+        """Return the number of blocks that has `total` pictures in lessons, at least 1."""
+        return max(round(total / self.block_pictures), 1)
+
+
 class TrainConfig(Config):
     """How a network is taught; see `Method`."""
 
@@ -164,6 +195,8 @@ class TrainConfig(Config):
     """How a teacher teaches."""
     tracker: TrackerTraining = TrackerTraining()
     """How a tracker is taught."""
+    words: WordsTraining = WordsTraining()
+    """How a listener is taught."""
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
@@ -228,7 +261,7 @@ class TrainConfig(Config):
     def taught_decisions(self) -> int:
         """Decisions at the beginning of a run in which a teacher teaches."""
         match self.method:
-            case Method.PPO | Method.TRACKER:
+            case Method.PPO | Method.TRACKER | Method.WORDS:
                 return 0
             case Method.DAGGER:
                 return self.run_decisions
@@ -242,7 +275,9 @@ class TrainConfig(Config):
         return sum(map(self.updates_of, self.stages)) * self.update_decisions
 
     def scaled(self, total: int) -> dict[str, Any]:
-        """Return the changes that make it a run of `total` decisions, or pictures of a tracker."""
+        """Return the changes that make it a run of `total` decisions, or pictures in lessons."""
+        if self.method is Method.WORDS:
+            return {"words": {"blocks": self.words.scaled_blocks(total)}}
         if self.method is Method.TRACKER:
             return {"tracker": {"rounds": self.tracker.scaled_rounds(total)}}
         return {"stages": self.scaled_stages(total)}

@@ -1,5 +1,6 @@
 """Training: a run of `eyas.learning`, which needs an extra."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from eyas.core.errors import ConfigError, MissingExtraError
@@ -28,17 +29,8 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     except ModuleNotFoundError as error:
         raise MissingExtraError("training", "train") from error
     say = (lambda _: None) if quiet else _say
-    if config.train.method is Method.TRACKER:
-        from eyas.learning.tracking.training import train as train_tracker
-
-        if ray:
-            raise ConfigError("--ray: not allowed for a tracker: it is taught in one process")
-        if config.train.device is not None:
-            raise ConfigError(
-                f"train.device: '{config.train.device}' is not allowed for a tracker: it is taught "
-                "on this processor"
-            )
-        return train_tracker(config, folder, resume=resume, say=say)
+    if config.train.method in (Method.TRACKER, Method.WORDS):
+        return _of_pictures(config, folder, resume=resume, say=say, ray=ray)
     if not ray:
         return train(config, folder, resume=resume, say=say)
     if config.train.device is not None:
@@ -47,6 +39,26 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
 
     with on_ray() as make_shards:
         return train(config, folder, resume=resume, say=say, make_shards=make_shards)
+
+
+def _of_pictures(
+    config: EyasConfig, folder: Path, *, resume: bool, say: Callable[[str], None], ray: bool
+) -> Path:
+    """Train a network that learns from labelled pictures, in this process."""
+    from eyas.learning.tracking.training import train as train_tracker
+    from eyas.learning.words.training import train as train_listener
+
+    tracks = config.train.method is Method.TRACKER
+    name = "tracker" if tracks else "listener"
+    if ray:
+        raise ConfigError(f"--ray: not allowed for a {name}: it is taught in one process")
+    if config.train.device is not None:
+        raise ConfigError(
+            f"train.device: '{config.train.device}' is not allowed for a {name}: it is taught on "
+            "this processor"
+        )
+    train = train_tracker if tracks else train_listener
+    return train(config, folder, resume=resume, say=say)
 
 
 def _say(line: str) -> None:

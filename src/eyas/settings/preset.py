@@ -13,7 +13,7 @@ DAT_MODES = ("dat-eval", "dat-train")
 WORLDS = ("easy", "lively", "noisy")
 """Worlds that are easier or harder than the default."""
 
-TRAININGS = ("eyas", "fast", "paper")
+TRAININGS = ("eyas", "eyas-words", "fast", "paper")
 """How the policies that come with Eyas were trained, and a published training."""
 
 PRESETS = (*DAT_MODES, *WORLDS, *TRAININGS)

@@ -20,7 +20,11 @@ _HARM = (
     "real place."
 )
 
-_SHOWN = {"pixels": "in the middle of its first picture", "box": "in its first box"}
+_SHOWN = {
+    "pixels": "in the middle of its first picture",
+    "box": "in its first box",
+    "text+pixels": "named",
+}
 """What a policy follows, by its class."""
 
 
@@ -47,11 +51,18 @@ def model_card(name: str) -> str:
 
 
 def _scores(card: Card) -> str:
-    rows = "\n".join(map(_row, card.scores))
+    told = any(score.language_gap is not None for score in card.scores)
+    rows = "\n".join(map(_told_row if told else _row, card.scores))
+    figures = "success | language gap" if told else "CR | TSR"
     return (
         "Means over the episodes of protocols (`docs/evaluation.md`), which training has not had.\n"
-        f"\n| protocol | map | weather | n | CR | TSR |\n|---|---|---|---|---|---|\n{rows}"
+        f"\n| protocol | map | weather | n | {figures} |\n|---|---|---|---|---|---|\n{rows}"
     )
+
+
+def _told_row(score: Score) -> str:
+    place = f"{score.protocol} | {score.map} | {score.weather} | {score.n}"
+    return f"| {place} | {score.success:.3f} | {score.language_gap:.3f} |"
 
 
 def _row(score: Score) -> str:

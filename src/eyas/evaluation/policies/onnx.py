@@ -14,7 +14,8 @@ Inputs and outputs, by name, all with a leading axis of N episodes:
 The metadata `eyas` holds JSON: changes of the defaults of `env`, such as `{"observation": {"width":
 48, "height": 48, "layout": "chw", "frames": 1}, "actions": "discrete", "action_repeat": 4}`.
 
-A network with the input `expected` is that of a tracker, see `eyas.evaluation.policies.tracker`.
+A network with the input `expected` is that of a tracker, see `eyas.evaluation.policies.tracker`;
+one with the output `vehicles` that of a listener, see `eyas.evaluation.policies.listener`.
 """
 
 from collections.abc import Mapping
@@ -26,6 +27,8 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.evaluation.policies.choice import Chooser
+from eyas.evaluation.policies.listener.detector import VehicleDetector
+from eyas.evaluation.policies.listener.listener import Listener
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 from eyas.evaluation.policies.simple import HOVER
 from eyas.evaluation.policies.tracker.detector import Detector
@@ -112,19 +115,22 @@ class OnnxPolicy:
         return Decision(actions)
 
 
-def load_onnx(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> OnnxPolicy | Tracker:
-    """Return the policy in a file, see `OnnxPolicy` and `Tracker`.
+def load_onnx(
+    path: Path, changes: Mapping[str, Any], *, sampled: bool
+) -> OnnxPolicy | Tracker | Listener:
+    """Return the policy in a file, see `OnnxPolicy`, `Tracker` and `Listener`.
 
     Raises:
         EyasError: The file does not hold one, or changes do not fit it.
     """
     session = _session(path)
-    if not Detector.fits(session):
+    make = Tracker if Detector.fits(session) else Listener
+    if make is Listener and not VehicleDetector.fits(session):
         return OnnxPolicy(path, session, changes, sampled=sampled)
     if sampled:
         raise ConfigError(f"--sample: not allowed for '{path.stem}': it has no scores of actions")
     said, own = (metadata(path, session, name) for name in (METADATA, TRACKER))
-    return Tracker(path, session, settings_in(path, f"metadata '{METADATA}'", said), own, changes)
+    return make(path, session, settings_in(path, f"metadata '{METADATA}'", said), own, changes)
 
 
 def _session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types

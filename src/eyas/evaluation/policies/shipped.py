@@ -31,6 +31,9 @@ class Score(Config):
     """Number of episodes."""
     cr: float
     tsr: float
+    language_gap: float | None = None
+    success: float | None = None
+    """With the right words; both of `referring` only."""
 
 
 class Card(Config):
@@ -43,7 +46,7 @@ class Card(Config):
     entry_class: str = "pixels"
     """What it knows, see `eyas.evaluation.entry.EntryClass`."""
     decisions: int
-    """Of all environments, in training; of the tracker, pictures that it was shown."""
+    """Of all environments, in training; of trackers, pictures that they were shown."""
     version: str
     """Of Eyas, when it was trained."""
     trained_on: str

@@ -156,7 +156,7 @@ def _long_flights() -> Iterator[Table]:
         ("language_gap", "success_right", "success_other", "chosen"),
         _flown(
             "referring",
-            ("hover", "follow", "attribute-servo"),
+            ("hover", "follow", "attribute-servo", "eyas-words"),
             seeds=THREE_SETS[1:2],
         ),
     )

@@ -24,6 +24,7 @@ from eyas.evaluation.policies.policy import (
 )
 from eyas.evaluation.policies.tracker.detector import Clue, Detector, Found
 from eyas.evaluation.policies.tracker.ground import Ground
+from eyas.evaluation.policies.tracker.helm import Helm, turned
 from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
@@ -42,9 +43,6 @@ _NO_BOX = Failure(
     "out of the picture",
     None,
 )
-
-_CONTROL_STEP = 0.008
-"""Of all protocols [s]."""
 
 _LEAST_RENEWAL = 0.02
 """Share of the latest look in the memory of how the target looks, after many looks."""
@@ -93,7 +91,6 @@ class Tracker:
             raise DataFileError(f"{path}: the tracker needs the parts 'image' and 'sensors'")
         size = made.observation.height, made.observation.width
         self.detector, self.ground = Detector(session, size), Ground(self.settings, size)
-        self._period = _CONTROL_STEP * self.env.action_repeat
 
     def begin(self, start: Start) -> None:
         """Take the first boxes: N episodes begin."""
@@ -109,10 +106,7 @@ class Tracker:
         self._key = np.zeros((count, self.detector.keys), np.float32)
         self._renewed = np.zeros(count)
         """How often each memory of how the target looks was renewed."""
-        self._looked = np.full(count, np.nan)
-        """When each looked last [s]; NaN: not yet."""
-        self._command = np.zeros((count, 2))
-        """Latest command of each, east and north [m/s]."""
+        self._helm = Helm(count, self.env, self.ground, self.settings.gain)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Look, and fly to where the targets should be when the action takes effect."""
@@ -124,9 +118,10 @@ class Tracker:
             seen: Any = sight.observation
             sensed = seen["sensors"][rows].astype(np.float64)
             place, yaw = sensed[:, :2], sensed[:, -1]
-            since = self._time_since(rows, sight.clock)
+            since = self._helm.time_since(rows, sight.clock)
             self.look(rows, seen["image"][rows], place, yaw, since)
-            actions[rows, :2] = self._steer(rows, place, yaw, since)
+            target = self.motion.place[rows], self.motion.velocity[rows]
+            actions[rows, :2] = self._helm.steer(rows, (place, yaw), since, target)
         return Decision(actions, failed)
 
     def look(
@@ -149,7 +144,7 @@ class Tracker:
         clue = self._clue(rows, place, yaw)
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
         found = self.detector.find(pictures, clue)
-        where = place + _turned(self.ground.offsets(found.place), yaw)
+        where = place + turned(self.ground.offsets(found.place), yaw)
         noise = found.spread / self.ground.pixels_per_metre
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
@@ -171,7 +166,7 @@ class Tracker:
 
     def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
         """Return what the network is told about targets, see `look`."""
-        expected = self.ground.pixels(_turned(self.motion.place[rows] - place, -yaw))
+        expected = self.ground.pixels(turned(self.motion.place[rows] - place, -yaw))
         spread = np.sqrt(
             np.square(self.motion.spread(rows)) + self.settings.floor * self.settings.floor
         )
@@ -186,7 +181,7 @@ class Tracker:
         walks = sides[:, 0] * sides[:, 1] < own.small * own.small
         speed = np.where(walks, own.walking_speed, own.speed)
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
-        where = place + _turned(self.ground.offsets(middle), yaw)
+        where = place + turned(self.ground.offsets(middle), yaw)
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
         self.left[rows] = where
 
@@ -197,37 +192,3 @@ class Tracker:
         share = np.maximum(1.0 / (self._renewed[rows] + 1.0), _LEAST_RENEWAL)[:, None]
         self._key[rows] += (share * (found.key[sure] - self._key[rows])).astype(np.float32)
         self._renewed[rows] += 1.0
-
-    def _time_since(self, rows: Rows, clock: float | None) -> Floats:
-        """Return the time since the last look of each [s], shape (K,); NaN: there was none."""
-        before = self._looked[rows]
-        now = np.where(np.isnan(before), 0.0, before + self._period) if clock is None else clock
-        self._looked[rows] = now
-        since: Floats = now - before
-        return since
-
-    def _steer(self, rows: Rows, place: Floats, yaw: Floats, since: Floats) -> Floats:
-        """Return commands ahead and to the left [m/s], shape (K, 2).
-
-        Looks that are farther apart than an action lasts show how late actions are: the drone then
-        flies on as it was told before, and the action lasts as long.
-        """
-        late = np.where(since > 1.5 * self._period, since, 0.0)[:, None]
-        lasts = np.maximum(late, self._period)
-        velocity = self.motion.velocity[rows]
-        away = self.motion.place[rows] - place + late * (velocity - self._command[rows])
-        away = away - _turned(np.tile(self.ground.middle, (len(rows), 1)), yaw)
-        self._command[rows] = velocity + self.settings.gain * away / lasts
-        ahead = _turned(self._command[rows], -yaw)
-        fastest = self.env.speeds.forward_speed
-        ahead = np.clip(ahead, -fastest, fastest)
-        self._command[rows] = _turned(ahead, yaw)
-        return ahead
-
-
-def _turned(vectors: Floats, angle: Floats) -> Floats:
-    """Return vectors turned counter-clockwise, shape (K, 2)."""
-    sine, cosine = exact.sin(angle), exact.cos(angle)
-    east = cosine * vectors[:, 0] - sine * vectors[:, 1]
-    north = sine * vectors[:, 0] + cosine * vectors[:, 1]
-    return np.stack((east, north), axis=-1)

@@ -1,0 +1,89 @@
+"""Steers drones by velocities so that what they follow comes into the middle of the picture."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.policies.tracker.ground import Ground
+
+__all__ = ["Helm", "turned"]
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+_CONTROL_STEP = 0.008
+"""Of all protocols [s]."""
+
+
+class Helm:
+    """Steers N drones.
+
+    Attributes:
+        period: How long an action lasts [s].
+
+    Args:
+        count: N.
+        env: Speeds of the actions, and how long they last.
+        ground: The camera over the level of the targets.
+        gain: Share of the distance from the middle that an action makes up for.
+    """
+
+    def __init__(self, count: int, env: EnvConfig, ground: Ground, gain: float) -> None:
+        self.period = _CONTROL_STEP * env.action_repeat
+        self._ground, self._gain = ground, gain
+        self._fastest = env.speeds.forward_speed
+        self._looked = np.full(count, np.nan)
+        """When each looked last [s]; NaN: not yet."""
+        self._command = np.zeros((count, 2))
+        """Latest command of each, east and north [m/s]."""
+
+    def time_since(self, rows: Rows, clock: float | None) -> Floats:
+        """Return the time since the last look of each [s], shape (K,); NaN: there was none.
+
+        Args:
+            rows: K of the drones, which look now, shape (K,).
+            clock: Time since the start of the flight [s]; None: an action lasts from look to look.
+        """
+        before = self._looked[rows]
+        now = np.where(np.isnan(before), 0.0, before + self.period) if clock is None else clock
+        self._looked[rows] = now
+        since: Floats = now - before
+        return since
+
+    def steer(
+        self,
+        rows: Rows,
+        pose: tuple[Floats, Floats],
+        since: Floats,
+        target: tuple[Floats, Floats],
+    ) -> Floats:
+        """Return commands ahead and to the left [m/s], shape (K, 2).
+
+        Looks that are farther apart than an action lasts show how late actions are: the drone then
+        flies on as it was told before, and the action lasts as long.
+
+        Args:
+            rows: K of the drones, shape (K,).
+            pose: Where they are, east and north [m], (K, 2), and their heading [rad], (K,).
+            since: Of `time_since`.
+            target: Where their targets are [m] and how these move [m/s], east and north, (K, 2).
+        """
+        (place, yaw), (where, velocity) = pose, target
+        late = np.where(since > 1.5 * self.period, since, 0.0)[:, None]
+        lasts = np.maximum(late, self.period)
+        away = where - place + late * (velocity - self._command[rows])
+        away = away - turned(np.tile(self._ground.middle, (len(rows), 1)), yaw)
+        self._command[rows] = velocity + self._gain * away / lasts
+        ahead = turned(self._command[rows], -yaw)
+        ahead = np.clip(ahead, -self._fastest, self._fastest)
+        self._command[rows] = turned(ahead, yaw)
+        return ahead
+
+
+def turned(vectors: Floats, angle: Floats) -> Floats:
+    """Return vectors turned counter-clockwise, shape (K, 2)."""
+    sine, cosine = exact.sin(angle), exact.cos(angle)
+    east = cosine * vectors[:, 0] - sine * vectors[:, 1]
+    north = sine * vectors[:, 0] + cosine * vectors[:, 1]
+    return np.stack((east, north), axis=-1)

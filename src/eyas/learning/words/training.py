@@ -1,0 +1,139 @@
+"""Trains the listener: blocks of new pictures, each shown a few times."""
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import torch
+
+from eyas.core.errors import ConfigError
+from eyas.core.rng import stream
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.learning.checkpoint import RunFolder, TrainingProgress
+from eyas.learning.config import WordsTraining
+from eyas.learning.words.export import export
+from eyas.learning.words.lessons import Loss, lesson, loss_of
+from eyas.learning.words.network import ListenerNetwork
+from eyas.learning.words.scenes import Scenes, drawn
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+from eyas.settings.preset import preset_file
+
+__all__ = ["LISTENER", "train"]
+
+LISTENER: Final = TrackerSettings(height=44.2, gain=0.3)
+"""45 m above the road, and about 0.8 m less above the middles of vehicles."""
+
+_PICTURES: Final = 32
+"""In a step of learning."""
+
+_WARM_UP: Final = 200
+"""Steps in which the rate of learning rises, at most a quarter of all."""
+
+Say = Callable[[str], None]
+
+
+def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = print) -> Path:
+    """Train a listener; return the path of the ONNX file.
+
+    A run that is resumed goes on with the next block, and gives the same.
+
+    Args:
+        config: The settings: those of the preset `eyas-words`, with any seed and `train.words`.
+        folder: Where the run is kept.
+        resume: Whether to continue the run in the folder.
+        say: Called with a line for each block.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    _refuse_unlike(config)
+    files, training = RunFolder(folder), config.train.words
+    files.begin(config, resume=resume)
+    torch.set_num_threads(1)
+    torch.manual_seed(config.seed)
+    seen = config.env.observation
+    network = ListenerNetwork((seen.height, seen.width))
+    network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+    optimiser = torch.optim.AdamW(network.parameters(), training.learning_rate, weight_decay=1e-4)
+    progress = files.load(network, optimiser)
+    begun = time.process_time()
+    say(f"{training.blocks} blocks, {training.pictures:,} pictures in lessons")
+    while progress.block < training.blocks:
+        scenes = drawn(config.env, config.seed, progress.block, training.scenes)
+        losses = list(_taught(network, optimiser, scenes, config, progress.block))
+        _add_row(progress, losses, training)
+        files.save(progress, network, optimiser)
+        say(_line(progress, training) + f"  CPU {time.process_time() - begun:.0f} s")
+    export(network, config.env, LISTENER, files.policy)
+    return files.policy
+
+
+def _taught(
+    network: ListenerNetwork,
+    optimiser: torch.optim.Optimizer,
+    scenes: Scenes,
+    config: EyasConfig,
+    block: int,
+) -> Iterator[Loss]:
+    """Teach a block; yield how wrong the network is in each step in which pictures are new."""
+    training = config.train.words
+    rng = stream(config.seed, "lessons of words", block)
+    steps = training.passes * (training.scenes // _PICTURES)
+    total, step = steps * training.blocks, steps * block
+    network.train()
+    for number in range(training.passes):
+        order = rng.permutation(training.scenes)
+        for first in range(0, training.scenes, _PICTURES):
+            rows = order[first : first + _PICTURES]
+            share = min(1.0, (step + 1) / min(_WARM_UP, max(total // 4, 1)))
+            optimiser.param_groups[0]["lr"] = (
+                training.learning_rate * share * (1.0 - 0.98 * step / total)
+            )
+            loss = loss_of(network, lesson(scenes, rows, network.grid, rng))
+            optimiser.zero_grad()
+            loss.total.backward()  # type: ignore[no-untyped-call]
+            torch.nn.utils.clip_grad_norm_(network.parameters(), 5.0)
+            optimiser.step()
+            step += 1
+            if number == 0:
+                yield loss
+
+
+def _add_row(progress: TrainingProgress, losses: list[Loss], training: WordsTraining) -> None:
+    """Note a block in the curve."""
+    progress.block += 1
+    progress.decisions = progress.stage_decisions = progress.block * training.block_pictures
+    means = np.mean(
+        [(each.total.item(), each.found, each.colour, each.body) for each in losses], axis=0
+    )
+    loss, found, colour, body = (round(float(mean), 4) for mean in means)
+    row = {"loss": loss, "found": found, "colour": colour, "body": body}
+    progress.rows.append({"block": progress.block, "decisions": progress.decisions, **row})
+
+
+def _line(progress: TrainingProgress, training: WordsTraining) -> str:
+    row = progress.rows[-1]
+    return (
+        f"block {progress.block} of {training.blocks}: loss {row['loss']:.3f}, found "
+        f"{row['found']:.3f}, colour {row['colour']:.3f}, body {row['body']:.3f}"
+    )
+
+
+def _refuse_unlike(config: EyasConfig) -> None:
+    """Refuse settings that would change nothing.
+
+    Raises:
+        ConfigError: There is one.
+    """
+    wanted = load_settings(preset_file("eyas-words"))
+    for name in sorted(EyasConfig.model_fields.keys() - {"mode", "seed", "train"}):
+        if getattr(config, name) != getattr(wanted, name):
+            raise ConfigError(
+                f"{name}: not allowed here: a listener's pictures have both maps and all weathers; "
+                "besides preset 'eyas-words' only seed and train.words can be chosen"
+            )
+    if config.train.begin_from is not None:
+        raise ConfigError("train.begin_from: not allowed for a listener: it begins anew")
