@@ -11,7 +11,6 @@ from eyas.world.maps import MAPS
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "weathers"),
     [  # one of each kind of winter
