@@ -154,7 +154,7 @@ class Tracker:
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         wide = self.motion.spread(rows) > 0.5 * self.settings.widest
-        least = np.where(wide, self.settings.remembered, self.settings.believed)
+        least = np.where(wide, self.settings.regained, self.settings.believed)
         taken = near & (found.belief > least)
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
@@ -186,6 +186,7 @@ class Tracker:
         walks = sides[:, 0] * sides[:, 1] < own.small * own.small
         speed = np.where(walks, own.walking_speed, own.speed)
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
+        self.motion.lasting[rows] = own.lasting
         where = place + _turned(self.ground.offsets(middle), yaw)
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
         self.left[rows] = where
