@@ -55,6 +55,19 @@ def test_the_filter_finds_a_velocity_and_goes_on_with_it():
     assert (motion.spread(ROWS) <= 8.0).all()
 
 
+def test_the_filter_does_not_lag_behind_what_turns():
+    motion, speed, rate = started(), 8.0, 0.6
+    motion.acceleration[:] = 4.0
+    for look in range(1, 101):
+        angle = look * 0.032 * rate
+        place = speed / rate * np.tile([np.sin(angle), 1.0 - np.cos(angle)], (2, 1))
+        motion.predict(ROWS, STEP)
+        motion.update(ROWS, place, np.full(2, 0.81), np.ones(2))
+    velocity = speed * np.array([np.cos(angle), np.sin(angle)])
+    # A filter that knows of no acceleration is wrong by 1.7 m/s.
+    assert np.abs(motion.velocity - velocity).max() < 1.0
+
+
 def test_what_is_seen_counts_by_its_variance_and_is_near_or_far():
     motion = started()
     distance = motion.distance(ROWS, np.array([[3.0, 4.0], [0.0, 0.0]]), np.full(2, 0.75))

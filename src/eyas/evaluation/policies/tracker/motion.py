@@ -1,29 +1,31 @@
-"""Where targets are and how they move: a Kalman filter with constant velocity.
+"""Where targets are and how they move: a Kalman filter whose acceleration lasts for a while.
 
-Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation" (2001),
-section 6.3.2: between two looks the acceleration is constant and random. Both axes are independent
-and have the same variances.
+R. A. Singer, "Estimating optimal tracking filter performance for manned maneuvering targets" (IEEE
+Transactions on Aerospace and Electronic Systems 6, 1970): the acceleration is random and decays. A
+filter that knows of no acceleration lags behind a car that turns or brakes, and would go on with a
+wrong velocity once it is hidden. Both axes are independent and have the same variances.
 """
 
 import numpy as np
 from numpy.typing import NDArray
+
+from eyas.core import exact
 
 __all__ = ["MotionFilter"]
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_CORRELATED = 0.95
-"""Largest correlation of place and velocity where the variance of the place is limited."""
+_PLACE, _VELOCITY, _ACCELERATION = range(3)
+"""Of a state."""
 
 
 class MotionFilter:
     """The motion of N targets on the level, east and north.
 
     Attributes:
-        place: [m], shape (N, 2).
-        velocity: [m/s], shape (N, 2).
-        acceleration: Standard deviation in each axis [m/s^2], shape (N,).
+        lasting: Time constant of accelerations [s], shape (N,).
+        acceleration: Their standard deviation in each axis [m/s^2], shape (N,).
 
     Args:
         count: N.
@@ -31,11 +33,21 @@ class MotionFilter:
     """
 
     def __init__(self, count: int, widest: float) -> None:
-        self.place, self.velocity = np.zeros((count, 2)), np.zeros((count, 2))
-        self.acceleration = np.ones(count)
-        self._variance = np.zeros((count, 3))
-        """Of place, place with velocity, velocity."""
-        self._widest = widest * widest
+        self._state = np.zeros((count, 3, 2))
+        self._variance = np.zeros((count, 3, 3))
+        """Of each axis."""
+        self.acceleration, self.lasting = np.ones(count), np.ones(count)
+        self._widest = widest
+
+    @property
+    def place(self) -> Floats:
+        """Where they are [m], shape (N, 2)."""
+        return self._state[:, _PLACE]
+
+    @property
+    def velocity(self) -> Floats:
+        """[m/s], shape (N, 2)."""
+        return self._state[:, _VELOCITY]
 
     def begin(
         self, rows: Rows, place: Floats, velocity: Floats, spread: float, speed: Floats
@@ -49,10 +61,11 @@ class MotionFilter:
             spread: Standard deviation of the places [m].
             speed: That of the velocities [m/s], shape (K,).
         """
-        self.place[rows], self.velocity[rows] = place, velocity
-        self._variance[rows] = np.stack(
-            (np.full(len(rows), spread * spread), np.zeros(len(rows)), speed * speed), axis=-1
-        )
+        self._state[rows] = np.stack((place, velocity, np.zeros_like(place)), axis=1)
+        self._variance[rows] = 0.0
+        self._variance[rows, _PLACE, _PLACE] = spread * spread
+        self._variance[rows, _VELOCITY, _VELOCITY] = np.square(speed)
+        self._variance[rows, _ACCELERATION, _ACCELERATION] = np.square(self.acceleration[rows])
 
     def stop(self, rows: Rows, speed: float) -> None:
         """Expect K targets to stand or to move from where they are now, in any direction.
@@ -61,24 +74,50 @@ class MotionFilter:
             rows: Which they are, shape (K,).
             speed: Standard deviation of their velocities [m/s].
         """
-        self.velocity[rows] = 0.0
-        self._variance[rows, 1:] = 0.0, speed * speed
+        spread = self._variance[rows, _PLACE, _PLACE]
+        still = np.zeros((len(rows), 2))
+        self.begin(rows, self.place[rows], still, 0.0, np.full(len(rows), speed))
+        self._variance[rows, _PLACE, _PLACE] = spread
 
     def spread(self, rows: Rows) -> Floats:
         """Return the standard deviation of places [m], shape (K,)."""
-        spread: Floats = np.sqrt(self._variance[rows, 0])
+        spread: Floats = np.sqrt(self._variance[rows, _PLACE, _PLACE])
         return spread
 
     def predict(self, rows: Rows, time: Floats) -> None:
         """Let time pass [s], shape (K,)."""
-        self.place[rows] += time[:, None] * self.velocity[rows]
-        place, both, speed = self._variance[rows].T
-        noise = np.square(self.acceleration[rows] * time)
-        place = place + time * (2.0 * both + time * (speed + 0.25 * noise))
-        both = both + time * (speed + 0.5 * noise)
-        place, speed = np.minimum(place, self._widest), speed + noise
-        most = _CORRELATED * np.sqrt(place * speed)
-        self._variance[rows] = np.stack((place, np.clip(both, -most, most), speed), axis=-1)
+        step = self._step(rows, time)
+        self._state[rows] = exact.product(step, self._state[rows])
+        variance = exact.product(exact.product(step, self._variance[rows]), step.swapaxes(1, 2))
+        variance += self._noise(rows, time)
+        # A place that may be anywhere is no reason to doubt how the target moves.
+        most = np.ones((len(rows), 3))
+        place = np.sqrt(variance[:, _PLACE, _PLACE])
+        most[:, _PLACE] = self._widest / np.maximum(place, self._widest)
+        self._variance[rows] = most[:, :, None] * variance * most[:, None]
+
+    def _step(self, rows: Rows, time: Floats) -> Floats:
+        """Return how states become those of later, shape (K, 3, 3)."""
+        lasting = self.lasting[rows]
+        left = exact.exp(-time / lasting)
+        gained = lasting * (1.0 - left)
+        step = np.zeros((len(rows), 3, 3))
+        step[:, _PLACE, _PLACE] = step[:, _VELOCITY, _VELOCITY] = 1.0
+        step[:, _PLACE, _VELOCITY] = time
+        step[:, _PLACE, _ACCELERATION] = lasting * (time - gained)
+        step[:, _VELOCITY, _ACCELERATION] = gained
+        step[:, _ACCELERATION, _ACCELERATION] = left
+        return step
+
+    def _noise(self, rows: Rows, time: Floats) -> Floats:
+        """Return variances that are added in a time which is short beside `lasting`, (K, 3, 3)."""
+        square = time * time
+        powers = (square * square * time / 20.0, square * square / 8.0, square * time / 6.0)
+        powers += (square * time / 3.0, 0.5 * square, time)
+        rate = 2.0 * np.square(self.acceleration[rows]) / self.lasting[rows]
+        noise = np.stack([powers[k] for k in (0, 1, 2, 1, 3, 4, 2, 4, 5)], axis=-1)
+        added: Floats = (rate[:, None] * noise).reshape(-1, 3, 3)
+        return added
 
     def distance(self, rows: Rows, place: Floats, variance: Floats) -> Floats:
         """Return how far seen places are from the expected ones, in standard deviations, (K,).
@@ -89,7 +128,7 @@ class MotionFilter:
             variance: Of that in each axis [m^2], shape (K,).
         """
         away = np.square(place - self.place[rows]).sum(axis=1)
-        distance: Floats = np.sqrt(away / (self._variance[rows, 0] + variance))
+        distance: Floats = np.sqrt(away / (self._variance[rows, _PLACE, _PLACE] + variance))
         return distance
 
     def update(self, rows: Rows, place: Floats, variance: Floats, belief: Floats) -> None:
@@ -103,15 +142,11 @@ class MotionFilter:
             variance: As in `distance`.
             belief: Probability that it is the target, shape (K,).
         """
-        own, both = self._variance[rows, :2].T
-        gain = np.stack((own, both), axis=-1) / (own + variance)[:, None]
+        both = self._variance[rows, _PLACE]
+        gain = both / (both[:, :1] + variance[:, None])
         away = place - self.place[rows]
-        self.place[rows] += belief[:, None] * gain[:, :1] * away
-        self.velocity[rows] += belief[:, None] * gain[:, 1:] * away
+        self._state[rows] += (belief[:, None] * gain)[:, :, None] * away[:, None]
         # What is gained where it is the target, and how far apart both cases are.
         doubt = 0.5 * belief * (1.0 - belief) * np.square(away).sum(axis=1)
-        pairs = np.stack(
-            (np.square(gain[:, 0]), gain[:, 0] * gain[:, 1], np.square(gain[:, 1])), axis=-1
-        )
-        gained = np.stack((gain[:, 0] * own, gain[:, 0] * both, gain[:, 1] * both), axis=-1)
-        self._variance[rows] += doubt[:, None] * pairs - belief[:, None] * gained
+        apart = doubt[:, None, None] * gain[:, :, None] * gain[:, None]
+        self._variance[rows] += apart - belief[:, None, None] * gain[:, :, None] * both[:, None]

@@ -21,8 +21,10 @@ class TrackerSettings(Config):
     """Of the camera, positive down [rad]."""
     small: Positive = 1.0
     """A target whose first box has a smaller area than the square of this walks [m]."""
-    acceleration: Positive = 12.0
+    acceleration: Positive = 4.0
     """Of a vehicle, standard deviation in each direction [m/s^2]."""
+    lasting: Positive = 1.0
+    """Time constant of an acceleration [s]."""
     speed: Positive = 8.0
     """Of a vehicle at the start, standard deviation in each direction [m/s]."""
     walking_acceleration: Positive = 2.0
@@ -31,7 +33,7 @@ class TrackerSettings(Config):
     """Of what walks, at the start [m/s]."""
     widest: Positive = 8.0
     """Largest standard deviation of a place [m]."""
-    floor: Positive = 1.0
+    floor: Positive = 0.5
     """Standard deviation of what the filter does not know of, which the network is told too [m]."""
     noise: Positive = 0.9
     """Of a place that the network finds, besides what it says itself [m]. Its mistakes last for
@@ -39,6 +41,10 @@ class TrackerSettings(Config):
     """
     believed: Share = 0.5
     """Least probability of one place, with those around it, at which the filter takes it."""
+    regained: Share = 0.9
+    """The same for a target that may be anywhere, because it has been hidden for a while."""
+    patience: Positive = 0.4
+    """How long it must have been unseen to be taken farther away than `gate` [s]."""
     remembered: Share = 0.9
     """Least probability at which the memory of the target is renewed."""
     gate: Positive = 3.0

@@ -101,6 +101,8 @@ class Tracker:
         """What the network was told last, see `Clue`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
+        self._unseen = np.zeros(count)
+        """Time since each target was seen, or since the start [s]."""
         self.left = np.zeros((count, 2))
         """Where each target was when it was seen last, east and north [m]."""
         self._key = np.zeros((count, self.detector.keys), np.float32)
@@ -139,7 +141,9 @@ class Tracker:
         new = np.isnan(since)
         if new.any():
             self._show(rows[new], place[new], yaw[new])
-        self.motion.predict(rows, np.where(new, 0.0, since))
+        passed = np.where(new, 0.0, since)
+        self.motion.predict(rows, passed)
+        self._unseen[rows] += passed
         self._wait(rows)
         clue = self._clue(rows, place, yaw)
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
@@ -149,11 +153,14 @@ class Tracker:
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         wide = self.motion.spread(rows) > 0.5 * self.settings.widest
-        least = np.where(wide, self.settings.remembered, self.settings.believed)
-        taken = near & (found.belief > least)
+        least = np.where(wide, self.settings.regained, self.settings.believed)
+        away = self._unseen[rows] > self.settings.patience
+        least = np.where(near, least, self.settings.regained)
+        taken = (near | away) & (found.belief > least)
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
         self.left[rows[taken]] = self.motion.place[rows[taken]]
+        self._unseen[rows[taken]] = 0.0
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
 
     def _wait(self, rows: Rows) -> None:
@@ -181,6 +188,7 @@ class Tracker:
         walks = sides[:, 0] * sides[:, 1] < own.small * own.small
         speed = np.where(walks, own.walking_speed, own.speed)
         self.motion.acceleration[rows] = np.where(walks, own.walking_acceleration, own.acceleration)
+        self.motion.lasting[rows] = own.lasting
         where = place + turned(self.ground.offsets(middle), yaw)
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
         self.left[rows] = where
