@@ -20,7 +20,7 @@ _MOST: Final = 64
 _NOISE: Final = 0.5
 """Standard deviation of a place that the network finds [m]."""
 
-_ACCELERATION: Final = 8.0
+_ACCELERATION: Final = 4.0
 """Of vehicles, in each direction [m/s^2]."""
 
 _SPEED: Final = 8.0

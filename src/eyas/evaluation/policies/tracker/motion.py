@@ -112,11 +112,14 @@ class MotionFilter:
     def _noise(self, rows: Rows, time: Floats) -> Floats:
         """Return variances that are added in a time which is short beside `lasting`, (K, 3, 3)."""
         square = time * time
-        powers = (square * square * time / 20.0, square * square / 8.0, square * time / 6.0)
-        powers += (square * time / 3.0, 0.5 * square, time)
+        cube, fourth = square * time, square * square
+        noise = (
+            (fourth * time / 20.0, fourth / 8.0, cube / 6.0),
+            (fourth / 8.0, cube / 3.0, square / 2.0),
+            (cube / 6.0, square / 2.0, time),
+        )
         rate = 2.0 * np.square(self.acceleration[rows]) / self.lasting[rows]
-        noise = np.stack([powers[k] for k in (0, 1, 2, 1, 3, 4, 2, 4, 5)], axis=-1)
-        added: Floats = (rate[:, None] * noise).reshape(-1, 3, 3)
+        added: Floats = np.moveaxis(rate * np.array(noise), -1, 0)
         return added
 
     def distance(self, rows: Rows, place: Floats, variance: Floats) -> Floats:
