@@ -136,24 +136,14 @@ def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
     wide = graph.weight("near.shape", np.array([0, network.width]))
     near = graph.node("Reshape", [near, wide], "near")
     inside = graph.node("ReduceLogSumExp", [prior], "inside", axes=[1], keepdims=1)
-    spread = graph.node("Log", ["spread"], "spread.log")
-    parts = [near, spread, "known", inside]
+    parts = [near, graph.node("Log", ["spread"], "spread.log"), "known", inside]
     value = graph.node("Concat", parts, "unseen.seen", axis=1)
     first, last = network.unseen_first, network.unseen_last
     value = graph.linear("unseen.first", value, first.weight, first.bias)
     value = graph.node("Relu", [value], "unseen.relu")
     unseen = graph.linear("unseen", value, last.weight, last.bias)
-    seen = graph.node("Add", [looks, _anywhere(graph, prior, spread, network)], "seen")
+    seen = graph.node("Add", [looks, prior], "seen")
     graph.node("Concat", [seen, unseen], "scores", axis=1)
-
-
-def _anywhere(graph: Graph, prior: str, spread: str, network: DetectorNetwork) -> str:
-    """Add the same with what is left for all places, shape (N, C)."""
-    least, growth = network.elsewhere.detach().tolist()
-    grown = graph.node("Mul", [spread, graph.number("elsewhere.growth", growth)], "elsewhere.grown")
-    other = graph.node("Add", [grown, graph.number("elsewhere.least", least)], "elsewhere")
-    shares = [graph.node("Exp", [each], f"{each}.share") for each in (prior, other)]
-    return graph.node("Log", [graph.node("Add", shares, "anywhere.share")], "anywhere")
 
 
 def _prior(graph: Graph) -> str:

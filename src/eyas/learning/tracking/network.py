@@ -2,9 +2,8 @@
 
 The logarithm of the probability of a cell is the sum of three: how much it looks like a target, how
 much it looks like this target (the product of a query of the cell with the target's key), and how
-probable it is that the target is there at all: a Gaussian around the expected place, and something
-for all other places, as a target that was hidden may have driven otherwise. "Not seen" competes
-with all cells; it follows from what the picture shows around the expected place.
+probable it is that the target is there at all (a Gaussian around the expected place). "Not seen"
+competes with all cells; it follows from what the picture shows around the expected place.
 """
 
 import torch
@@ -25,10 +24,6 @@ ALIKE = 0.3
 
 CELL = 1.5
 """Variance of a place in a cell, in one axis [pixels^2]."""
-
-ELSEWHERE = -12.0, 1.5
-"""Logarithm of the weight of other places for a spread of one pixel, and how it grows with that of
-the spread, as learning begins."""
 
 SURE, UNSURE = -4.0, 3.0
 """Limits of the logarithm of the standard deviation of a place [pixels]."""
@@ -51,7 +46,6 @@ class DetectorNetwork(nn.Module):
         self.third = nn.Conv2d(32, width, 3, 1, 1)
         self.fourth = nn.Conv2d(width, width, 3, 1, 2, 2)
         self.head = nn.Conv2d(width, 4 + 2 * keys, 1)
-        self.elsewhere = nn.Parameter(torch.tensor(ELSEWHERE))
         self.unseen_first, self.unseen_last = nn.Linear(width + 3, 32), nn.Linear(32, 1)
         down, across = (torch.arange(length // STRIDE) for length in size)
         cells = torch.stack(torch.meshgrid(across, down, indexing="xy"), -1).reshape(-1, 2)
@@ -99,9 +93,7 @@ class DetectorNetwork(nn.Module):
         inside = prior.logsumexp(1, keepdim=True)
         around = torch.cat((near, spread.log(), known, inside), 1)
         unseen = self.unseen_last(torch.relu(self.unseen_first(around)))
-        elsewhere = self.elsewhere[0] + self.elsewhere[1] * spread.log()
-        anywhere = torch.logaddexp(prior, elsewhere)
-        return torch.cat((answers[..., 0] + alike + anywhere, unseen), 1)
+        return torch.cat((answers[..., 0] + alike + prior, unseen), 1)
 
 
 def _by_cell(values: Tensor) -> Tensor:

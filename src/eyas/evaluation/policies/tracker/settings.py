@@ -41,10 +41,6 @@ class TrackerSettings(Config):
     """
     believed: Share = 0.5
     """Least probability of one place, with those around it, at which the filter takes it."""
-    regained: Share = 0.9
-    """The same for a target that may be anywhere, because it has been hidden for a while."""
-    patience: Positive = 0.4
-    """How long it must have been unseen to be taken farther away than `gate` [s]."""
     remembered: Share = 0.9
     """Least probability at which the memory of the target is renewed."""
     gate: Positive = 3.0

@@ -101,8 +101,6 @@ class Tracker:
         """What the network was told last, see `Clue`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
-        self._unseen = np.zeros(count)
-        """Time since each target was seen, or since the start [s]."""
         self.left = np.zeros((count, 2))
         """Where each target was when it was seen last, east and north [m]."""
         self._key = np.zeros((count, self.detector.keys), np.float32)
@@ -141,9 +139,7 @@ class Tracker:
         new = np.isnan(since)
         if new.any():
             self._show(rows[new], place[new], yaw[new])
-        passed = np.where(new, 0.0, since)
-        self.motion.predict(rows, passed)
-        self._unseen[rows] += passed
+        self.motion.predict(rows, np.where(new, 0.0, since))
         self._wait(rows)
         clue = self._clue(rows, place, yaw)
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
@@ -153,14 +149,11 @@ class Tracker:
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         wide = self.motion.spread(rows) > 0.5 * self.settings.widest
-        least = np.where(wide, self.settings.regained, self.settings.believed)
-        away = self._unseen[rows] > self.settings.patience
-        least = np.where(near, least, self.settings.regained)
-        taken = (near | away) & (found.belief > least)
+        least = np.where(wide, self.settings.remembered, self.settings.believed)
+        taken = near & (found.belief > least)
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
         self.left[rows[taken]] = self.motion.place[rows[taken]]
-        self._unseen[rows[taken]] = 0.0
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
 
     def _wait(self, rows: Rows) -> None:
