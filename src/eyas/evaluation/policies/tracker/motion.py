@@ -1,9 +1,9 @@
 """Where targets are and how they move: a Kalman filter whose acceleration lasts for a while.
 
-R. A. Singer, "Estimating optimal tracking filter performance for manned maneuvering targets" (IEEE
-Transactions on Aerospace and Electronic Systems 6, 1970): the acceleration is random and decays. A
-filter that knows of no acceleration lags behind a car that turns or brakes, and would go on with a
-wrong velocity once it is hidden. Both axes are independent and have the same variances.
+R. A. Singer (1970), IEEE Transactions on Aerospace and Electronic Systems 6, pages 473 to 483: the
+acceleration is random and decays. A filter that knows of no acceleration lags behind a car that
+turns or brakes, and would go on with a wrong velocity once it is hidden. Both axes are independent
+and have the same variances.
 """
 
 import numpy as np
