@@ -12,7 +12,7 @@ from eyas.lanes import Held, compiled
 from eyas.render.kernels.bundles import NEAR
 from eyas.sim.scenes import load_parts
 from eyas.state.draw import DrawList
-from eyas.state.motion import ActorState, ActorView
+from eyas.state.motion import ActorView
 from eyas.state.snapshot import CameraState
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
@@ -67,18 +67,13 @@ class Outlines:
     def __init__(self, kind: NDArray[np.int32], width: int, height: int) -> None:
         self._rigs, self._kinds = Rigs(kind), tuple(sorted({*kind.tolist()}))
         self._posed = self._rigs.draw_list(1)
-        self._shown: tuple[ActorState, Looks] | None = None
         self._width, self._height = width, height
 
     def posed(self, actors: ActorView) -> DrawList:
         """Return the parts of all actors, in the slots of `Rigs.first_slot`; the next call
         overwrites them.
         """
-        looks, shown = Looks(actors.model[None], actors.colour[None]), self._shown
-        # Trackers that share a world ask for the same one after the other.
-        if shown is None or shown[0] is not actors.state or not _alike(shown[1], looks):
-            self._rigs.pose(actors.state, looks, self._posed)
-            self._shown = actors.state, Looks(looks.model.copy(), looks.colour.copy())
+        self._rigs.pose(actors.state, Looks(actors.model[None], actors.colour[None]), self._posed)
         return self._posed
 
     def of(
@@ -118,10 +113,6 @@ class Outlines:
         )
         _enclose(_vertices_of(self._kinds), query)
         return query.box
-
-
-def _alike(first: Looks, second: Looks) -> bool:
-    return all(map(np.array_equal, first, second))
 
 
 @compiled

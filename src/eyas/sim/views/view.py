@@ -21,7 +21,7 @@ from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.views.words import in_view, target_in_words
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, MovingParts, Picture
-from eyas.state.motion import ActorState, ActorView
+from eyas.state.motion import ActorView
 from eyas.targets.grammar.in_view import InView
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
@@ -80,7 +80,6 @@ class View:
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
-        self._actors_at: tuple[int, ActorState, ActorState] | None = None
         self._kind, self._camera = assets.traffic.motion.kind, config.camera
 
     def draw(
@@ -137,12 +136,9 @@ class View:
             later: Physics steps after that.
         """
         tick = int(self.state.shown.episodes.tick[tracker]) + later
-        # All trackers of a world are asked for one after the other.
-        if self._actors_at is None or self._actors_at[0] != tick:
-            now, before = (self._worlds.actors_around(tracker, t)[0] for t in (tick, tick - 1))
-            self._actors_at = tick, now, before
-        looks = self._worlds.looks_around(tracker)
-        return ActorView(*self._actors_at[1:], looks.model[0], looks.colour[0])
+        state, model = self._worlds.actors_around(tracker, tick)
+        before, _ = self._worlds.actors_around(tracker, tick - 1)
+        return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
 
     def lamps(self, tracker: int) -> NDArray[np.uint8] | None:
         """Return what the actors around a tracker signal at the instant that its pictures show, a
