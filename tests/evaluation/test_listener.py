@@ -151,7 +151,7 @@ def test_one_that_looks_otherwise_is_not_taken_for_a_hidden_target():
 
 
 def test_a_listener_sees_as_it_was_trained():
-    with pytest.raises(ConfigError, match="the listener sees and acts as it was trained"):
+    with pytest.raises(ConfigError, match="'eyas-words' sees and acts as it was trained"):
         open_policy("eyas-words", {"observation": {"width": 80, "height": 60}})
     with pytest.raises(ConfigError, match="--sample: not allowed for 'eyas-words'"):
         open_policy("eyas-words", {}, sampled=True)

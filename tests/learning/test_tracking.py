@@ -18,8 +18,8 @@ from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.policies.tracker.detector import OUTPUTS
+from eyas.evaluation.policies.tracker.metadata import OBSERVED
 from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import OBSERVED
 from eyas.evaluation.protocols import protocol_named
 from eyas.learning.tracking import flights
 from eyas.learning.tracking.export import export

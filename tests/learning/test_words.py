@@ -12,10 +12,10 @@ from eyas.cli.app import app
 from eyas.core.config import updated
 from eyas.core.errors import ConfigError, OutputError
 from eyas.evaluation.policies.listener.detector import NAMES, OUTPUTS, STRIDE, VehicleDetector
-from eyas.evaluation.policies.listener.listener import LISTENING
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.shipped import file_of
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.metadata import OBSERVED
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
@@ -94,7 +94,7 @@ def test_the_file_answers_as_the_network(tmp_path):
         {
             "actions": "velocity",
             "action_repeat": 8,
-            "observation": {**LISTENING, "width": SIZE[1], "height": SIZE[0]},
+            "observation": {**OBSERVED, "width": SIZE[1], "height": SIZE[0]},
         }
     )
     export(learner, env, LISTENER, tmp_path / "policy.onnx")

@@ -1,6 +1,7 @@
 """Networks as ONNX files, for onnxruntime and `eyas evaluate`."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,12 @@ from torch import Tensor, nn
 from eyas import __version__
 from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.policies.tracker.metadata import METADATA
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
-__all__ = ["OPSET", "Graph", "export"]
+__all__ = ["Graph", "export", "write_model"]
 
-OPSET = 17
+_OPSET = 17
 
 
 class Graph:
@@ -92,15 +94,30 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
         features = _memory(graph, network, features)
     graph.linear("logits", features, network.policy.weight, network.policy.bias)
     body = helper.make_graph(graph.nodes, "eyas", inputs, outputs, graph.weights)
+    write_model(body, env, path)
+
+
+def write_model(
+    body: onnx.GraphProto, env: EnvConfig, path: Path, further: Mapping[str, Any] | None = None
+) -> None:
+    """Write what a network computes as an ONNX file.
+
+    Args:
+        body: What it computes.
+        env: What the policy sees and chooses from.
+        path: The file.
+        further: More metadata, anything that JSON can hold.
+    """
     model = helper.make_model(
         body,
-        opset_imports=[helper.make_opsetid("", OPSET)],
+        opset_imports=[helper.make_opsetid("", _OPSET)],
         ir_version=8,
         producer_name="eyas",
         producer_version=__version__,
     )
-    settings = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
-    helper.set_model_props(model, {"eyas": json.dumps(settings)})
+    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
+    metadata = {METADATA: said, **(further or {})}
+    helper.set_model_props(model, {key: json.dumps(value) for key, value in metadata.items()})
     onnx.checker.check_model(model, full_check=True)
     write_atomic(path, model.SerializeToString())
 

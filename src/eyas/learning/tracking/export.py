@@ -1,18 +1,15 @@
 """The network of the tracker as an ONNX file, see `eyas.evaluation.policies.tracker.detector`."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 import onnx
 from onnx import TensorProto, helper
 
-from eyas import __version__
-from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
-from eyas.evaluation.policies.tracker.metadata import METADATA, TRACKER
+from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.learning.export import OPSET, Graph
+from eyas.learning.export import Graph, write_model
 from eyas.learning.tracking.network import (
     ALIKE,
     CELL,
@@ -24,7 +21,7 @@ from eyas.learning.tracking.network import (
     DetectorNetwork,
 )
 
-__all__ = ["export"]
+__all__ = ["export", "scaled_pixels"]
 
 
 def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, path: Path) -> None:
@@ -67,18 +64,7 @@ def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, 
         [_value(name, shape) for name, shape in outputs.items()],
         graph.weights,
     )
-    model = helper.make_model(
-        body,
-        opset_imports=[helper.make_opsetid("", OPSET)],
-        ir_version=8,
-        producer_name="eyas",
-        producer_version=__version__,
-    )
-    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
-    own = settings.model_dump(mode="json")
-    helper.set_model_props(model, {METADATA: json.dumps(said), TRACKER: json.dumps(own)})
-    onnx.checker.check_model(model, full_check=True)
-    write_atomic(path, model.SerializeToString())
+    write_model(body, env, path, {TRACKER: settings.model_dump(mode="json")})
 
 
 def _value(name: str, shape: list[str | int]) -> onnx.ValueInfoProto:
@@ -88,15 +74,20 @@ def _value(name: str, shape: list[str | int]) -> onnx.ValueInfoProto:
 
 def _trunk(graph: Graph, network: DetectorNetwork) -> str:
     """Add the convolutions; return their last output."""
-    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
-    value = graph.node("Sub", [value, graph.number("mean", MEAN)], "image.centred")
-    value = graph.node("Div", [value, graph.number("spread.of.pixels", SPREAD)], "image.scaled")
+    value = scaled_pixels(graph)
     layers = network.first, network.second, network.third, network.fourth
     for number, layer in enumerate(layers):
         before = value
         value = graph.convolution(f"convolution.{number}", value, layer)
         value = graph.node("Relu", [value], f"convolution.{number}.relu")
     return graph.node("Add", [before, value], "features")
+
+
+def scaled_pixels(graph: Graph) -> str:
+    """Add what makes numbers of about 1 of the input `image`."""
+    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
+    value = graph.node("Sub", [value, graph.number("mean", MEAN)], "image.centred")
+    return graph.node("Div", [value, graph.number("spread.of.pixels", SPREAD)], "image.scaled")
 
 
 def _by_cell(graph: Graph, source: str, shape: tuple[int, int]) -> str:

@@ -1,6 +1,5 @@
 """The network of the listener as an ONNX file, see `eyas.evaluation.policies.listener.detector`."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -9,14 +8,13 @@ import torch
 from onnx import TensorProto, helper
 from torch import nn
 
-from eyas import __version__
-from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.policies.listener.detector import BODIES, NAMES
-from eyas.evaluation.policies.tracker.metadata import METADATA, TRACKER
+from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.learning.export import OPSET, Graph
-from eyas.learning.tracking.network import MEAN, OFFSET, SPREAD
+from eyas.learning.export import Graph, write_model
+from eyas.learning.tracking.export import scaled_pixels
+from eyas.learning.tracking.network import OFFSET
 from eyas.learning.words.network import PARTS, PLAIN, ListenerNetwork
 
 __all__ = ["export"]
@@ -31,19 +29,7 @@ def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, 
         settings: Of the listener.
         path: The file.
     """
-    body = _graph(network)
-    model = helper.make_model(
-        body,
-        opset_imports=[helper.make_opsetid("", OPSET)],
-        ir_version=8,
-        producer_name="eyas",
-        producer_version=__version__,
-    )
-    said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
-    own = settings.model_dump(mode="json")
-    helper.set_model_props(model, {METADATA: json.dumps(said), TRACKER: json.dumps(own)})
-    onnx.checker.check_model(model, full_check=True)
-    write_atomic(path, model.SerializeToString())
+    write_model(_graph(network), env, path, {TRACKER: settings.model_dump(mode="json")})
 
 
 def _graph(network: ListenerNetwork) -> onnx.GraphProto:
@@ -77,9 +63,7 @@ def _graph(network: ListenerNetwork) -> onnx.GraphProto:
 
 def _trunk(graph: Graph, network: ListenerNetwork) -> str:
     """Add the convolutions; return their last output."""
-    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
-    value = graph.node("Sub", [value, graph.number("mean", MEAN)], "image.centred")
-    value = graph.node("Div", [value, graph.number("spread.of.pixels", SPREAD)], "image.scaled")
+    value = scaled_pixels(graph)
     for number, layer in enumerate(network.layers):
         before, name = value, f"convolution.{number}"
         value = graph.convolution(name, value, _folded(layer, network.norms[number]))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.evaluation.policies.listener.detector import BODIES, NAMES, Detections
+from eyas.evaluation.policies.listener.detector import BODIES, NAMES, Detections, shares
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 
 __all__ = ["Candidates", "Seen"]
@@ -157,8 +157,8 @@ class Candidates:
         rows = np.flatnonzero(self._alive)
         return Seen(
             rows,
-            _shares(self._colour[rows]),
-            _shares(self._body[rows]),
+            shares(self._colour[rows]),
+            shares(self._body[rows]),
             self._heading[rows],
             self._first[rows],
             self._begin[rows],
@@ -173,8 +173,8 @@ class Candidates:
         variance = np.square(self.motion.spread(rows)) + _NOISE * _NOISE
         square = np.square(where[None] - self.motion.place[rows][:, None]).sum(axis=-1)
         away = square / variance[:, None]
-        alike = _alike(_shares(self._colour[rows]), found.colour)
-        alike = alike + _alike(_shares(self._body[rows]), found.body)
+        alike = _alike(shares(self._colour[rows]), found.colour)
+        alike = alike + _alike(shares(self._body[rows]), found.body)
         cost = 0.5 * away + exact.log(variance)[:, None] - _ALIKE * np.maximum(alike, _UNLIKE)
         cost = cost - _KNOWN * np.minimum(self._looks[rows], _LONG)[:, None]
         cost = cost - exact.log(found.belief)
@@ -213,7 +213,7 @@ class Candidates:
         away = self.motion.place[rows] - self.motion.place[target]
         far = np.sqrt(np.square(away).sum(axis=1)) / (_NEAR + _WIDER * unseen)
         alike = sum(
-            _alike(_shares(known[rows]), _shares(known[[target]]))[:, 0]
+            _alike(shares(known[rows]), shares(known[[target]]))[:, 0]
             for known in (self._colour, self._body)
         )
         score = np.where(far < 1.0, alike - 2.0 * far, -np.inf)
@@ -242,13 +242,6 @@ class Candidates:
         if self.target is None:
             axis = 0.5 * float(exact.atan2(heading[3], heading[2]))
             self._ways[row].append(np.array([self._time, *where, axis]))
-
-
-def _shares(logarithms: Floats) -> Floats:
-    """Return logarithms of probabilities that add up to 1, shape (K, n)."""
-    above = logarithms - logarithms.max(axis=1, keepdims=True, initial=-np.inf)
-    shares: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
-    return shares
 
 
 def _alike(known: Floats, found: Floats) -> Floats:

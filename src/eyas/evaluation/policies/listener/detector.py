@@ -25,7 +25,16 @@ from eyas.targets.catalogue import MODELS
 from eyas.targets.colour_names import COLOUR_NAMES
 from eyas.targets.grammar.in_view import BodyWord, body_of
 
-__all__ = ["BODIES", "NAMES", "OUTPUTS", "STRIDE", "Detections", "VehicleDetector", "body_sizes"]
+__all__ = [
+    "BODIES",
+    "NAMES",
+    "OUTPUTS",
+    "STRIDE",
+    "Detections",
+    "VehicleDetector",
+    "body_sizes",
+    "shares",
+]
 
 Floats = NDArray[np.float64]
 
@@ -113,8 +122,8 @@ class VehicleDetector:
             1.0 / (1.0 + exact.exp(-vehicles[cells].astype(np.float64))),
             places,
             headings,
-            _shares(colours),
-            _shares(bodies),
+            shares(colours),
+            shares(bodies),
         )
         same = self._same(found)
         kept: list[int] = []
@@ -148,8 +157,12 @@ def body_sizes() -> Floats:
     return np.array(found)
 
 
-def _shares(scores: Floats) -> Floats:
-    """Return logarithms of probabilities, shape (D, K)."""
+def shares(scores: Floats) -> Floats:
+    """Return logarithms of probabilities that add up to 1, shape (K, n).
+
+    Args:
+        scores: Such that are not normalised, shape (K, n).
+    """
     above = scores - scores.max(axis=1, keepdims=True, initial=-np.inf)
-    shares: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
-    return shares
+    found: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
+    return found

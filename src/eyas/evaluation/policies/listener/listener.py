@@ -13,24 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.config import validated
-from eyas.core.errors import ConfigError, DataFileError
 from eyas.evaluation.policies.listener.candidates import Candidates
 from eyas.evaluation.policies.listener.detector import Detections, VehicleDetector
 from eyas.evaluation.policies.listener.judge import judged
-from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
 from eyas.evaluation.policies.tracker.ground import Ground
 from eyas.evaluation.policies.tracker.helm import Helm, turned
-from eyas.evaluation.policies.tracker.metadata import TRACKER
+from eyas.evaluation.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 from eyas.targets.grammar.attributes import claim_of
 from eyas.targets.grammar.claims import Claim
 
-__all__ = ["LISTENING", "Listener"]
+__all__ = ["Listener"]
 
 Floats = NDArray[np.float64]
-
-LISTENING: Final = {"parts": ["image", "sensors"], "layout": "chw"}
-"""Settings of `env.observation` that it cannot do without; its actions are velocities."""
 
 _WATCHED: Final = 0.3
 """How long it looks before it chooses [s]."""
@@ -68,16 +64,8 @@ class Listener:
         changes: Mapping[str, Any],
     ) -> None:
         self.settings = validated(TrackerSettings, said, f"{path}: {TRACKER}")
-        made = env_config(own)
-        self.env = env_config(own, changes)
-        if self.env.actions is not made.actions or self.env.observation != made.observation:
-            raise ConfigError(
-                "env: the listener sees and acts as it was trained: only env.action_repeat and "
-                "env.speeds may be changed"
-            )
-        if not set(LISTENING["parts"]) <= set(made.observation.parts):
-            raise DataFileError(f"{path}: the listener needs the parts 'image' and 'sensors'")
-        self._size = made.observation.height, made.observation.width
+        self.env = env_as_trained(path, own, changes)
+        self._size = self.env.observation.height, self.env.observation.width
         self._ground = Ground(self.settings, self._size)
         self._detector = VehicleDetector(session, self._ground.pixels_per_metre)
 

@@ -14,29 +14,24 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.config import validated
-from eyas.core.errors import ConfigError, DataFileError
 from eyas.evaluation.policies.policy import (
     Decision,
     Failure,
     PolicyInput,
     Start,
-    env_config,
 )
 from eyas.evaluation.policies.tracker.detector import Clue, Detector, Found
 from eyas.evaluation.policies.tracker.ground import Ground
 from eyas.evaluation.policies.tracker.helm import Helm, turned
-from eyas.evaluation.policies.tracker.metadata import TRACKER
+from eyas.evaluation.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 
-__all__ = ["OBSERVED", "Tracker"]
+__all__ = ["Tracker"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
-
-OBSERVED = {"parts": ["image", "sensors"], "layout": "chw"}
-"""Settings of `env.observation` that it cannot do without; its actions are velocities."""
 
 _NO_BOX = Failure(
     "the tracker needs the target's first box: the protocol does not tell it, or the target starts "
@@ -80,16 +75,8 @@ class Tracker:
         changes: Mapping[str, Any],
     ) -> None:
         self.settings = validated(TrackerSettings, said, f"{path}: {TRACKER}")
-        made = env_config(own)
-        self.env = env_config(own, changes)
-        if self.env.actions is not made.actions or self.env.observation != made.observation:
-            raise ConfigError(
-                "env: the tracker sees and acts as it was trained: only env.action_repeat and "
-                "env.speeds may be changed"
-            )
-        if not set(OBSERVED["parts"]) <= set(made.observation.parts):
-            raise DataFileError(f"{path}: the tracker needs the parts 'image' and 'sensors'")
-        size = made.observation.height, made.observation.width
+        self.env = env_as_trained(path, own, changes)
+        size = self.env.observation.height, self.env.observation.width
         self.detector, self.ground = Detector(session, size), Ground(self.settings, size)
 
     def begin(self, start: Start) -> None:
