@@ -65,7 +65,8 @@ class VideoConfig(ActionSpeeds):
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
         *("jpeg", "mp4", "labels", "mark"),
     )
-    """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `clean`, `cameras`, `masks`,
+    """Output formats; where the extra `video` is not installed, the default has `webp` instead of
+    `mp4`. `jpeg`, `png`, `mp4`, `webp`, `labels`, `mark`, `clean`, `cameras`, `masks`,
     `classes`, `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, `scene`,
     `openscenario`, `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
