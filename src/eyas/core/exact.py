@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.lanes.elementary import arrays as elementary_arrays
-from eyas.lanes.elementary.arrays import (
+from eyas.core import small_arrays
+from eyas.core.small_arrays import (
     acos,
     asin,
     atan,
@@ -70,7 +70,7 @@ def power(base: Any, exponent: float) -> Any:  # noqa: ANN401  # as numpy's
     if isinstance(exponent, int):
         whole = _whole_power(base, abs(exponent))
         return whole if exponent >= 0 else 1.0 / whole
-    return elementary_arrays.power(base, exponent)
+    return small_arrays.power(base, exponent)
 
 
 def _whole_power(base: ArrayLike, exponent: int) -> Any:  # noqa: ANN401

@@ -3,19 +3,18 @@
 For results that must not depend on the machine: numpy's own functions use the instructions that a
 processor has, those of `math` the C library's, and both differ in the last bits. These are the
 functions of kernels (`eyas.lanes.elementary`), of arrays and of numbers. They compute in float64,
-broadcast as numpy's do, and give a float for numbers. A small array takes some 4 microseconds, a
-larger one some 15 and 5 to 50 nanoseconds for each element, a number some microseconds.
+broadcast as numpy's do, and give a float for numbers. An array takes some 15 microseconds and 5 to
+50 nanoseconds for each element, a number some microseconds.
 """
 
-import threading
 from collections.abc import Callable
-from typing import NamedTuple, overload
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.lanes import elementary
-from eyas.lanes.calls import BoundCall, compiled
+from eyas.lanes.calls import compiled
 from eyas.lanes.jit import interpreted, kernel
 
 __all__ = [
@@ -52,9 +51,8 @@ _FUNCTIONS: tuple[Callable[..., float], ...] = (
 (_SIN, _COS, _TAN, _ASIN, _ACOS, _ATAN, _EXP, _LOG, _TANH, _ATAN2, _HYPOT, _POWER) = range(12)
 _OF_NUMBERS = tuple(interpreted(function) for function in _FUNCTIONS)
 
-_ROOMS = (8, 32, 128)
-"""Sizes of small arrays, for which calls are kept with room for their numbers: to lay out arrays
-for a kernel takes longer than to copy and to compute so many numbers."""
+_FEW = 4
+"""So many numbers are computed faster one by one in Python than by a call of a kernel."""
 
 
 @kernel(inline=True)
@@ -131,52 +129,15 @@ class _OfTwo:
 
 def _of_all(function: int, first: Floats, second: Floats) -> Floats:
     """Return the values for arrays of one shape, which are new, so that all are of one kind."""
-    if first.size <= _ROOMS[-1]:
-        return _of_few(function, first, second)
+    if first.size <= _FEW:
+        kernel, pairs = _OF_NUMBERS[function], zip(first.flat, second.flat, strict=True)
+        one = function < _ATAN2
+        values = [kernel(float(a)) if one else kernel(float(a), float(b)) for a, b in pairs]
+        return np.array(values, np.float64).reshape(first.shape)
     result = np.empty(first.shape)
     flat = first.reshape(-1), second.reshape(-1), result.reshape(-1)
     elementary_of_all(function, *flat)
     return result
-
-
-def _of_few(function: int, first: Floats, second: Floats) -> Floats:
-    """Return what `_of_all` does for small arrays."""
-    size = first.size
-    room = next(room for room in _ROOMS if size <= room)
-    kept = _kept.calls.get((function, room))
-    if kept is None:
-        kept = _kept.calls[function, room] = _kept_call(function, room)
-    kept.first[:size] = first.reshape(-1)
-    if function >= _ATAN2:
-        kept.second[:size] = second.reshape(-1)
-    kept.call()
-    return kept.result[:size].reshape(first.shape).copy()
-
-
-class _KeptCall(NamedTuple):
-    """A call, and the arrays that it reads and writes."""
-
-    call: BoundCall
-    first: Floats
-    second: Floats
-    result: Floats
-
-
-class _KeptCalls(threading.local):
-    """The calls of a thread, by function and room."""
-
-    def __init__(self) -> None:
-        self.calls: dict[tuple[int, int], _KeptCall] = {}
-
-
-_kept = _KeptCalls()
-
-
-def _kept_call(function: int, room: int) -> _KeptCall:
-    first, second, result = np.zeros((3, room))
-    return _KeptCall(
-        elementary_of_all.bind(function, first, second, result), first, second, result
-    )
 
 
 sin = _OfOne(_SIN)

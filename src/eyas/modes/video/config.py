@@ -27,7 +27,7 @@ class VideoConfig(ActionSpeeds):
     """Pictures per second of simulated time [Hz]."""
     start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
     """Simulated time at which recording begins [s]."""
-    total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
+    total_time: Annotated[float, Field(gt=0, le=1e6)] = 6.0
     """Duration of the recording in simulated time [s], unless `episode_frames` is set."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
     """Steps of 2 ms after each reset that are not recorded."""
