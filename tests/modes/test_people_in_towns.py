@@ -29,6 +29,8 @@ from eyas.traffic.signals import Aspect, walk_plan
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 pytestmark = pytest.mark.sumo
 NAME = "test-walks"
 TEN_MINUTES = SampleClock(6001, 10.0)

@@ -155,6 +155,7 @@ def test_an_abandoned_episode_keeps_its_pictures_only(tmp_path):
     assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
+@pytest.mark.slow
 def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     write(tmp_path / "episode0", 5).finish()
     (tmp_path / "episode0" / "notes.txt").write_text("mine")

@@ -51,6 +51,7 @@ def renderers(renderer_of):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 2, 4])
 @pytest.mark.parametrize("weather", WEATHERS)
 def test_everything_is_equal_in_all_weathers(renderers, weather, samples):

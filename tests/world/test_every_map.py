@@ -78,6 +78,7 @@ def test_no_lane_leads_through_anything_solid(name):
     assert hit.shape[1] == 0, shapely.get_coordinates(points[hit[1, :5]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_lanes_lie_on_the_floor_and_on_roads(name):
     """The ground is not above the lanes: no hill has swallowed a road."""
