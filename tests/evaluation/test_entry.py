@@ -172,12 +172,14 @@ def test_a_process_knows_no_seeds(fly):
     assert all("knows a seed" in record.error for record in beside)
 
 
+@pytest.mark.slow
 def test_batches_share_a_process_that_is_not_this_one(fly):
     lines = {record.error for record in fly("cheats:Counts", batch=1)}
     assert len(lines) == 1
     assert f"process {os.getpid()}" not in lines.pop()
 
 
+@pytest.mark.slow
 def test_a_process_that_ends_is_one_line_and_the_next_batch_has_another(fly):
     records = fly("cheats:Dies", batch=2)
     assert {record.error for record in records} == {

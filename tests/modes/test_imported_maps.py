@@ -166,6 +166,7 @@ def test_a_scene_is_the_same_each_time(scene, town):
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
 
 
+@pytest.mark.slow
 def test_no_lane_leads_through_anything_solid(scene):
     solids = scene.colliders
     outlines = [

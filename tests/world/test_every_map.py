@@ -90,6 +90,7 @@ def test_lanes_lie_on_the_floor_and_on_roads(name):
     assert len(scene.network.lane_first) > 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_triangle_and_copy_is_finite_and_has_an_object(name):
     scene = _scene(name)
