@@ -21,6 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
 
 Floats = NDArray[np.float64]
@@ -30,8 +32,8 @@ OUTPUTS = ("scores", "places", "keys")
 STRIDE = 4
 """Side of a cell [pixels]."""
 
-_NEAR = 1
-"""Cells around the best one that are the same place."""
+_NEAR = 2
+"""Cells around the best one that are the same target."""
 
 
 class Clue(NamedTuple):
@@ -51,9 +53,10 @@ class Found(NamedTuple):
     """What N pictures show."""
 
     place: Floats
-    """Most probable place if the target is seen, column and row [pixels], shape (N, 2)."""
+    """Mean place around the most probable one, if the target is seen, column and row [pixels],
+    shape (N, 2)."""
     spread: Floats
-    """Standard deviation of both [pixels], shape (N,)."""
+    """Standard deviation of both, the network's own and that of the cells [pixels], (N,)."""
     belief: Floats
     """Probability that it is there, shape (N,)."""
     key: NDArray[np.float32]
@@ -101,7 +104,23 @@ class Detector:
         best = shares[:, :-1].argmax(axis=1)
         # A second candidate elsewhere takes from the belief in the best one.
         apart = np.abs(self._cells[None] - self._cells[best][:, None]).max(axis=-1)
-        belief = (shares[:, :-1] * (apart <= _NEAR)).sum(axis=1)
-        rows = np.arange(len(best))
-        place = places[rows, best].astype(np.float64)
-        return Found(place[:, :2], np.exp(place[:, 2]), belief, keys[rows, best])
+        around = shares[:, :-1] * (apart <= _NEAR)
+        belief = around.sum(axis=1)
+        place, spread = _moments(around / belief[:, None], places.astype(np.float64))
+        return Found(place, spread, belief, keys[np.arange(len(best)), best])
+
+
+def _moments(shares: Floats, places: Floats) -> tuple[Floats, Floats]:
+    """Return the mean of places, (N, 2), and its standard deviation in each axis, (N,).
+
+    Of a target that is half hidden the cells disagree, each surer of its own place than it may be.
+
+    Args:
+        shares: Of the cells, which add up to 1, shape (N, C).
+        places: Output of the network, shape (N, C, 3).
+    """
+    where = places[..., :2]
+    mean = (shares[..., None] * where).sum(axis=1)
+    away = 0.5 * np.square(where - mean[:, None]).sum(axis=-1)
+    variance = (shares * (away + exact.exp(2.0 * places[..., 2]))).sum(axis=1)
+    return mean, np.sqrt(variance)

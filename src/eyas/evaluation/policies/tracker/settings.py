@@ -35,10 +35,12 @@ class TrackerSettings(Config):
     """Largest standard deviation of a place [m]."""
     floor: Positive = 0.5
     """Standard deviation of what the filter does not know of, which the network is told too [m]."""
-    noise: Positive = 0.9
-    """Of a place that the network finds, besides what it says itself [m]. Its mistakes last for
-    several looks, which the filter takes for independent: by a smaller noise it would follow them.
-    """
+    doubt: Positive = 2.5
+    """Factor of what the network says of a place that it finds, a standard deviation. Its mistakes
+    last for several looks, which the filter takes for independent: without the factor it would
+    follow them."""
+    noise: Positive = 0.5
+    """Standard deviation of such a place, besides that [m]."""
     believed: Share = 0.5
     """Least probability of one place, with those around it, at which the filter takes it."""
     remembered: Share = 0.9

@@ -132,7 +132,7 @@ class Tracker:
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
         found = self.detector.find(pictures, clue)
         where = place + turned(self.ground.offsets(found.place), yaw)
-        noise = found.spread / self.ground.pixels_per_metre
+        noise = self.settings.doubt * found.spread / self.ground.pixels_per_metre
         variance = np.square(noise) + self.settings.noise * self.settings.noise
         near = self.motion.distance(rows, where, variance) < self.settings.gate
         wide = self.motion.spread(rows) > 0.5 * self.settings.widest
