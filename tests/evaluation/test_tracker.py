@@ -1,5 +1,7 @@
 """The tracker that is shown its target once: its geometry, its filter, and what it knows."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from eyas.evaluation.episode import Place
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.detector import Clue, Detector
 from eyas.evaluation.policies.tracker.ground import Ground
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
@@ -29,6 +32,38 @@ def test_pixels_and_offsets_are_inverse():
     assert offsets[0, 1] > 0.0 > offsets[2, 1]  # and the first columns to the left
     further = ground.pixels(offsets[1:2] + np.array([[0.0, 1.0]]))
     assert pixels[1, 0] - further[0, 0] == pytest.approx(ground.pixels_per_metre, rel=1e-9)
+
+
+class Answers:
+    """Stands in for a network that believes in two cells of a picture of 8x4 cells."""
+
+    def __init__(self, first, second, unseen):
+        self.scores = np.full((1, 33), -50.0, np.float32)
+        self.scores[0, [10, 12, 32]] = np.log([first, second, unseen])
+        self.places = np.zeros((1, 32, 3), np.float32)
+        self.places[0, 10], self.places[0, 12] = (10.0, 6.0, np.log(0.5)), (18.0, 6.0, np.log(0.5))
+
+    def get_inputs(self):
+        return [SimpleNamespace(name="key", shape=["n", 2])]
+
+    def run(self, _names, _feed):
+        return self.scores, self.places, np.zeros((1, 32, 2), np.float32)
+
+
+def found(*shares):
+    clue = Clue(np.zeros((1, 2)), np.ones(1), np.zeros((1, 2), np.float32), np.ones(1, np.bool_))
+    detector = Detector(Answers(*shares), (16, 32))
+    return detector.find(np.zeros((1, 3, 16, 32), np.uint8), clue)
+
+
+def test_a_place_is_the_less_sure_the_more_cells_disagree():
+    sure, torn = found(0.7, 1e-9, 0.3), found(0.4, 0.3, 0.3)
+    np.testing.assert_allclose(sure.place, [[10.0, 6.0]], atol=1e-5)
+    np.testing.assert_allclose(sure.spread, 0.5, rtol=1e-4)
+    np.testing.assert_allclose(torn.belief, 0.7, rtol=1e-5)
+    np.testing.assert_allclose(torn.place, [[10.0 + 8.0 * 3.0 / 7.0, 6.0]], atol=1e-5)
+    apart = 0.5 * 8.0**2 * (4.0 / 7.0) * (3.0 / 7.0)  # variance of column and row, their mean
+    np.testing.assert_allclose(torn.spread, np.sqrt(0.25 + apart), rtol=1e-5)
 
 
 def started():
