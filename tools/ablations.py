@@ -3,16 +3,15 @@
     python tools/ablations.py --out runs/ablations                       # all rows
     python tools/ablations.py --out runs/ablations --rows whole no-key   # some, and `whole` first
 
-A row is trained by the shipped recipe with a sixth of its pictures (`--share`), or takes the
+A row is trained by the shipped recipe with a third of its pictures (`--share`), or takes the
 network of `whole`, and flies seeds that no card has. A row that is there already is not made again;
 one that was interrupted goes on. Printed is the table of docs/following-one-target.md: TSR, and in
 brackets its 95 % interval. `*`: the paired difference to `whole` has an interval without 0.
 """
 
 import argparse
-import os
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+import sys
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -66,11 +65,10 @@ class Row(NamedTuple):
     """The tracker without a part."""
 
     says: str
+    """Its name in the table."""
     changes: tuple[Change, ...] = ()
     trained: bool = True
     """Whether it has lessons of its own; else it flies by the network of `whole`."""
-    oracle: bool = True
-    """Whether its oracle flies as that of `whole`, so that those pictures can be shared."""
 
 
 def keep_no_key(tracker: Tracker, rows: np.ndarray, found: Found, sure: np.ndarray) -> None:
@@ -144,13 +142,13 @@ def begin_without_box(tracker: Tracker, start: Any) -> None:  # noqa: ANN401  # 
 
 
 ROWS = {
-    "whole": Row("all parts"),
+    "whole": Row("nothing"),
     "no-key": Row(
-        "no memory of which one: no key",
+        "memory of which one: no key",
         ((lessons, "_UNKNOWN", 1.0), (Tracker, "_remember", keep_no_key)),
     ),
     "no-place": Row(
-        "no memory of where: told no place, holds the last one",
+        "memory of where: told no place, holds the last one",
         (
             (Samples, "_expected", teach_no_place),
             (Tracker, "_clue", tell_no_place),
@@ -159,55 +157,42 @@ ROWS = {
             (training, "TrackerSettings", partial(TrackerSettings, gate=1e3)),
         ),
     ),
-    "no-own-flights": Row("no flights of its own", ((training, "_pupil", by_oracle),)),
+    "no-own-flights": Row("own flights: all are the oracle's", ((training, "_pupil", by_oracle),)),
     "no-deviation": Row(
-        "no deviation of the place found",
+        "deviation of the place found: always one pixel",
         (
             (DetectorNetwork, "places", teach_no_deviation),
             (Detector, "find", find_with_one_deviation),
         ),
     ),
     "no-box": Row(
-        "no first box (not taught again)",
+        "first box: takes what is in the middle",
         ((Tracker, "begin", begin_without_box),),
         trained=False,
     ),
-    "one-map": Row("one map: citystreet", ((flights, "_TURN", ("citystreet",)),), oracle=False),
-    "one-weather": Row("one weather: day", ((flights, "WEATHERS", ("day",) * 4),), oracle=False),
+    "one-map": Row("maps: only citystreet", ((flights, "_TURN", ("citystreet",)),)),
+    "one-weather": Row("weathers: only day", ((flights, "WEATHERS", ("day",) * 4),)),
 }
 
 
-@contextmanager
-def changed(row: Row) -> Iterator[None]:
-    """Take a part away for a while."""
-    with ExitStack() as stack:
-        for owner, name, value in row.changes:
-            stack.enter_context(patch.object(owner, name, value))
-        yield
+def changed(row: Row) -> ExitStack:
+    """Take a part away until the stack is closed."""
+    stack = ExitStack()
+    for owner, name, value in row.changes:
+        stack.enter_context(patch.object(owner, name, value))
+    return stack
 
 
-def train(folder: Path, whole: Path, share: float, seed: int) -> None:
-    """Teach the network of a row, or go on; pictures of the oracle of `whole` are taken if there.
-
-    Args:
-        folder: Of the row.
-        whole: A folder with pictures that the row would take again; may be missing.
-        share: Of the shipped recipe.
-        seed: Of the training.
-    """
+def train(folder: Path, share: float, seed: int) -> None:
+    """Teach the network of a row by a share of the shipped recipe, or go on with it."""
     if (folder / "policy-flown.onnx").is_file():  # written last
         return
     config = updated(load_settings(preset_file("eyas")), {"seed": seed})
     recipe = config.train.tracker
     rounds = recipe.scaled_rounds(round(share * recipe.pictures))
     config = updated(config, {"train": {"tracker": {"rounds": rounds}}})
-    resume = (folder / "config.json").is_file()
-    folder.mkdir(parents=True, exist_ok=True)
-    for number in range(rounds[0]["flights"]):
-        pictures = f"shots-{number:03d}.npz"
-        if (whole / pictures).is_file() and not (folder / pictures).exists():
-            os.link(whole / pictures, folder / pictures)
-    training.train(config, folder, resume=resume, say=partial(print, flush=True))
+    begun = (folder / "config.json").is_file()
+    training.train(config, folder, resume=begun, say=partial(print, file=sys.stderr, flush=True))
 
 
 def fly(policy: Path, folder: Path) -> list[list[EpisodeRecord]]:
@@ -241,26 +226,22 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--rows", nargs="+", choices=list(ROWS), default=list(ROWS))
-    parser.add_argument("--share", type=float, default=1 / 6)
+    parser.add_argument("--share", type=float, default=1 / 3)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    whole, flown = asked.out / "whole", {}
+    heads = [f"`{name}`, {place} {weather}" for name, place, weather, _ in PLACES]
+    print(f"{asked.share:.3f} of the recipe, seed {asked.seed}, build {this_build().id}\n")
+    print(f"| taken away | {' | '.join(heads)} |", "|---" * (1 + len(PLACES)) + "|", sep="\n")
+    whole: list[list[EpisodeRecord]] = []
     for name in dict.fromkeys(("whole", *asked.rows)):
         row, folder = ROWS[name], asked.out / name
         with changed(row):
             if row.trained:
-                shared = whole if row.oracle else folder
-                train(folder, shared, asked.share, asked.seed)
-            policy = (folder if row.trained else whole) / "policy.onnx"
-            flown[name] = fly(policy, folder)
-        print(told(row, flown[name], flown["whole"]), flush=True)
-    heads = [f"`{protocol}` {name} {weather}" for protocol, name, weather, _ in PLACES]
-    counts = [f"n = {len(records)}" for records in flown["whole"]]
-    print(f"\n{asked.share:.3f} of the recipe, seed {asked.seed}, build {this_build().id}\n")
-    print("| |", " | ".join(map(", ".join, zip(heads, counts, strict=True))), "|")
-    print("|---" * (1 + len(PLACES)) + "|")
-    for name, records in flown.items():
-        print(told(ROWS[name], records, flown["whole"]))
+                train(folder, asked.share, asked.seed)
+            policy = asked.out / (name if row.trained else "whole") / "policy.onnx"
+            flown = fly(policy, folder)
+        whole = whole or flown
+        print(told(row, flown, whole), flush=True)
 
 
 if __name__ == "__main__":
