@@ -19,6 +19,7 @@ def spelling():
     return module
 
 
+@pytest.mark.slow
 def test_no_word_is_misspelt():
     done = subprocess.run([sys.executable, TOOL], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, "")

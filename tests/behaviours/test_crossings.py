@@ -94,6 +94,7 @@ def on_road(table) -> np.ndarray:
     return table["z"] < 0.05  # pavements are 15 cm high
 
 
+@pytest.mark.slow
 def test_nor_do_buses_or_trucks_or_their_trailers_come_near_anyone_on_the_road(ground):
     mixed = driven(TrafficConfig(vehicle_type=CANONICAL_MIX))
     for looks, safe in ((mixed, True), (None, False)):
@@ -209,6 +210,7 @@ def test_one_steps_off_on_green_and_has_crossed_before_red():
     assert gaps.first(LINE, 3.0, 7.0, "a light without a program", 1.0) is None
 
 
+@pytest.mark.slow
 def test_maps_without_crossings_and_live_traffic_say_so():
     hills = Ground(load_scene("village"), roads=False)
     with pytest.raises(SpawnError, match=r"'crossing': 'village' has no pavement"):

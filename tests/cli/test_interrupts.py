@@ -87,6 +87,7 @@ def until_frames(process, folder):
         time.sleep(0.01)
 
 
+@pytest.mark.slow
 def test_further_signals_change_nothing_and_the_line_says_how_to_go_on(tmp_path):
     process = recording(tmp_path)
     until_frames(process, tmp_path)
@@ -151,6 +152,7 @@ def test_an_interrupt_that_pydantic_puts_in_words_is_one_line(tmp_path):
     assert ended(process, signal.SIGINT) == "eyas: interrupted"
 
 
+@pytest.mark.slow
 def test_a_program_started_with_the_signal_ignored_goes_on(tmp_path):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:

@@ -166,6 +166,7 @@ def test_listings_are_json_too(monkeypatch, capsys):
     assert targets["BmwX5Simple"]["size"] == [4.85, 1.9, 1.8]
 
 
+@pytest.mark.slow
 def test_what_a_map_and_a_recording_are_is_json_too(monkeypatch, capsys):
     def told(*words):
         code, out, err = run(monkeypatch, capsys, *words)
@@ -279,6 +280,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
     assert all(seen.values())
 
 
+@pytest.mark.slow
 def test_everything_that_is_listed_can_be_a_target(monkeypatch, capsys):
     code, out, _ = run(monkeypatch, capsys, "targets", "list")
     assert code == 0

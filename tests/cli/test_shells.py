@@ -79,6 +79,7 @@ def test_a_recording_is_the_same_in_every_shell(recorded, tmp_path, line, flags,
     assert contents(tmp_path / "out") == contents(recorded / "out")
 
 
+@pytest.mark.slow
 def test_without_a_network_nothing_is_missed(recorded, tmp_path):
     if subprocess.run(["unshare", "-n", "true"], capture_output=True, check=False).returncode:
         pytest.skip("only root can take its network away")
@@ -88,6 +89,7 @@ def test_without_a_network_nothing_is_missed(recorded, tmp_path):
     assert contents(tmp_path / "out") == contents(recorded / "out")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "code", "said"),
     [

@@ -73,6 +73,7 @@ def _modules(tree: ast.AST) -> list[str]:
     return [name for name in names if name in MODULES]
 
 
+@pytest.mark.slow
 def test_no_module_needs_linux_to_be_imported_or_to_draw():
     found = {path.name: unguarded(path.read_text()) for path in SOURCES}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}

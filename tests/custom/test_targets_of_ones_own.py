@@ -54,6 +54,7 @@ def seen(simulation: Simulation) -> tuple[Model, Picture, np.ndarray]:
     return MODELS[targets.model[0]], picture, shown
 
 
+@pytest.mark.slow
 def test_a_mesh_file_is_followed_and_drawn():
     pytest.importorskip("trimesh")
     import own_mesh
@@ -90,6 +91,7 @@ def test_a_class_brings_its_parts_and_its_motion():
     np.testing.assert_array_equal(table, simulation.traffic.motion.table)
 
 
+@pytest.mark.slow
 def test_a_trajectory_moves_any_body_and_begins_again():
     import own_track
 
@@ -108,6 +110,7 @@ def test_a_trajectory_moves_any_body_and_begins_again():
         assert (first["present"] + second["present"] > 0.0).all()
 
 
+@pytest.mark.slow
 def test_a_pedestrian_who_crosses_roads_is_followed():
     crossing = {"body": "Pedestrian", "behaviour": "crossing", "speed": 1.6}
     few = {"max_count": 4, "group_size": 4, "interval": 20.0}
@@ -314,6 +317,7 @@ def test_who_walks_by_a_trajectory_stands_on_pavements_and_lawns(tmp_path: Path)
         assert table["z"][0, 0] == pytest.approx(height, abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_trajectory_climbs_with_the_ground_or_as_it_says(tmp_path: Path):
     terrain = load_scene("village").terrain
     rise = np.diff(terrain.relief.astype(np.float64), axis=1) / terrain.spacing

@@ -64,6 +64,7 @@ def test_an_id_is_the_same_after_an_absence(data):
     assert returned
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS_OF_PICTURES)
 def test_the_same_recording_gives_the_same_bytes(exported, dataset, tmp_path, name):
     first = contents(exported(name))

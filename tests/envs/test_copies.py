@@ -86,6 +86,7 @@ def assert_same(one: Any, other: Any) -> None:
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", kinds())
 def test_copies_go_on_where_the_environment_is(kind: str) -> None:
     env = TrackingEnv(kinds()[kind])
@@ -160,6 +161,7 @@ def _steps(env: TrackingEnv, pipe: Any) -> None:
     pipe.send([env.step(0) for _ in range(3)])
 
 
+@pytest.mark.slow
 def test_another_process_goes_on_with_a_copy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(Path(__file__).parents[2])  # where it finds `_steps`
     env = TrackingEnv({"env": {"observation": SMALL}})

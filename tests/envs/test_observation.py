@@ -58,6 +58,7 @@ def test_a_stack_begins_anew_with_each_episode():
     assert not np.array_equal(final[..., :3], final[..., 3:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["hwc", "chw"])
 def test_all_parts_come_by_name(layout):
     observation = {**SIZE, "parts": list(ObservationPart), "layout": layout}

@@ -68,6 +68,7 @@ def test_it_is_an_environment_for_each_of_its_weathers():
     assert ids == {f"eyas/field-{weather}-v0" for weather in own}
 
 
+@pytest.mark.slow
 def test_an_environment_runs_in_it(shipped):
     register_map(NAME)
     env = gymnasium.make("eyas/field-day-v0", config={"traffic": CARS.model_dump()})

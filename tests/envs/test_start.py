@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 REGISTERED = """
 import sys
 import eyas
@@ -38,6 +40,7 @@ def test_environments_are_registered_when_gymnasium_is_imported_after_eyas():
     run(REGISTERED)
 
 
+@pytest.mark.slow
 def test_a_first_picture_imports_nothing_slow_that_it_does_not_need():
     run(DRAWS)  # fills the cache, if it is empty
     run(DRAWS + LITTLE)

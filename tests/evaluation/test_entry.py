@@ -29,6 +29,7 @@ def class_of(policy, **changes):
     return check(EvaluationPlan(policy=policy, **changes)).entry_class
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("policy", "expected"),
     [
@@ -138,6 +139,7 @@ def test_a_policy_that_asks_for_more_is_refused():
         check(EvaluationPlan(policy="cheats:Fast"))
 
 
+@pytest.mark.slow
 def test_one_that_looks_into_the_simulator_finds_it_only_beside_it(fly):
     hover = mean(fly("hover", batch=1), "tsr")
     apart = fly("cheats:Peeper", batch=1)
@@ -158,6 +160,7 @@ def test_commands_end_at_the_limits_of_height_and_are_else_untouched():
 # A process of its own.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("policy", ["own_policies:forward", "own_policies:together"])
 def test_apart_and_beside_give_the_same_records(fly, policy):
     assert fly(policy) == fly(policy, in_process=True)
@@ -169,12 +172,14 @@ def test_a_process_knows_no_seeds(fly):
     assert all("knows a seed" in record.error for record in beside)
 
 
+@pytest.mark.slow
 def test_batches_share_a_process_that_is_not_this_one(fly):
     lines = {record.error for record in fly("cheats:Counts", batch=1)}
     assert len(lines) == 1
     assert f"process {os.getpid()}" not in lines.pop()
 
 
+@pytest.mark.slow
 def test_a_process_that_ends_is_one_line_and_the_next_batch_has_another(fly):
     records = fly("cheats:Dies", batch=2)
     assert {record.error for record in records} == {
@@ -186,6 +191,7 @@ def test_what_a_policy_prints_does_not_disturb_it(fly):
     assert fly("cheats:Talks") == fly("cheats:Spinner")
 
 
+@pytest.mark.slow
 def test_what_cannot_be_imported_is_one_line():
     for policy, line in (
         ("no_such_module:Policy", "there is no module 'no_such_module'"),

@@ -52,6 +52,7 @@ def test_stops_dashes_hiding_and_turns_are_told_apart():
     assert 7.5 < told.start < 10.5 < told.end < 13.0
 
 
+@pytest.mark.slow
 def test_targets_of_the_protocol_are_cars_that_evade_at_least_twice(evade):
     protocol, episodes = evade
     assert len(episodes) == 8

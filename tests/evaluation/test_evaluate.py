@@ -56,6 +56,7 @@ def test_the_command_that_repeats_it_survives_a_shell():
     assert _changes(said) == {"env": plan.env, **plan.settings}
 
 
+@pytest.mark.slow
 def test_several_sets_of_seeds_are_flown_as_if_each_were_alone(tmp_path):
     sets = EvaluationPlan(policy="random", episodes=1, seeds=seed_sets("2"), batch=3)
     assert shlex.split(sets.command)[4:6] == ["--seeds", "1000000,11000000"]
@@ -118,6 +119,7 @@ def act(picture):
 """
 
 
+@pytest.mark.slow
 def test_a_killed_evaluation_continues_to_the_same_bytes(tmp_path, monkeypatch):
     """Its policy takes its time, so that no machine is fast enough to end before the kill."""
     (tmp_path / "slow_hover.py").write_text(SLOW)

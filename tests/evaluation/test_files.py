@@ -125,6 +125,7 @@ def test_a_module_of_torch_flies(fly, tmp_path):
         check(EvaluationPlan(policy=str(tmp_path / "dict.pt")))
 
 
+@pytest.mark.slow
 def test_a_model_of_stable_baselines3_flies(fly, tmp_path):
     library = pytest.importorskip("stable_baselines3")
     from eyas.envs.tracking_env import TrackingEnv

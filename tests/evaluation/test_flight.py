@@ -43,6 +43,7 @@ def test_a_servo_that_sees_only_pictures_is_between(fly, follow, hover):
     assert figure(hover, "cr") + 50.0 < servo < figure(follow, "cr")
 
 
+@pytest.mark.slow
 def test_a_servo_whose_drone_is_slow_sees_more_if_it_also_turns_its_camera(fly):
     slow = {"forward_speed": 8, "backward_speed": -8, "left_speed": 8, "right_speed": -8}
     fixed, turning = (fly(name, env={"speeds": slow}) for name in ("servo", "gimbal-servo"))

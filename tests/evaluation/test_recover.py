@@ -105,6 +105,7 @@ class Watcher:
         return Decision(np.full(len(sight.deciding), 6))
 
 
+@pytest.mark.slow
 def test_pictures_are_black_while_the_camera_is_covered_and_not_a_step_longer(covers):
     protocol, episodes = covers
     episodes = episodes[:2]  # covered for 2 and for 5 s

@@ -51,6 +51,7 @@ def base_of(claim, kind):
     return Claim(BodyWord.VEHICLE if kind is PhraseKind.BODY else claim.body, claim.colour)
 
 
+@pytest.mark.slow
 def test_words_fit_the_target_alone_and_wrong_ones_nothing(many, plain_words):
     _, group = many
     known = [(row, start) for row, start in enumerate(group.staged) if start is not None]
@@ -74,6 +75,7 @@ def test_words_fit_the_target_alone_and_wrong_ones_nothing(many, plain_words):
         assert fits(base_of(start.phrases["right"].claim, kind), view).sum() == count + 1
 
 
+@pytest.mark.slow
 def test_all_cases_are_there_and_words_are_those_of_the_test_set(many):
     specs, group = many
     cases = {start.case for start in group.staged if start is not None}
@@ -84,6 +86,7 @@ def test_all_cases_are_there_and_words_are_those_of_the_test_set(many):
             assert start.phrases[variant].words.startswith(tuple(frames))
 
 
+@pytest.mark.slow
 def test_where_the_named_one_is_tells_nothing(many):
     """It is neither in the middle nor at the edge, nor first in any order, more than by chance."""
     _, group = many
@@ -188,6 +191,7 @@ def test_who_knows_the_target_succeeds_with_any_words():
     assert gap(figures) == 0.0
 
 
+@pytest.mark.slow
 def test_who_does_not_listen_has_no_language_gap():
     for policy in ("random", "hover"):
         figures = flown(policy, range(FIRST, FIRST + 4), SHORT)
@@ -196,6 +200,7 @@ def test_who_does_not_listen_has_no_language_gap():
             assert one["success_right"] == two["success_none"]
 
 
+@pytest.mark.slow
 def test_words_without_pictures_are_of_little_use():
     figures = flown("own_policies:WordsOnly", range(FIRST, FIRST + 13), SHORT)
     assert sum(one["success_right"] for one in figures["right"]) <= 6

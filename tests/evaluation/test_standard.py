@@ -37,6 +37,7 @@ def squares(batch):
     return Counter(map(tuple, np.floor(centres / CELL).tolist()))
 
 
+@pytest.mark.slow
 def test_starts_have_twelve_directions_and_three_recordings_equally_often(standard):
     episodes, _ = standard
     assert len(episodes) == len({episode.name for episode in episodes}) == 108
@@ -146,6 +147,7 @@ def test_a_town_of_a_seed_is_written_after_the_map(name, town):
     assert Place(name, "day", "SUMO_VEHICLE").town == town
 
 
+@pytest.mark.slow
 def test_episodes_are_solvable_that_the_oracle_solves(fly):
     """In village, some of the first targets of `paper` stand in a tunnel."""
     village = {"maps": ("village",), "episodes": 6, "seeds": (77_000_000,)}

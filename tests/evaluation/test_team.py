@@ -174,6 +174,7 @@ def test_a_team_is_never_split_between_batches_and_its_latency_is_not_measured()
         check(plan.model_copy(update={"latency": "measured"}))
 
 
+@pytest.mark.slow
 def test_records_wait_for_the_whole_team():
     """A drone that ends early has the team's figures all the same."""
     plan = EvaluationPlan(policy="hover", protocol="pair", episodes=1, batch=2)

@@ -114,6 +114,7 @@ def test_everything_that_is_drawn_is_in_the_boxes(simulation, most):
     assert size[1] > target["target_size"][1] + 0.5
 
 
+@pytest.mark.slow
 def test_the_box_of_a_straight_truck_is_as_large_as_it_is(simulation):
     motion = simulation.traffic.motion
     (actor, *_) = np.flatnonzero(motion.kind == kind_index("trailer")).tolist()

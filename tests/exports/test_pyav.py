@@ -1,12 +1,15 @@
-"""Whoever may not install PyAV can do without it."""
+"""Whoever has no PyAV, which is an extra, can do without it."""
 
+import json
 import os
 import subprocess
 import sys
 
 import pytest
+from PIL import Image
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import MissingExtraError
+from eyas.core.pyav import has_pyav
 from eyas.exports.mp4 import Mp4Episode
 from eyas.exports.registry import chosen_writers
 from eyas.modes.demo.frame import Stream
@@ -22,32 +25,60 @@ def missing(monkeypatch):
 @pytest.mark.usefixtures("missing")
 def test_what_needs_it_says_so_in_one_line(run, tmp_path):
     (writer,) = chosen_writers(["mp4"])
-    line = r"^video\.writers: 'mp4' needs PyAV, which is not installed; pip install av, .*\Z"
-    with pytest.raises(ConfigError, match=line):
+    line = r"^video\.writers: 'mp4' needs the extra 'video': pip install .*\[video\]'?\Z"
+    with pytest.raises(MissingExtraError, match=line):
         writer(run)
-    with pytest.raises(ConfigError, match=r"^MP4 needs PyAV"):
+    with pytest.raises(MissingExtraError, match=r"^MP4 needs the extra 'video'"):
         Mp4Episode(tmp_path / "a.mp4", 48, 64, 25.0)
     assert list(tmp_path.iterdir()) == []
-    with pytest.raises(ConfigError, match=r"^pictures: H\.264 needs PyAV"):  # JPEG goes on then
-        Stream(48, 64, 30)
+    with pytest.raises(MissingExtraError, match=r"^pictures: H\.264 needs the extra"):
+        Stream(48, 64, 30)  # JPEG goes on then
+    assert not has_pyav()
 
 
-@pytest.mark.slow
-def test_recordings_without_films_import_it_nowhere(tmp_path):
+def test_it_is_found_where_it_is():
+    assert has_pyav()
+
+
+@pytest.fixture
+def record(tmp_path):
+    """Records for a moment in a process that cannot import it, into a folder of a name."""
     (tmp_path / "av.py").write_text("raise ImportError('not here')")
-    command = ["video", "--quiet"]
     brief = {"video.channels": 1, "video.total_time": 0.2, "camera.width": 64, "camera.height": 48}
     sets = [f"--set={key}={value}" for key, value in brief.items()]
-    eyas = [sys.executable, "-m", "eyas", *command, *sets]
     path = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
-    for writers, code in (('["jpeg","labels","mark"]', 0), ('["mp4"]', 2)):
-        done = subprocess.run(
-            [*eyas, f"--out={tmp_path / str(code)}", f"--set=video.writers={writers}"],
+
+    def recorded(name: str, *more: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "eyas", "video", f"--out={tmp_path / name}", *sets, *more],
             env={**os.environ, "PYTHONPATH": path},
             check=False,
             capture_output=True,
             text=True,
         )
-        assert done.returncode == code, done.stderr
-    assert done.stderr.startswith("eyas: error: video.writers: 'mp4' needs PyAV")
-    assert len(list(tmp_path.glob("0/DRONE0/episode0/*.jpeg"))) > 0
+
+    return recorded
+
+
+@pytest.mark.slow
+def test_films_are_webp_without_it_and_go_on_as_such(record, tmp_path):
+    done = record("out")
+    assert done.returncode == 0, done.stderr
+    line = "eyas: films are animated WebP; for MP4: pip install "
+    assert sum(told.startswith(line) for told in done.stderr.splitlines()) == 1, done.stderr
+    assert json.loads((tmp_path / "out/config.json").read_text())["video"]["writers"] == [
+        *("jpeg", "webp", "labels", "mark")
+    ]
+    episode = tmp_path / "out/DRONE0/episode0"
+    with Image.open(episode / "episode.webp") as film:
+        assert (film.n_frames, film.size) == (len(list(episode.glob("*.jpeg"))), (64, 48))
+    again = record("out", "--resume", "--quiet")
+    assert (again.returncode, again.stderr) == (0, "")
+
+
+@pytest.mark.slow
+def test_who_asks_for_mp4_is_told_in_one_line_what_it_needs(record, tmp_path):
+    done = record("out", '--set=video.writers=["mp4"]')
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert done.stderr.startswith("eyas: error: video.writers: 'mp4' needs the extra 'video': pip")
+    assert not (tmp_path / "out/DRONE0").exists()

@@ -425,6 +425,7 @@ class OnHost:
         return capsule_of(self._array, (1, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["?", "u1", "i8", "f2", "f4", "f8"])
 def test_others_share_memory_by_dlpack_and_let_go_of_it(fake, card, kind):
     torch = pytest.importorskip("torch")
@@ -596,6 +597,7 @@ def test_a_forked_process_is_told_that_it_cannot_use_the_card(library):
     assert parent == "0.0"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("how", "expected"), [((), []), (("names first",), ["2"]), (("libraries last",), ["0"])]
 )

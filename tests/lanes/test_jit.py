@@ -100,6 +100,7 @@ def run(tmp_path):
     return program
 
 
+@pytest.mark.slow
 def test_processes_share_what_was_compiled_until_the_source_of_a_kernel_changes(run, tmp_path):
     """And who finds all compiled does without numba, whose import takes half a second."""
     (tmp_path / "function.py").write_text(

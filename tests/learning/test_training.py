@@ -158,6 +158,7 @@ def test_a_score_without_evaluations_is_refused():
         updated(SMALL, {"train": {"stages": stages, "evaluation": {"every": 0}}})
 
 
+@pytest.mark.slow
 def test_marks_are_those_of_eyas_evaluate(tmp_path):
     """The network in its ONNX file gets the same records from `eyas evaluate`."""
     policy = train(SMALL, tmp_path / "run", say=quiet)
@@ -170,6 +171,7 @@ def test_marks_are_those_of_eyas_evaluate(tmp_path):
     assert float(row[-1]) == pytest.approx(np.mean([each.tsr for each in records]), abs=1e-5)
 
 
+@pytest.mark.slow
 def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monkeypatch):
     config = updated(SMALL, {"train": {"shards": 2, "parts": 3}})
     train(config, tmp_path / "side by side", say=quiet)

@@ -66,6 +66,7 @@ def test_twenty_flights_are_smooth_and_touch_nothing(map_name, name):
     smooth(map_name, name, 20)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["follow", "zoom"])
 def test_a_flight_is_the_same_beside_any_number_of_others(name):
     alone, several = (flown("citystreet", name, count, 300) for count in (1, 3))
@@ -75,6 +76,7 @@ def test_a_flight_is_the_same_beside_any_number_of_others(name):
     assert not np.array_equal(alone[0], other[0])
 
 
+@pytest.mark.slow
 def test_only_zoom_zooms():
     assert np.ptp(flown("village", "zoom", 4, 3000)[1][..., 2], axis=0).min() > 0.2
     assert np.ptp(flown("village", "orbit", 2, 500)[1][..., 2]) < 1e-12

@@ -158,6 +158,7 @@ def test_streets_lie_where_buildings_expect_them(town, source):
         assert (float(x), float(y)) == pytest.approx(tuple(expected), abs=0.003)
 
 
+@pytest.mark.slow
 def test_a_scene_is_the_same_each_time(scene, town):
     recipe, network = MAPS.get(NAME), scene.network
     again = build_scene(recipe.complete_plan(network, 0), network)
@@ -165,6 +166,7 @@ def test_a_scene_is_the_same_each_time(scene, town):
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
 
 
+@pytest.mark.slow
 def test_no_lane_leads_through_anything_solid(scene):
     solids = scene.colliders
     outlines = [
@@ -362,6 +364,7 @@ def test_what_is_no_map_is_one_line_and_leaves_no_folder(content, reason, town, 
     assert not (tmp_path / "made").exists()
 
 
+@pytest.mark.slow
 def test_a_city_as_found_is_imported_and_its_defects_are_counted(tool, town, tmp_path, monkeypatch):
     monkeypatch.setattr(tool, "_SHOPS", 60)
     file = tmp_path / "city.osm"

@@ -16,6 +16,8 @@ from eyas.modes.leaderboard.mark import KEY_VARIABLE
 from eyas.modes.leaderboard.submission import submissions_in
 from eyas.modes.leaderboard.verify import Verdict, verify
 
+pytestmark = pytest.mark.slow  # what its tests share takes long to make
+
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):

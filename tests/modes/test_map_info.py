@@ -11,6 +11,7 @@ from eyas.sim.scenes import load_scene
 from eyas.world.maps import MAPS
 
 
+@pytest.mark.slow
 def test_stands_count_as_the_trees_they_are_and_shrubs_as_none():
     lake, village = figures_of(load_scene("lake", 0)), figures_of(load_scene("village", 0))
     assert (lake.trees, lake.stands) == (13_520, 676)

@@ -29,7 +29,7 @@ from eyas.traffic.signals import Aspect, walk_plan
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
-pytestmark = pytest.mark.sumo
+pytestmark = [pytest.mark.sumo, pytest.mark.slow]  # what its tests share takes long to make
 NAME = "test-walks"
 TEN_MINUTES = SampleClock(6001, 10.0)
 TRAFFIC = TrafficConfig(max_vehicles=30)

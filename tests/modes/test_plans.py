@@ -38,6 +38,7 @@ def test_the_plan_of_a_map_is_that_map(tmp_path):
     assert eyas("check", path).exit_code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 def test_a_map_of_a_file_has_the_scene_of_its_planner(tmp_path):
     path = tmp_path / "fields.plan.json"

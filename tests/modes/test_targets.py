@@ -61,6 +61,7 @@ def test_a_target_of_ones_own_is_shown_in_its_colours(tmp_path, monkeypatch):
         assert (colour.sum(axis=(0, 2)) > 50).all()  # in each picture all round
 
 
+@pytest.mark.slow
 def test_a_sheet_shows_vehicles_whole(tmp_path):
     """With a margin of their ground all round: the tails of cars were cut off."""
     run("BmwX5Simple", tmp_path / "car.png")

@@ -61,6 +61,7 @@ def as_got10k_data(folder, tmp_path):
     return target
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tracker", ["stay", f"{OWN}:Drifting", f"{OWN}:LosesIt"])
 def test_figures_are_those_of_the_toolkit_of_got10k(folder, tmp_path, monkeypatch, tracker):
     experiments = pytest.importorskip("got10k.experiments")

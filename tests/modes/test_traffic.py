@@ -23,6 +23,7 @@ def sumo():
         pytest.skip(str(error))
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 @pytest.mark.usefixtures("sumo")
 def test_several_processes_write_the_same_files_as_one(tmp_path: Path):

@@ -218,6 +218,7 @@ def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path):
     assert contents(path) == whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("spare", "refused"), [(-1, r"\d{6}\.jpeg"), (1, r"(mp4|jsonl)")])
 def test_a_full_disk_is_one_line_and_nothing_is_half_written(recorded, tmp_path, spare, refused):
     path = tmp_path / "out"
@@ -355,6 +356,7 @@ def test_a_recording_that_ends_before_it_begins_is_refused_and_leaves_no_folder(
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_an_overlay_changes_pictures_and_films_but_no_label_and_no_mark(recorded, tmp_path):
     config = CONFIG.model_copy(update={"video": CONFIG.video.model_copy(update={"overlay": True})})
     video.run(config, tmp_path / "out", quiet=True)

@@ -32,7 +32,7 @@ CONFIG = EyasConfig(
     done=DoneConfig(total_steps=150, grace_steps=20),
     video=VideoConfig(
         channels=2, fps=250.0, start_time=0.7, total_time=2.1, warm_up_steps=10,
-        writers=("jpeg", "mp4", "labels", "mark"),
+        writers=("jpeg", "mp4", "webp", "labels", "mark"),
     ),
 )  # fmt: skip
 UNPRIVILEGED = ["setpriv", "--bounding-set=-dac_override,-dac_read_search,-fowner"]

@@ -101,7 +101,15 @@ def test_a_finished_episode_is_complete(finished):
 
 @pytest.mark.parametrize(
     "name",
-    ["mark.json", "labels.jsonl", "episode.mp4", "000001.jpeg", "masks/000001.png", "sensors.csv"],
+    [
+        "mark.json",
+        "labels.jsonl",
+        "episode.mp4",
+        "episode.webp",
+        "000001.jpeg",
+        "masks/000001.png",
+        "sensors.csv",
+    ],
 )
 def test_an_episode_that_misses_a_file_is_not_complete(finished, name):
     episode = finished("episode0", 3)
@@ -115,6 +123,7 @@ def test_an_episode_that_misses_a_file_is_not_complete(finished, name):
         "mark.json",
         "labels.jsonl",
         "episode.mp4",
+        "episode.webp",
         "000002.jpeg",
         "arrays/000002.npz",
         "flow/000002.png",
@@ -127,7 +136,7 @@ def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete
     assert read_complete(writers_of(), episode) is None
 
 
-@pytest.mark.parametrize("name", ["mark", "mp4"])
+@pytest.mark.parametrize("name", ["mark", "mp4", "webp"])
 def test_without_labels_an_episode_is_complete_and_its_rewards_are_unknown(tmp_path, name):
     writers = writers_of(name, "jpeg")
     write(tmp_path / "episode0", 3, writers).finish()
@@ -146,12 +155,13 @@ def test_an_abandoned_episode_keeps_its_pictures_only(tmp_path):
     assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
+@pytest.mark.slow
 def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     write(tmp_path / "episode0", 5).finish()
     (tmp_path / "episode0" / "notes.txt").write_text("mine")
     files = write(tmp_path / "episode0", 2)
     assert names_in(tmp_path / "episode0") == sorted(
-        [".episode.mp4.part", *BAGS, *FLOW, *PICTURES, "notes.txt"]
+        [".episode.mp4.part", ".episode.webp.part", *BAGS, *FLOW, *PICTURES, "notes.txt"]
     )
     files.finish()
 

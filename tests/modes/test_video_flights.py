@@ -146,6 +146,7 @@ def test_the_same_flights_give_the_same_labels_beside_more_trackers(tmp_path):
     assert other[0]["tracker_position"] != one[0]["tracker_position"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("policy", ["follow", "servo", "fast"])
 def test_a_policy_flies_as_in_an_evaluation(tmp_path, policy):
     if policy == "fast":

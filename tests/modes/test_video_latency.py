@@ -43,6 +43,7 @@ def recorded(folder, **changes):
     return labels, pictures, [[row.split(",")[1:] for row in table] for table in rows]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "all_late"),
     [

@@ -2,7 +2,8 @@
 
 import json
 
-from eyas.modes.video.run import run, with_lidar
+from eyas.modes.video.default_writers import with_writers
+from eyas.modes.video.run import run
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 
@@ -26,6 +27,6 @@ def test_the_original_s_switch_writes_the_lidar_s_file(tmp_path):
 def test_writers_that_were_chosen_stay():
     chosen = {"video": {"writers": ("jpeg",)}, "lidar": {"enabled": True}}
     config = EyasConfig.model_validate(chosen)
-    assert with_lidar(config) is config
+    assert with_writers(config, quiet=True) is config
     off = EyasConfig()
-    assert with_lidar(off) is off
+    assert with_writers(off, quiet=True) == off

@@ -34,6 +34,7 @@ def files_of(config, folder) -> dict:
     return {path.relative_to(folder): path.read_bytes() for path in folder.glob("DRONE*/*/*")}
 
 
+@pytest.mark.slow
 @pytest.mark.sumo
 def test_live_traffic_gives_the_pictures_and_labels_of_its_recording(tmp_path):
     """Twice, as a live world must be closed when its recording ends."""

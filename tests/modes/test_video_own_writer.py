@@ -76,6 +76,7 @@ def contents(path: Path) -> dict[str, bytes]:
     }
 
 
+@pytest.mark.slow
 def test_it_writes_what_the_labels_say(work):
     out = work / "out"
     assert (out / "episodes.csv").read_text() == "DRONE0,0,6\nDRONE1,0,6\n"
@@ -88,6 +89,7 @@ def test_it_writes_what_the_labels_say(work):
         ]
 
 
+@pytest.mark.slow
 def test_an_episode_that_misses_its_file_is_drawn_anew(work):
     whole = contents(work / "out")
     kept = work / "out" / "DRONE0" / "episode0" / "labels.jsonl"
@@ -106,6 +108,7 @@ def test_a_recording_is_overwritten_where_its_writer_has_gone(work):
     assert (work / "out" / "dir_info.json").exists()
 
 
+@pytest.mark.slow
 def test_a_writer_that_ends_the_program_is_an_error(tmp_path):
     (tmp_path / "ends.py").write_text(ENDS)
     (tmp_path / "settings.json").write_text(json.dumps({"video": {"channels": 1, "total_time": 1}}))

@@ -169,6 +169,7 @@ def test_a_mesh_file_in_the_settings_alone(record, tmp_path: Path):
     assert told.labels[0]["target_words"] == "a parcel"
 
 
+@pytest.mark.slow
 def test_a_class_of_a_users_package(record):
     recorded = record(custom={"path": "own_target:Sprinkler"}, world={"map": "farmland"})
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
@@ -185,6 +186,7 @@ def test_a_class_of_a_users_package(record):
     assert turned == pytest.approx(angle, rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_trajectory_file(record, tmp_path: Path):
     lines = [f"{t},{-41.0 + 1.2 * t},{3.0 + 0.5 * t}" for t in range(40)]
     (tmp_path / "walk.csv").write_text("\n".join(["t,x,y", *lines]))

@@ -51,6 +51,7 @@ def renderers(renderer_of):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 2, 4])
 @pytest.mark.parametrize("weather", WEATHERS)
 def test_everything_is_equal_in_all_weathers(renderers, weather, samples):
@@ -62,6 +63,7 @@ def test_everything_is_equal_in_all_weathers(renderers, weather, samples):
     assert found == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [1, 3, 64])
 def test_the_number_of_workers_changes_nothing(renderers, workers):
     found = differences(

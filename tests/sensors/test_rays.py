@@ -74,6 +74,7 @@ def nearest_block(origin, ray, found):
     return best if best <= REACH else math.inf
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("yaw", "pitch"), [(0.0, 0.0), (0.3, 0.0), (-2.0, 0.05), (1.6, -0.4)])
 def test_no_solid_in_the_way_of_a_ray_is_passed_by(around, yaw, pitch):
     found = blocks(np.random.default_rng(5), 150, 140.0)

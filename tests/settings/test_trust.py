@@ -185,6 +185,7 @@ def test_a_module_in_the_current_folder_is_found_last(tmp_path, monkeypatch):
         RewardTerms(RewardConfig(terms={"colorsys:calm": 1.0}))
 
 
+@pytest.mark.slow
 def test_a_module_in_the_current_folder_is_not_looked_for_where_that_is_forbidden(tmp_path):
     (tmp_path / "calm_term.py").write_text("def calm(offset):\n    return offset\n")
     asked = ("--set", 'reward.terms={"calm_term:calm": 1.0}', "--set", "video.total_time=0.1")

@@ -181,6 +181,7 @@ def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
     assert moved(2.5) == "a dark grey walking machine on six legs"
 
 
+@pytest.mark.slow
 def test_a_slow_robot_has_a_turn_direction():
     robots = built(2, target="Sojourner", objects=FEW)
     robots.carry(500)
@@ -199,6 +200,7 @@ def test_an_unknown_behaviour_is_told_with_the_nearest():
         SimConfig(extras=[{"behaviour": "wonder"}])
 
 
+@pytest.mark.slow
 def test_fewer_targets_than_trackers_is_told():
     config = SimConfig(target="Pedestrian", objects={**FEW, "max_count": 2})
     simulation = build_simulation(config, together(3))
@@ -221,6 +223,7 @@ def test_all_are_followed_for_as_long_as_the_traffic_lasts(staying):
         assert staying(simulation.traffic, time - 12.0, time) == [0, 1, 2]
 
 
+@pytest.mark.slow
 def test_no_target_for_a_whole_episode_is_told():
     """Objects that come after the recording has ended."""
     settings = {"target": "Pedestrian", "objects": FEW, "done": {"total_steps": 900_000}}

@@ -223,6 +223,7 @@ def test_each_actor_has_the_slots_of_its_own_kind(walker):
     assert rigs.draw_list(1).part.shape == (1, slots.sum())
 
 
+@pytest.mark.slow
 def test_a_mixed_world_is_posed_as_its_kinds_are_alone(walker):
     register(walker)
     names = ["bus", "walker", "passenger", "walker", "motorcycle", "passenger"]

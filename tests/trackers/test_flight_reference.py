@@ -134,6 +134,7 @@ FLIGHTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_a_flight_is_that_of_the_reference(name):
     commands = FLIGHTS[name]

@@ -67,6 +67,7 @@ def test_who_hides_stays_for_seconds_in_cover_and_nowhere_else(grid: RoadGraph):
     assert slow[0] > 100 > 5 * slow[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "drivers"), SHIPPED)
 def test_shipped_drivers_drive_like_cars(name, drivers):
     recording = shipped(name, drivers)

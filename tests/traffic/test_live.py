@@ -46,6 +46,7 @@ def live(grid: RoadGraph) -> Iterator[LiveSumo]:
     source.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("config", [KEPT, GROUPS], ids=lambda config: config.demand.value)
 @pytest.mark.parametrize("step", [0.7, 60.0])
 def test_live_tracks_are_those_of_a_recording(grid: RoadGraph, config: TrafficConfig, step: float):
@@ -126,6 +127,7 @@ def test_those_who_have_left_are_no_targets(grid: RoadGraph, staying):
         source.close()
 
 
+@pytest.mark.slow
 def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: LiveSumo, staying):
     table = np.zeros((601, 2), live.motion.table.dtype)
     table["x"], table["present"] = 7.0, 1.0
@@ -142,6 +144,7 @@ def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: Liv
         source.close()
 
 
+@pytest.mark.slow
 def test_there_is_one_live_world_in_a_process(grid: RoadGraph, live: LiveSumo):
     with pytest.raises(ConfigError, match=r"^traffic\.source: 'live' is in use in this process"):
         started(grid, KEPT)
@@ -151,6 +154,7 @@ def test_there_is_one_live_world_in_a_process(grid: RoadGraph, live: LiveSumo):
     assert live.motion.table["present"][300].all()
 
 
+@pytest.mark.slow
 def test_a_live_world_that_nobody_uses_ends(grid: RoadGraph):
     source: LiveSumo | None = started(grid, KEPT)
     assert source is not None

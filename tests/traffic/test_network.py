@@ -32,6 +32,7 @@ def test_shipped_networks_belong_to_their_graphs(name):
     assert recipe.shipped_network().graph_hash == graph_hash(recipe.roads(0))
 
 
+@pytest.mark.slow
 @needs_sumo
 @pytest.mark.parametrize("name", MAPS.built_in)
 def test_shipped_networks_are_what_netconvert_makes(name):

@@ -211,6 +211,7 @@ def test_no_driver_exceeds_the_maximum(grid: RoadGraph, demand: Demand):
     assert 2.9 < max(speed) < 3.01
 
 
+@pytest.mark.slow
 def test_more_cars_than_fit_are_an_error_before_all_is_driven(grid: RoadGraph):
     shares: list[float] = []
     config = TrafficConfig(max_vehicles=1000)
@@ -272,6 +273,7 @@ def test_groups_start_and_brake_in_an_instant(groups: Recording, cars: Recording
         assert least < np.percentile(change[both], 99.5) < most
 
 
+@pytest.mark.slow
 def test_what_the_original_says_of_groups_and_routes_is_driven(grid: RoadGraph):
     """Each of its keys reaches SUMO: sizes, times, lengths and number of the routes, the seed."""
     keys = {

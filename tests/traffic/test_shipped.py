@@ -128,6 +128,7 @@ for recipe in recipes.values():  # the simple maps share theirs
 """
 
 
+@pytest.mark.slow
 def test_one_to_forty_trackers_need_no_sumo_on_any_map():
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT_SUMO_OF_ANY_NUMBER], capture_output=True, text=True
@@ -149,6 +150,7 @@ def test_of_forty_cars_that_come_and_go_three_quarters_stay_for_an_episode(name)
     assert present.sum(axis=1).mean() > 39.8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["citystreet", "downtown", "lake", "village", "desert", "farmland"]
 )

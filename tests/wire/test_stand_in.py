@@ -64,6 +64,7 @@ def test_a_trainer_that_starts_webots_itself_runs_unchanged(dat, tmp_path):
     assert "Traceback" not in text
 
 
+@pytest.mark.slow
 def test_a_server_that_was_there_before_follows_the_trainer_s_settings(dat, tmp_path):
     """The documented order, with nothing named `webots` that could start."""
     command = [sys.executable, "-m", "eyas.cli.main", "serve", "--root", str(dat)]

@@ -119,6 +119,7 @@ def test_buildings_are_as_high_and_as_far_from_the_kerb_as_the_originals(scene, 
     assert sum(shape.area for shape in outlines) == pytest.approx(94_000, rel=0.15)
 
 
+@pytest.mark.slow
 def test_trees_stand_in_rows_beside_roads(scene, network):
     trunks = trunks_of(scene)[:, :2, 3].astype(np.float64)
     apart = np.linalg.norm(trunks[:, None] - trunks[None], axis=2) + 1e9 * np.eye(len(trunks))
@@ -205,6 +206,7 @@ def test_triangles_are_few_enough_for_small_machines(scene):
     assert len(scene.static.triangles) < 60_000
 
 
+@pytest.mark.slow
 def test_building_again_gives_the_same_bytes(scene, network):
     again = build_scene(CITYSTREET.plan(network, 0), network)
     assert again.static.positions.tobytes() == scene.static.positions.tobytes()

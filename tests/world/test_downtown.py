@@ -130,6 +130,7 @@ def test_seeds_differ_and_repeat():
     assert graphs[2] == DOWNTOWN.roads(2)
 
 
+@pytest.mark.slow
 def test_planning_again_gives_the_same_city(plan, streets, city):
     again = lay_out(streets, 0)
     for parts, others in zip(plan.buildings, again.buildings, strict=True):

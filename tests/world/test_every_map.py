@@ -78,6 +78,7 @@ def test_no_lane_leads_through_anything_solid(name):
     assert hit.shape[1] == 0, shapely.get_coordinates(points[hit[1, :5]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_lanes_lie_on_the_floor_and_on_roads(name):
     """The ground is not above the lanes: no hill has swallowed a road."""
@@ -89,6 +90,7 @@ def test_lanes_lie_on_the_floor_and_on_roads(name):
     assert len(scene.network.lane_first) > 10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_triangle_and_copy_is_finite_and_has_an_object(name):
     scene = _scene(name)

@@ -44,6 +44,7 @@ def test_the_solid_shape_holds_the_body_at_every_level(variant):
         assert mesh.positions[:, 2].min() > -1e-6
 
 
+@pytest.mark.slow
 @EACH
 def test_lamps_are_off_and_snow_lies_on_all_of_it(variant):
     moving = {one for model in VEHICLES for mesh in model.body(model) for one in mesh.palette}

@@ -106,6 +106,7 @@ def differences(here, there, path=""):
         yield path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["plan", "desert", pytest.param("scene", marks=pytest.mark.slow)])
 def test_a_map_is_the_same_on_another_processor(name):
     assert list(differences(MAKERS[name](), elsewhere(name))) == []

@@ -45,6 +45,7 @@ def test_an_amber_that_does_not_shine_is_hidden(level):
             )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_signals_work_by_default_with_the_traffic_that_obeys_them():
     made = [
         load_assets(WorldConfig(map=name), TrafficConfig(**changes))

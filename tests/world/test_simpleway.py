@@ -110,6 +110,7 @@ def of_class(scene, kind):
     return mesh.positions[mesh.triangles[scene.object_class[scene.static_object] == kind]]
 
 
+@pytest.mark.slow
 def test_sand_lies_across_the_roads_of_the_desert(desert, network):
     corners = of_class(desert, ObjectClass.GROUND)
     bars = corners[np.isclose(corners[:, 0, 2], 0.03)].astype(float)

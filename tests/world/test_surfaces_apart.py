@@ -133,6 +133,7 @@ centimetre; ledges of houses that share a party wall, both of concrete, at chanc
 of stones just below the grass."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -151,6 +151,7 @@ def test_recorded_cars_stay_on_the_roads(roads):
     assert recorded_off_road(VILLAGE, roads) < 1e-3
 
 
+@pytest.mark.slow
 def test_tunnels_hide_a_target_for_seconds(plan, village):
     """Seen from right above, a car disappears below each tunnel for about 40 m."""
     for tunnel in plan.tunnels:

@@ -253,6 +253,7 @@ def registered(haze, monkeypatch):
         del gymnasium.registry[name]
 
 
+@pytest.mark.slow
 def test_a_users_weather_flies_by_its_path_at_dusk(haze):
     means = []
     for weather in ("day", "own_weather:HAZE"):

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 __all__ = ["Part", "about", "parts"]
 
 _BESIDES = {
-    "av": "its wheel has FFmpeg with x264 and x265, GPL-2.0 or later; Eyas goes on without it",
     "shapely": "its wheel has GEOS, LGPL-2.1",
     "numpy": "its wheel has OpenBLAS, BSD-3-Clause, and libgfortran, GPL-3.0 with the exception",
     "llvmlite": "its wheel has LLVM, Apache-2.0 with the exception",

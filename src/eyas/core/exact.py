@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.lanes.elementary import arrays as elementary_arrays
-from eyas.lanes.elementary.arrays import (
+from eyas.core import small_arrays
+from eyas.core.small_arrays import (
     acos,
     asin,
     atan,
@@ -38,6 +38,7 @@ __all__ = [
     "cbrt",
     "convolved",
     "cos",
+    "cross",
     "determinant",
     "dot",
     "exp",
@@ -69,7 +70,7 @@ def power(base: Any, exponent: float) -> Any:  # noqa: ANN401  # as numpy's
     if isinstance(exponent, int):
         whole = _whole_power(base, abs(exponent))
         return whole if exponent >= 0 else 1.0 / whole
-    return elementary_arrays.power(base, exponent)
+    return small_arrays.power(base, exponent)
 
 
 def _whole_power(base: ArrayLike, exponent: int) -> Any:  # noqa: ANN401
@@ -131,10 +132,26 @@ def length(vector: ArrayLike) -> float:
     return math.sqrt(dot(whole, whole))
 
 
+def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
+    """Return the cross products of vectors along the last axis of two arrays, of shape (..., 3).
+
+    The bytes are those of `np.cross`, which takes three times as long for a few.
+    """
+    (a0, a1, a2), (b0, b1, b2) = _axes(a), _axes(b)
+    first = a1 * b2 - a2 * b1
+    made = np.empty((*first.shape, 3), first.dtype)
+    made[..., 0], made[..., 1], made[..., 2] = first, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
+    return made
+
+
+def _axes(vectors: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+    return vectors[..., 0], vectors[..., 1], vectors[..., 2]
+
+
 def determinant(matrix: NDArray[np.floating]) -> float:
     """Return the determinant of a matrix of shape (3, 3)."""
     a, b, c = np.asarray(matrix, np.float64)
-    return float(dot(a, np.cross(b, c)))
+    return float(dot(a, cross(b, c)))
 
 
 def convolved(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,13 +1,13 @@
-"""PyAV, which encodes films; whoever may not install it leaves it out, and films with it.
+"""PyAV, which encodes MP4 and H.264: an extra, as it is large and not everyone may install it.
 
 Its wheels contain x264 and x265, which are under the GPL; see docs/licences.md.
 """
 
 from types import ModuleType
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import MissingExtraError
 
-__all__ = ["pyav"]
+__all__ = ["has_pyav", "pyav"]
 
 
 def pyav(purpose: str) -> ModuleType:
@@ -17,12 +17,19 @@ def pyav(purpose: str) -> ModuleType:
         purpose: What needs it, for example `video.writers: 'mp4'`.
 
     Raises:
-        ConfigError: It is not installed.
+        MissingExtraError: It is not installed.
     """
     try:
         import av
     except ImportError as error:
-        raise ConfigError(
-            f"{purpose} needs PyAV, which is not installed; pip install av, or do without"
-        ) from error
+        raise MissingExtraError(purpose, "video") from error
     return av
+
+
+def has_pyav() -> bool:
+    """Return whether `av` is installed and can be imported."""
+    try:
+        pyav("a film")
+    except MissingExtraError:
+        return False
+    return True

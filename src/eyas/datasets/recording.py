@@ -28,6 +28,7 @@ from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
 from eyas.core.folder_lock import LOCK
 from eyas.core.png_reading import grey_pixels
+from eyas.core.pyav import pyav
 from eyas.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.exports.label import LABELS, Label, read_labels
 from eyas.settings.config import EyasConfig
@@ -100,8 +101,7 @@ class RecordedFrame:
         """Return the motion of each pixel to the next frame, right and down [pixels], shape
         (H, W, 2), and whether it is known: where the point is in view there, shape (H, W).
         """
-        import av  # slow to import
-
+        av = pyav("flow")
         path = self.file("flow")
         content = io.BytesIO(read_limited(path, _LARGEST))
         with _reading(path), av.open(content, mode="r") as container:

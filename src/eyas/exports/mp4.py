@@ -37,7 +37,7 @@ class Mp4Writer(Writer):
     """`episode.mp4`.
 
     Raises:
-        ConfigError: PyAV is not installed.
+        MissingExtraError: PyAV is not installed.
     """
 
     wants = frozenset({"rgb"})
@@ -74,7 +74,7 @@ class Mp4Episode(EpisodeWriter):
 
     Raises:
         OutputError: The file cannot be written; raised by every method.
-        ConfigError: PyAV is not installed.
+        MissingExtraError: PyAV is not installed.
     """
 
     def __init__(self, path: Path, height: int, width: int, fps: float) -> None:

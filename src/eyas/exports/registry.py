@@ -19,6 +19,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "jpeg": "eyas.exports.jpeg:JpegWriter",
         "png": "eyas.exports.images:PngWriter",
         "mp4": "eyas.exports.mp4:Mp4Writer",
+        "webp": "eyas.exports.webp:WebpWriter",
         "labels": "eyas.exports.label:LabelWriter",
         "mark": "eyas.exports.mark:MarkWriter",
         "clean": "eyas.exports.images:CleanWriter",

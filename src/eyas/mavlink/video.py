@@ -95,7 +95,8 @@ class VideoSender:
         source: Number of the sender.
 
     Raises:
-        ConfigError: PyAV is not installed, or has been built without x264.
+        MissingExtraError: PyAV is not installed.
+        ConfigError: It has been built without x264.
     """
 
     def __init__(self, stream: Stream, source: int) -> None:

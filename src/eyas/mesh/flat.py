@@ -28,7 +28,7 @@ def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
         material: Material of all of them.
     """
     points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
-    normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
+    normals = exact.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
     triangles = np.concatenate(

@@ -9,6 +9,8 @@ __all__ = ["box_panels", "cells", "closed", "fan", "halves", "mirrored"]
 
 Points = NDArray[np.float64]
 
+_HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
 
 def cells(grid: ArrayLike) -> Points:
     """Return the quadrilaterals between neighbouring points of a grid, row by row.
@@ -38,7 +40,7 @@ def halves(quads: ArrayLike) -> Points:
         quads: Shape (Q, 4, D).
     """
     corners = np.asarray(quads, np.float64)
-    return np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+    return corners[:, _HALVES].swapaxes(0, 1).reshape(-1, 3, corners.shape[2])
 
 
 def fan(ring: ArrayLike, middle: Sequence[float] | None = None) -> Points:

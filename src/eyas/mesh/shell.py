@@ -130,9 +130,9 @@ class Shell:
         along = np.gradient(points, axis=0)
         along /= np.linalg.norm(along, axis=1, keepdims=True)
         helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
-        u = np.cross(helper, along)
+        u = exact.cross(helper, along)
         u /= np.linalg.norm(u, axis=1, keepdims=True)
-        v = np.cross(along, u)
+        v = exact.cross(along, u)
         angle = np.arange(sides) * (2 * np.pi / sides)
         circle = exact.cos(angle)[:, None] * u[:, None] + exact.sin(angle)[:, None] * v[:, None]
         size = np.asarray(radii, np.float64)[:, None, None]
@@ -211,7 +211,7 @@ def _distinct(rows: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.i
 
 def _cross(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the normals of triangles, with lengths of twice their areas, shape (T, 3)."""
-    crossed: NDArray[np.float64] = np.cross(
+    crossed: NDArray[np.float64] = exact.cross(
         corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     )
     return crossed

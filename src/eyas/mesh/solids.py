@@ -107,9 +107,9 @@ def tube(
     along = np.asarray(np.gradient(points, axis=0), np.float64)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     # Any perpendicular direction works if it turns little from point to point.
-    across = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along).sum(0)))])
+    across = exact.cross(along, np.eye(3)[int(np.argmin(np.abs(along).sum(0)))])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    other = np.cross(along, across)
+    other = exact.cross(along, across)
     angle = np.arange(sides + 1) * (2 * np.pi / sides)
     normals = (
         across[:, None] * exact.cos(angle)[:, None] + other[:, None] * exact.sin(angle)[:, None]

@@ -117,6 +117,7 @@ def check_unused(cache, *before, **options):
     assert "so every start makes and compiles again what is missing" in line
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path):
     empty = tmp_path / "cache"
     empty.mkdir()

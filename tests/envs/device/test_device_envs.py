@@ -124,6 +124,7 @@ def test_tensors_of_actions_mean_what_arrays_mean():
                 taken.take(refused)
 
 
+@pytest.mark.slow
 def test_a_wrong_action_leaves_everything_as_it_is():
     usual, ours = pair("plain", 2, 1)
     usual.reset(seed=1)

@@ -9,6 +9,7 @@ import urllib.error
 import urllib.request
 
 import pytest
+from PIL import Image
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
@@ -239,7 +240,9 @@ def test_streets_for_the_small_map(served):
     assert all(len(lane) >= 2 for lane in streets["lanes"])
 
 
-def test_stopping_ends_a_recording_whole(serve):
+def test_stopping_ends_a_recording_whole_also_without_pyav(serve, tmp_path, monkeypatch):
+    (tmp_path / "av.py").write_text("raise ImportError('not here')")
+    monkeypatch.syspath_prepend(tmp_path)  # the server has this process's path
     served = serve()
     viewer = Viewer(served.socket)
     viewer.say("record", on=True)
@@ -250,3 +253,5 @@ def test_stopping_ends_a_recording_whole(serve):
     pictures = list((folder / "DRONE0/episode0").glob("*.jpeg"))
     marks = json.loads((folder / "DRONE0/episode0/mark.json").read_text())
     assert len(marks) == len(pictures) >= 3
+    with Image.open(folder / "DRONE0/episode0/episode.webp") as film:
+        assert film.n_frames == len(pictures)

@@ -141,6 +141,7 @@ def checked(call, bundles) -> None:
     assert not re.search(r"\b(mad|mul|add|sub)\.(f32|f64)\b", text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", ["drone", pytest.param("flown", marks=pytest.mark.slow)])
 def test_the_drivers_compile_for_cuda(case):
     ours = on_device(SimConfig.model_validate(CASES[case]), 2, 1)

@@ -126,7 +126,8 @@ class Stream:
         factor: x264's constant rate factor; greater is smaller and blurrier.
 
     Raises:
-        ConfigError: PyAV is not installed, or has been built without x264.
+        MissingExtraError: PyAV is not installed.
+        ConfigError: It has been built without x264.
     """
 
     def __init__(self, height: int, width: int, factor: int) -> None:

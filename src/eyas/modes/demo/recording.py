@@ -11,6 +11,7 @@ from eyas.core.config import updated
 from eyas.core.folder_lock import folder_lock
 from eyas.exports.frame import RecordedAction
 from eyas.modes.demo.flight import DemoFlight
+from eyas.modes.video.default_writers import with_writers
 from eyas.modes.video.folder import open_folder
 from eyas.modes.video.recorder import Recorder
 
@@ -34,6 +35,7 @@ class DemoRecording:
 
     def __init__(self, flight: DemoFlight, folder: Path) -> None:
         config = updated(flight.config, {"video": {"channels": 1}})
+        config = with_writers(config, quiet=True)
         self.folder, self.frames = folder, 0
         self.period = max(round(PHYSICS_RATE / config.video.fps), 1)
         self._steps = 0

@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from eyas import __version__
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, EyasError
 from eyas.modes.demo import messages as said
 from eyas.modes.demo.flight_thread import FlightThread
 from eyas.modes.demo.frame import DemoFrame
@@ -181,7 +181,7 @@ async def _send(connection: ServerConnection, viewer: Viewer) -> None:
                 continue
             try:
                 data = await asyncio.to_thread(viewer.coded, what)
-            except ConfigError as error:
+            except EyasError as error:
                 viewer.choose("jpeg")
                 viewer.tell({"error": str(error)})
             else:

@@ -94,7 +94,7 @@ class Viewer:
         `delta`, which needs all before it. Frames are dropped before they come here, never after.
 
         Raises:
-            ConfigError: H.264 cannot be had.
+            EyasError: H.264 cannot be had.
         """
         level = self._coding.level
         if not level:

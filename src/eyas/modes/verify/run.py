@@ -50,7 +50,7 @@ def text_of(hashes: Hashes) -> str:
     return json.dumps({"eyas": __version__, "hashes": hashes}, indent=1) + "\n"
 
 
-_PACKAGES = ("numpy", "numba", "llvmlite", "shapely", "pillow", "pydantic", "gymnasium", "av")
+_PACKAGES = ("numpy", "numba", "llvmlite", "shapely", "pillow", "pydantic", "gymnasium")
 
 _CHOICES = (
     "OPENBLAS_CORETYPE",

@@ -27,7 +27,7 @@ class VideoConfig(ActionSpeeds):
     """Pictures per second of simulated time [Hz]."""
     start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
     """Simulated time at which recording begins [s]."""
-    total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
+    total_time: Annotated[float, Field(gt=0, le=1e6)] = 6.0
     """Duration of the recording in simulated time [s], unless `episode_frames` is set."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
     """Steps of 2 ms after each reset that are not recorded."""
@@ -65,7 +65,8 @@ class VideoConfig(ActionSpeeds):
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
         *("jpeg", "mp4", "labels", "mark"),
     )
-    """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `clean`, `cameras`, `masks`,
+    """Output formats; where the extra `video` is not installed, the default has `webp` instead of
+    `mp4`. `jpeg`, `png`, `mp4`, `webp`, `labels`, `mark`, `clean`, `cameras`, `masks`,
     `classes`, `depth`, `normals`, `arrays`, `flow`, `sensors`, `lidar`, `events`, `scene`,
     `openscenario`, `rosbag`, `rosbag-mcap`, or your own as `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95

@@ -12,6 +12,7 @@ from eyas.core.errors import ConfigError, OutputError
 from eyas.core.folder_lock import folder_lock
 from eyas.exports.registry import chosen_writers
 from eyas.modes.video.action import Mover, check_flight, mover_of
+from eyas.modes.video.default_writers import with_writers
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video.formats import write_formats, writers_in
 from eyas.modes.video.frame_grid import FrameGrid, RecordingEnd
@@ -55,7 +56,7 @@ def run(
             the folder.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
-    config = with_lidar(config)
+    config = with_writers(config, quiet=quiet)
     # Building may take a minute, so writers and folder are checked first. The folder is changed
     # only after building, so that a failed build neither makes nor deletes one.
     with originals_named(config):
@@ -101,15 +102,6 @@ def _record(
             raise OutputError(f"{error}; continue with --resume") from error
         raise
     print_report(folder, recorder, progress, config.video, quiet=quiet)
-
-
-def with_lidar(config: EyasConfig) -> EyasConfig:
-    """Return settings that write the lidar's file, too, if it is on and no writers are chosen."""
-    video = config.video
-    if not config.lidar.enabled or video.writers != type(video)().writers:
-        return config
-    writers = (*video.writers, "lidar")
-    return config.model_copy(update={"video": video.model_copy(update={"writers": writers})})
 
 
 def recording_rules(config: EyasConfig) -> EyasConfig:

@@ -87,7 +87,7 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     share = np.stack([first, second, _GRID - first - second], axis=1)[inside] / _GRID
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     points = exact.product(share, corners).reshape(-1, 3)
-    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    across = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
     return points, np.repeat(area, len(share))
 

@@ -62,7 +62,7 @@ def cluster_order(
     """
     solid = np.flatnonzero(~leafy)
     points = corners[solid].astype(np.float64)
-    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    normals = exact.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     middle = (points.min(axis=1) + points.max(axis=1)) / 2
     reach = max(float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0, 1e-6)
@@ -138,7 +138,7 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     All normals are within an angle of the axis; the apex lies behind the planes of all triangles;
     the cone opens away from them, by a right angle less that angle (Z. Hajdu, meshoptimizer, 2017).
     """
-    normals = np.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
+    normals = exact.cross(corners[:, :, 1] - corners[:, :, 0], corners[:, :, 2] - corners[:, :, 0])
     length = np.linalg.norm(normals, axis=2, keepdims=True)
     real = (clusters[:, SIZE] >= 0.0) & (length[:, :, 0] > 0.0)
     normals = np.where(real[:, :, None], normals / np.where(length > 0.0, length, 1.0), 0.0)

@@ -113,7 +113,7 @@ def _leg_frames(
         out = ankle - hip
         out -= (out * up).sum(axis=-1, keepdims=True) * up
         out /= np.linalg.norm(out, axis=-1, keepdims=True)
-        drawn.append(_framed(hip, out, np.cross(up, out), up))
+        drawn.append(_framed(hip, out, exact.cross(up, out), up))
         hip = hip + leg.coxa[0] * out
     bend = _directions(parent, np.array(leg.knee))
     knee, ankle = _bent(hip, ankle, bend, leg.bones)
@@ -207,8 +207,8 @@ def _turned(
     yaw: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Return frames at a point of others, turned by roll, then pitch, then yaw [rad], (K,)."""
-    cr, sr, cp, sp = exact.cos(roll), exact.sin(roll), exact.cos(pitch), exact.sin(pitch)
-    cy, sy = exact.cos(yaw), exact.sin(yaw)
+    angles = np.stack([roll, pitch, yaw])
+    (cr, cp, cy), (sr, sp, sy) = exact.cos(angles), exact.sin(angles)
     rotation = np.stack([
         np.stack([cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr], axis=-1),
         np.stack([sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], axis=-1),
@@ -225,7 +225,7 @@ def _along(
     """Return frames of bones: origin at the start, z away from the end, x towards a side."""
     z = _unit(start - end)
     x = _unit(side - (side * z).sum(axis=-1, keepdims=True) * z)
-    return _framed(start, x, np.cross(z, x), z)
+    return _framed(start, x, exact.cross(z, x), z)
 
 
 def _framed(

@@ -36,8 +36,10 @@ class Swing:
 
     def at(self, cycle: NDArray[np.float64], *, moving: bool) -> NDArray[np.float64]:
         """Return the values at parts of a cycle, shape (K,)."""
+        if not moving or self.size == 0.0:  # nearly all
+            return np.full(len(cycle), self.rest + self.lean * float(moving))
         wave = exact.sin(2.0 * np.pi * (self.beats * cycle + self.phase))
-        return self.rest + (self.lean + self.size * wave) * float(moving)
+        return self.rest + (self.lean + self.size * wave)
 
 
 STILL = Swing()

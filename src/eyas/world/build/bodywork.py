@@ -60,13 +60,11 @@ class Region(NamedTuple):
 
     def at(self, across: ArrayLike, up: ArrayLike) -> NDArray[np.float64]:
         """Return texture coordinates [tiles], shape (..., 2), of shares 0 to 1 of its sides."""
-        u, v = np.broadcast_arrays(np.clip(across, 0.0, 1.0), np.clip(up, 0.0, 1.0))
-        corner = (
-            self.left + u * (self.right - self.left),
-            self.bottom + v * (self.top - self.bottom),
-        )
-        uvs: NDArray[np.float64] = np.stack(corner, axis=-1) / _SIDE
-        return uvs
+        u, v = (np.minimum(np.maximum(share, 0.0), 1.0) for share in (across, up))
+        uvs = np.empty((*np.broadcast_shapes(np.shape(u), np.shape(v)), 2))
+        uvs[..., 0] = self.left + u * (self.right - self.left)
+        uvs[..., 1] = self.bottom + v * (self.top - self.bottom)
+        return uvs / _SIDE
 
 
 SIDE = Region(4, 4, 252, 92)

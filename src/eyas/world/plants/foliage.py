@@ -111,10 +111,10 @@ def _tilted_cards(facing: Array, columns: int, rng: np.random.Generator) -> Arra
     """
     count = len(facing)
     tilted = facing + 0.55 * exact.normal(rng, size=(count, 3))
-    across = np.cross(tilted, exact.normal(rng, size=(count, 3)))
+    across = exact.cross(tilted, exact.normal(rng, size=(count, 3)))
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
-    up = np.cross(tilted, across)
+    up = exact.cross(tilted, across)
     x, y = (a.ravel() for a in np.meshgrid(np.linspace(-0.5, 0.5, columns), [-0.5, 0.5]))
     fold = -0.88 * np.square(x) if columns > 2 else 0 * x
     corners = (

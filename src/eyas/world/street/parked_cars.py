@@ -175,7 +175,7 @@ def _outer(wheel: Mesh, side: float) -> Mesh:
 def _above(body: Mesh) -> Mesh:
     """Return a body without its underside, which is never seen."""
     corners = body.positions[body.triangles].astype(np.float64)
-    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     below = corners[..., 2].max(axis=1) < _UNDERSIDE
     return _some(body, ~below | (face[:, 2] > -0.7 * np.sqrt(exact.dot(face, face))))
 
