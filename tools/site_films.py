@@ -1,8 +1,10 @@
 """Record the films of the gallery of the site: `python tools/site_films.py [NAME ...]`.
 
-Each is one episode of one drone, of `eyas video` with the settings below; `docs/films` gets them.
+Each is one episode of one drone, of `eyas video` with the settings below, or the median flight of a
+few of `eyas evaluate --videos`; `docs/films` gets them.
 """
 
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -27,6 +29,11 @@ CHOSEN: dict[str, dict[str, object]] = {
 }
 """Settings of each film, by the names that `--set` takes."""
 
+FLOWN = {"box": ("eyas", "distractor"), "words": ("eyas-words", "referring")}
+"""Policy and protocol of each film of a flight."""
+LENGTH = 375
+"""Pictures of such a film, 12 s."""
+
 
 def nested(settings: dict[str, object]) -> dict[str, object]:
     """Return settings as nested dictionaries."""
@@ -46,10 +53,19 @@ def frames(film: Path) -> list[Image.Image]:
         return [frame.to_image() for frame in container.decode(video=0)]
 
 
-def write_film(path: Path, pictures: list[Image.Image]) -> None:
+def flown(policy: str, protocol: str, folder: Path) -> list[Image.Image]:
+    """Return every second picture of the median of some flights, smaller."""
+    command = [sys.executable, "-m", "eyas", "evaluate", "--policy", policy, "--protocol", protocol]
+    command += ["--episodes", "3", "--seeds", "60000000", "--videos", "--out", str(folder)]
+    subprocess.run(command, check=True)
+    pictures = frames(folder / "videos" / "median.mp4")[:LENGTH:2]
+    return [picture.resize((480, 360), Image.Resampling.LANCZOS) for picture in pictures]
+
+
+def write_film(path: Path, pictures: list[Image.Image], rate: int) -> None:
     """Write pictures as a film that is small enough to be kept in the repository."""
     with av.open(str(path), "w", options={"movflags": "+faststart"}) as container:
-        stream = container.add_stream("libx264", rate=25, options={"crf": "32", "preset": "slow"})
+        stream = container.add_stream("libx264", rate=rate, options={"crf": "32", "preset": "slow"})
         stream.width, stream.height, stream.pix_fmt = *pictures[0].size, "yuv420p"
         for picture in pictures:
             container.mux(stream.encode(av.VideoFrame.from_image(picture)))
@@ -65,12 +81,15 @@ def write_animation(path: Path, pictures: list[Image.Image]) -> None:
 def main() -> None:
     """Record those that are asked for, or all."""
     FILMS.mkdir(parents=True, exist_ok=True)
-    for name in sys.argv[1:] or CHOSEN:
-        settings = eyas.updated(eyas.make_config(COMMON), nested(CHOSEN[name]))
+    for name in sys.argv[1:] or (*CHOSEN, *FLOWN):
         with tempfile.TemporaryDirectory() as folder:
-            run = eyas.record(settings, Path(folder) / "run")
-            pictures = frames(run / "DRONE0" / "episode0" / "episode.mp4")
-        write_film(FILMS / f"{name}.mp4", pictures)
+            if name in FLOWN:
+                pictures, rate = flown(*FLOWN[name], Path(folder) / "run"), 16
+            else:
+                settings = eyas.updated(eyas.make_config(COMMON), nested(CHOSEN[name]))
+                run = eyas.record(settings, Path(folder) / "run")
+                pictures, rate = frames(run / "DRONE0" / "episode0" / "episode.mp4"), 25
+        write_film(FILMS / f"{name}.mp4", pictures, rate)
         if name == "follow":  # README's, which plays on GitHub
             write_animation(FILMS.parents[1] / "images" / "follow.webp", pictures)
         print(FILMS / f"{name}.mp4")
