@@ -84,9 +84,9 @@ class Client:
         return content
 
     def until(self, true):
-        end = time.monotonic() + self.patience
+        begun = time.monotonic()
         while not true():
-            if time.monotonic() > end:
+            if time.monotonic() > begun + self.patience:  # which may be changed meanwhile
                 raise TimeoutError("the simulator does not answer")
             time.sleep(0.001)  # as the original
 
