@@ -35,7 +35,8 @@ def _sections(table: Table, said: Expected | None) -> Iterator[str]:
         for number, (policy, seen, one) in enumerate((*ranked, *oracles), 1):
             cells = [one.cells.get(name, "-") for name in table.columns]
             head = [str(number) if number <= len(ranked) else "oracle", policy, seen, str(one.n)]
-            lines.append(f"| {' | '.join([*head, *cells, one.build_id or said.build_id])} |")
+            build = f"`{one.build_id or said.build_id}`"
+            lines.append(f"| {' | '.join([*head, *cells, build])} |")
         yield (f"{place[:1].upper()}{place[1:]}:\n\n" if place else "") + "\n".join(lines)
 
 
