@@ -66,6 +66,16 @@ def test_a_place_is_the_less_sure_the_more_cells_disagree():
     np.testing.assert_allclose(torn.spread, np.sqrt(0.25 + apart), rtol=1e-5)
 
 
+def test_what_is_surely_not_seen_has_a_place_all_the_same():
+    detector = Detector(answers := Answers(0.5, 0.3, 0.2), (16, 32))
+    answers.scores[0, :32] = -3000.0
+    clue = Clue(np.zeros((1, 2)), np.ones(1), np.zeros((1, 2), np.float32), np.ones(1, np.bool_))
+    with np.errstate(divide="raise", invalid="raise"):
+        nothing = detector.find(np.zeros((1, 3, 16, 32), np.uint8), clue)
+    assert nothing.belief == 0.0
+    assert np.isfinite(nothing.place).all()
+
+
 def started():
     motion = MotionFilter(2, widest=8.0)
     motion.acceleration[:] = 12.0, 2.0

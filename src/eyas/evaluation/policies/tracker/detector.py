@@ -35,6 +35,9 @@ STRIDE = 4
 _NEAR = 2
 """Cells around the best one that are the same target."""
 
+_LEAST = np.finfo(np.float64).tiny
+"""Belief that is as good as none."""
+
 
 class Clue(NamedTuple):
     """What is known of N targets before a picture is seen."""
@@ -106,7 +109,9 @@ class Detector:
         apart = np.abs(self._cells[None] - self._cells[best][:, None]).max(axis=-1)
         around = shares[:, :-1] * (apart <= _NEAR)
         belief = around.sum(axis=1)
-        place, spread = _moments(around / belief[:, None], places.astype(np.float64))
+        # Of a target far out of view all shares may be 0; what is found then is not believed.
+        around /= np.maximum(belief, _LEAST)[:, None]
+        place, spread = _moments(around, places.astype(np.float64))
         return Found(place, spread, belief, keys[np.arange(len(best)), best])
 
 
