@@ -131,6 +131,10 @@ class TrackerTraining(Config):
         Round(flights=0, steps=1600),
     )
     """Flights and lessons; the first round needs flights."""
+    drives: Annotated[int, Field(ge=1, le=100_000)] = 45
+    """Batches of traffic from which it learns beforehand what drivers do."""
+    drive_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 10_000
+    """Steps of the optimiser for that."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
     """Of AdamW; in each round it rises to this and falls to a fiftieth of it."""
 

@@ -7,9 +7,11 @@ import onnx
 from onnx import TensorProto, helper
 
 from eyas.envs.config import EnvConfig
+from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
 from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 from eyas.learning.export import Graph, write_model
+from eyas.learning.tracking.forecast import FARTHEST, Forecast
 from eyas.learning.tracking.network import (
     ALIKE,
     CELL,
@@ -24,11 +26,18 @@ from eyas.learning.tracking.network import (
 __all__ = ["export", "scaled_pixels"]
 
 
-def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, path: Path) -> None:
-    """Write a network.
+def export(
+    network: DetectorNetwork,
+    forecast: Forecast,
+    env: EnvConfig,
+    settings: TrackerSettings,
+    path: Path,
+) -> None:
+    """Write networks.
 
     Args:
-        network: The network.
+        network: Finds the target.
+        forecast: Says where it goes.
         env: What the tracker sees and chooses from.
         settings: Of the tracker.
         path: The file.
@@ -46,16 +55,18 @@ def export(network: DetectorNetwork, env: EnvConfig, settings: TrackerSettings, 
     graph.nodes.append(helper.make_node("Split", [rows[1], sizes], parts, axis=2))
     _places(graph, network)
     _scores(graph, network, rows[0])
+    _ahead(graph, forecast)
     inputs: dict[str, list[str | int]] = {
         "image": ["n", 3, height, width],
         "expected": ["n", 2],
         "spread": ["n", 1],
     }
-    inputs |= {"key": ["n", keys], "known": ["n", 1]}
+    inputs |= {"key": ["n", keys], "known": ["n", 1], "past": ["n", PAST]}
     outputs: dict[str, list[str | int]] = {
         "scores": ["n", cells + 1],
         "places": ["n", cells, 3],
         "keys": ["n", cells, keys],
+        "ahead": ["n", len(HORIZONS), 3],
     }
     body = helper.make_graph(
         graph.nodes,
@@ -135,6 +146,22 @@ def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
     unseen = graph.linear("unseen", value, last.weight, last.bias)
     seen = graph.node("Add", [looks, prior], "seen")
     graph.node("Concat", [seen, unseen], "scores", axis=1)
+
+
+def _ahead(graph: Graph, forecast: Forecast) -> None:
+    """Add the output `ahead`."""
+    value = graph.node("Sub", ["past", graph.weight("past.mean", forecast.mean)], "past.centred")
+    value = graph.node("Div", [value, graph.weight("past.spread", forecast.spread)], "past.scaled")
+    limits = [graph.number("past.least", -FARTHEST), graph.number("past.most", FARTHEST)]
+    value = graph.node("Clip", [value, *limits], "past.limited")
+    for name, layer in (("first", forecast.first), ("second", forecast.second)):
+        value = graph.linear(f"ahead.{name}", value, layer.weight, layer.bias)
+        value = graph.node("Relu", [value], f"ahead.{name}.relu")
+    value = graph.linear("ahead.last", value, forecast.last.weight, forecast.last.bias)
+    shape = graph.weight("ahead.shape", np.array([0, len(HORIZONS), 3]))
+    value = graph.node("Reshape", [value, shape], "ahead.rows")
+    value = graph.node("Mul", [value, graph.weight("ahead.unit", forecast.unit)], "ahead.scaled")
+    graph.node("Add", [value, graph.weight("ahead.least", forecast.least)], "ahead")
 
 
 def _prior(graph: Graph) -> str:

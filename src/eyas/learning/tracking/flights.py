@@ -16,7 +16,7 @@ from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.shots import Shots
 from eyas.targets.config import TargetName
 
-__all__ = ["MAPS", "WEATHERS", "Pilot", "flown"]
+__all__ = ["MAPS", "WEATHERS", "Pilot", "episodes_by_day", "flown", "protocol_of_batch"]
 
 Pilot = Oracle | Pupil
 
@@ -29,6 +29,9 @@ _TURN = (MAPS[0], MAPS[1], MAPS[2], MAPS[3], MAPS[0], MAPS[1], MAPS[2], MAPS[4],
 
 _FLIGHTS = 8
 """For each weather of a batch."""
+
+_WORLDS = 4
+"""For each batch of traffic without flights."""
 
 _STEPS = 5_000
 """Length of a flight [2 ms]."""
@@ -67,7 +70,7 @@ def flown(
     for number in batches:
         rng = stream(seed, "tracking flights", number)
         pilot = make(rng)
-        protocol = _protocol(rng, varied=isinstance(pilot, Oracle))
+        protocol = protocol_of_batch(rng, varied=isinstance(pilot, Oracle))
         late = "0" if isinstance(pilot, Oracle) else str(rng.choice(_LATENCIES))
         flight = BatchFlight(_episodes(rng, number), protocol, pilot, delay_from(late))
         for _ in flight.fly():
@@ -75,7 +78,7 @@ def flown(
         yield Shots.of(pilot.shots)
 
 
-def _protocol(rng: np.random.Generator, *, varied: bool) -> Protocol:
+def protocol_of_batch(rng: np.random.Generator, *, varied: bool) -> Protocol:
     """Return the settings of a batch; `varied`: with other heights and pitches."""
     changes: dict[str, Any] = {
         "traffic": _TRAFFIC[rng.integers(len(_TRAFFIC))],
@@ -102,3 +105,9 @@ def _episodes(rng: np.random.Generator, number: int) -> list[EpisodeSpec]:
             direction = float(rng.uniform(-np.pi, np.pi))
             episodes.append(EpisodeSpec(place, direction, int(rng.integers(2**30, _SEEDS))))
     return episodes
+
+
+def episodes_by_day(rng: np.random.Generator, number: int) -> list[EpisodeSpec]:
+    """Return where and when vehicles are on one map, by day; arguments as those of a batch."""
+    place = Place(_TURN[number % len(_TURN)], "day", TargetName.SUMO_VEHICLE.value)
+    return [EpisodeSpec(place, 0.0, int(rng.integers(2**30, _SEEDS))) for _ in range(_WORLDS)]

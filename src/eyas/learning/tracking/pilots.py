@@ -112,6 +112,7 @@ class Pupil:
         speed = np.minimum(motion.acceleration[rows], wrong)
         motion.begin(rows, place + noise[0], velocity + noise[1], wrong, speed)
         self._tracker.left[rows] = motion.place[rows]
+        self._tracker.course.forget(rows)
 
 
 def _shot(

@@ -1,4 +1,4 @@
-"""Trains the tracker: flights of a disturbed oracle, then flights of its own (DAgger).
+"""Trains the tracker: traffic, flights of a disturbed oracle, then flights of its own (DAgger).
 
 S. Ross, G. Gordon, D. Bagnell, "A reduction of imitation learning and structured prediction to
 no-regret online learning" (AISTATS 2011): what the tracker sees when it flies by itself is what it
@@ -25,8 +25,10 @@ from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.evaluation.policies.tracker.tracker import Tracker
 from eyas.learning.checkpoint import RunFolder, readable
 from eyas.learning.config import TrackerTraining
+from eyas.learning.tracking.driving import Drives, driven
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.flights import Pilot, flown
+from eyas.learning.tracking.forecast import Forecast, taught_forecast
 from eyas.learning.tracking.lessons import taught
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle, Pupil
@@ -65,6 +67,7 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
     run = _Run(config, folder, say)
     batches = sum(each.flights for each in run.training.rounds)
     say(f"{batches} batches of 32 flights, {run.training.pictures:,} pictures in lessons")
+    run.foresee()
     for number in range(len(run.training.rounds)):
         run.round(number)
     run.export(FLOWN, folder / "policy-flown.onnx")
@@ -121,7 +124,25 @@ class _Run:
         seen = config.env.observation
         self._network = DetectorNetwork((seen.height, seen.width))
         self._network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        self._forecast = Forecast()
         self._shots: list[Shots] = []
+
+    def foresee(self) -> None:
+        """Learn where drivers go; or take what is kept of an earlier run."""
+        learned = self._folder / "forecast.pt"
+        if learned.is_file():
+            _restore(self._forecast, learned)
+            return
+        drives, seed = [], self._config.seed
+        for batch in range(self.training.drives):
+            drives.append(driven(self._config.env, batch, seed))
+            moments = len(drives[-1].past)
+            self._tell(f"traffic {batch + 1} of {self.training.drives}: {moments:,} moments")
+        every = Drives(*(np.concatenate(parts) for parts in zip(*drives, strict=True)))
+        steps, rng = self.training.drive_steps, stream(seed, "tracking drive lessons")
+        for step, loss in taught_forecast(self._forecast, every, steps, rng):
+            self._tell(f"what drivers do: step {step:,} of {steps:,}: loss {loss:.3f}")
+        _keep(self._forecast, learned)
 
     def round(self, number: int) -> None:
         """Fly and learn; or take what is kept of an earlier run."""
@@ -131,18 +152,15 @@ class _Run:
             self._fly(make, number)
         learned = self._folder / f"round-{number}.pt"
         if learned.is_file():
-            with readable(learned):  # a file of others runs no code
-                self._network.load_state_dict(torch.load(learned, weights_only=True))
+            _restore(self._network, learned)
             return
         self._learn(number)
         self.export(TrackerSettings(), policy)
-        content = io.BytesIO()
-        torch.save(self._network.state_dict(), content)
-        write_atomic(learned, content.getvalue())
+        _keep(self._network, learned)
 
     def export(self, settings: TrackerSettings, path: Path) -> None:
-        """Write the network as it is, for a tracker with these settings."""
-        export(self._network, self._config.env, settings, path)
+        """Write the networks as they are, for a tracker with these settings."""
+        export(self._network, self._forecast, self._config.env, settings, path)
 
     def _fly(self, make: Callable[[np.random.Generator], Pilot], number: int) -> None:
         """Fly the next batch, unless its pictures are there."""
@@ -173,6 +191,19 @@ class _Run:
 
     def _tell(self, line: str) -> None:
         self._say(f"{line}  CPU {time.process_time() - self._begun:.0f} s")
+
+
+def _keep(network: torch.nn.Module, path: Path) -> None:
+    """Write what a network has learned."""
+    content = io.BytesIO()
+    torch.save(network.state_dict(), content)
+    write_atomic(path, content.getvalue())
+
+
+def _restore(network: torch.nn.Module, path: Path) -> None:
+    """Take what one has learned from a file of `_keep`; one of others runs no code."""
+    with readable(path):
+        network.load_state_dict(torch.load(path, weights_only=True))
 
 
 def _pupil(policy: Path, rng: np.random.Generator) -> Pupil:

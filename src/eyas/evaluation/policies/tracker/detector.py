@@ -5,7 +5,8 @@ An ONNX file with the inputs
 - `image`, uint8, (N, 3, H, W);
 - `expected`, float32, (N, 2): where the target should be, column and row [pixels];
 - `spread`, float32, (N, 1): standard deviation of that [pixels];
-- `key`, float32, (N, K): how the target looked, 0 if that is unknown; `known`, (N, 1): 1 or 0
+- `key`, float32, (N, K): how the target looked, 0 if that is unknown; `known`, (N, 1): 1 or 0;
+- `past`, float32, (N, 21): how it has moved of late, see `Course`
 
 and the outputs, of C cells of the picture,
 
@@ -13,7 +14,8 @@ and the outputs, of C cells of the picture,
   cell, and last that it is not seen;
 - `places`, float32, (N, C, 3): where in the picture it is then, column, row, and the logarithm of
   the standard deviation of both [pixels];
-- `keys`, float32, (N, C, K): how it looks then.
+- `keys`, float32, (N, C, K): how it looks then;
+- `ahead`, float32, (N, 7, 3): where that motion leads, see `Course`.
 """
 
 from typing import Any, NamedTuple
@@ -27,7 +29,7 @@ __all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
 
 Floats = NDArray[np.float64]
 
-OUTPUTS = ("scores", "places", "keys")
+OUTPUTS = ("scores", "places", "keys", "ahead")
 
 STRIDE = 4
 """Side of a cell [pixels]."""
@@ -50,6 +52,8 @@ class Clue(NamedTuple):
     """Shape (N, K)."""
     known: NDArray[np.bool_]
     """Whether there is a key, shape (N,)."""
+    past: NDArray[np.float32]
+    """How each has moved of late, shape (N, 21)."""
 
 
 class Found(NamedTuple):
@@ -64,6 +68,8 @@ class Found(NamedTuple):
     """Probability that it is there, shape (N,)."""
     key: NDArray[np.float32]
     """How it looks, shape (N, K)."""
+    ahead: NDArray[np.float32]
+    """Where its motion leads, shape (N, 7, 3)."""
 
 
 class Detector:
@@ -86,6 +92,11 @@ class Detector:
         """Return whether a session is one of such a network."""
         return "expected" in {each.name for each in session.get_inputs()}
 
+    @staticmethod
+    def foresees(session: Any) -> bool:  # noqa: ANN401  # the same
+        """Return whether such a network says where targets will be that are not seen."""
+        return "past" in {each.name for each in session.get_inputs()}
+
     def find(self, pictures: NDArray[np.uint8], clue: Clue) -> Found:
         """Find targets.
 
@@ -99,8 +110,9 @@ class Detector:
             "spread": clue.spread.astype(np.float32)[:, None],
             "key": clue.key,
             "known": clue.known.astype(np.float32)[:, None],
+            "past": clue.past,
         }
-        scores, places, keys = self._session.run(OUTPUTS, feed)
+        scores, places, keys, ahead = self._session.run(OUTPUTS, feed)
         scores = scores.astype(np.float64)
         shares = np.exp(scores - scores.max(axis=1, keepdims=True))
         shares /= shares.sum(axis=1, keepdims=True)
@@ -112,7 +124,7 @@ class Detector:
         # Of a target far out of view all shares may be 0; what is found then is not believed.
         around /= np.maximum(belief, _LEAST)[:, None]
         place, spread = _moments(around, places.astype(np.float64))
-        return Found(place, spread, belief, keys[np.arange(len(best)), best])
+        return Found(place, spread, belief, keys[np.arange(len(best)), best], ahead)
 
 
 def _moments(shares: Floats, places: Floats) -> tuple[Floats, Floats]:

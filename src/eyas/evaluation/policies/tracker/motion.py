@@ -19,6 +19,9 @@ Rows = NDArray[np.int64]
 _PLACE, _VELOCITY, _ACCELERATION = range(3)
 """Of a state."""
 
+_TOGETHER = 0.7
+"""Correlation of place and velocity on a course: who is ahead of it is fast."""
+
 
 class MotionFilter:
     """The motion of N targets on the level, east and north.
@@ -78,6 +81,24 @@ class MotionFilter:
         still = np.zeros((len(rows), 2))
         self.begin(rows, self.place[rows], still, 0.0, np.full(len(rows), speed))
         self._variance[rows, _PLACE, _PLACE] = spread
+
+    def expect(
+        self, rows: Rows, place: Floats, velocity: Floats, spread: Floats, speed: Floats
+    ) -> None:
+        """Expect K targets where their courses lead.
+
+        Args:
+            rows: Which they are, shape (K,).
+            place: Where they should be [m], shape (K, 2).
+            velocity: [m/s], shape (K, 2).
+            spread: Standard deviation of the places [m], shape (K,).
+            speed: That of the velocities [m/s], shape (K,).
+        """
+        spread = np.minimum(spread, self._widest)
+        self.begin(rows, place, velocity, 0.0, speed)
+        self._variance[rows, _PLACE, _PLACE] = np.square(spread)
+        both = _TOGETHER * spread * speed
+        self._variance[rows, _PLACE, _VELOCITY] = self._variance[rows, _VELOCITY, _PLACE] = both
 
     def spread(self, rows: Rows) -> Floats:
         """Return the standard deviation of places [m], shape (K,)."""

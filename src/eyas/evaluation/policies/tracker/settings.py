@@ -41,6 +41,10 @@ class TrackerSettings(Config):
     follow them."""
     noise: Positive = 0.5
     """Standard deviation of such a place, besides that [m]."""
+    unsure: Positive = 2.5
+    """Factor of what the network says of a course, a standard deviation: drivers surprise."""
+    drift: Positive = 0.3
+    """Standard deviation of what it does not say of one, grows by this in a second [m/s]."""
     believed: Share = 0.5
     """Least probability of one place, with those around it, at which the filter takes it."""
     remembered: Share = 0.9

@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.config import validated
+from eyas.core.errors import DataFileError
 from eyas.evaluation.policies.policy import (
     Decision,
     Failure,
     PolicyInput,
     Start,
 )
+from eyas.evaluation.policies.tracker.course import Course
 from eyas.evaluation.policies.tracker.detector import Clue, Detector, Found
 from eyas.evaluation.policies.tracker.ground import Ground
 from eyas.evaluation.policies.tracker.helm import Helm, turned
@@ -60,7 +62,8 @@ class Tracker:
         changes: Changes of `env`.
 
     Raises:
-        EyasError: The settings are wrong, or changes ask for what the network does not see.
+        EyasError: The settings are wrong, changes ask for what the network does not see, or it is
+            told of no past.
     """
 
     sampled = False
@@ -77,12 +80,17 @@ class Tracker:
         self.settings = validated(TrackerSettings, said, f"{path}: {TRACKER}")
         self.env = env_as_trained(path, own, changes)
         size = self.env.observation.height, self.env.observation.width
+        if not Detector.foresees(session):
+            raise DataFileError(
+                f"{path}: its network has no input 'past': an earlier Eyas trained it; train it "
+                "anew with 'eyas train --preset eyas'"
+            )
         self.detector, self.ground = Detector(session, size), Ground(self.settings, size)
 
     def begin(self, start: Start) -> None:
         """Take the first boxes: N episodes begin."""
         count = len(start.seeds)
-        self.motion = MotionFilter(count, self.settings.widest)
+        self.motion, self.course = MotionFilter(count, self.settings.widest), Course(count)
         self.boxes = start.boxes().astype(np.float64)
         self.expected, self.spread = np.zeros((count, 2)), np.ones(count)
         """What the network was told last, see `Clue`."""
@@ -126,11 +134,15 @@ class Tracker:
         new = np.isnan(since)
         if new.any():
             self._show(rows[new], place[new], yaw[new])
-        self.motion.predict(rows, np.where(new, 0.0, since))
+        since = np.where(new, 0.0, since)
+        self.motion.predict(rows, since)
+        self.course.pass_time(rows, since)
+        self._go_on(rows)
         self._wait(rows)
         clue = self._clue(rows, place, yaw)
         self.expected[rows], self.spread[rows] = clue.expected, clue.spread
         found = self.detector.find(pictures, clue)
+        self.course.answer(rows, found.ahead)
         where = place + turned(self.ground.offsets(found.place), yaw)
         noise = self.settings.doubt * found.spread / self.ground.pixels_per_metre
         variance = np.square(noise) + self.settings.noise * self.settings.noise
@@ -141,7 +153,19 @@ class Tracker:
         self.sees[rows] = taken
         self.motion.update(rows[taken], where[taken], variance[taken], found.belief[taken])
         self.left[rows[taken]] = self.motion.place[rows[taken]]
+        self.course.note(rows, self.motion.place[rows], self.motion.velocity[rows])
+        drives = self.motion.acceleration[rows] > self.settings.walking_acceleration
+        self.course.set_out(rows[taken & drives])
         self._remember(rows, found, taken & (clue.spread < _SURE_PIXELS))
+
+    def _go_on(self, rows: Rows) -> None:
+        """Expect targets that are not seen where their courses lead."""
+        rows, own = rows[self.course.known(rows)], self.settings
+        place, velocity, spread, since = self.course.here(rows)
+        spread = own.unsure * spread + own.drift * since
+        spread = np.sqrt(np.square(spread) + own.noise * own.noise)
+        speed = np.maximum((spread + own.drift) / np.maximum(since, 0.3), 1.0)
+        self.motion.expect(rows, place, velocity, spread, speed)
 
     def _wait(self, rows: Rows) -> None:
         """Wait for targets that are followed unseen for too long: most covers have ended before,
@@ -150,6 +174,7 @@ class Tracker:
         away = self.motion.place[rows] - self.left[rows]
         far = np.asarray(exact.hypot(away[:, 0], away[:, 1])) > self.settings.straight
         self.motion.stop(rows[far], self.settings.speed)
+        self.course.leave(rows[far])
 
     def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
         """Return what the network is told about targets, see `look`."""
@@ -158,7 +183,8 @@ class Tracker:
             np.square(self.motion.spread(rows)) + self.settings.floor * self.settings.floor
         )
         known = self._renewed[rows] > 0
-        return Clue(expected, spread * self.ground.pixels_per_metre, self._key[rows], known)
+        spread *= self.ground.pixels_per_metre
+        return Clue(expected, spread, self._key[rows], known, self.course.past[rows])
 
     def _show(self, rows: Rows, place: Floats, yaw: Floats) -> None:
         """Begin with the first boxes: where the targets are, and what can move how."""

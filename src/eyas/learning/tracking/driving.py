@@ -1,0 +1,210 @@
+"""What drivers do, as a tracker knows it: from traffic alone, without pictures.
+
+All vehicles of the traffic are followed by the tracker's filter, with looks that err as those of
+the network do; now and then one is half hidden, and its place is told late or early, then hidden.
+Kept are moments at which it was seen, with the way that it took after.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.rng import stream
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.episode_batch import EpisodeGroup, episode_groups
+from eyas.evaluation.policies.tracker.course import HORIZONS, Course
+from eyas.evaluation.policies.tracker.motion import MotionFilter
+from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.learning.tracking.flights import episodes_by_day, protocol_of_batch
+from eyas.state.motion import ActorState
+
+__all__ = ["LOOK", "Drives", "driven"]
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+
+LOOK: Final = 0.032
+"""Time between two looks [s]."""
+
+_LOOKS: Final = 1100
+"""For which vehicles are followed."""
+
+_LEAST: Final = 300
+"""Looks of a vehicle that is followed at all."""
+
+_JUMP: Final = 2.0
+"""Way of a vehicle from look to look with which it begins elsewhere anew [m]."""
+
+_ERRORS: Final = 0.1, 0.35
+"""Range of the standard deviation of places of vehicles [m]."""
+
+_LASTING: Final = 0.2
+"""Time constant of these errors [s]."""
+
+_SEEN, _GOING, _HIDDEN, _COMING = range(4)
+"""Phases, which follow each other."""
+
+_TOLD: Final = np.array((0.5, 0.9, 0.5, 0.9))
+"""Standard deviation that the network says in each phase, times `TrackerSettings.doubt` [m]."""
+
+_BELIEF: Final = np.array((1.0, 0.8, 0.0, 0.8))
+"""Of each phase."""
+
+_LATE: Final = 0.35
+"""Most by which a half hidden vehicle is told late or early [s]."""
+
+_CHOSEN: Final = 0.15
+"""Share of the looks that are kept; of the last ones before it is hidden, all."""
+
+
+class Drives(NamedTuple):
+    """M moments of vehicles."""
+
+    past: NDArray[np.float32]
+    """What the network is told, shape (M, PAST)."""
+    ahead: NDArray[np.float32]
+    """Where each was after each of `HORIZONS`, ahead and to the left of a straight course [m],
+    shape (M, H, 2)."""
+
+
+def driven(env: EnvConfig, number: int, seed: int) -> Drives:
+    """Return what drivers do in a batch of traffic.
+
+    Args:
+        env: What the tracker sees and does.
+        number: Of the batch; what is drawn depends on it and the seed only.
+        seed: Of the training.
+    """
+    rng = stream(seed, "tracking drives", number)
+    groups = episode_groups(episodes_by_day(rng, number), protocol_of_batch(rng, varied=False), env)
+    places = np.concatenate([_places(group) for group in groups])
+    for group in groups:
+        group.simulation.close()
+    return _followed(places, rng)
+
+
+def _places(group: EpisodeGroup) -> Floats:
+    """Return where vehicles are, NaN where they are not there, shape (K, looks, 2)."""
+    simulation = group.simulation
+    state = ActorState.create(simulation.count, simulation.actors)
+    begin = simulation.snapshot.episodes.tick.astype(np.float64) * PHYSICS_STEP
+    places = np.full((_LOOKS, simulation.count, simulation.actors, 2), np.nan)
+    for look in range(_LOOKS):
+        simulation.traffic.at(np.add(begin, LOOK * look), state)
+        places[look] = np.where(state.present[..., None], state.position[..., :2], np.nan)
+    rows = places.reshape(_LOOKS, -1, 2).swapaxes(0, 1)
+    there = np.isfinite(rows[..., 0])
+    fastest = np.nan_to_num(_ways(rows)).max(axis=1)
+    followed: Floats = rows[(there.sum(axis=1) > _LEAST) & (fastest > 0.1)]
+    return followed
+
+
+def _ways(places: Floats) -> Floats:
+    """Return the ways from look to look, shape (K, looks - 1)."""
+    ways: Floats = np.sqrt(np.square(np.diff(places, axis=1)).sum(axis=-1))
+    return ways
+
+
+class _Sight:
+    """Which of K vehicles are seen, and where: as by a network.
+
+    Args:
+        count: K.
+        rng: Random numbers.
+    """
+
+    def __init__(self, count: int, rng: np.random.Generator) -> None:
+        self._rng = rng
+        self.phase = np.zeros(count, np.int64)
+        self._left = rng.exponential(1.5, count)
+        """Time left of the phase [s]."""
+        self._rate, self._late = np.zeros(count), np.zeros(count)
+        self._size = rng.uniform(*_ERRORS, (count, 1))
+        self._error = np.zeros((count, 2))
+
+    def look(self, places: Floats, velocity: Floats) -> Floats:
+        """Return the places that are told, (K, 2), of true places and velocities (K, 2)."""
+        rng, count = self._rng, len(places)
+        self._left -= LOOK
+        over = self._left < 0.0
+        self.phase = np.where(over, (self.phase + 1) % 4, self.phase)
+        lasts = np.stack(
+            (
+                rng.exponential(1.2, count),
+                rng.uniform(0.05, 0.4, count),
+                np.exp(rng.normal(-0.6, 0.9, count)),
+                rng.uniform(0.0, 0.3, count),
+            )
+        )
+        self._left = np.where(over, lasts[self.phase, np.arange(count)], self._left)
+        half = (self.phase == _GOING) | (self.phase == _COMING)
+        drawn = rng.uniform(0.0, 1.0, count) * (rng.random(count) < 0.5)
+        self._rate = np.where(over & half, drawn, self._rate)
+        self._late = np.where(self.phase == _GOING, self._late + LOOK * self._rate, 0.0)
+        early = np.where(self.phase == _COMING, self._rate * self._left, 0.0)
+        stays = np.exp(-LOOK / _LASTING)
+        noise = self._size * rng.standard_normal((count, 2))
+        self._error = stays * self._error + np.sqrt(1.0 - stays * stays) * noise
+        late = np.clip(self._late - early, -_LATE, _LATE)[:, None] * velocity
+        return places + self._error * np.where(half, 2.0, 1.0)[:, None] - late
+
+
+def _followed(places: Floats, rng: np.random.Generator) -> Drives:
+    """Return what vehicles do that are followed, places of shape (K, looks, 2)."""
+    gone = ~np.isfinite(places[..., 0])
+    gone[:, 1:] |= np.nan_to_num(_ways(places)) > _JUMP
+    places = np.nan_to_num(places)
+    ahead = np.rint(HORIZONS / LOOK).astype(np.int64)
+    follower, sight, kept = _Follower(len(places)), _Sight(len(places), rng), []
+    for look in range(1, _LOOKS - int(ahead[-1])):
+        velocity = (places[:, look] - places[:, look - 1]) / LOOK
+        told = sight.look(places[:, look], np.where(gone[:, look, None], 0.0, velocity))
+        wanted = rng.random(len(places)) < _CHOSEN
+        rows = follower.look(gone[:, look], told, sight.phase, wanted)
+        rows = rows[~gone[rows, look : look + ahead[-1] + 1].any(axis=1)]
+        after = places[rows][:, look + ahead]
+        kept.append((follower.course.past[rows], follower.course.off(rows, after)))
+    past, way = (np.concatenate(parts) for parts in zip(*kept, strict=True))
+    return Drives(past, way.astype(np.float32))
+
+
+class _Follower:
+    """The tracker's filter of K vehicles, and their courses."""
+
+    def __init__(self, count: int) -> None:
+        self._settings = own = TrackerSettings()
+        self._motion, self.course = MotionFilter(count, own.widest), Course(count)
+        self._motion.acceleration[:], self._motion.lasting[:] = own.acceleration, own.lasting
+        self._new = np.ones(count, np.bool_)
+
+    def look(self, gone: Mask, told: Floats, phase: Rows, wanted: Mask) -> Rows:
+        """Take a look; return the vehicles whose past is kept.
+
+        Args:
+            gone: Which are not there, shape (K,).
+            told: Where they seem to be [m], shape (K, 2).
+            phase: Of each, shape (K,).
+            wanted: Whose past is kept if they are seen, shape (K,).
+        """
+        own, motion = self._settings, self._motion
+        new = np.flatnonzero(self._new & ~gone)
+        self.course.forget(new)
+        still = np.zeros((len(new), 2))
+        motion.begin(new, told[new], still, 0.5, np.full(len(new), own.speed))
+        rows = np.flatnonzero(~self._new & ~gone)
+        self._new = gone.copy()
+        time = np.full(len(rows), LOOK)
+        motion.predict(rows, time)
+        self.course.pass_time(rows, time)
+        variance = np.square(_TOLD[phase]) + own.noise * own.noise
+        near = motion.distance(rows, told[rows], variance[rows]) < own.gate
+        seen = rows[near & (phase[rows] != _HIDDEN)]
+        motion.update(seen, told[seen], variance[seen], _BELIEF[phase[seen]])
+        self.course.note(rows, motion.place[rows], motion.velocity[rows])
+        seen = seen[wanted[seen] | (phase[seen] == _GOING)]
+        self.course.set_out(seen)
+        kept: Rows = seen[np.isfinite(self.course.seen[seen])]
+        return kept
