@@ -128,24 +128,41 @@ def gather_column(typing_context, array, index, column, width):
 def transposed(typing_context, array, index, first, width):
     """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
 
-    Eight loads and shuffles take the place of 64 loads.
+    Eight loads and shuffles take the place of 64 loads; where all lanes want the same row, as many
+    do, each number is loaded into all of them.
     """
     result = types.UniTuple(_numbered(index, types.float32), 8)
 
     def generate(context, builder, sig, args):
         offset = context.cast(builder, args[2], sig.args[2], types.int64)
         step = context.cast(builder, args[3], sig.args[3], types.int64)
-        rows, vectors = [], isinstance(index, Lanes) and not lanes_are_threads(context)
-        for row in _each(context, builder, index, args[1]):
+
+        def pointer_to(row: ir.Value) -> ir.Value:
             at = builder.add(builder.mul(row, step), offset)
-            pointer = _pointer(context, builder, array, args[0], at)
-            if vectors:
-                pointer = builder.bitcast(pointer, ir_type(F4, threads=False).as_pointer())
-                rows.append(_load(builder, pointer, 4))
-            else:
-                rows = [builder.load(builder.gep(pointer, [_I64(k)])) for k in range(8)]
-        columns = _columns_of(builder, rows) if vectors else rows
-        return context.make_tuple(builder, result, columns)
+            return _pointer(context, builder, array, args[0], at)
+
+        def numbers_of(row: ir.Value) -> list[ir.Value]:
+            return [builder.load(builder.gep(pointer_to(row), [_I64(k)])) for k in range(8)]
+
+        places = _each(context, builder, index, args[1])
+        if not isinstance(index, Lanes) or lanes_are_threads(context):
+            return context.make_tuple(builder, result, numbers_of(places[0]))
+        kind = ir_type(F4, threads=False)
+        with builder.if_else(_all_alike(builder, args[1])) as (alike, apart):
+            with alike:
+                broad = [_in_all(builder, number) for number in numbers_of(places[0])]
+                from_one = builder.block
+            with apart:
+                pointers = [builder.bitcast(pointer_to(row), kind.as_pointer()) for row in places]
+                columns = _columns_of(builder, [_load(builder, p, 4) for p in pointers])
+                from_all = builder.block
+        values = []
+        for one, column in zip(broad, columns, strict=True):
+            value = builder.phi(kind)
+            value.add_incoming(one, from_one)
+            value.add_incoming(column, from_all)
+            values.append(value)
+        return context.make_tuple(builder, result, values)
 
     return result(array, index, first, width), generate
 
@@ -365,6 +382,20 @@ def _order_of(numbers: Iterable[int]) -> ir.Constant:
     """Return the mask of a `shufflevector` that takes the lanes of these numbers."""
     items = [_I32(number) for number in numbers]
     return ir.Constant(ir.VectorType(_I32, len(items)), items)
+
+
+def _in_all(builder: ir.IRBuilder, item: ir.Value) -> ir.Value:
+    """Return a number in all lanes."""
+    kind = ir.VectorType(item.type, WIDTH)
+    lanes = builder.insert_element(ir.Constant(kind, ir.Undefined), item, _I32(0))
+    return builder.shuffle_vector(lanes, lanes, _order_of([0] * WIDTH))
+
+
+def _all_alike(builder: ir.IRBuilder, index: ir.Value) -> ir.Value:
+    """Return whether all lanes hold the same integer."""
+    first = builder.shuffle_vector(index, index, _order_of([0] * WIDTH))
+    same = builder.bitcast(builder.icmp_unsigned("==", index, first), ir.IntType(WIDTH))
+    return builder.icmp_unsigned("==", same, ir.Constant(same.type, -1))
 
 
 def _columns_of(builder: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:

@@ -130,10 +130,13 @@ def _colours_of(
     row, triangle = drawn_of(tag), triangle_of(tag)
     red, green, blue, left = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), bits_of(wanted)
     while left != 0:
-        which = lane(row, first_bit(left))
+        first = first_bit(left)
+        which = lane(row, first)
         same = wanted & (row == which)
         left &= ~bits_of(same)
-        known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
+        # The other lanes repeat the first, and so take none of the ways that it does not.
+        known = select(same, triangle, lane(triangle, first))
+        away = select(same, distance, lane(distance, first))
         shown = _one_instance(band, which, known, eye, ray, away, rays.pixel, shade)
         red = select(same, shown[0], red)
         green = select(same, shown[1], green)

@@ -237,10 +237,9 @@ def shade_point(
     if any_of(untended):
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
-        grown = wild(surface, look, (red, green, blue), at.u, point, normal[2], footprint)
-        red = select(untended, grown[0], red)
-        green = select(untended, grown[1], green)
-        blue = select(untended, grown[2], blue)
+        red, green, blue = wild(
+            surface, look, (red, green, blue), at.u, point, normal[2], footprint
+        )
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         bare_r, bare_g, bare_b = red, green, blue
