@@ -12,8 +12,9 @@ from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_
 
 __all__ = [
     "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load",
-    "load_words", "scatter", "store", "store_greater", "store_largest",
-    "store_triples", "store_where", "store_words", "transposed",
+    "load_two", "load_words", "load_words_two", "scatter", "store", "store_greater",
+    "store_largest", "store_triples", "store_triples_two", "store_where", "store_words",
+    "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -212,6 +213,61 @@ def load_words(typing_context, array, at):
     return U4(array, at), _loading(U4)
 
 
+def _place_of_half(
+    context: Any, builder: Any, sig: Any, args: Any, size: int, half: int
+) -> ir.Value:
+    """Return the pointer to the first element of a half of the lanes; a thread's own element.
+
+    Args:
+        context: numba's.
+        builder: numba's.
+        sig: Signature of an operation on an array, an index, and where the second half begins.
+        args: Its arguments.
+        size: Elements of the array that a lane takes.
+        half: 0 or 1.
+    """
+    at, step = (context.cast(builder, args[k], sig.args[k], types.int64) for k in (1, 2))
+    if lanes_are_threads(context):
+        lane = builder.zext(threads.lane_number(builder), _I64)
+        aside = builder.mul(builder.and_(lane, _I64(WIDTH // 2 - 1)), _I64(size))
+        second = builder.icmp_unsigned(">=", lane, _I64(WIDTH // 2))
+        at = builder.add(at, builder.add(aside, builder.select(second, step, _I64(0))))
+    elif half:
+        at = builder.add(at, step)
+    return _pointer(context, builder, sig.args[0], args[0], at)
+
+
+def _loading_two(result: types.Type) -> Any:
+    def generate(context, builder, sig, args):
+        number = result.element.bitwidth // 8
+        size = number // (sig.args[0].dtype.bitwidth // 8)
+        kind, align = ir.VectorType(ir_type(result, threads=True), WIDTH // 2), number // size
+        if lanes_are_threads(context):
+            kind, align = ir_type(result, threads=True), number
+        halves = []
+        for half in range(1 if lanes_are_threads(context) else 2):
+            pointer = _place_of_half(context, builder, sig, args, size, half)
+            halves.append(_load(builder, builder.bitcast(pointer, kind.as_pointer()), align))
+        if len(halves) == 1:
+            return halves[0]
+        return builder.shuffle_vector(*halves, _order_of(range(WIDTH)))
+
+    return generate
+
+
+@intrinsic
+def load_two(typing_context, array, at, step):
+    """Return four elements in a row, from index `at` on, and four from `step` after it on."""
+    result = Lanes(array.dtype)
+    return result(array, at, step), _loading_two(result)
+
+
+@intrinsic
+def load_words_two(typing_context, array, at, step):
+    """Return uint32 from an array of bytes, as `load_two` does."""
+    return U4(array, at, step), _loading_two(U4)
+
+
 def _store(context: Any, builder: Any, value: ir.Value, pointer: ir.Value, align: int) -> ir.Value:
     """Write lanes; where they are threads, all see it, and none before it is done with the old."""
     if lanes_are_threads(context):
@@ -362,6 +418,27 @@ def store_triples(typing_context, array, at, packed):
     return types.void(array, at, packed), generate
 
 
+@intrinsic
+def store_triples_two(typing_context, array, at, step, packed):
+    """Write what `store_triples` does, the second four `step` after the first."""
+
+    def generate(context, builder, sig, args):
+        pointer = _place_of_half(context, builder, sig, args, 3, 0)
+        if lanes_are_threads(context):
+            _store_bytes(builder, pointer, args[3])
+            return context.get_dummy_value()
+        bytes_ = builder.bitcast(args[3], ir.VectorType(ir.IntType(8), 4 * WIDTH))
+        for half in range(2):
+            lanes = range(half * WIDTH // 2, (half + 1) * WIDTH // 2)
+            order = _order_of(4 * lane + k for lane in lanes for k in range(3))
+            three = builder.shuffle_vector(bytes_, ir.Constant(bytes_.type, ir.Undefined), order)
+            pointer = _place_of_half(context, builder, sig, args, 3, half)
+            builder.store(three, builder.bitcast(pointer, three.type.as_pointer())).align = 1
+        return context.get_dummy_value()
+
+    return types.void(array, at, step, packed), generate
+
+
 def _store_triple(
     context: Any,
     builder: Any,
@@ -372,9 +449,14 @@ def _store_triple(
     """Write a thread's own three bytes of `store_triples`."""
     lane = builder.zext(threads.lane_number(builder), _I64)
     first = builder.add(index, builder.mul(lane, _I64(3)))
+    _store_bytes(builder, _pointer(context, builder, *array, first), packed)
+
+
+def _store_bytes(builder: Any, pointer: ir.Value, packed: ir.Value) -> None:
+    """Write the lower three bytes of a number of each thread."""
     for k in range(3):
         byte = builder.trunc(builder.lshr(packed, _I32(8 * k)), ir.IntType(8))
-        builder.store(byte, _pointer(context, builder, *array, builder.add(first, _I64(k))))
+        builder.store(byte, builder.gep(pointer, [_I64(k)]))
     threads.agree(builder)
 
 

@@ -15,6 +15,7 @@ from eyas.lanes.vector import (
     lane,
     lane_numbers,
     load_words,
+    load_words_two,
     own,
     select,
     splat,
@@ -24,8 +25,16 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.light.tone import tone_bytes
-from eyas.render.kernels.pixels import keys_of, pack, write_colours, write_pixels
-from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
+from eyas.render.kernels.pixels import (
+    ACROSS,
+    keys_of,
+    keys_of_tile,
+    pack,
+    write_colours,
+    write_pixels,
+    write_tile,
+)
+from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -231,21 +240,33 @@ def _alike(
 
 
 @kernel(inline=True)
-def _shade_one(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, first: int) -> None:
-    """Write eight pixels of a row, with one sample each."""
-    key, numbers, half = band.key, to_f4(lane_numbers()), splat(f4(0.5))
-    keys = keys_of(key, row, first, 1)
-    seen = (numbers < f4(width - first)) & (keys > i8(0))
+def _shade_tile(
+    band: Band, rays: Rays, canvas: Canvas, size: tuple[int, int], row: int, first: int
+) -> None:
+    """Write four pixels of a row and four of the next, with one sample each.
+
+    Args:
+        band: The band.
+        rays: Its rays.
+        canvas: Its colours.
+        size: Its rows and columns; what lies beyond is left out.
+        row: The first row.
+        first: The first column.
+    """
+    key, lanes, half = band.key, lane_numbers(), splat(f4(0.5))
+    down, right = to_f4(lanes >> i4(2)), to_f4(lanes & i4(ACROSS - 1))
+    stride, below = 4 * key.shape[1], min(size[0] - 1 - row, 1)
+    keys = keys_of_tile(key, row, first, below)
+    seen = (right < f4(size[1] - first)) & (down < f4(size[0] - row)) & (keys > i8(0))
     if not any_of(seen):
         return
-    words = load_words(band.shade, 4 * (row * key.shape[1] + first))
+    words = load_words_two(band.shade, row * stride + 4 * first, below * stride)
     distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
-    line, column, wide = half + (rays.top + f4(row)), numbers + f4(first) + half, half
+    line, column, wide = down + half + (rays.top + f4(row)), right + f4(first) + half, half
     if band.glass.on == 1:
-        line, column, wide = place_in_face(band.glass, row, first, 1)
+        line, column, wide = place_in_tile(band.glass, row, first, below)
     colour = _colours_of(band, rays, tag_of(keys), seen, distance, line, column, wide, words)
-    exposure = band.lit.air.exposure
-    write_colours(canvas, band.light, exposure, row, first, bits_of(seen), colour)
+    write_tile(canvas, band.light, band.lit.air.exposure, row, first, seen, colour)
 
 
 @kernel(inline=True)
@@ -346,9 +367,9 @@ def shade_band(band: Band, canvas: Canvas) -> None:
     rays, view, width = rays_of(band.camera), band.camera, band.columns
     rows, member, members = band.lines, band.member, band.members
     if view.down == 1:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_one(band, rays, canvas, width, row, first)
+        for row in range(2 * member, rows, 2 * members):
+            for first in range(0, width, ACROSS):
+                _shade_tile(band, rays, canvas, (rows, width), row, first)
     elif len(canvas.red) > 0:
         for row in range(member, rows, members):
             for first in range(0, width, WIDTH):
