@@ -35,6 +35,7 @@ from eyas.render.kernels.pixels import (
     write_tile,
 )
 from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
+from eyas.render.kernels.samples import owns_pixels
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -364,27 +365,33 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    rays, view, width = rays_of(band.camera), band.camera, band.columns
-    rows, member, members = band.lines, band.member, band.members
+    rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
     if view.down == 1:
-        for row in range(2 * member, rows, 2 * members):
+        for row in range(2 * band.member, rows, 2 * band.members):
             for first in range(0, width, ACROSS):
                 _shade_tile(band, rays, canvas, (rows, width), row, first)
-    elif len(canvas.red) > 0:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                if view.across == 1:
-                    _mean_of_several(band, rays, canvas, row, first, 1)
-                else:
-                    _mean_of_several(band, rays, canvas, row, first, 2)
-    elif view.across == 1:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_several(band, rays, canvas.pixels, row, first, 1)
+        return
+    for row in range(rows):
+        if owns_pixels(band, row):
+            _shade_row(band, rays, canvas, row)
+
+
+@kernel(inline=True)
+def _shade_row(band: Band, rays: Rays, canvas: Canvas, row: int) -> None:
+    """Write the pixels of a row, with several samples each."""
+    width, across = band.columns, band.camera.across
+    if len(canvas.red) > 0:
+        for first in range(0, width, WIDTH):
+            if across == 1:
+                _mean_of_several(band, rays, canvas, row, first, 1)
+            else:
+                _mean_of_several(band, rays, canvas, row, first, 2)
+    elif across == 1:
+        for first in range(0, width, WIDTH):
+            _shade_several(band, rays, canvas.pixels, row, first, 1)
     else:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_several(band, rays, canvas.pixels, row, first, 2)
+        for first in range(0, width, WIDTH):
+            _shade_several(band, rays, canvas.pixels, row, first, 2)
 
 
 @kernel(inline=True)
