@@ -339,6 +339,8 @@ def _sky_of(
 def _sky_bits(band: Band, row: int, first: int) -> int:
     """Return in which of eight pixels any sample shows the sky, a bit each."""
     bits, across, down = i8(0), band.camera.across, band.camera.down
+    if down == 1:
+        return bits_of(keys_of(band.key, row, first, 1) == i8(0))
     for i in range(down):
         for j in range(across):
             keys = keys_of(band.key, row * down + i, first * across + j, across)

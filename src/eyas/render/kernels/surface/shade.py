@@ -301,14 +301,17 @@ def shade_point(
         red, green, blue = red * light_r, green * light_g, blue * light_b
     if frame.lamps != i4(0):
         red, green, blue = signalled((red, green, blue), surface, frame.lamps)
-    mirror = _smoothness(surface, alpha)
-    if any_of(mirror > zero):
-        facing = lesser(greater(cosine, zero), one)
-        mirrored, share = reflection(lit, way, normal, facing, mirror, reaching, one - open_share)
-        # Clear coat is no perfect mirror, even at a grazing angle.
-        share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
-        share = select(mirror > zero, share, zero)
-        red, green, blue = blended((red, green, blue), mirrored, share)
+    if any_of(painted | wet | window | (surface == GLASS)):
+        mirror = _smoothness(surface, alpha)
+        if any_of(mirror > zero):
+            facing = lesser(greater(cosine, zero), one)
+            mirrored, share = reflection(
+                lit, way, normal, facing, mirror, reaching, one - open_share
+            )
+            # Clear coat is no perfect mirror, even at a grazing angle.
+            share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
+            share = select(mirror > zero, share, zero)
+            red, green, blue = blended((red, green, blue), mirrored, share)
     if air.wet > zero:
         unblocked = to_f4((shade >> u4(8)) & byte) * unit
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
