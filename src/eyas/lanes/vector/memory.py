@@ -62,13 +62,17 @@ def gather(typing_context, array, index):
     result = _numbered(index, element)
 
     def generate(context, builder, sig, args):
-        items = []
-        for at in _each(context, builder, index, args[1]):
-            item = builder.load(_pointer(context, builder, array, args[0], at))
-            if array.dtype.bitwidth < 32:
-                item = builder.zext(item, _I32)
-            items.append(item)
-        return _collected(builder, result, items)
+        places = _each(context, builder, index, args[1])
+        items = [builder.load(_pointer(context, builder, array, args[0], at)) for at in places]
+        if array.dtype.bitwidth >= 32:
+            return _collected(builder, result, items)
+        if len(items) == 1:
+            return builder.zext(items[0], _I32)
+        # Widened together: once, and each is loaded straight into its place.
+        small = ir.Constant(ir.VectorType(items[0].type, WIDTH), ir.Undefined)
+        for k, item in enumerate(items):
+            small = builder.insert_element(small, item, _I32(k))
+        return builder.zext(small, ir.VectorType(_I32, WIDTH))
 
     return result(array, index), generate
 
