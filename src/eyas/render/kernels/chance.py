@@ -9,6 +9,10 @@ __all__ = ["hashed", "noise", "scrambled", "seen_noise", "seen_swing", "swing", 
 _COLUMN, _ROW = u4(0x9E3779B1), u4(0x85EBCA77)
 """Odd factors that spread the numbers of cells over 32 bits."""
 
+_FIRST_COLUMN, _FIRST_ROW = u4(0x3C6EF372), u4(0x6A09E667)
+"""What 0 is spread to. Cells on both sides of the one that is spread to 0 are mirrored (the square
+of a number is that of its negative); so it lies 350 million cells away from the origin or more."""
+
 
 @kernel(inline=True)
 def scrambled(value: int) -> int:
@@ -53,7 +57,8 @@ def swing(x: float, y: float) -> float:
     across, down = x - first, y - upper
     across *= across * (f4(3.0) - (across + across))
     down *= down * (f4(3.0) - (down + down))
-    left, above = to_u4(to_u4(to_i4(first)) * _COLUMN), to_u4(to_u4(to_i4(upper)) * _ROW)
+    left = to_u4(to_u4(to_i4(first)) * _COLUMN + _FIRST_COLUMN)
+    above = to_u4(to_u4(to_i4(upper)) * _ROW + _FIRST_ROW)
     right, below = to_u4(left + _COLUMN), to_u4(above + _ROW)
     a, b = _grain(left, above), _grain(right, above)
     c, d = _grain(left, below), _grain(right, below)
