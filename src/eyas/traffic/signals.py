@@ -67,7 +67,8 @@ class SignalPlan(NamedTuple):
         place = np.zeros(into.shape, np.int64) + self.end.shape[1] * np.arange(len(self.edges))
         for end in self.end.T:
             place += into >= end
-        return self.aspect.ravel().take(place)
+        shown: NDArray[np.int64] = self.aspect.ravel().take(place)
+        return shown
 
     def only(self, row: int) -> "SignalPlan":
         """Return the plan of one light."""
