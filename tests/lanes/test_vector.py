@@ -28,13 +28,16 @@ from eyas.lanes.vector import (
     lesser,
     like,
     load,
+    load_two,
     load_words,
+    load_words_two,
     magnitude,
     root,
     select,
     splat,
     store,
     store_triples,
+    store_triples_two,
     store_where,
     store_words,
     to_f4,
@@ -243,6 +246,35 @@ def test_gathers_fetch_what_indices_name():
     expected = np.array([*rows, *columns, halves[index + width + 1]], f4)
     np.testing.assert_array_equal(wide, expected)
     np.testing.assert_array_equal(single, expected)
+
+
+def test_a_row_that_all_lanes_want_is_in_all_of_them():
+    width = 11
+    table = RNG.normal(size=(COUNT, width)).astype(f4)
+    bytes_, halves = np.zeros(COUNT * width, np.uint8), np.zeros(COUNT * width, np.uint16)
+    index = np.repeat(RNG.permutation(COUNT)[: COUNT // WIDTH], WIDTH).astype(i4)
+    wide, single = np.zeros((13, COUNT), f4), np.zeros((13, COUNT), f4)
+    fetched(table, bytes_, halves, index, width, wide, single)
+    np.testing.assert_array_equal(wide[4:12], table[index, 2:10].T)
+    np.testing.assert_array_equal(single, wide)
+
+
+@kernel
+def moved_in_tiles(words, long, bytes_, out, into):
+    for at in range(0, 16, WIDTH // 2):
+        store(out, 2 * at, load_two(long, at, 16))
+        store_words(words, 8 * at, load_words_two(bytes_, 4 * at, 64))
+        store_triples_two(into, 3 * at, 48, load_words_two(bytes_, 4 * at, 64))
+
+
+def test_tiles_lie_in_two_rows():
+    long, bytes_ = np.arange(32, dtype=i8) << 33, RNG.integers(0, 256, 128).astype(np.uint8)
+    words, out, into = np.zeros(128, np.uint8), np.zeros(32, i8), np.zeros(96, np.uint8)
+    moved_in_tiles(words, long, bytes_, out, into)
+    order = np.arange(32).reshape(2, 4, 4).swapaxes(0, 1).ravel()
+    np.testing.assert_array_equal(out, long[order])
+    np.testing.assert_array_equal(words.view(np.uint32), bytes_.view(np.uint32)[order])
+    np.testing.assert_array_equal(into.reshape(-1, 3), bytes_.reshape(-1, 4)[:, :3])
 
 
 @kernel

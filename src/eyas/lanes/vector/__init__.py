@@ -33,7 +33,9 @@ __all__ = [
     "lesser",
     "like",
     "load",
+    "load_two",
     "load_words",
+    "load_words_two",
     "magnitude",
     "own",
     "root",
@@ -44,6 +46,7 @@ __all__ = [
     "store_greater",
     "store_largest",
     "store_triples",
+    "store_triples_two",
     "store_where",
     "store_words",
     "to_f4",
@@ -71,12 +74,15 @@ gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")
 gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
+load_two = Intrinsic(_MEMORY, "load_two")
 load_words = Intrinsic(_MEMORY, "load_words")
+load_words_two = Intrinsic(_MEMORY, "load_words_two")
 scatter = Intrinsic(_MEMORY, "scatter")
 store = Intrinsic(_MEMORY, "store")
 store_greater = Intrinsic(_MEMORY, "store_greater")
 store_largest = Intrinsic(_MEMORY, "store_largest")
 store_triples = Intrinsic(_MEMORY, "store_triples")
+store_triples_two = Intrinsic(_MEMORY, "store_triples_two")
 store_where = Intrinsic(_MEMORY, "store_where")
 store_words = Intrinsic(_MEMORY, "store_words")
 transposed = Intrinsic(_MEMORY, "transposed")

@@ -12,8 +12,9 @@ from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_
 
 __all__ = [
     "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load",
-    "load_words", "scatter", "store", "store_greater", "store_largest",
-    "store_triples", "store_where", "store_words", "transposed",
+    "load_two", "load_words", "load_words_two", "scatter", "store", "store_greater",
+    "store_largest", "store_triples", "store_triples_two", "store_where", "store_words",
+    "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -61,13 +62,17 @@ def gather(typing_context, array, index):
     result = _numbered(index, element)
 
     def generate(context, builder, sig, args):
-        items = []
-        for at in _each(context, builder, index, args[1]):
-            item = builder.load(_pointer(context, builder, array, args[0], at))
-            if array.dtype.bitwidth < 32:
-                item = builder.zext(item, _I32)
-            items.append(item)
-        return _collected(builder, result, items)
+        places = _each(context, builder, index, args[1])
+        items = [builder.load(_pointer(context, builder, array, args[0], at)) for at in places]
+        if array.dtype.bitwidth >= 32:
+            return _collected(builder, result, items)
+        if len(items) == 1:
+            return builder.zext(items[0], _I32)
+        # Widened together: once, and each is loaded straight into its place.
+        small = ir.Constant(ir.VectorType(items[0].type, WIDTH), ir.Undefined)
+        for k, item in enumerate(items):
+            small = builder.insert_element(small, item, _I32(k))
+        return builder.zext(small, ir.VectorType(_I32, WIDTH))
 
     return result(array, index), generate
 
@@ -128,24 +133,41 @@ def gather_column(typing_context, array, index, column, width):
 def transposed(typing_context, array, index, first, width):
     """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
 
-    Eight loads and shuffles take the place of 64 loads.
+    Eight loads and shuffles take the place of 64 loads; where all lanes want the same row, as many
+    do, each number is loaded into all of them.
     """
     result = types.UniTuple(_numbered(index, types.float32), 8)
 
     def generate(context, builder, sig, args):
         offset = context.cast(builder, args[2], sig.args[2], types.int64)
         step = context.cast(builder, args[3], sig.args[3], types.int64)
-        rows, vectors = [], isinstance(index, Lanes) and not lanes_are_threads(context)
-        for row in _each(context, builder, index, args[1]):
+
+        def pointer_to(row: ir.Value) -> ir.Value:
             at = builder.add(builder.mul(row, step), offset)
-            pointer = _pointer(context, builder, array, args[0], at)
-            if vectors:
-                pointer = builder.bitcast(pointer, ir_type(F4, threads=False).as_pointer())
-                rows.append(_load(builder, pointer, 4))
-            else:
-                rows = [builder.load(builder.gep(pointer, [_I64(k)])) for k in range(8)]
-        columns = _columns_of(builder, rows) if vectors else rows
-        return context.make_tuple(builder, result, columns)
+            return _pointer(context, builder, array, args[0], at)
+
+        def numbers_of(row: ir.Value) -> list[ir.Value]:
+            return [builder.load(builder.gep(pointer_to(row), [_I64(k)])) for k in range(8)]
+
+        places = _each(context, builder, index, args[1])
+        if not isinstance(index, Lanes) or lanes_are_threads(context):
+            return context.make_tuple(builder, result, numbers_of(places[0]))
+        kind = ir_type(F4, threads=False)
+        with builder.if_else(_all_alike(builder, args[1])) as (alike, apart):
+            with alike:
+                broad = [_in_all(builder, number) for number in numbers_of(places[0])]
+                from_one = builder.block
+            with apart:
+                pointers = [builder.bitcast(pointer_to(row), kind.as_pointer()) for row in places]
+                columns = _columns_of(builder, [_load(builder, p, 4) for p in pointers])
+                from_all = builder.block
+        values = []
+        for one, column in zip(broad, columns, strict=True):
+            value = builder.phi(kind)
+            value.add_incoming(one, from_one)
+            value.add_incoming(column, from_all)
+            values.append(value)
+        return context.make_tuple(builder, result, values)
 
     return result(array, index, first, width), generate
 
@@ -193,6 +215,61 @@ def load(typing_context, array, at):
 def load_words(typing_context, array, at):
     """Return eight uint32 from an array of bytes, from byte `at` on."""
     return U4(array, at), _loading(U4)
+
+
+def _place_of_half(
+    context: Any, builder: Any, sig: Any, args: Any, size: int, half: int
+) -> ir.Value:
+    """Return the pointer to the first element of a half of the lanes; a thread's own element.
+
+    Args:
+        context: numba's.
+        builder: numba's.
+        sig: Signature of an operation on an array, an index, and where the second half begins.
+        args: Its arguments.
+        size: Elements of the array that a lane takes.
+        half: 0 or 1.
+    """
+    at, step = (context.cast(builder, args[k], sig.args[k], types.int64) for k in (1, 2))
+    if lanes_are_threads(context):
+        lane = builder.zext(threads.lane_number(builder), _I64)
+        aside = builder.mul(builder.and_(lane, _I64(WIDTH // 2 - 1)), _I64(size))
+        second = builder.icmp_unsigned(">=", lane, _I64(WIDTH // 2))
+        at = builder.add(at, builder.add(aside, builder.select(second, step, _I64(0))))
+    elif half:
+        at = builder.add(at, step)
+    return _pointer(context, builder, sig.args[0], args[0], at)
+
+
+def _loading_two(result: types.Type) -> Any:
+    def generate(context, builder, sig, args):
+        number = result.element.bitwidth // 8
+        size = number // (sig.args[0].dtype.bitwidth // 8)
+        kind, align = ir.VectorType(ir_type(result, threads=True), WIDTH // 2), number // size
+        if lanes_are_threads(context):
+            kind, align = ir_type(result, threads=True), number
+        halves = []
+        for half in range(1 if lanes_are_threads(context) else 2):
+            pointer = _place_of_half(context, builder, sig, args, size, half)
+            halves.append(_load(builder, builder.bitcast(pointer, kind.as_pointer()), align))
+        if len(halves) == 1:
+            return halves[0]
+        return builder.shuffle_vector(*halves, _order_of(range(WIDTH)))
+
+    return generate
+
+
+@intrinsic
+def load_two(typing_context, array, at, step):
+    """Return four elements in a row, from index `at` on, and four from `step` after it on."""
+    result = Lanes(array.dtype)
+    return result(array, at, step), _loading_two(result)
+
+
+@intrinsic
+def load_words_two(typing_context, array, at, step):
+    """Return uint32 from an array of bytes, as `load_two` does."""
+    return U4(array, at, step), _loading_two(U4)
 
 
 def _store(context: Any, builder: Any, value: ir.Value, pointer: ir.Value, align: int) -> ir.Value:
@@ -345,6 +422,27 @@ def store_triples(typing_context, array, at, packed):
     return types.void(array, at, packed), generate
 
 
+@intrinsic
+def store_triples_two(typing_context, array, at, step, packed):
+    """Write what `store_triples` does, the second four `step` after the first."""
+
+    def generate(context, builder, sig, args):
+        pointer = _place_of_half(context, builder, sig, args, 3, 0)
+        if lanes_are_threads(context):
+            _store_bytes(builder, pointer, args[3])
+            return context.get_dummy_value()
+        bytes_ = builder.bitcast(args[3], ir.VectorType(ir.IntType(8), 4 * WIDTH))
+        for half in range(2):
+            lanes = range(half * WIDTH // 2, (half + 1) * WIDTH // 2)
+            order = _order_of(4 * lane + k for lane in lanes for k in range(3))
+            three = builder.shuffle_vector(bytes_, ir.Constant(bytes_.type, ir.Undefined), order)
+            pointer = _place_of_half(context, builder, sig, args, 3, half)
+            builder.store(three, builder.bitcast(pointer, three.type.as_pointer())).align = 1
+        return context.get_dummy_value()
+
+    return types.void(array, at, step, packed), generate
+
+
 def _store_triple(
     context: Any,
     builder: Any,
@@ -355,9 +453,14 @@ def _store_triple(
     """Write a thread's own three bytes of `store_triples`."""
     lane = builder.zext(threads.lane_number(builder), _I64)
     first = builder.add(index, builder.mul(lane, _I64(3)))
+    _store_bytes(builder, _pointer(context, builder, *array, first), packed)
+
+
+def _store_bytes(builder: Any, pointer: ir.Value, packed: ir.Value) -> None:
+    """Write the lower three bytes of a number of each thread."""
     for k in range(3):
         byte = builder.trunc(builder.lshr(packed, _I32(8 * k)), ir.IntType(8))
-        builder.store(byte, _pointer(context, builder, *array, builder.add(first, _I64(k))))
+        builder.store(byte, builder.gep(pointer, [_I64(k)]))
     threads.agree(builder)
 
 
@@ -365,6 +468,20 @@ def _order_of(numbers: Iterable[int]) -> ir.Constant:
     """Return the mask of a `shufflevector` that takes the lanes of these numbers."""
     items = [_I32(number) for number in numbers]
     return ir.Constant(ir.VectorType(_I32, len(items)), items)
+
+
+def _in_all(builder: ir.IRBuilder, item: ir.Value) -> ir.Value:
+    """Return a number in all lanes."""
+    kind = ir.VectorType(item.type, WIDTH)
+    lanes = builder.insert_element(ir.Constant(kind, ir.Undefined), item, _I32(0))
+    return builder.shuffle_vector(lanes, lanes, _order_of([0] * WIDTH))
+
+
+def _all_alike(builder: ir.IRBuilder, index: ir.Value) -> ir.Value:
+    """Return whether all lanes hold the same integer."""
+    first = builder.shuffle_vector(index, index, _order_of([0] * WIDTH))
+    same = builder.bitcast(builder.icmp_unsigned("==", index, first), ir.IntType(WIDTH))
+    return builder.icmp_unsigned("==", same, ir.Constant(same.type, -1))
 
 
 def _columns_of(builder: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:

@@ -1,10 +1,17 @@
 """Hash-based noise: numbers that look random but are always the same."""
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, like, to_f4, to_i4, to_u4
+from eyas.lanes.vector import any_of, greater, lesser, like, to_f4, to_i4, to_u4, whole
 from eyas.render.kernels.scalars import f4, u4
 
-__all__ = ["hashed", "noise", "scrambled", "seen_noise", "tenth"]
+__all__ = ["hashed", "noise", "scrambled", "seen_noise", "seen_swing", "swing", "tenth"]
+
+_COLUMN, _ROW = u4(0x9E3779B1), u4(0x85EBCA77)
+"""Odd factors that spread the numbers of cells over 32 bits."""
+
+_FIRST_COLUMN, _FIRST_ROW = u4(0x3C6EF372), u4(0x6A09E667)
+"""What 0 is spread to. Cells on both sides of the one that is spread to 0 are mirrored (the square
+of a number is that of its negative); so it lies 350 million cells away from the origin or more."""
 
 
 @kernel(inline=True)
@@ -32,35 +39,51 @@ def hashed(a: int, b: int, c: int) -> int:
 
 @kernel(inline=True)
 def _grain(column: int, row: int) -> float:
-    """Return a number, 0 to 1, that looks random, for two hashed coordinates of a cell."""
+    """Return a number, -2^31 to 2^31, that looks random, for two hashed coordinates of a cell.
+
+    A square's upper bits depend on all bits of what is squared, so one multiplication mixes enough.
+    """
     mixed = column ^ row
-    mixed = to_u4((mixed ^ (mixed >> u4(15))) * u4(0x2C1B3C6D))
-    return to_f4((mixed ^ (mixed >> u4(13))) & u4(0xFFFF)) * f4(1.0 / 65535.0)
+    return to_f4(to_i4(mixed * mixed))
+
+
+@kernel(inline=True)
+def swing(x: float, y: float) -> float:
+    """Return smooth noise, -0.5 to 0.5, with cells of one unit.
+
+    No point of the land is so far away that a cell's number would not be an int32.
+    """
+    first, upper = whole(x), whole(y)
+    across, down = x - first, y - upper
+    across *= across * (f4(3.0) - (across + across))
+    down *= down * (f4(3.0) - (down + down))
+    left = to_u4(to_u4(to_i4(first)) * _COLUMN + _FIRST_COLUMN)
+    above = to_u4(to_u4(to_i4(upper)) * _ROW + _FIRST_ROW)
+    right, below = to_u4(left + _COLUMN), to_u4(above + _ROW)
+    a, b = _grain(left, above), _grain(right, above)
+    c, d = _grain(left, below), _grain(right, below)
+    top = a + across * (b - a)
+    return f4(2.0**-32) * (top + down * (c + across * (d - c) - top))
 
 
 @kernel(inline=True)
 def noise(x: float, y: float) -> float:
     """Return smooth noise, 0 to 1, with cells of one unit."""
-    # Moved so that all cells of the land have numbers above 0, where cutting off is rounding down.
-    x, y = greater(x + f4(32768.0), f4(0.0)), greater(y + f4(32768.0), f4(0.0))
-    column, row = to_i4(x), to_i4(y)
-    across, down = x - to_f4(column), y - to_f4(row)
-    across *= across * (f4(3.0) - f4(2.0) * across)
-    down *= down * (f4(3.0) - f4(2.0) * down)
-    left, upper_row = to_u4(to_u4(column) * u4(0x9E3779B1)), to_u4(to_u4(row) * u4(0x85EBCA77))
-    right = to_u4(left + u4(0x9E3779B1))
-    lower_row = to_u4(upper_row + u4(0x85EBCA77))
-    a, b = _grain(left, upper_row), _grain(right, upper_row)
-    c, d = _grain(left, lower_row), _grain(right, lower_row)
-    upper = a + across * (b - a)
-    return upper + down * (c + across * (d - c) - upper)
+    return swing(x, y) + f4(0.5)
+
+
+@kernel(inline=True)
+def seen_swing(x: float, y: float, cells: float, footprint: float) -> float:
+    """Return noise with some cells in a metre, -0.5 to 0.5, faded where a pixel covers them [m]."""
+    sharp = f4(1.8) - f4(3.0) * cells * footprint
+    value = like(x, f4(0.0))
+    if any_of(sharp > f4(0.0)):
+        share = lesser(greater(sharp, f4(0.0)), f4(1.0))
+        value = share * swing(cells * x, cells * y)
+    return value
 
 
 @kernel(inline=True)
 def seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
-    """Return noise with some cells in a metre, faded to its mean where a pixel covers them [m]."""
-    sharp = greater(f4(1.6) - f4(2.0) * cells * footprint, f4(0.0))
-    value = like(x, f4(0.5))
-    if any_of(sharp > f4(0.0)):
-        value += lesser(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
-    return value
+    """Return what `seen_swing` does, 0 to 1."""
+    return f4(0.5) + seen_swing(x, y, cells, footprint)

@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import gather, lane_numbers, load
+from eyas.lanes.vector import gather, lane_numbers, load, load_two
 from eyas.render.kernels.bundles import Band, Direction, Glass, Point, View
 from eyas.render.kernels.scalars import f4, i4
 
-__all__ = ["Rays", "camera_axes", "place_in_face", "ray_of", "rays_of"]
+__all__ = ["Rays", "camera_axes", "place_in_face", "place_in_tile", "ray_of", "rays_of"]
 
 
 class Rays(NamedTuple):
@@ -100,3 +100,14 @@ def place_in_face(glass: Glass, row: int, first: int, step: int) -> tuple[float,
         return load(glass.line, at), load(glass.column, at), load(glass.size, at)
     where = lane_numbers() * i4(step) + i4(at)
     return gather(glass.line, where), gather(glass.column, where), gather(glass.size, where)
+
+
+@kernel(inline=True)
+def place_in_tile(glass: Glass, row: int, first: int, below: int) -> tuple[float, float, float]:
+    """Return what `place_in_face` does, of four samples and the four `below` rows after them."""
+    at, step = row * glass.column.shape[1] + first, below * glass.column.shape[1]
+    return (
+        load_two(glass.line, at, step),
+        load_two(glass.column, at, step),
+        load_two(glass.size, at, step),
+    )

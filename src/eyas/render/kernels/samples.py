@@ -14,6 +14,7 @@ __all__ = [
     "empty_box",
     "local_camera",
     "own_row",
+    "owns_pixels",
     "point_of",
     "ray_of_row",
 ]
@@ -37,6 +38,16 @@ class LocalCamera(NamedTuple):
     left: Direction
     """To the left by one sample at distance 1; the next one upwards."""
     up: Direction
+
+
+@kernel(inline=True)
+def owns_pixels(band: Band, row: int) -> bool:
+    """Return whether a worker writes the colours of a row of pixels: every so many pairs of them.
+
+    What is drawn over a picture is drawn by who has shaded what lies below, so there is no need to
+    wait for others.
+    """
+    return (row >> 1) % band.members == band.member
 
 
 @kernel(inline=True)

@@ -30,6 +30,7 @@ from eyas.lanes.vector import (
 from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
 from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
+from eyas.render.kernels.samples import owns_pixels
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
 from eyas.render.kernels.sky.mist import glare, veil
@@ -338,6 +339,8 @@ def _sky_of(
 def _sky_bits(band: Band, row: int, first: int) -> int:
     """Return in which of eight pixels any sample shows the sky, a bit each."""
     bits, across, down = i8(0), band.camera.across, band.camera.down
+    if down == 1:
+        return bits_of(keys_of(band.key, row, first, 1) == i8(0))
     for i in range(down):
         for j in range(across):
             keys = keys_of(band.key, row * down + i, first * across + j, across)
@@ -370,7 +373,9 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """
     view, light, lit, width = band.camera, band.light, band.lit, band.columns
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
-    for row in range(band.member, band.lines, band.members):
+    for row in range(band.lines):
+        if not owns_pixels(band, row):
+            continue
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:

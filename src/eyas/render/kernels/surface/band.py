@@ -15,6 +15,7 @@ from eyas.lanes.vector import (
     lane,
     lane_numbers,
     load_words,
+    load_words_two,
     own,
     select,
     splat,
@@ -24,8 +25,17 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.light.tone import tone_bytes
-from eyas.render.kernels.pixels import keys_of, pack, write_colours, write_pixels
-from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
+from eyas.render.kernels.pixels import (
+    ACROSS,
+    keys_of,
+    keys_of_tile,
+    pack,
+    write_colours,
+    write_pixels,
+    write_tile,
+)
+from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
+from eyas.render.kernels.samples import owns_pixels
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -130,10 +140,13 @@ def _colours_of(
     row, triangle = drawn_of(tag), triangle_of(tag)
     red, green, blue, left = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), bits_of(wanted)
     while left != 0:
-        which = lane(row, first_bit(left))
+        first = first_bit(left)
+        which = lane(row, first)
         same = wanted & (row == which)
         left &= ~bits_of(same)
-        known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
+        # The other lanes repeat the first, and so take none of the ways that it does not.
+        known = select(same, triangle, lane(triangle, first))
+        away = select(same, distance, lane(distance, first))
         shown = _one_instance(band, which, known, eye, ray, away, rays.pixel, shade)
         red = select(same, shown[0], red)
         green = select(same, shown[1], green)
@@ -228,21 +241,33 @@ def _alike(
 
 
 @kernel(inline=True)
-def _shade_one(band: Band, rays: Rays, canvas: Canvas, width: int, row: int, first: int) -> None:
-    """Write eight pixels of a row, with one sample each."""
-    key, numbers, half = band.key, to_f4(lane_numbers()), splat(f4(0.5))
-    keys = keys_of(key, row, first, 1)
-    seen = (numbers < f4(width - first)) & (keys > i8(0))
+def _shade_tile(
+    band: Band, rays: Rays, canvas: Canvas, size: tuple[int, int], row: int, first: int
+) -> None:
+    """Write four pixels of a row and four of the next, with one sample each.
+
+    Args:
+        band: The band.
+        rays: Its rays.
+        canvas: Its colours.
+        size: Its rows and columns; what lies beyond is left out.
+        row: The first row.
+        first: The first column.
+    """
+    key, lanes, half = band.key, lane_numbers(), splat(f4(0.5))
+    down, right = to_f4(lanes >> i4(2)), to_f4(lanes & i4(ACROSS - 1))
+    stride, below = 4 * key.shape[1], min(size[0] - 1 - row, 1)
+    keys = keys_of_tile(key, row, first, below)
+    seen = (right < f4(size[1] - first)) & (down < f4(size[0] - row)) & (keys > i8(0))
     if not any_of(seen):
         return
-    words = load_words(band.shade, 4 * (row * key.shape[1] + first))
+    words = load_words_two(band.shade, row * stride + 4 * first, below * stride)
     distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
-    line, column, wide = half + (rays.top + f4(row)), numbers + f4(first) + half, half
+    line, column, wide = down + half + (rays.top + f4(row)), right + f4(first) + half, half
     if band.glass.on == 1:
-        line, column, wide = place_in_face(band.glass, row, first, 1)
+        line, column, wide = place_in_tile(band.glass, row, first, below)
     colour = _colours_of(band, rays, tag_of(keys), seen, distance, line, column, wide, words)
-    exposure = band.lit.air.exposure
-    write_colours(canvas, band.light, exposure, row, first, bits_of(seen), colour)
+    write_tile(canvas, band.light, band.lit.air.exposure, row, first, seen, colour)
 
 
 @kernel(inline=True)
@@ -340,27 +365,33 @@ def shade_band(band: Band, canvas: Canvas) -> None:
         band: The band.
         canvas: Its colours.
     """
-    rays, view, width = rays_of(band.camera), band.camera, band.columns
-    rows, member, members = band.lines, band.member, band.members
+    rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
     if view.down == 1:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_one(band, rays, canvas, width, row, first)
-    elif len(canvas.red) > 0:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                if view.across == 1:
-                    _mean_of_several(band, rays, canvas, row, first, 1)
-                else:
-                    _mean_of_several(band, rays, canvas, row, first, 2)
-    elif view.across == 1:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_several(band, rays, canvas.pixels, row, first, 1)
+        for row in range(2 * band.member, rows, 2 * band.members):
+            for first in range(0, width, ACROSS):
+                _shade_tile(band, rays, canvas, (rows, width), row, first)
+        return
+    for row in range(rows):
+        if owns_pixels(band, row):
+            _shade_row(band, rays, canvas, row)
+
+
+@kernel(inline=True)
+def _shade_row(band: Band, rays: Rays, canvas: Canvas, row: int) -> None:
+    """Write the pixels of a row, with several samples each."""
+    width, across = band.columns, band.camera.across
+    if len(canvas.red) > 0:
+        for first in range(0, width, WIDTH):
+            if across == 1:
+                _mean_of_several(band, rays, canvas, row, first, 1)
+            else:
+                _mean_of_several(band, rays, canvas, row, first, 2)
+    elif across == 1:
+        for first in range(0, width, WIDTH):
+            _shade_several(band, rays, canvas.pixels, row, first, 1)
     else:
-        for row in range(member, rows, members):
-            for first in range(0, width, WIDTH):
-                _shade_several(band, rays, canvas.pixels, row, first, 2)
+        for first in range(0, width, WIDTH):
+            _shade_several(band, rays, canvas.pixels, row, first, 2)
 
 
 @kernel(inline=True)

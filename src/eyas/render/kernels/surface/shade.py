@@ -237,10 +237,9 @@ def shade_point(
     if any_of(untended):
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
-        grown = wild(surface, look, (red, green, blue), at.u, point, normal[2], footprint)
-        red = select(untended, grown[0], red)
-        green = select(untended, grown[1], green)
-        blue = select(untended, grown[2], blue)
+        red, green, blue = wild(
+            surface, look, (red, green, blue), at.u, point, normal[2], footprint
+        )
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         bare_r, bare_g, bare_b = red, green, blue
@@ -302,14 +301,17 @@ def shade_point(
         red, green, blue = red * light_r, green * light_g, blue * light_b
     if frame.lamps != i4(0):
         red, green, blue = signalled((red, green, blue), surface, frame.lamps)
-    mirror = _smoothness(surface, alpha)
-    if any_of(mirror > zero):
-        facing = lesser(greater(cosine, zero), one)
-        mirrored, share = reflection(lit, way, normal, facing, mirror, reaching, one - open_share)
-        # Clear coat is no perfect mirror, even at a grazing angle.
-        share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
-        share = select(mirror > zero, share, zero)
-        red, green, blue = blended((red, green, blue), mirrored, share)
+    if any_of(painted | wet | window | (surface == GLASS)):
+        mirror = _smoothness(surface, alpha)
+        if any_of(mirror > zero):
+            facing = lesser(greater(cosine, zero), one)
+            mirrored, share = reflection(
+                lit, way, normal, facing, mirror, reaching, one - open_share
+            )
+            # Clear coat is no perfect mirror, even at a grazing angle.
+            share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
+            share = select(mirror > zero, share, zero)
+            red, green, blue = blended((red, green, blue), mirrored, share)
     if air.wet > zero:
         unblocked = to_f4((shade >> u4(8)) & byte) * unit
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))

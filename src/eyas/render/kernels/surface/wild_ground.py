@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, magnitude, select, to_i4
-from eyas.render.kernels.chance import noise, seen_noise
+from eyas.render.kernels.chance import seen_swing, swing
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.surface.texture import colour_of, texel
 from eyas.state.mesh import Surface
@@ -132,12 +132,11 @@ def _edged(
     surface: int, colour: Colour, along: float, point: Colour, rise: float, footprint: float
 ) -> Colour:
     """Return the colours of ground that changes along an edge, ragged by noise."""
-    x, y, half, result = point[0], point[1], f4(0.5), colour
-    wide = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(0.21), footprint) - half
-    clump = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint) - half
-    fine = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint) - half
-    crumb = seen_noise(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), f4(2.0) * footprint)
-    fine += f4(0.8) * (crumb - half)
+    x, y, result = point[0], point[1], colour
+    wide = seen_swing(x + f4(0.4) * y, y - f4(0.4) * x, f4(0.21), footprint)
+    clump = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint)
+    fine = seen_swing(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint)
+    fine += f4(0.8) * seen_swing(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), f4(2.0) * footprint)
     trodden = (surface == TRACK) | (surface == PATH)
     if any_of(trodden):
         ragged = along + f4(0.34) * clump + f4(0.3) * fine
@@ -211,7 +210,7 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     """
     half, one = f4(0.5), f4(1.0)
     down, along = downwind(point)
-    wide = noise(f4(0.016) * down + f4(0.004) * along, f4(0.013) * along - f4(0.003) * down) - half
+    wide = swing(f4(0.016) * down + f4(0.004) * along, f4(0.013) * along - f4(0.003) * down)
     coarser = to_i4(greater(look.detail - i4(811), i4(0)))
     low, high = texel(look.textures, look.layer, coarser, NO_BLEND, RIDGES * along, RIDGES * down)
     _, crest, _, patch = colour_of(low, high)
@@ -243,24 +242,24 @@ def hillside(colour: Colour, point: Colour, rise: float, footprint: float) -> Co
         rise: Upward component of its normal.
         footprint: Size of a pixel on the surface [m].
     """
-    one, half = f4(1.0), f4(0.5)
+    one = f4(1.0)
     x, y, z = point
     # Each turned differently, to hide the square cells of the noise.
-    wide = noise(f4(0.021) * x + f4(0.012) * y, f4(0.021) * y - f4(0.012) * x)
-    tuft = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.13), footprint)
-    dry = _clip(f4(1.5) * (wide - f4(0.42)) + f4(0.9) * (tuft - half))
-    blade = seen_noise(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), f4(4.0) * footprint)
-    bright = f4(0.61) + f4(0.28) * tuft + f4(0.5) * blade
+    wide = swing(f4(0.021) * x + f4(0.012) * y, f4(0.021) * y - f4(0.012) * x)
+    tuft = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.13), footprint)
+    blade = seen_swing(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), f4(4.0) * footprint)
+    dry = _clip(f4(0.12) + f4(1.5) * wide + f4(0.9) * tuft)
+    bright = one + f4(0.28) * tuft + f4(0.5) * blade
     red = colour[0] * bright * (one + f4(0.62) * dry)
     green = colour[1] * bright * (one + f4(0.06) * dry)
     blue = colour[2] * bright * (one - f4(0.10) * dry)
-    bare = _clip((_ROCK - rise + f4(0.26) * (tuft - half) + f4(0.22) * (wide - half)) * f4(7.0))
+    bare = _clip((_ROCK - rise + f4(0.26) * tuft + f4(0.22) * wide) * f4(7.0))
     if any_of(bare > f4(0.0)):
-        layer = seen_noise(f4(0.3) * (x + y), f4(1.7) * z + f4(0.2) * x, f4(1.0), footprint)
-        crack = seen_noise(x + y, f4(2.0) * z - y, f4(0.45), footprint)
-        stone = f4(0.55) + f4(0.55) * layer + f4(0.4) * (crack - half)
+        layer = seen_swing(f4(0.3) * (x + y), f4(1.7) * z + f4(0.2) * x, one, footprint)
+        crack = seen_swing(x + y, f4(2.0) * z - y, f4(0.45), footprint)
+        stone = f4(0.825) + f4(0.55) * layer + f4(0.4) * crack
         # Grass keeps to the ledges.
-        bare = _clip(bare * (f4(1.5) - f4(0.9) * crack))
+        bare = _clip(bare * (f4(1.05) - f4(0.9) * crack))
         red += bare * (f4(0.150) * stone - red)
         green += bare * (f4(0.138) * stone - green)
         blue += bare * (f4(0.118) * stone - blue)
@@ -276,25 +275,24 @@ def heath(colour: Colour, point: Colour, footprint: float) -> Colour:
         point: The point [m].
         footprint: Size of a pixel on the surface [m].
     """
-    one, half = f4(1.0), f4(0.5)
     x, y = point[0], point[1]
-    wide = noise(f4(0.016) * x + f4(0.009) * y, f4(0.016) * y - f4(0.009) * x)
-    patch = seen_noise(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.11), footprint)
-    clump = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(0.55), footprint)
-    blade = seen_noise(x - f4(0.4) * y, y + f4(0.4) * x, f4(3.1), footprint)
+    wide = swing(f4(0.016) * x + f4(0.009) * y, f4(0.016) * y - f4(0.009) * x)
+    patch = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.11), footprint)
+    clump = seen_swing(x + f4(0.5) * y, y - f4(0.5) * x, f4(0.55), footprint)
+    blade = seen_swing(x - f4(0.4) * y, y + f4(0.4) * x, f4(3.1), footprint)
     # Grass spreads from the hollows; scrub stands in it, in clumps with ragged edges.
-    lush = f4(0.9) * (wide - f4(0.40)) + f4(0.8) * (patch - half)
+    lush = f4(0.18) + f4(1.8) * wide + f4(1.6) * patch
     ragged = f4(0.62) * clump + f4(0.38) * blade
-    cover = f4(0.8) * _clip(f4(2.0) * lush + f4(2.6) * (ragged - half) + f4(0.35))
-    scrub = f4(0.75) * cover * _clip(f4(6.0) * (ragged - f4(0.66)) + f4(2.0) * lush)
+    cover = f4(0.8) * _clip(lush + f4(2.6) * ragged + f4(0.35))
+    scrub = f4(0.75) * cover * _clip(lush + f4(6.0) * ragged - f4(0.96))
     red, green, blue = colour
     # The grain of the soil shows through, and with it the size of what is seen.
-    bright = (f4(0.55) + f4(0.5) * blade) * (f4(0.45) + green * _PER_SOIL)
+    bright = (f4(0.8) + f4(0.5) * blade) * (f4(0.45) + green * _PER_SOIL)
     red += cover * (f4(0.215) * bright - red)
     green += cover * (f4(0.195) * bright - green)
     blue += cover * (f4(0.088) * bright - blue)
     red += scrub * (f4(0.070) * bright - red)
     green += scrub * (f4(0.088) * bright - green)
     blue += scrub * (f4(0.036) * bright - blue)
-    dust = one + f4(0.2) * (wide - half)
+    dust = f4(1.0) + f4(0.2) * wide
     return red * dust, green * dust, blue * dust
