@@ -38,7 +38,7 @@ Texture = NDArray[np.uint8]
 
 _SEAM = 0.015
 _BLACK = 0.03
-_FILM = 0.14
+_FILM = 0.07
 """Deviation of the brightness of paint, as a share."""
 _DUST = 0.09
 """Deviation of what dust adds to the brightness of panes."""
