@@ -38,6 +38,11 @@ Texture = NDArray[np.uint8]
 
 _SEAM = 0.015
 _BLACK = 0.03
+_FILM = 0.07
+"""Deviation of the brightness of paint, as a share."""
+_DUST = 0.09
+"""Deviation of what dust adds to the brightness of panes."""
+
 _LONG = 4.6
 """Length of the body that is painted [m]."""
 
@@ -55,11 +60,13 @@ def bodywork(style: str) -> Texture:
     _rear(sheet_of(tones, REAR, (0.85, 0.75)), kind)
     _front(sheet_of(tones, FRONT, (0.85, 0.75)), kind, look)
     rng = source(f"bodywork {style}")
-    clouds = fractal(rng, 0.8, longest=50.0)
+    # Dust and what a body mirrors: smooth even paint is what a telephone has, not a car. Texels are
+    # longer along the body than across it.
+    film = fractal(rng, 1.3, longest=40.0, stretch=(1.7, 1.0))
     if look == "worn":
         _wear(side, top)
         tones *= 1.0 - 0.06 * np.clip(fractal(rng, 1.3, longest=40.0) - 0.4, 0.0, 1.0)
-    return texture_of(tones * (1.0 + 0.012 * clouds))
+    return texture_of(tones * np.maximum(1.0 + _FILM * film, 0.2))
 
 
 def _wear(side: Sheet, top: Sheet) -> None:
@@ -298,7 +305,7 @@ def panes() -> Texture:
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.05), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip
         sheet.frame((0.0, 0.0), size, width, 0.004)
-    return texture_of(tones)
+    return texture_of(tones + _DUST * np.abs(fractal(source("panes"), 1.3, longest=60.0)))
 
 
 def freight() -> Texture:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
-from eyas.world.build.bodywork import body_paint
+from eyas.world.build.bodywork import BODYWORK, body_paint
 from eyas.world.cars.bumpers import AHEAD, add_bumpers
 from eyas.world.cars.finishes import (
     GLASS,
@@ -92,9 +92,9 @@ def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.f
             quad = np.array([back, back * mirror, front * mirror, front])
             skin = _skin(frame, shape, detail, middle, rise, (6, 7))
             edge = pair[[0, 0, 1, 1], 5, 1]
-            if skin is PAINT:
+            if skin is PAINT or skin.texture in BODYWORK:
                 # The middle of the roof has no points here, nor have its seams.
-                shell.quads(quad, paint, uvs=wrap.top(quad, edge))
+                shell.quads(quad, paint if skin is PAINT else skin, uvs=wrap.top(quad, edge))
             else:
                 shell.quads(quad, skin)
     half = float(every[0, 3, 1]), float(every[-1, 3, 1])
@@ -145,6 +145,8 @@ def _panel(
     elif skin is PAINT:
         uvs = wrap.side(quad) if high <= 4 else wrap.top(quad, edge)
         shell.quads(quad, paint, uvs=uvs, both_sides=True)
+    elif skin.texture in BODYWORK:
+        shell.quads(quad, skin, uvs=wrap.top(quad, edge), both_sides=True)
     else:
         shell.quads(quad, skin, both_sides=True)
 
