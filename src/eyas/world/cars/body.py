@@ -47,7 +47,7 @@ class _Detail:
     arches: bool
 
 
-TRACK = 0.285
+TRACK = 0.225
 """Distance between the middles of two wheels less the width with mirrors [m]: their sides stand out
 from the body by half a centimetre, so that tyres are seen from above."""
 
