@@ -284,13 +284,17 @@ def panes() -> Texture:
     """Return the panes of a car, with their frames and what is seen behind them."""
     tones = np.full((SIZE, SIZE), _GLASS)
     screen = sheet_of(tones, WINDSCREEN, (1.3, 0.75))
-    screen.box((-0.1, -0.1), (1.4, 0.2), 0.08)  # dashboard
+    screen.box((-0.1, -0.1), (1.4, 0.24), 0.24)  # dashboard
+    screen.line([(0.1, 0.22), (1.2, 0.22)], 0.05, 0.02)
     for x in (0.37, 0.93):
-        screen.box((x - 0.2, 0.27), (x + 0.2, 0.54), 0.13, round_=0.08)  # seats
-        screen.box((x - 0.11, 0.52), (x + 0.11, 0.64), 0.15, round_=0.05)
+        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.5, round_=0.08)  # seats
+        screen.box((x - 0.05, 0.27), (x + 0.05, 0.5), 0.38, round_=0.03)
+        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.55, round_=0.05)
     screen.line([(0.8, 0.24), (0.84, 0.33), (1.02, 0.33), (1.06, 0.24), (0.93, 0.19), (0.8, 0.24)],
-                0.03, 0.015)  # fmt: skip
-    screen.box((0.59, 0.6), (0.71, 0.66), 0.01)  # mirror
+                0.035, 0.0)  # fmt: skip
+    screen.box((0.59, 0.6), (0.71, 0.66), 0.0)  # mirror
+    for x in (0.25, 0.75):  # wipers
+        screen.line([(x, 0.03), (x + 0.45, 0.1)], 0.025, 0.0)
     rear = sheet_of(tones, REAR_WINDOW, (1.2, 0.6))
     rear.box((-0.1, -0.1), (1.3, 0.16), 0.08)  # shelf
     for x in (0.3, 0.6, 0.9):
@@ -299,8 +303,8 @@ def panes() -> Texture:
     for y in (0.26, 0.32, 0.38, 0.44):
         rear.line([(0.1, y), (1.1, y)], 0.012, 0.12, 0.6)  # heating wires
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.1, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.11, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.42, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.48, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.05), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip
