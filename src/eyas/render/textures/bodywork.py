@@ -160,8 +160,9 @@ def _bonnet(sheet: Sheet) -> None:
         [(screen + 0.06, 0.715), (end - 0.1, 0.66), (end, 0.56), (end, -0.1)], 0.1, 1.0, 0.45
     )
     sheet.line([(screen, 0.74), (end - 0.1, 0.69), (end, 0.58), (end, -0.1)], 0.036, _SEAM)
-    sheet.line([(screen + 0.15, 0.42), (end - 0.1, 0.3)], 0.04, 1.0, 0.6)  # creases
-    sheet.line([(screen + 0.15, 0.47), (end - 0.1, 0.34)], 0.05, 0.7 * BASE, 0.6)
+    sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.045, 1.0, 0.9)  # creases
+    sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.5 * BASE, 0.8)
+    sheet.box((end - 0.02, -0.1), (end + 0.06, 0.06), 1.0)  # the badge
 
 
 def _roof(sheet: Sheet, back: float, front: float) -> None:
@@ -172,6 +173,9 @@ def _roof(sheet: Sheet, back: float, front: float) -> None:
     sheet.line([(front - 0.03, -0.1), (front - 0.03, 0.72)], 0.05, 1.0, 0.5)
     sheet.line([(front, -0.1), (front, 0.8)], 0.04, _SEAM)
     sheet.line([(back, -0.1), (back, 0.8)], 0.04, _SEAM)
+    for y in (0.24, 0.5):  # swages along the roof
+        sheet.line([(back + 0.14, y), (front - 0.14, y)], 0.05, 0.6 * BASE, 0.8)
+        sheet.line([(back + 0.14, y + 0.045), (front - 0.14, y + 0.045)], 0.035, 1.0, 0.9)
 
 
 def _saloon_top(sheet: Sheet) -> None:
