@@ -216,11 +216,16 @@ def _van_top(sheet: Sheet) -> None:
 
 def _bus_top(sheet: Sheet) -> None:
     sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, 0.8)
+    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.7)
+    for y in (0.16, 0.46):  # swages along the roof
+        sheet.line([(0.0, y), (_LONG, y)], 0.05, 0.6 * BASE, 0.8)
+        sheet.line([(0.0, y + 0.05), (_LONG, y + 0.05)], 0.04, 1.0, 0.8)
     for x in np.linspace(0.05, 0.95, 9) * _LONG:
-        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.02, _SEAM, 0.6)
-    for x in (0.12, 0.56, 0.9):  # hatches
-        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.24), _SEAM)
-        sheet.box((x * _LONG - 0.11, -0.2), (x * _LONG + 0.11, 0.21), 0.55 * BASE)
+        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.8)
+    for x in (0.42, 0.56, 0.9):  # hatches
+        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), _SEAM)
+        sheet.box((x * _LONG - 0.115, -0.2), (x * _LONG + 0.115, 0.23), 1.0)
+        sheet.box((x * _LONG - 0.085, -0.2), (x * _LONG + 0.085, 0.17), 0.35 * BASE)
 
 
 def _band(sheet: Sheet) -> None:
@@ -238,7 +243,13 @@ def _rear(sheet: Sheet, kind: str) -> None:
     sheet.box((-0.1, -0.1), (side + 0.1, 0.11), _BLACK)
     sheet.box((0.42, 0.04), (0.6, 0.1), 0.5)  # an exhaust
     sheet.line([(0.53, 0.44), (0.53, 0.75)], 0.03, _SEAM)
-    if kind in ("van", "bus"):
+    if kind == "bus":  # the engine's grille, and lamps in a column
+        sheet.box((-0.1, 0.2), (0.52, 0.6), _BLACK)
+        for y in np.linspace(0.24, 0.56, 6):
+            sheet.line([(0.0, float(y)), (0.5, float(y))], 0.022, 0.45 * BASE)
+        for y in (0.3, 0.42, 0.54):
+            sheet.box((0.66, y - 0.05), (0.8, y + 0.05), 0.9)
+    elif kind == "van":
         sheet.line([(0.0, 0.1), (0.0, 0.75)], 0.04, _SEAM)
     else:
         sheet.box((-0.1, 0.455), (0.32, 0.615), 0.25 * BASE)  # around the plate
@@ -349,10 +360,9 @@ def freight() -> Texture:
         cab.line([(0.1, y), (0.75, y)], 0.05, 0.3 * BASE)
     _dirt(cab, 0.8, 0.4)
     unit = sheet_of(tones, COOLER, (2.0, 1.6))
-    for x in (0.55, 1.45):  # fans
-        away = np.sqrt(np.square(unit.x - x) + np.square(unit.y - 0.8))
-        unit.tone[:] *= 1.0 - 0.85 * np.clip((0.36 - away) / unit.texel, 0.0, 1.0)
-        unit.box((x - 0.06, 0.74), (x + 0.06, 0.86), 0.5 * BASE)
+    for x in np.linspace(0.2, 1.8, 9):  # slats
+        unit.line([(float(x), 0.18), (float(x), 1.42)], 0.09, 0.2 * BASE)
+    unit.line([(0.1, 0.8), (1.9, 0.8)], 0.12, BASE)
     unit.frame((0.0, 0.0), (2.0, 1.6), 0.05, 0.5 * BASE)
     return texture_of(tones)
 

@@ -11,6 +11,7 @@ from eyas.world.cars.finishes import (
     CLOTH,
     GLASS,
     HEAD_LAMP,
+    PAINT,
     SKIN_WHITE,
     TAIL_LAMP,
     TRIM,
@@ -78,7 +79,7 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     sides, rows = ((4, 3), (5, 4), (7, 6))[detail]
     hip, chest, head = posture.hip, posture.chest, posture.head
     neck = tuple(0.55 * h + 0.45 * c for h, c in zip(head, chest, strict=True))
-    shell.tube([hip, chest, neck], (0.17, 0.2, 0.09), CLOTH, sides=sides + 1)
+    shell.tube([hip, chest, neck], (0.15, 0.18, 0.08), PAINT, sides=sides + 1)
     size = posture.head_radius
     shell.ball(head, (size, 0.85 * size, size), SKIN_WHITE, rows=rows, sides=sides + 1)
     visor = (head[0] + 0.42 * size, 0.0, head[2] + 0.05 * size)

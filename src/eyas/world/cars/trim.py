@@ -5,11 +5,10 @@ import numpy as np
 from eyas.core import exact
 from eyas.mesh.panels import box_panels
 from eyas.mesh.shell import Shell
-from eyas.world.build.bodywork import COOLER, PLAIN
+from eyas.world.build.bodywork import COOLER, PLAIN, body_paint
 from eyas.world.cars.bumpers import AHEAD
 from eyas.world.cars.finishes import (
     BRIGHT,
-    FREIGHT,
     GLASS,
     HIGH_BRAKE_LAMP,
     PAINT,
@@ -28,8 +27,8 @@ def add_trimmings(shell: Shell, frame: Frame, shape: CarShape) -> None:
     for start, end, top in shape.pods:
         under, over, *sides = box_panels((start, -0.8, top - 0.5), (end, 0.8, top), 0.06)
         corners = COOLER.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
-        shell.quads(over, FREIGHT, uvs=corners)
-        shell.quads([under, *sides], FREIGHT, uvs=[PLAIN] * 5)
+        shell.quads(over, body_paint("freight"), uvs=corners)
+        shell.quads([under, *sides], body_paint("freight"), uvs=[PLAIN] * 5)
     _plates(shell, shape)
     x = shape.rear_window[1]
     z = height_at(shape.top, x)
