@@ -162,7 +162,9 @@ def _bonnet(sheet: Sheet) -> None:
     sheet.line([(screen, 0.74), (end - 0.1, 0.69), (end, 0.58), (end, -0.1)], 0.036, _SEAM)
     sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.045, 1.0, 0.9)  # creases
     sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.5 * BASE, 0.8)
-    sheet.box((end - 0.02, -0.1), (end + 0.06, 0.06), 1.0)  # the badge
+    sheet.box((nose - 0.085, -0.1), (nose + 0.1, 0.44), _BLACK)  # the upper end of the grille
+    sheet.line([(nose - 0.1, -0.1), (nose - 0.1, 0.46)], 0.03, 1.0)
+    sheet.box((nose - 0.09, -0.1), (nose - 0.01, 0.06), 1.0)  # the badge
 
 
 def _roof(sheet: Sheet, back: float, front: float) -> None:
