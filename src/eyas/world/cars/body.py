@@ -55,6 +55,9 @@ _LAMPS, _INDICATORS = 0.62, 0.74
 """Inner limits of the lamps at the ends, and of those beside the indicators, as shares of the half
 width."""
 
+_TALL = 0.84
+"""Inner limit of lamps beside a rear window, likewise."""
+
 _ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
 _LIT = (-1.0, -_INDICATORS, -_LAMPS, _LAMPS, _INDICATORS, 1.0)
 _FINE = _Detail((0, 1, 2, 3, 4, 5, 6, 7), _ENDS, _LIT, arches=True)
@@ -226,6 +229,8 @@ def _end(
         strip = detail.points[k : k + 2]
         lamps = strip == (3, 4)
         limits = detail.lamps if lamps else detail.columns
+        if strip[0] == 4 and len(limits) == 4:
+            limits = (-1.0, -_TALL, _TALL, 1.0)
         columns = np.array(limits)[:, None]
         low, high = (half[j] * np.ones((len(columns), 1)) for j in (k, k + 1))
         low[:, 1:2] *= columns
