@@ -55,7 +55,7 @@ _LAMPS, _INDICATORS = 0.62, 0.74
 """Inner limits of the lamps at the ends, and of those beside the indicators, as shares of the half
 width."""
 
-_TALL = 0.84
+_TALL = 0.78
 """Inner limit of lamps beside a rear window, likewise."""
 
 _ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
@@ -229,7 +229,7 @@ def _end(
         strip = detail.points[k : k + 2]
         lamps = strip == (3, 4)
         limits = detail.lamps if lamps else detail.columns
-        if strip[0] == 4 and len(limits) == 4:
+        if strip[0] == 4 and shape.tail_window and len(limits) == 4:
             limits = (-1.0, -_TALL, _TALL, 1.0)
         columns = np.array(limits)[:, None]
         low, high = (half[j] * np.ones((len(columns), 1)) for j in (k, k + 1))

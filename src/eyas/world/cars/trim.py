@@ -42,11 +42,11 @@ def _mirrors(shell: Shell, frame: Frame, shape: CarShape) -> None:
     half = frame.width / 2
     x = shape.windscreen[1] - 0.42
     z = height_at(shape.belt, x)
-    low, high = (x - 0.06, half - 0.2, z + 0.02), (x + 0.08, half, z + 0.15)
+    low, high = (x - 0.06, half - 0.24, z + 0.01), (x + 0.13, half, z + 0.19)
     shell.box(low, high, PAINT, taper=0.015, both_sides=True)
-    y = half - 0.03, half - 0.17
+    y = half - 0.03, half - 0.21
     glass = [(x - 0.072, y[0], z + 0.035), (x - 0.072, y[1], z + 0.035),
-             (x - 0.06, y[1], z + 0.13), (x - 0.06, y[0], z + 0.13)]  # fmt: skip
+             (x - 0.06, y[1], z + 0.17), (x - 0.06, y[0], z + 0.17)]  # fmt: skip
     shell.quads(glass, GLASS, both_sides=True)
 
 
