@@ -38,9 +38,9 @@ Texture = NDArray[np.uint8]
 
 _SEAM = 0.015
 _BLACK = 0.03
-_FILM = 0.07
+_FILM = 0.08
 """Deviation of the brightness of paint, as a share."""
-_DUST = 0.09
+_DUST = 0.12
 """Deviation of what dust adds to the brightness of panes."""
 
 _LONG = 4.6
