@@ -155,15 +155,17 @@ def _bonnet(sheet: Sheet) -> None:
     _, _, _, _, screen, nose = (_LONG * s for s in TOP_SHARES)
     sheet.box((screen - 0.02, -0.1), (screen + 0.12, 0.71), _BLACK)  # the well of the wipers
     sheet.line([(screen + 0.09, 0.0), (screen + 0.03, 0.6)], 0.03, 0.2 * BASE)
-    end = nose - 0.14
+    end = nose - 0.22
     sheet.line(
         [(screen + 0.06, 0.715), (end - 0.1, 0.66), (end, 0.56), (end, -0.1)], 0.1, 1.0, 0.45
     )
     sheet.line([(screen, 0.74), (end - 0.1, 0.69), (end, 0.58), (end, -0.1)], 0.036, _SEAM)
     sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.045, 1.0, 0.9)  # creases
     sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.5 * BASE, 0.8)
-    sheet.box((nose - 0.085, -0.1), (nose + 0.1, 0.44), _BLACK)  # the upper end of the grille
-    sheet.line([(nose - 0.1, -0.1), (nose - 0.1, 0.46)], 0.03, 1.0)
+    sheet.box((nose - 0.16, -0.1), (nose + 0.1, 0.56), _BLACK)  # the upper end of the grille
+    sheet.line([(nose - 0.18, -0.1), (nose - 0.18, 0.58)], 0.03, 1.0)
+    for x in (nose - 0.12, nose - 0.05):
+        sheet.line([(x, -0.1), (x, 0.52)], 0.03, 0.6)
     sheet.box((nose - 0.09, -0.1), (nose - 0.01, 0.06), 1.0)  # the badge
 
 
