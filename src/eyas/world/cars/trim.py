@@ -69,10 +69,11 @@ def _rack(shell: Shell, frame: Frame, shape: CarShape) -> None:
     path = edge + np.column_stack([0 * lift, 0 * lift + 0.015, lift])
     shell.tube(path, (0.022,) * 5, BRIGHT, sides=4, both_sides=True)
     most = max(z for _, z in shape.top) + 0.027
-    for x in (0.7 * start + 0.3 * end, 0.28 * start + 0.72 * end):  # bars across
-        y = float(np.interp(x, path[:, 0], path[:, 1]))
-        z = height_at(shape.top, x) + 0.008
-        shell.box((x - 0.035, -y, z), (x + 0.035, y, min(z + 0.03, most)), BRIGHT)
+    for share in (0.3, 0.72):  # bars across
+        bar = start + share * (end - start)
+        y = float(np.interp(bar, path[:, 0], path[:, 1]))
+        z = height_at(shape.top, bar) + 0.008
+        shell.box((bar - 0.035, -y, z), (bar + 0.035, y, min(z + 0.03, most)), BRIGHT)
 
 
 def _arches(shell: Shell, frame: Frame, shape: CarShape) -> None:
