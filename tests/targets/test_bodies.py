@@ -9,7 +9,16 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.state.mesh import Surface
 from eyas.targets.catalogue import MODELS, model_index
 from eyas.targets.vehicles.models import VEHICLES
-from eyas.world.cars.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP, TRIM
+from eyas.world.cars.finishes import (
+    BLACK_PAINT,
+    BRIGHT,
+    HEAD_LAMP,
+    INDICATOR_LEFT,
+    INDICATOR_RIGHT,
+    ROOF_GLASS,
+    TAIL_LAMP,
+    TRIM,
+)
 from eyas.world.cars.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
@@ -165,6 +174,32 @@ def test_variants_differ_in_detail_and_have_the_size_and_roof_of_their_model(veh
         looks = [(other.palette, other.materials.tolist()) for other in seen]
         assert (mesh.palette, mesh.materials.tolist()) not in looks
         seen.append(mesh)
+
+
+def corners_of(mesh, material):
+    return mesh.positions[mesh.triangles[mesh.materials == mesh.palette.index(material)]]
+
+
+def test_two_bars_of_a_rack_cross_the_roof_and_touch_it_nowhere():
+    rack, roof = (
+        corners_of(levels_of("RangeRoverSportSVRSimple")[0], part) for part in (BRIGHT, BLACK_PAINT)
+    )
+    bars = rack[(rack[..., 1].min(axis=1) < -0.3) & (rack[..., 1].max(axis=1) > 0.3)]
+    places = np.unique(np.round(bars[..., 0], 3))
+    assert len(places) == 4  # both edges of both bars
+    middle = roof[np.abs(roof[..., 1]).min(axis=1) < 1e-3]
+    for bar in places:
+        near = bars[np.abs(bars[..., 0] - bar).min(axis=1) < 1e-2]
+        line = middle.reshape(-1, 3)[np.abs(middle.reshape(-1, 3)[:, 1]) < 1e-3]
+        order = np.argsort(line[:, 0])
+        assert near[..., 2].min() > np.interp(bar, line[order, 0], line[order, 2])
+
+
+def test_a_motorbike_has_an_indicator_on_either_side_of_its_tail():
+    mesh = levels_of("MotorbikeSimple")[0]
+    left, right = (corners_of(mesh, lamp) for lamp in (INDICATOR_LEFT, INDICATOR_RIGHT))
+    assert left[..., 1].min() > 0.0 > right[..., 1].max()
+    assert left[..., 0].max() < -1.0
 
 
 def test_the_dark_bumper_of_a_van_is_no_wall():

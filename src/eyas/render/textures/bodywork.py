@@ -38,6 +38,11 @@ Texture = NDArray[np.uint8]
 
 _SEAM = 0.015
 _BLACK = 0.03
+_FILM = 0.08
+"""Deviation of the brightness of paint, as a share."""
+_DUST = 0.12
+"""Deviation of what dust adds to the brightness of panes."""
+
 _LONG = 4.6
 """Length of the body that is painted [m]."""
 
@@ -55,11 +60,13 @@ def bodywork(style: str) -> Texture:
     _rear(sheet_of(tones, REAR, (0.85, 0.75)), kind)
     _front(sheet_of(tones, FRONT, (0.85, 0.75)), kind, look)
     rng = source(f"bodywork {style}")
-    clouds = fractal(rng, 0.8, longest=50.0)
+    # Dust and what a body mirrors: smooth even paint is what a telephone has, not a car. Texels are
+    # longer along the body than across it.
+    film = fractal(rng, 1.3, longest=40.0, stretch=(1.7, 1.0))
     if look == "worn":
         _wear(side, top)
         tones *= 1.0 - 0.06 * np.clip(fractal(rng, 1.3, longest=40.0) - 0.4, 0.0, 1.0)
-    return texture_of(tones * (1.0 + 0.012 * clouds))
+    return texture_of(tones * np.maximum(1.0 + _FILM * film, 0.2))
 
 
 def _wear(side: Sheet, top: Sheet) -> None:
@@ -148,13 +155,18 @@ def _bonnet(sheet: Sheet) -> None:
     _, _, _, _, screen, nose = (_LONG * s for s in TOP_SHARES)
     sheet.box((screen - 0.02, -0.1), (screen + 0.12, 0.71), _BLACK)  # the well of the wipers
     sheet.line([(screen + 0.09, 0.0), (screen + 0.03, 0.6)], 0.03, 0.2 * BASE)
-    end = nose - 0.14
+    end = nose - 0.22
     sheet.line(
         [(screen + 0.06, 0.715), (end - 0.1, 0.66), (end, 0.56), (end, -0.1)], 0.1, 1.0, 0.45
     )
     sheet.line([(screen, 0.74), (end - 0.1, 0.69), (end, 0.58), (end, -0.1)], 0.036, _SEAM)
-    sheet.line([(screen + 0.15, 0.42), (end - 0.1, 0.3)], 0.04, 1.0, 0.6)  # creases
-    sheet.line([(screen + 0.15, 0.47), (end - 0.1, 0.34)], 0.05, 0.7 * BASE, 0.6)
+    sheet.line([(screen + 0.12, 0.42), (end - 0.06, 0.26)], 0.045, 1.0, 0.9)  # creases
+    sheet.line([(screen + 0.12, 0.48), (end - 0.06, 0.32)], 0.06, 0.5 * BASE, 0.8)
+    sheet.box((nose - 0.16, -0.1), (nose + 0.1, 0.56), _BLACK)  # the upper end of the grille
+    sheet.line([(nose - 0.18, -0.1), (nose - 0.18, 0.58)], 0.03, 1.0)
+    for x in (nose - 0.12, nose - 0.05):
+        sheet.line([(x, -0.1), (x, 0.52)], 0.03, 0.6)
+    sheet.box((nose - 0.09, -0.1), (nose - 0.01, 0.06), 1.0)  # the badge
 
 
 def _roof(sheet: Sheet, back: float, front: float) -> None:
@@ -165,6 +177,9 @@ def _roof(sheet: Sheet, back: float, front: float) -> None:
     sheet.line([(front - 0.03, -0.1), (front - 0.03, 0.72)], 0.05, 1.0, 0.5)
     sheet.line([(front, -0.1), (front, 0.8)], 0.04, _SEAM)
     sheet.line([(back, -0.1), (back, 0.8)], 0.04, _SEAM)
+    for y in (0.24, 0.5):  # swages along the roof
+        sheet.line([(back + 0.14, y), (front - 0.14, y)], 0.05, 0.6 * BASE, 0.8)
+        sheet.line([(back + 0.14, y + 0.045), (front - 0.14, y + 0.045)], 0.035, 1.0, 0.9)
 
 
 def _saloon_top(sheet: Sheet) -> None:
@@ -205,11 +220,16 @@ def _van_top(sheet: Sheet) -> None:
 
 def _bus_top(sheet: Sheet) -> None:
     sheet.line([(0.0, 0.72), (_LONG, 0.72)], 0.03, _SEAM, 0.8)
+    sheet.line([(0.0, 0.66), (_LONG, 0.66)], 0.03, 1.0, 0.7)
+    for y in (0.16, 0.46):  # swages along the roof
+        sheet.line([(0.0, y), (_LONG, y)], 0.05, 0.6 * BASE, 0.8)
+        sheet.line([(0.0, y + 0.05), (_LONG, y + 0.05)], 0.04, 1.0, 0.8)
     for x in np.linspace(0.05, 0.95, 9) * _LONG:
-        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.02, _SEAM, 0.6)
-    for x in (0.12, 0.56, 0.9):  # hatches
-        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.24), _SEAM)
-        sheet.box((x * _LONG - 0.11, -0.2), (x * _LONG + 0.11, 0.21), 0.55 * BASE)
+        sheet.line([(float(x), -0.1), (float(x), 0.7)], 0.025, _SEAM, 0.8)
+    for x in (0.42, 0.56, 0.9):  # hatches
+        sheet.box((x * _LONG - 0.14, -0.2), (x * _LONG + 0.14, 0.26), _SEAM)
+        sheet.box((x * _LONG - 0.115, -0.2), (x * _LONG + 0.115, 0.23), 1.0)
+        sheet.box((x * _LONG - 0.085, -0.2), (x * _LONG + 0.085, 0.17), 0.35 * BASE)
 
 
 def _band(sheet: Sheet) -> None:
@@ -227,7 +247,13 @@ def _rear(sheet: Sheet, kind: str) -> None:
     sheet.box((-0.1, -0.1), (side + 0.1, 0.11), _BLACK)
     sheet.box((0.42, 0.04), (0.6, 0.1), 0.5)  # an exhaust
     sheet.line([(0.53, 0.44), (0.53, 0.75)], 0.03, _SEAM)
-    if kind in ("van", "bus"):
+    if kind == "bus":  # the engine's grille, and lamps in a column
+        sheet.box((-0.1, 0.2), (0.52, 0.6), _BLACK)
+        for y in np.linspace(0.24, 0.56, 6):
+            sheet.line([(0.0, float(y)), (0.5, float(y))], 0.022, 0.45 * BASE)
+        for y in (0.3, 0.42, 0.54):
+            sheet.box((0.66, y - 0.05), (0.8, y + 0.05), 0.9)
+    elif kind == "van":
         sheet.line([(0.0, 0.1), (0.0, 0.75)], 0.04, _SEAM)
     else:
         sheet.box((-0.1, 0.455), (0.32, 0.615), 0.25 * BASE)  # around the plate
@@ -277,13 +303,17 @@ def panes() -> Texture:
     """Return the panes of a car, with their frames and what is seen behind them."""
     tones = np.full((SIZE, SIZE), _GLASS)
     screen = sheet_of(tones, WINDSCREEN, (1.3, 0.75))
-    screen.box((-0.1, -0.1), (1.4, 0.2), 0.08)  # dashboard
+    screen.box((-0.1, -0.1), (1.4, 0.24), 0.24)  # dashboard
+    screen.line([(0.1, 0.22), (1.2, 0.22)], 0.05, 0.02)
     for x in (0.37, 0.93):
-        screen.box((x - 0.2, 0.27), (x + 0.2, 0.54), 0.13, round_=0.08)  # seats
-        screen.box((x - 0.11, 0.52), (x + 0.11, 0.64), 0.15, round_=0.05)
+        screen.box((x - 0.2, 0.27), (x + 0.2, 0.56), 0.34, round_=0.08)  # seats
+        screen.box((x - 0.05, 0.27), (x + 0.05, 0.5), 0.26, round_=0.03)
+        screen.box((x - 0.11, 0.58), (x + 0.11, 0.68), 0.38, round_=0.05)
     screen.line([(0.8, 0.24), (0.84, 0.33), (1.02, 0.33), (1.06, 0.24), (0.93, 0.19), (0.8, 0.24)],
-                0.03, 0.015)  # fmt: skip
-    screen.box((0.59, 0.6), (0.71, 0.66), 0.01)  # mirror
+                0.035, 0.0)  # fmt: skip
+    screen.box((0.59, 0.6), (0.71, 0.66), 0.0)  # mirror
+    for x in (0.25, 0.75):  # wipers
+        screen.line([(x, 0.03), (x + 0.45, 0.1)], 0.025, 0.0)
     rear = sheet_of(tones, REAR_WINDOW, (1.2, 0.6))
     rear.box((-0.1, -0.1), (1.3, 0.16), 0.08)  # shelf
     for x in (0.3, 0.6, 0.9):
@@ -292,13 +322,13 @@ def panes() -> Texture:
     for y in (0.26, 0.32, 0.38, 0.44):
         rear.line([(0.1, y), (1.1, y)], 0.012, 0.12, 0.6)  # heating wires
     side = sheet_of(tones, SIDE_PANE, (0.95, 0.4))
-    side.box((0.28, -0.1), (0.56, 0.2), 0.1, round_=0.08)
-    side.box((0.34, 0.2), (0.5, 0.31), 0.11, round_=0.05)
+    side.box((0.28, -0.1), (0.56, 0.2), 0.42, round_=0.08)
+    side.box((0.34, 0.2), (0.5, 0.31), 0.48, round_=0.05)
     for sheet, size, width in (
         (screen, (1.3, 0.75), 0.05), (rear, (1.2, 0.6), 0.05), (side, (0.95, 0.4), 0.035),
     ):  # fmt: skip
         sheet.frame((0.0, 0.0), size, width, 0.004)
-    return texture_of(tones)
+    return texture_of(tones + _DUST * np.abs(fractal(source("panes"), 1.3, longest=60.0)))
 
 
 def freight() -> Texture:
@@ -334,10 +364,9 @@ def freight() -> Texture:
         cab.line([(0.1, y), (0.75, y)], 0.05, 0.3 * BASE)
     _dirt(cab, 0.8, 0.4)
     unit = sheet_of(tones, COOLER, (2.0, 1.6))
-    for x in (0.55, 1.45):  # fans
-        away = np.sqrt(np.square(unit.x - x) + np.square(unit.y - 0.8))
-        unit.tone[:] *= 1.0 - 0.85 * np.clip((0.36 - away) / unit.texel, 0.0, 1.0)
-        unit.box((x - 0.06, 0.74), (x + 0.06, 0.86), 0.5 * BASE)
+    for x in np.linspace(0.2, 1.8, 9):  # slats
+        unit.line([(float(x), 0.18), (float(x), 1.42)], 0.09, 0.2 * BASE)
+    unit.line([(0.1, 0.8), (1.9, 0.8)], 0.12, BASE)
     unit.frame((0.0, 0.0), (2.0, 1.6), 0.05, 0.5 * BASE)
     return texture_of(tones)
 

@@ -11,6 +11,7 @@ from eyas.world.cars.finishes import (
     CLOTH,
     GLASS,
     HEAD_LAMP,
+    PAINT,
     SKIN_WHITE,
     TAIL_LAMP,
     TRIM,
@@ -23,7 +24,7 @@ __all__ = ["LEAN_LIMIT", "SEAT", "Posture", "lamp", "two_wheeler"]
 LEAN_LIMIT = 0.2
 """Largest lean of two-wheelers in a curve [rad]; the original's limit of the yaw rate [rad/s]."""
 
-_TROUSERS = plain(0.20, 0.20, 0.22)
+_TROUSERS = plain(0.36, 0.40, 0.48)
 SEAT = plain(0.14, 0.12, 0.11)
 
 Point = tuple[float, float, float]
@@ -78,7 +79,7 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     sides, rows = ((4, 3), (5, 4), (7, 6))[detail]
     hip, chest, head = posture.hip, posture.chest, posture.head
     neck = tuple(0.55 * h + 0.45 * c for h, c in zip(head, chest, strict=True))
-    shell.tube([hip, chest, neck], (0.17, 0.2, 0.09), CLOTH, sides=sides + 1)
+    shell.tube([hip, chest, neck], (0.15, 0.18, 0.08), CLOTH, sides=sides + 1)
     size = posture.head_radius
     shell.ball(head, (size, 0.85 * size, size), SKIN_WHITE, rows=rows, sides=sides + 1)
     visor = (head[0] + 0.42 * size, 0.0, head[2] + 0.05 * size)
@@ -88,10 +89,10 @@ def _rider(shell: Shell, posture: Posture, detail: int) -> None:
     arm = [shoulder, posture.elbow, posture.hand]
     leg = [(hip[0] + 0.02, 0.1, hip[2] - 0.03), posture.knee, posture.foot]
     if detail == 0:
-        shell.tube(arm[::2], (0.08, 0.05), CLOTH, sides=3, both_sides=True)
+        shell.tube(arm[::2], (0.08, 0.05), PAINT, sides=3, both_sides=True)
         shell.tube(leg[1:], (0.1, 0.07), _TROUSERS, sides=3, both_sides=True)
         return
-    shell.tube(arm, (0.08, 0.065, 0.045), CLOTH, sides=sides - 1, both_sides=True)
+    shell.tube(arm, (0.08, 0.065, 0.045), PAINT, sides=sides - 1, both_sides=True)
     shell.tube(leg, (0.105, 0.085, 0.06), _TROUSERS, sides=sides - 1, both_sides=True)
     if detail == 2:
         x, y, z = posture.foot

@@ -20,8 +20,8 @@ _VARIANTS: Mapping[str, tuple[dict[str, Any], ...]] = {
         {"bodywork": "hatch_sunroof", "rack": True},
     ),
     "van": (
-        {"dark_bumpers": False},
-        {"bodywork": "van_worn"},
+        {"dark_bumpers": False, "rack": True},
+        {"bodywork": "van_worn", "rack": True},
     ),
 }
 """What each further body of a kind of bodywork has that the first has not."""

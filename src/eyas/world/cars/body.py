@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
-from eyas.world.build.bodywork import body_paint
+from eyas.world.build.bodywork import BODYWORK, body_paint
 from eyas.world.cars.bumpers import AHEAD, add_bumpers
 from eyas.world.cars.finishes import (
     GLASS,
@@ -47,13 +47,16 @@ class _Detail:
     arches: bool
 
 
-TRACK = 0.285
+TRACK = 0.225
 """Distance between the middles of two wheels less the width with mirrors [m]: their sides stand out
 from the body by half a centimetre, so that tyres are seen from above."""
 
 _LAMPS, _INDICATORS = 0.62, 0.74
 """Inner limits of the lamps at the ends, and of those beside the indicators, as shares of the half
 width."""
+
+_TALL = 0.78
+"""Inner limit of lamps beside a rear window, likewise."""
 
 _ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
 _LIT = (-1.0, -_INDICATORS, -_LAMPS, _LAMPS, _INDICATORS, 1.0)
@@ -92,9 +95,9 @@ def _body(frame: Frame, shape: CarShape, detail: _Detail, stations: NDArray[np.f
             quad = np.array([back, back * mirror, front * mirror, front])
             skin = _skin(frame, shape, detail, middle, rise, (6, 7))
             edge = pair[[0, 0, 1, 1], 5, 1]
-            if skin is PAINT:
+            if skin is PAINT or skin.texture in BODYWORK:
                 # The middle of the roof has no points here, nor have its seams.
-                shell.quads(quad, paint, uvs=wrap.top(quad, edge))
+                shell.quads(quad, paint if skin is PAINT else skin, uvs=wrap.top(quad, edge))
             else:
                 shell.quads(quad, skin)
     half = float(every[0, 3, 1]), float(every[-1, 3, 1])
@@ -145,6 +148,8 @@ def _panel(
     elif skin is PAINT:
         uvs = wrap.side(quad) if high <= 4 else wrap.top(quad, edge)
         shell.quads(quad, paint, uvs=uvs, both_sides=True)
+    elif skin.texture in BODYWORK:
+        shell.quads(quad, skin, uvs=wrap.top(quad, edge), both_sides=True)
     else:
         shell.quads(quad, skin, both_sides=True)
 
@@ -224,6 +229,8 @@ def _end(
         strip = detail.points[k : k + 2]
         lamps = strip == (3, 4)
         limits = detail.lamps if lamps else detail.columns
+        if strip[0] == 4 and shape.tail_window and len(limits) == 4:
+            limits = (-1.0, -_TALL, _TALL, 1.0)
         columns = np.array(limits)[:, None]
         low, high = (half[j] * np.ones((len(columns), 1)) for j in (k, k + 1))
         low[:, 1:2] *= columns

@@ -34,8 +34,10 @@ def plain(red: float, green: float, blue: float) -> Material:
 PAINT = Material(surface=Surface.PAINT)
 """The body colour."""
 
-BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
-"""A nearly black shade of the body colour."""
+BLACK_PAINT = Material(
+    texture="bodywork_hatch_sunroof", tint=(0.26, 0.26, 0.26), surface=Surface.PAINT
+)
+"""A nearly black shade of the body colour, with the seams of a roof."""
 
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 """Tinted windows."""
@@ -43,8 +45,10 @@ GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
 """Tinted windows with their frames, and what is behind them."""
 
-ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
-"""A glass roof."""
+ROOF_GLASS = Material(
+    texture="bodywork_saloon_sunroof", tint=(0.13, 0.14, 0.16), surface=Surface.GLASS
+)
+"""A glass roof, with the bars at its ends."""
 
 HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5)
 """Front lamps; they shine when the weather has lamps on."""

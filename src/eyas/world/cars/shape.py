@@ -29,7 +29,7 @@ __all__ = [
 Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
 
-_WIDE_OF_BODY = 0.04
+_WIDE_OF_BODY = 0.01
 """Distance by which the mirrors stand out from the body on each side [m]."""
 
 

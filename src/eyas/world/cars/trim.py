@@ -5,11 +5,10 @@ import numpy as np
 from eyas.core import exact
 from eyas.mesh.panels import box_panels
 from eyas.mesh.shell import Shell
-from eyas.world.build.bodywork import COOLER, PLAIN
+from eyas.world.build.bodywork import COOLER, PLAIN, body_paint
 from eyas.world.cars.bumpers import AHEAD
 from eyas.world.cars.finishes import (
     BRIGHT,
-    FREIGHT,
     GLASS,
     HIGH_BRAKE_LAMP,
     PAINT,
@@ -28,8 +27,8 @@ def add_trimmings(shell: Shell, frame: Frame, shape: CarShape) -> None:
     for start, end, top in shape.pods:
         under, over, *sides = box_panels((start, -0.8, top - 0.5), (end, 0.8, top), 0.06)
         corners = COOLER.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
-        shell.quads(over, FREIGHT, uvs=corners)
-        shell.quads([under, *sides], FREIGHT, uvs=[PLAIN] * 5)
+        shell.quads(over, body_paint("freight"), uvs=corners)
+        shell.quads([under, *sides], body_paint("freight"), uvs=[PLAIN] * 5)
     _plates(shell, shape)
     x = shape.rear_window[1]
     z = height_at(shape.top, x)
@@ -43,11 +42,11 @@ def _mirrors(shell: Shell, frame: Frame, shape: CarShape) -> None:
     half = frame.width / 2
     x = shape.windscreen[1] - 0.42
     z = height_at(shape.belt, x)
-    low, high = (x - 0.06, half - 0.2, z + 0.02), (x + 0.08, half, z + 0.15)
+    low, high = (x - 0.06, half - 0.24, z + 0.01), (x + 0.13, half, z + 0.19)
     shell.box(low, high, PAINT, taper=0.015, both_sides=True)
-    y = half - 0.03, half - 0.17
+    y = half - 0.03, half - 0.21
     glass = [(x - 0.072, y[0], z + 0.035), (x - 0.072, y[1], z + 0.035),
-             (x - 0.06, y[1], z + 0.13), (x - 0.06, y[0], z + 0.13)]  # fmt: skip
+             (x - 0.06, y[1], z + 0.17), (x - 0.06, y[0], z + 0.17)]  # fmt: skip
     shell.quads(glass, GLASS, both_sides=True)
 
 
@@ -69,6 +68,12 @@ def _rack(shell: Shell, frame: Frame, shape: CarShape) -> None:
     lift = np.array([-0.02, 0.045, 0.045, 0.045, -0.02])
     path = edge + np.column_stack([0 * lift, 0 * lift + 0.015, lift])
     shell.tube(path, (0.022,) * 5, BRIGHT, sides=4, both_sides=True)
+    most = max(z for _, z in shape.top) + 0.027
+    for share in (0.3, 0.72):  # bars across
+        bar = start + share * (end - start)
+        y = float(np.interp(bar, path[:, 0], path[:, 1]))
+        z = height_at(shape.top, bar) + 0.008
+        shell.box((bar - 0.035, -y, z), (bar + 0.035, y, min(z + 0.03, most)), BRIGHT)
 
 
 def _arches(shell: Shell, frame: Frame, shape: CarShape) -> None:

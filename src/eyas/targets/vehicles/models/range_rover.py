@@ -19,6 +19,7 @@ _SHAPE = CarShape(
     roof=BLACK_PAINT,
     rails=BLACK_PAINT,
     sill=TRIM,
+    rack=True,
 )  # fmt: skip
 
 MODEL = car(
