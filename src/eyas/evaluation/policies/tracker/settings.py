@@ -51,7 +51,7 @@ class TrackerSettings(Config):
     """Least probability at which the memory of the target is renewed."""
     gate: Positive = 3.0
     """Largest distance of a place from the expected one, in standard deviations."""
-    straight: Positive = 40.0
+    straight: Positive = 45.0
     """How far a target is followed unseen, straight on; there it is waited for [m]."""
     gain: Share = 0.6
     """Share of the distance from the middle that an action makes up for."""
