@@ -189,8 +189,8 @@ def train(folder: Path, share: float, seed: int) -> None:
         return
     config = updated(load_settings(preset_file("eyas")), {"seed": seed})
     recipe = config.train.tracker
-    rounds = recipe.scaled_rounds(round(share * recipe.pictures))
-    config = updated(config, {"train": {"tracker": {"rounds": rounds}}})
+    changes = recipe.scaled(round(share * recipe.pictures))
+    config = updated(config, {"train": {"tracker": changes}})
     begun = (folder / "config.json").is_file()
     training.train(config, folder, resume=begun, say=partial(print, file=sys.stderr, flush=True))
 
