@@ -102,6 +102,10 @@ def teach_no_place(samples: Samples, *chosen: np.ndarray) -> tuple[np.ndarray, n
     return np.where(told[..., None], expected, middle), np.where(told, spread, np.float32(FLAT))
 
 
+def go_straight_on(tracker: Tracker, rows: np.ndarray) -> None:
+    """Leave targets that are not seen to the filter."""
+
+
 def hold(tracker: Tracker, rows: np.ndarray) -> None:
     """Expect what is not seen where it was seen last."""
     unseen = rows[~tracker.sees[rows]]
@@ -152,10 +156,16 @@ ROWS = {
         (
             (Samples, "_expected", teach_no_place),
             (Tracker, "_clue", tell_no_place),
+            (Tracker, "_go_on", go_straight_on),
             (Tracker, "_wait", hold),
             (flying, "_SURE_PIXELS", np.inf),
             (training, "TrackerSettings", partial(TrackerSettings, gate=1e3)),
         ),
+    ),
+    "no-course": Row(
+        "where drivers go: straight on while nothing is seen",
+        ((Tracker, "_go_on", go_straight_on),),
+        trained=False,
     ),
     "no-own-flights": Row("own flights: all are the oracle's", ((training, "_pupil", by_oracle),)),
     "no-deviation": Row(
@@ -189,8 +199,8 @@ def train(folder: Path, share: float, seed: int) -> None:
         return
     config = updated(load_settings(preset_file("eyas")), {"seed": seed})
     recipe = config.train.tracker
-    rounds = recipe.scaled_rounds(round(share * recipe.pictures))
-    config = updated(config, {"train": {"tracker": {"rounds": rounds}}})
+    changes = recipe.scaled(round(share * recipe.pictures))
+    config = updated(config, {"train": {"tracker": changes}})
     begun = (folder / "config.json").is_file()
     training.train(config, folder, resume=begun, say=partial(print, file=sys.stderr, flush=True))
 

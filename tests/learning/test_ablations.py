@@ -11,6 +11,7 @@ from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import Place
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.course import HORIZONS, Course
 from eyas.evaluation.policies.tracker.detector import Detector
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.tracker import Tracker
@@ -36,10 +37,11 @@ SIZE = 60, 80
 
 def test_the_documents_have_its_rows():
     page = (ROOT / "docs/following-one-target.md").read_text()
-    table = page.split("| taken away |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
-    assert [line.split("|")[1].strip() for line in table] == [
+    tables = [part.split("\n\n", 1)[0] for part in page.split("| taken away |")[1:]]
+    lines = [line for table in tables for line in table.splitlines()[2:]]
+    assert {line.split("|")[1].strip() for line in lines} == {
         row.says for row in TOOL.ROWS.values()
-    ]
+    }
 
 
 def taught(name):
@@ -147,3 +149,21 @@ def test_rows_are_made_once(tmp_path, monkeypatch, capsys):
     TOOL.main()
     assert capsys.readouterr().out.splitlines()[-3:] == table
     assert before == {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.jsonl")}
+
+
+@pytest.mark.parametrize("name", ["whole", "no-course"])
+def test_what_is_not_seen_goes_straight_on(name):
+    tracker, rows = open_policy("eyas", {}), np.arange(1)
+    tracker.motion, tracker.course = MotionFilter(1, 8.0), Course(1)
+    velocity = np.array(((6.0, 0.0),))
+    tracker.motion.begin(rows, np.zeros((1, 2)), velocity, 0.5, np.ones(1))
+    tracker.course.note(rows, np.zeros((1, 2)), velocity)
+    tracker.course.set_out(rows)
+    ahead = np.zeros((1, len(HORIZONS), 3), np.float32)
+    ahead[..., 1] = HORIZONS  # to the left
+    tracker.course.answer(rows, ahead)
+    tracker.course.pass_time(rows, np.ones(1))
+    with TOOL.changed(TOOL.ROWS[name]):
+        tracker._go_on(rows)
+    turned = name == "whole"
+    np.testing.assert_allclose(tracker.motion.velocity, ((6.0, 1.0 * turned),), atol=1e-6)

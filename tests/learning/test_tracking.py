@@ -17,12 +17,15 @@ from eyas.evaluation.episode import Place
 from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.policies.table import open_policy
+from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
 from eyas.evaluation.policies.tracker.detector import OUTPUTS
 from eyas.evaluation.policies.tracker.metadata import OBSERVED
 from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.evaluation.protocols import protocol_named
-from eyas.learning.tracking import flights
+from eyas.learning.tracking import driving, flights
+from eyas.learning.tracking.driving import driven
 from eyas.learning.tracking.export import export
+from eyas.learning.tracking.forecast import Forecast, taught_forecast
 from eyas.learning.tracking.lessons import loss_of, taught
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle, Pupil
@@ -84,7 +87,9 @@ def test_a_sample_keeps_place_and_picture_together():
 
 def test_the_file_answers_as_the_network(tmp_path):
     learner = network()
-    export(learner, ENV, TrackerSettings(gate=2.5), tmp_path / "policy.onnx")
+    forecast = Forecast()
+    forecast.mean.copy_(torch.arange(PAST))
+    export(learner, forecast, ENV, TrackerSettings(gate=2.5), tmp_path / "policy.onnx")
     sample = Samples(spots(), np.random.default_rng(2)).draw(2)
     picture = sample.picture.to(torch.uint8)
     known = (torch.arange(len(picture)) % 2).float()[:, None]
@@ -92,9 +97,10 @@ def test_the_file_answers_as_the_network(tmp_path):
     with torch.no_grad():
         features, answers = learner.see(picture)
         scores = learner.scores(features, answers, (sample.expected, spread, key, known))
-        wanted = scores, learner.places(answers), learner.keys_of(answers)
+        past = 9.0 * torch.randn(len(picture), PAST)
+        wanted = scores, learner.places(answers), learner.keys_of(answers), forecast(past)
     feed = {"image": picture, "expected": sample.expected, "spread": spread}
-    feed |= {"key": key, "known": known}
+    feed |= {"key": key, "known": known, "past": past}
     session = onnxruntime.InferenceSession(tmp_path / "policy.onnx")
     found = session.run(OUTPUTS, {name: part.numpy() for name, part in feed.items()})
     for one, other in zip(found, wanted, strict=True):
@@ -105,7 +111,7 @@ def test_the_file_answers_as_the_network(tmp_path):
 @pytest.fixture(scope="module")
 def policy(tmp_path_factory):
     path = tmp_path_factory.mktemp("tracker") / "policy.onnx"
-    export(network(), ENV, TrackerSettings(), path)
+    export(network(), Forecast(), ENV, TrackerSettings(), path)
     return path
 
 
@@ -146,8 +152,10 @@ class StoppedError(Exception):
 
 
 def trained(folder, lines=None, resume=False, **changes):
-    """Train on pictures that are there already; stop after some lines."""
+    """Train on pictures and a forecast that are there already; stop after some lines."""
     folder.mkdir(exist_ok=True)
+    torch.manual_seed(4)
+    torch.save(Forecast().state_dict(), folder / "forecast.pt")
     save(spots(), folder / "shots-000.npz")
     said = []
 
@@ -200,7 +208,8 @@ def test_what_would_change_nothing_is_refused(changes, why, tmp_path):
 def test_steps_are_pictures_in_lessons():
     tracker = load_settings(preset_file("eyas")).train.tracker
     assert tracker.pictures == 563_200
-    small = updated(tracker, {"rounds": tracker.scaled_rounds(12_800)})
+    small = updated(tracker, tracker.scaled(12_800))
+    assert (small.drives, small.drive_steps) == (1, 227)
     assert [(each.flights, each.steps) for each in small.rounds] == [
         (1, 23),
         (1, 20),
@@ -216,6 +225,8 @@ def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     """The command with short flights, those of later rounds by what earlier ones have taught."""
     monkeypatch.setattr(flights, "_STEPS", 400)
     monkeypatch.setattr(flights, "_FLIGHTS", 2)
+    monkeypatch.setattr(driving, "_LOOKS", 200)
+    monkeypatch.setattr(driving, "_LEAST", 150)
     out = tmp_path / "run"
     command = ["train", "--preset", "eyas", "--steps", "256", "--out", str(out)]
     size = ["--set", "env.observation.width=32", "--set", "env.observation.height=24"]
@@ -223,6 +234,7 @@ def test_eyas_train_teaches_a_tracker_from_nothing(tmp_path, monkeypatch):
     assert result.exit_code == 0, result.output
     said = result.stdout.splitlines()
     assert said[0] == "3 batches of 32 flights, 512 pictures in lessons"
+    assert "traffic 1 of 1: " in result.stdout
     assert "round 2: flights 3 of 3: " in result.stdout
     assert said[-1] == str(out / "policy.onnx")
     assert open_policy(said[-1], {}).env.observation.width == SIZE[1]
@@ -251,3 +263,38 @@ def test_batches_of_other_lengths_are_joined():
     joined = Shots.joined([spots(2, 8), spots(3, 5)])
     assert joined.picture.shape[:2] == (5, 8)
     assert joined.flown.sum() == 16 + 15
+
+
+@pytest.fixture(scope="module")
+def drives():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(driving, "_LOOKS", 260)
+        patch.setattr(driving, "_LEAST", 200)
+        return driven(ENV, 0, 0), driven(ENV, 0, 0)
+
+
+def test_what_drivers_do_repeats_and_is_of_this_world(drives):
+    one, other = drives
+    assert len(one.past) > 500
+    assert (one.past == other.past).all()
+    assert (one.ahead == other.ahead).all()
+    speed = one.past[:, 0]
+    assert 0.5 < speed.min()
+    assert 5.0 < np.median(speed) < 16.0
+    way = one.past[:, -2:]  # of two seconds
+    assert np.median(way[:, 0]) > 5.0 * np.median(np.abs(way[:, 1]))
+    near, far = (np.median(np.abs(one.ahead[:, k])) for k in (0, -1))
+    assert near < 1.0 < far
+
+
+def test_it_learns_where_drivers_go(drives):
+    torch.manual_seed(1)
+    learner = Forecast()
+    assert len(list(taught_forecast(learner, drives[0], 200, np.random.default_rng(1)))) == 10
+    with torch.no_grad():
+        said = learner(torch.from_numpy(drives[0].past)).numpy()
+    off = np.hypot(*np.moveaxis(said[..., :2] - drives[0].ahead, -1, 0))
+    straight = np.hypot(*np.moveaxis(drives[0].ahead, -1, 0))
+    assert (np.median(off, axis=0) < 0.8 * np.median(straight, axis=0)).all()
+    assert (np.diff(said[..., 2].mean(axis=0)) > 0.0).all()  # the later the less sure
+    assert said.shape[1] == len(HORIZONS)

@@ -143,18 +143,21 @@ class TrackerTraining(Config):
         """Pictures in all lessons, with those that come more than once."""
         return LESSON * sum(each.steps for each in self.rounds)
 
-    def scaled_rounds(self, total: int) -> list[dict[str, int]]:
-        """Return the rounds with `total` pictures in all lessons, each with its share of steps and
-        flights, at least 1 where there were any.
+    def scaled(self, total: int) -> dict[str, Any]:
+        """Return the changes with `total` pictures in all lessons: each round with its share of
+        steps and flights, at least 1 where there were any, and the traffic with its share.
         """
         factor = total / self.pictures
-        return [
+        rounds = [
             {
                 "flights": max(round(each.flights * factor), min(each.flights, 1)),
                 "steps": max(round(each.steps * factor), 1),
             }
             for each in self.rounds
         ]
+        drives = {name: getattr(self, name) for name in ("drives", "drive_steps")}
+        shares = {name: max(round(count * factor), 1) for name, count in drives.items()}
+        return {"rounds": rounds, **shares}
 
     @model_validator(mode="after")
     def _check_first(self) -> Self:
@@ -283,7 +286,7 @@ class TrainConfig(Config):
         if self.method is Method.WORDS:
             return {"words": {"blocks": self.words.scaled_blocks(total)}}
         if self.method is Method.TRACKER:
-            return {"tracker": {"rounds": self.tracker.scaled_rounds(total)}}
+            return {"tracker": self.tracker.scaled(total)}
         return {"stages": self.scaled_stages(total)}
 
     def scaled_stages(self, total: int) -> list[dict[str, Any]]:
