@@ -22,6 +22,7 @@ from eyas.lanes.vector import (
     gather_column,
     gather_pair,
     gather_pair_after,
+    gather_square,
     greater,
     lane,
     lane_numbers,
@@ -244,6 +245,27 @@ def test_gathers_fetch_what_indices_name():
     rows = [table.ravel()[index], table[index, 3], bytes_[index], halves[index + 1]]
     columns = [table[index, 2 + k] for k in range(8)]
     expected = np.array([*rows, *columns, halves[index + width + 1]], f4)
+    np.testing.assert_array_equal(wide, expected)
+    np.testing.assert_array_equal(single, expected)
+
+
+@kernel
+def squares(words, index, step, wide, single):
+    for at in range(0, len(index), WIDTH):
+        for k, found in enumerate(gather_square(words, load(index, at), step)):
+            store(wide, k * len(index) + at, found)
+    for at in range(len(index)):
+        for k, found in enumerate(gather_square(words, index[at], step)):
+            single[k, at] = found
+
+
+def test_squares_are_the_elements_after_each_other_and_a_step_on():
+    step = 11
+    words = RNG.integers(0, 2**32, COUNT + step + 1).astype(u4)
+    index = RNG.permutation(COUNT).astype(i4)
+    wide, single = np.zeros((4, COUNT), u4), np.zeros((4, COUNT), u4)
+    squares(words, index, step, wide, single)
+    expected = [words[index + after] for after in (0, 1, step, step + 1)]
     np.testing.assert_array_equal(wide, expected)
     np.testing.assert_array_equal(single, expected)
 

@@ -7,8 +7,6 @@ from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.rays import ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.radiance import sky_colour
-from eyas.render.kernels.surface.attributes import no_frame
-from eyas.render.kernels.surface.band import instance_frame
 from eyas.render.kernels.surface.shade import shade_point
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
 
@@ -26,18 +24,18 @@ def shade_pixel(band: Band, key: int, shade: int, row: int, column: int) -> int:
         row: Row in the band.
         column: Column of the picture.
     """
-    geometry, light, lit, rays = band.geometry, band.light, band.lit, rays_of(band.camera)
+    light, lit, rays = band.light, band.lit, rays_of(band.camera)
     line, across = rays.top + f4(row) + f4(0.5), f4(column) + f4(0.5)
     if key == i8(0):
         colour = sky_colour(light, lit, rays, line, across)
         red, green, blue = tone_bytes(light, lit.air.exposure, colour)
         return pack(red, green, blue)
     tag = tag_of(key)
-    which, frame, first = drawn_of(tag), no_frame(), i4(0)
+    which, first = drawn_of(tag), i4(0)
     if which >= 0:
-        frame, first = instance_frame(band, which), band.drawn[which, 0]
+        first = band.drawn[which, 0]
     colour = shade_point(
-        geometry, light, lit, i4(triangle_of(tag) + first), which >= 0, frame,
+        band, which, i4(triangle_of(tag) + first),
         (rays.eye.x, rays.eye.y, rays.eye.z), ray_of(rays, line, across),
         f4(1.0) / distance_inverse(key), rays.pixel, u4(shade),
     )  # fmt: skip

@@ -207,6 +207,20 @@ def test_texels_are_blended_between_their_centres_and_v_grows_upwards():
     assert colour(8, 0.9, 0.1) == [round(mean), round(mean), 0, 255]
 
 
+@pytest.mark.parametrize("level", range(9))
+def test_each_mip_level_is_the_mean_of_the_one_before_and_repeats(level):
+    image = np.random.default_rng(0).integers(0, 256, (256, 256, 4)).astype(np.uint8)
+    packed = packed_layers({"other": 255 - image, "this": image}, ["other", "this"])
+    side = 256 >> level
+    alpha = image[::-1, :, 3].reshape(side, 1 << level, side, 1 << level).mean(axis=(1, 3))
+    for row, column in ((0, 0), (side - 1, side - 1), (side // 2, side // 3), (side, -1)):
+        # Half-way between four centres: the last ones of a row and the first, and of a column.
+        u, v = np.float32((column + 1) / side), np.float32((row + 1) / side)
+        found = texel_at(packed, 1, np.int32(256 * level), False, u, v)[3]
+        rows, columns = np.add([0, 1], row) % side, np.add([0, 1], column) % side
+        assert found == pytest.approx(alpha[np.ix_(rows, columns)].mean(), abs=1.5)
+
+
 def test_a_level_of_detail_has_about_one_texel_in_a_pixel():
     for level in range(9):
         for factor in (0.8, 1.0, 1.3):

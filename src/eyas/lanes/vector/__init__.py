@@ -27,6 +27,7 @@ __all__ = [
     "gather_column",
     "gather_pair",
     "gather_pair_after",
+    "gather_square",
     "greater",
     "lane",
     "lane_numbers",
@@ -73,6 +74,7 @@ gather = Intrinsic(_MEMORY, "gather")
 gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")
 gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
+gather_square = Intrinsic(_MEMORY, "gather_square")
 load = Intrinsic(_MEMORY, "load")
 load_two = Intrinsic(_MEMORY, "load_two")
 load_words = Intrinsic(_MEMORY, "load_words")

@@ -11,10 +11,10 @@ from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_threads
 
 __all__ = [
-    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after", "load",
-    "load_two", "load_words", "load_words_two", "scatter", "store", "store_greater",
-    "store_largest", "store_triples", "store_triples_two", "store_where", "store_words",
-    "transposed",
+    "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after",
+    "gather_square", "load", "load_two", "load_words", "load_words_two", "scatter", "store",
+    "store_greater", "store_largest", "store_triples", "store_triples_two", "store_where",
+    "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -108,6 +108,45 @@ def gather_pair_after(typing_context, array, index, step):
             pointer = builder.bitcast(builder.gep(pointer, [step]), _I32.as_pointer())
             items.append(_load(builder, pointer, 2))
         return _collected(builder, result, items)
+
+    return result(array, index, step), generate
+
+
+def _two_of_each(builder: Any, pointers: list[ir.Value]) -> tuple[ir.Value, ir.Value]:
+    """Return the 32 bits at some places, and the 32 bits after them, as uint32."""
+    if len(pointers) == 1:
+        first = pointers[0]
+        return builder.load(first), builder.load(builder.gep(first, [_I64(1)]))
+    # Two lanes fill half a register, in the order that one shuffle puts right. They are moved as
+    # doubles, which LLVM loads straight into their place.
+    halves = []
+    for lanes in ((0, 1, 4, 5), (2, 3, 6, 7)):
+        value = ir.Constant(ir.VectorType(ir.DoubleType(), 4), ir.Undefined)
+        for k, lane in enumerate(lanes):
+            pointer = builder.bitcast(pointers[lane], ir.DoubleType().as_pointer())
+            value = builder.insert_element(value, _load(builder, pointer, 4), _I32(k))
+        halves.append(builder.bitcast(value, ir_type(U4, threads=False)))
+    order = [0, 2, 8, 10, 4, 6, 12, 14]
+    first = builder.shuffle_vector(*halves, _order_of(order))
+    return first, builder.shuffle_vector(*halves, _order_of([k + 1 for k in order]))
+
+
+@intrinsic
+def gather_square(typing_context, array, index, step):
+    """Return the elements at some indices of an array of uint32, those after them, and the same two
+    `step` elements on, one step for all lanes: half the loads of four `gather`.
+    """
+    result = types.UniTuple(_numbered(index, types.uint32), 4)
+
+    def generate(context, builder, sig, args):
+        step = context.cast(builder, args[2], sig.args[2], types.int64)
+        upper = [
+            _pointer(context, builder, array, args[0], at)
+            for at in _each(context, builder, index, args[1])
+        ]
+        lower = [builder.gep(pointer, [step]) for pointer in upper]
+        four = [*_two_of_each(builder, upper), *_two_of_each(builder, lower)]
+        return context.make_tuple(builder, result, four)
 
     return result(array, index, step), generate
 

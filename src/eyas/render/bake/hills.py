@@ -10,6 +10,7 @@ from eyas.render.bake.clouds import plan_directions
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.sky.fog import HAZE_END
 from eyas.render.kernels.sky.radiance import HILL_FARTHEST, HILL_TOP
+from eyas.render.kernels.surface.texture import LAST_TEXEL
 from eyas.render.pack.clusters import corners_of
 from eyas.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.state.lighting import Horizon
@@ -63,8 +64,8 @@ def far_ground(geometry: Geometry) -> NDArray[np.float64]:
     one, two = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     area = np.maximum(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], 0.0)
     share = np.bincount(geometry.material[:last], area, len(geometry.layer))
-    # The last texel is the mean of the texture.
-    packed = geometry.texture[geometry.layer, -1]
+    # The only texel of the last level is the mean of the texture.
+    packed = geometry.texture[geometry.layer, LAST_TEXEL]
     root = np.stack([packed & 255, packed >> 8 & 255, packed >> 16 & 255], axis=1) / 255.0
     mean: NDArray[np.float64] = exact.product(share, np.square(root) * geometry.tint) / max(
         share.sum(), 1e-9

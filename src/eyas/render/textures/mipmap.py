@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.errors import UnknownNameError
+from eyas.render.kernels.surface.texture import LEVELS, TEXELS, TEXELS_IN_ROW
 
 __all__ = ["SIDE", "linear", "packed_layers"]
 
@@ -50,14 +51,17 @@ def packed_layers(
 def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
     texels = image[::-1].astype(np.float64) / 255.0  # v grows upwards, rows grow downwards
     texels[..., :3] = _LINEAR[image[::-1, :, :3]]
-    levels = []
-    while True:
-        encoded = np.concatenate([np.sqrt(texels[..., :3]), texels[..., 3:]], axis=-1)
-        levels.append(np.round(encoded * 255.0).astype(np.uint32).reshape(-1, 4))
-        if len(texels) == 1:
-            break
-        texels = (texels[::2] + texels[1::2]) / 2
-        texels = (texels[:, ::2] + texels[:, 1::2]) / 2
     shifts = np.array([0, 8, 16, 24], np.uint32)
-    packed: NDArray[np.uint32] = np.bitwise_or.reduce(np.concatenate(levels) << shifts, axis=1)
-    return packed
+    sheet = np.zeros((TEXELS // TEXELS_IN_ROW, TEXELS_IN_ROW), np.uint32)
+    top, left = 0, 0
+    for level in range(LEVELS):
+        if level > 0:
+            texels = (texels[::2] + texels[1::2]) / 2
+            texels = (texels[:, ::2] + texels[:, 1::2]) / 2
+        encoded = np.concatenate([np.sqrt(texels[..., :3]), texels[..., 3:]], axis=-1)
+        packed = np.bitwise_or.reduce(np.round(encoded * 255.0).astype(np.uint32) << shifts, axis=2)
+        repeated = np.pad(packed, (0, 1), mode="wrap")
+        size = len(repeated)
+        sheet[top : top + size, left : left + size] = repeated
+        top, left = SIDE + 1, left + size if level > 0 else 0
+    return sheet.reshape(-1)

@@ -74,8 +74,8 @@ class Geometry(NamedTuple):
     tint: NDArray[np.float32]
     """Linear colour factor of each material, shape (., 3)."""
     texture: NDArray[np.uint32]
-    """Texels of each layer, all mip levels in a row, row 0 at v = 0: square roots of linear red,
-    green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""
+    """Texels of each layer, see `eyas.render.kernels.surface.texture`, row 0 at v = 0: square roots
+    of linear red, green, blue, and alpha, a byte each, the lowest byte first, shape (., TEXELS)."""
 
 
 class Movers(NamedTuple):

@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bit_pattern, like, magnitude, root, select, transposed
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.scalars import f4, i4
+from eyas.render.kernels.wind import sways
 
-__all__ = ["Attributes", "Frame", "attributes_of", "frame_of", "no_frame"]
+__all__ = ["Attributes", "Frame", "attributes_of", "instance_frame"]
 
 Vector = tuple[float, float, float]
 
@@ -79,7 +81,7 @@ def _linear(value: float) -> float:
 
 
 @kernel(inline=True)
-def frame_of(
+def _frame_of(
     poses: NDArray[np.float32],
     colours: NDArray[np.float32],
     lamps: NDArray[np.uint8],
@@ -105,10 +107,21 @@ def frame_of(
 
 
 @kernel(inline=True)
-def no_frame() -> Frame:
-    """Return what stands for the pose of the static mesh, and is not read."""
-    o, i = f4(0.0), f4(1.0)
-    return Frame(i, o, o, o, o, i, o, o, o, o, i, o, i, i, i, i, i4(0))
+def instance_frame(band: Band, row: int) -> Frame:
+    """Return an instance, a row of `Band.drawn`; fixtures have no colour and no such lamps.
+
+    Wherever some of it is needed, it is asked for anew. Kept from one place to the next, it would
+    be written to memory, and for the static mesh too, which has none.
+    """
+    geometry, movers, world = band.geometry, band.movers, band.world
+    instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
+    if instance >= fixtures:
+        colours, lamps = movers.colour[world], movers.lamps[world]
+        return _frame_of(movers.pose[world], colours, lamps, instance - fixtures)
+    colours, lamps = movers.colour[world, :0], movers.lamps[world, :0]
+    if sways(band.light, instance):
+        return _frame_of(band.leaning, colours, lamps, row)
+    return _frame_of(geometry.fixture_pose, colours, lamps, instance)
 
 
 @kernel(inline=True)
@@ -135,18 +148,16 @@ def _turned(frame: Frame, v: Vector) -> Vector:
 
 
 @kernel(inline=True)
-def attributes_of(
-    shading: NDArray[np.float32], triangle: int, point: Vector, moved: bool, frame: Frame
-) -> Attributes:
+def attributes_of(band: Band, row: int, triangle: int, point: Vector) -> Attributes:
     """Return what a triangle has at a world point [m].
 
     Args:
-        shading: See `eyas.render.pack.triangles.SHADING`.
-        triangle: Its row.
+        band: The band.
+        row: Its instance, a row of `Band.drawn`, or -1; the same for all lanes.
+        triangle: Its row in `Geometry.shading`.
         point: The point [m].
-        moved: Whether it belongs to an instance; one answer for all lanes.
-        frame: That instance's pose.
     """
+    shading, moved = band.geometry.shading, row >= 0
     x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, _COLUMNS)
     v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, _COLUMNS)
     kind, red, green, blue, emission, crown, building, nx_x = transposed(
@@ -154,7 +165,7 @@ def attributes_of(
     )
     own = point
     if moved:
-        own = _to_own(frame, point)
+        own = _to_own(instance_frame(band, row), point)
     x, y, z = own[0] - x0, own[1] - y0, own[2] - z0
     u, v = u0 + u_x * x + u_y * y + u_z * z, v0 + v_x * x + v_y * y + v_z * z
     bent = density < f4(0.0)
@@ -165,6 +176,7 @@ def attributes_of(
         nz += nz_x * x + nz_y * y + nz_z * z
     normal, density = (nx, ny, nz), magnitude(density)
     if moved:
+        frame = instance_frame(band, row)
         normal = _turned(frame, normal)
         density *= root(frame.shrink)
     if moved or any_of(bent):

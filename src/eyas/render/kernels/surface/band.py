@@ -37,30 +37,14 @@ from eyas.render.kernels.pixels import (
 from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
 from eyas.render.kernels.samples import owns_pixels
 from eyas.render.kernels.scalars import f4, i4, i8, u4
-from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
-from eyas.render.kernels.wind import sways
 
-__all__ = ["instance_frame", "shade_band"]
+__all__ = ["shade_band"]
 
 
 Colour = tuple[float, float, float]
 Four = tuple[int, int, int, int]
-
-
-@kernel(inline=True)
-def instance_frame(band: Band, row: int) -> Frame:
-    """Return an instance, a row of `Band.drawn`; fixtures have no colour and no such lamps."""
-    geometry, movers, world = band.geometry, band.movers, band.world
-    instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
-    if instance >= fixtures:
-        colours, lamps = movers.colour[world], movers.lamps[world]
-        return frame_of(movers.pose[world], colours, lamps, instance - fixtures)
-    colours, lamps = movers.colour[world, :0], movers.lamps[world, :0]
-    if sways(band.light, instance):
-        return frame_of(band.leaning, colours, lamps, row)
-    return frame_of(geometry.fixture_pose, colours, lamps, instance)
 
 
 @kernel(inline=False)
@@ -79,13 +63,10 @@ def _one_instance(
     A function of its own: inlined into the loops that call it, the hundred numbers that are the
     same for all points would be spread over lanes before each loop, kept in memory and read again.
     """
-    frame, first = no_frame(), i4(0)
+    first = i4(0)
     if row >= 0:
-        frame, first = instance_frame(band, row), band.drawn[row, 0]
-    return shade_point(
-        band.geometry, band.light, band.lit, triangle + first, row >= 0, frame, eye, ray, away,
-        pixel, shade,
-    )  # fmt: skip
+        first = band.drawn[row, 0]
+    return shade_point(band, row, triangle + first, eye, ray, away, pixel, shade)
 
 
 @kernel(inline=True)

@@ -22,8 +22,7 @@ from eyas.render.kernels.bundles import Band, Direction
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
 from eyas.render.kernels.rays import camera_axes, place_in_face, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
-from eyas.render.kernels.surface.attributes import attributes_of, no_frame
-from eyas.render.kernels.surface.band import instance_frame
+from eyas.render.kernels.surface.attributes import attributes_of
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
 
 __all__ = ["write_normals"]
@@ -42,13 +41,13 @@ def _byte(axis: Direction, normal: Vector, sign: float) -> int:
 @kernel(inline=False)
 def _of_instance(band: Band, row: int, triangle: int, ray: Vector, distance: float) -> int:
     """Return the packed normals of eight points of one instance, a row of `Band.drawn`."""
-    frame, first, rays = no_frame(), i4(0), rays_of(band.camera)
+    first, rays = i4(0), rays_of(band.camera)
     if row >= 0:
-        frame, first = instance_frame(band, row), band.drawn[row, 0]
+        first = band.drawn[row, 0]
     x, y, z = ray
     eye = rays.eye
     point = (eye.x + x * distance, eye.y + y * distance, eye.z + z * distance)
-    at = attributes_of(band.geometry.shading, triangle + first, point, row >= 0, frame)
+    at = attributes_of(band, row, triangle + first, point)
     # Leaves are seen from both sides, and smooth normals may turn away at outlines.
     away = at.normal[0] * x + at.normal[1] * y + at.normal[2] * z > f4(0.0)
     sign = select(away, f4(-1.0), f4(1.0))

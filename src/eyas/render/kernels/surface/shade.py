@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4, to_i4
-from eyas.render.kernels.bundles import Geometry, Illumination, Light
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.light.ambient import openness
 from eyas.render.kernels.light.lamps import night_light, window_light
 from eyas.render.kernels.light.sunlight import sunlight
@@ -13,7 +13,7 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.sky.fog import land_fog
 from eyas.render.kernels.sky.mist import aired
 from eyas.render.kernels.sky.radiance import blended, reflection
-from eyas.render.kernels.surface.attributes import Frame, attributes_of
+from eyas.render.kernels.surface.attributes import attributes_of, instance_frame
 from eyas.render.kernels.surface.litter import littered
 from eyas.render.kernels.surface.signalling import signalled
 from eyas.render.kernels.surface.snow import snowed
@@ -147,12 +147,9 @@ def _smoothness(surface: int, alpha: float) -> float:
 
 @kernel(inline=True)
 def shade_point(
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
+    band: Band,
+    row: int,
     triangle: int,
-    moved: bool,
-    frame: Frame,
     eye: Colour,
     ray: Colour,
     distance: float,
@@ -162,22 +159,20 @@ def shade_point(
     """Return the linear radiance of a point, air included.
 
     Args:
-        geometry: Everything that can be drawn.
-        light: Maps of light and lamps.
-        lit: Light and air of the view.
+        band: The band.
+        row: The fixture or part that it belongs to, a row of `Band.drawn`, or -1 for the static
+            mesh; the same for all lanes.
         triangle: Index of the triangle.
-        moved: Whether it belongs to a fixture or a part, not to the static mesh; one answer for
-            all lanes.
-        frame: Pose and colour of that.
         eye: Optical centre [m].
         ray: From the eye, of length 1 along the optical axis.
         distance: Along the optical axis [m].
         pixel: Angle that a pixel spans [rad].
         shade: Effect of moving things on its light, four bytes, see `Scratch.shade`.
     """
-    one, zero, byte, air = f4(1.0), f4(0.0), u4(255), lit.air
+    geometry, light, lit, air = band.geometry, band.light, band.lit, band.lit.air
+    one, zero, byte = f4(1.0), f4(0.0), u4(255)
     point = (eye[0] + ray[0] * distance, eye[1] + ray[1] * distance, eye[2] + ray[2] * distance)
-    at = attributes_of(geometry.shading, triangle, point, moved, frame)
+    at = attributes_of(band, row, triangle, point)
     normal, surface = at.normal, at.surface
     stretch = root(_dot(ray, ray))
     shrink = one / stretch
@@ -216,7 +211,8 @@ def shade_point(
         green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
         blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
     painted, wet = surface == PAINT, surface == WATER
-    if any_of(painted):
+    if row >= 0 and any_of(painted):
+        frame = instance_frame(band, row)
         red = select(painted, red * frame.red, red)
         green = select(painted, green * frame.green, green)
         blue = select(painted, blue * frame.blue, blue)
@@ -299,8 +295,10 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
-    if frame.lamps != i4(0):
-        red, green, blue = signalled((red, green, blue), surface, frame.lamps)
+    if row >= 0:
+        shining = instance_frame(band, row).lamps
+        if shining != i4(0):
+            red, green, blue = signalled((red, green, blue), surface, shining)
     if any_of(painted | wet | window | (surface == GLASS)):
         mirror = _smoothness(surface, alpha)
         if any_of(mirror > zero):

@@ -1,6 +1,8 @@
 """Textures: level of detail and smooth lookup.
 
-A layer holds 256 x 256 texels, then its mip levels down to one texel, in one row.
+A layer is a sheet of rows of `TEXELS_IN_ROW`: 256 x 256 texels, and below them its mip levels
+beside each other, down to one texel. After the last column and row of each level its first is
+repeated, so of four texels that are blended two always lie side by side, and two in the next row.
 """
 
 import numpy as np
@@ -10,7 +12,7 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import (
     any_of,
     bit_pattern,
-    gather,
+    gather_square,
     greater,
     lesser,
     like,
@@ -21,15 +23,34 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["colour_of", "detail_of", "first_texel", "fraction", "texel"]
+__all__ = [
+    "LAST_TEXEL",
+    "LEVELS",
+    "TEXELS",
+    "TEXELS_IN_ROW",
+    "colour_of",
+    "detail_of",
+    "first_texel",
+    "fraction",
+    "texel",
+]
 
-_LAYER = i4(87381)
-"""Texels of a layer with all its levels."""
+LEVELS = 9
+"""Mip levels of a layer."""
 
-_THIRD = i4(-1431655765)
-"""Inverse of 3 for numbers of 32 bits: a product with it is exact where nothing is left over."""
+TEXELS_IN_ROW = sum((1 << bits) + 1 for bits in range(LEVELS - 1))
+"""Texels in a row of a layer: levels 1 to 8 lie beside each other."""
 
-_COARSEST = i4(8)
+TEXELS = TEXELS_IN_ROW * (257 + 129)
+"""Texels of a layer: the rows of level 0, and below them those of level 1."""
+
+_ROW, _LAYER, _COARSEST = i4(TEXELS_IN_ROW), i4(TEXELS), i4(LEVELS - 1)
+
+_BELOW = i4(257 * TEXELS_IN_ROW)
+"""Index of the first texel of level 1."""
+
+LAST_TEXEL = 258 * TEXELS_IN_ROW - 2
+"""Index of the only texel of the last level, which with its repetition ends level 1's first row."""
 
 _ONE = i4(0x3F800000)
 """The bits of 1.0."""
@@ -54,10 +75,13 @@ def fraction(x: float) -> float:
 
 
 @kernel(inline=True)
-def first_texel(level: int) -> int:
-    """Return the first texel of a level: 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3."""
-    above = i4(262144) - (like(level, i4(262144)) >> (level + level))
-    return to_i4(above * _THIRD)
+def first_texel(level: int, side: int) -> int:
+    """Return the index in a layer of the first texel of a level with so many texels along a side.
+
+    Left of it lie 129 + 65 + ... = 255 - 2 side + level columns; for level 0 that is negative.
+    """
+    left = to_i4(greater(level - side - side + i4(255), i4(0)))
+    return left + select(level > i4(0), like(level, _BELOW), i4(0))
 
 
 @kernel(inline=True)
@@ -115,12 +139,9 @@ def _of_level(
     across = to_u4(to_i4((x - to_f4(column)) * f4(256.0)))
     down = to_u4(to_i4((y - to_f4(row)) * f4(256.0)))
     mask = side - i4(1)
-    first = first_texel(level) + layer * _LAYER
-    upper = first + ((row & mask) << bits)
-    lower = first + (((row + i4(1)) & mask) << bits)
-    left, right = column & mask, (column + i4(1)) & mask
-    a, b = gather(textures, upper + left), gather(textures, upper + right)
-    c, d = gather(textures, lower + left), gather(textures, lower + right)
+    first = first_texel(level, side) + layer * _LAYER
+    at = to_i4(first + (row & mask) * _ROW + (column & mask))
+    a, b, c, d = gather_square(textures, at, TEXELS_IN_ROW)
     even, eight = u4(0x00FF00FF), u4(8)
     both = to_u4((across * down) >> eight)
     w01, w10 = across - both, down - both

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather, to_i4, whole
 from eyas.render.kernels.scalars import i4, i8
+from eyas.render.kernels.surface.texture import TEXELS_IN_ROW, first_texel
 
 __all__ = ["Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
 
@@ -19,7 +20,7 @@ _BITS = 8
 
 
 class Holes(NamedTuple):
-    """A mip level of a texture; the levels of a layer lie in a row, see `Geometry.texture`."""
+    """A mip level of a texture; see `eyas.render.kernels.surface.texture`."""
 
     texture: NDArray[np.uint32]
     first: int
@@ -39,10 +40,9 @@ def no_holes(texture: NDArray[np.uint32]) -> Holes:
 @kernel(inline=True)
 def holes_of(texture: NDArray[np.uint32], layer: int, level: int) -> Holes:
     """Return the holes of a layer at a mip level, below 8."""
-    # 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3
-    before = (262144 - (262144 >> (2 * level))) // 3
-    first = i8(layer * texture.shape[1] + before)
-    return Holes(texture, first, i8(level), float(1 << (_BITS - level)))
+    side = 1 << (_BITS - level)
+    first = i8(layer * texture.shape[1] + first_texel(i4(level), i4(side)))
+    return Holes(texture, first, i8(level), float(side))
 
 
 @kernel(inline=True)
@@ -61,5 +61,5 @@ def has_leaf(holes: Holes, u: float, v: float) -> bool:
     bits = _BITS - holes.level
     last = i4((1 << bits) - 1)
     column, row = to_i4(whole(u)) & last, to_i4(whole(v)) & last
-    at = (row << i4(bits)) + column + i4(holes.first)
+    at = to_i4(row * i4(TEXELS_IN_ROW) + column + i4(holes.first))
     return to_i4(gather(holes.texture, at)) < i4(0)  # alpha, the highest byte, above 127
