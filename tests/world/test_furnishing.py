@@ -125,5 +125,5 @@ def test_car_bodies_face_outwards():
             corners = mesh.positions[mesh.triangles].astype(float)
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
             high = corners[..., 2].mean(axis=1) > 1.3
-            assert face[high & (face[:, 2] < 0), 2].sum() / 2 > -0.5  # small parts only, such as a rack's bars
+            assert face[high & (face[:, 2] < 0), 2].sum() / 2 > -0.5  # small parts, a rack's bars
             assert face[face[:, 2] > 0, 2].sum() / 2 > 3.0  # what is seen from above
