@@ -74,7 +74,7 @@ def test_the_air_veils_what_lies_at_a_distance_as_one_over_the_visibility_says()
     far = (np.abs(seen[0] - air)[..., 1] > 0.2) & np.isfinite(distance)
     assert far.sum(axis=(1, 2)).min() > 1000
     over = left / np.exp(-distance / 40.0)
-    assert np.mean([np.median(over[k][far[k]]) for k in range(count)]) == pytest.approx(1, abs=0.1)
+    assert np.mean([np.median(over[k][far[k]]) for k in range(count)]) == pytest.approx(1, abs=0.03)
 
 
 def radiance(rgb):
