@@ -23,6 +23,13 @@ _SHOWN = 0.6
 _UNKNOWN = 0.15
 """Share of the pictures without any key."""
 
+_IMPOSTORS = 0.35
+"""Share of the pictures with a key and a wide expectation that get another target's key instead:
+theirs is not seen. Else places are enough to be right, and keys would tell little."""
+
+_WIDE = 8.0
+"""Least standard deviation of such an expectation [pixels]."""
+
 _PLACE = 0.3
 """Weight of the place within a cell."""
 
@@ -66,9 +73,12 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     cell = row.clamp(0, height - 1) * width + column.clamp(0, width - 1)
     rows = torch.arange(len(cell))
     key, known = _keys(network.keys_of(answers)[rows, cell], sample.seen, rng)
+    other = _impostors(sample, known, rng)
+    key = torch.where(other[:, None], key.roll(GROUP, 0), key)
     clue = sample.expected, sample.spread[:, None], key, known
     chance = torch.log_softmax(network.scores(features, answers, clue), 1)
-    label = torch.where(sample.seen, cell, height * width)
+    shown = sample.seen & ~other
+    label = torch.where(shown, cell, height * width)
     clear = (~sample.unclear).float()
     cells = -(chance[rows, label] * clear).sum() / clear.sum()
     places = network.places(answers)[rows, cell]
@@ -78,7 +88,7 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     best = chance.argmax(1)
     cells_of = network.cells[best.clamp(max=height * width - 1)]
     near = (cells_of - sample.place).abs().amax(1) <= 1.5 * STRIDE
-    right = torch.where(sample.seen, (best < height * width) & near, best == height * width)
+    right = torch.where(shown, (best < height * width) & near, best == height * width)
     total = cells + _PLACE * wrong.sum() / sample.seen.sum().clamp(min=1)
     return Loss(total, cells, right, off.sqrt())
 
@@ -114,6 +124,15 @@ def taught(
             cells, right = np.mean(recent, axis=0)
             yield Progress(step + 1, float(cells), float(right))
             recent.clear()
+
+
+def _impostors(sample: Sample, known: Tensor, rng: np.random.Generator) -> Tensor:
+    """Return in which pictures the key of the next group's target takes the place of their own's,
+    shape (B,).
+    """
+    chosen = torch.from_numpy(rng.random(len(known)) < _IMPOSTORS)
+    both = (known * known.roll(GROUP, 0))[:, 0] > 0.0
+    return chosen & both & (sample.spread > _WIDE)
 
 
 def _keys(keys: Tensor, seen: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
