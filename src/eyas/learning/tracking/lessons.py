@@ -23,11 +23,11 @@ _SHOWN = 0.6
 _UNKNOWN = 0.15
 """Share of the pictures without any key."""
 
-_IMPOSTORS = 0.35
+_IMPOSTORS = 0.5
 """Share of the pictures with a key and a wide expectation that get another target's key instead:
 theirs is not seen. Else places are enough to be right, and keys would tell little."""
 
-_WIDE = 8.0
+_WIDE = 5.0
 """Least standard deviation of such an expectation [pixels]."""
 
 _PLACE = 0.3
@@ -73,8 +73,9 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     cell = row.clamp(0, height - 1) * width + column.clamp(0, width - 1)
     rows = torch.arange(len(cell))
     key, known = _keys(network.keys_of(answers)[rows, cell], sample.seen, rng)
-    other = _impostors(sample, known, rng)
-    key = torch.where(other[:, None], key.roll(GROUP, 0), key)
+    next_group = _as_light(sample.picture)
+    other = _impostors(sample.spread, known, next_group, rng)
+    key = torch.where(other[:, None], key[next_group], key)
     clue = sample.expected, sample.spread[:, None], key, known
     chance = torch.log_softmax(network.scores(features, answers, clue), 1)
     shown = sample.seen & ~other
@@ -126,13 +127,21 @@ def taught(
             recent.clear()
 
 
-def _impostors(sample: Sample, known: Tensor, rng: np.random.Generator) -> Tensor:
-    """Return in which pictures the key of the next group's target takes the place of their own's,
-    shape (B,).
+def _as_light(picture: Tensor) -> Tensor:
+    """Return for each picture one of another group that is about as light, shape (B,): by night no
+    key looks like one of the day.
     """
+    order = picture.view(len(picture) // GROUP, -1).mean(1).argsort()
+    group = torch.empty_like(order)
+    group[order] = order.roll(1)
+    return (group[:, None] * GROUP + torch.arange(GROUP)).view(-1)
+
+
+def _impostors(spread: Tensor, known: Tensor, others: Tensor, rng: np.random.Generator) -> Tensor:
+    """Return which pictures get the key of another instead of their own, shape (B,)."""
     chosen = torch.from_numpy(rng.random(len(known)) < _IMPOSTORS)
-    both = (known * known.roll(GROUP, 0))[:, 0] > 0.0
-    return chosen & both & (sample.spread > _WIDE)
+    both = (known * known[others])[:, 0] > 0.0
+    return chosen & both & (spread > _WIDE)
 
 
 def _keys(keys: Tensor, seen: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:

@@ -27,7 +27,7 @@ _HARD = 0.5
 _AROUND = 7
 """Farthest second picture of such a group [pictures]."""
 
-_OWN = 0.7
+_OWN = 0.55
 """Share of the pictures with a place that a tracker expected for which it is taken."""
 
 _SPREADS = 0.6, 30.0
