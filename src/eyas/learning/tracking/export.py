@@ -8,15 +8,16 @@ from onnx import TensorProto, helper
 
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
+from eyas.evaluation.policies.tracker.detector import STRIDE
 from eyas.evaluation.policies.tracker.metadata import TRACKER
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 from eyas.learning.export import Graph, write_model
 from eyas.learning.tracking.forecast import FARTHEST, Forecast
 from eyas.learning.tracking.network import (
-    ALIKE,
     CELL,
     MEAN,
     OFFSET,
+    PATCH,
     SPREAD,
     SURE,
     UNSURE,
@@ -48,11 +49,12 @@ def export(
     answers = graph.convolution("answers", features, network.head)
     rows = [
         _by_cell(graph, value, (cells, n))
-        for value, n in ((features, network.width), (answers, 4 + 2 * keys))
+        for value, n in ((features, network.width), (answers, 4 + keys))
     ]
-    parts = ["objectness", "offset", "sureness", "query", "keys"]
-    sizes = graph.weight("parts", np.array([1, 2, 1, keys, keys]))
+    parts = ["objectness", "offset", "sureness", "keys.seen"]
+    sizes = graph.weight("parts", np.array([1, 2, 1, keys]))
     graph.nodes.append(helper.make_node("Split", [rows[1], sizes], parts, axis=2))
+    _keys(graph, network)
     _places(graph, network)
     _scores(graph, network, rows[0])
     _ahead(graph, forecast)
@@ -111,6 +113,23 @@ def _by_cell(graph: Graph, source: str, shape: tuple[int, int]) -> str:
     )
 
 
+def _keys(graph: Graph, network: DetectorNetwork) -> None:
+    """Add the output `keys`."""
+    side = (PATCH - STRIDE) // 2
+    around = graph.node(
+        "AveragePool",
+        ["image.scaled"],
+        "around",
+        kernel_shape=[PATCH, PATCH],
+        strides=[STRIDE, STRIDE],
+        pads=[side] * 4,
+        count_include_pad=1,
+    )
+    colour = graph.convolution("colour", around, network.colour)
+    colours = _by_cell(graph, colour, (len(network.cells), network.keys))
+    graph.node("Add", ["keys.seen", colours], "keys")
+
+
 def _places(graph: Graph, network: DetectorNetwork) -> None:
     """Add the output `places`."""
     cells = graph.weight("cells", network.cells[None])
@@ -124,16 +143,22 @@ def _places(graph: Graph, network: DetectorNetwork) -> None:
 def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
     """Add the output `scores`."""
     cells = len(network.cells)
-    key = graph.node("Mul", ["key", "known"], "key.known")
-    key = graph.node("Unsqueeze", [key, graph.weight("last", np.array([2]))], "key.column")
-    alike = graph.node("MatMul", ["query", key], "alike.product")
-    alike = graph.node("Mul", [alike, graph.number("alike.scale", ALIKE)], "alike")
+    worth, loss = network.alike.detach()
+    row = graph.node("Unsqueeze", ["key", graph.weight("middle", np.array([1]))], "key.row")
+    apart = graph.node("Sub", ["keys", row], "keys.apart")
+    apart = graph.node("Mul", [apart, apart], "keys.apart.square")
+    axis = graph.weight("last", np.array([2]))
+    apart = graph.node("ReduceSum", [apart, axis], "keys.distance", keepdims=1)
+    lost = graph.node("Mul", [apart, graph.number("alike.loss", float(loss.exp()))], "alike.lost")
+    alike = graph.node("Sub", [graph.number("alike.worth", float(worth)), lost], "alike.known")
+    known = graph.node("Unsqueeze", ["known", axis], "known.column")
+    alike = graph.node("Mul", [alike, known], "alike")
     looks = graph.node("Add", ["objectness", alike], "looks")
     flat = graph.weight("flat", np.array([0, cells]))
     looks = graph.node("Reshape", [looks, flat], "looks.flat")
     prior = _prior(graph)
     share = graph.node("Softmax", [prior], "share", axis=1)
-    share = graph.node("Unsqueeze", [share, graph.weight("middle", np.array([1]))], "share.row")
+    share = graph.node("Unsqueeze", [share, "middle"], "share.row")
     near = graph.node("MatMul", [share, features], "near.row")
     wide = graph.weight("near.shape", np.array([0, network.width]))
     near = graph.node("Reshape", [near, wide], "near")
