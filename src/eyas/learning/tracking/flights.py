@@ -44,6 +44,12 @@ _WALKING = 0.2
 _ALIKE = 0.15
 """Share of the batches in which all vehicles look like the target."""
 
+_HIDING = 0.5
+"""Share of a pupil's batches on maps with covers in which drivers hide."""
+
+_COVERED = "citystreet", "village"
+"""Maps for which traffic with such drivers comes with Eyas."""
+
 _LATENCIES = ("0", "0", "40", "80")
 """Of a pupil [ms]."""
 
@@ -55,6 +61,7 @@ _TRAFFIC: tuple[dict[str, Any], ...] = (
     {"demand": "respawn", "group_size": 40},
     {"demand": "keep_alive"},
 )
+_HIDDEN = {"demand": "keep_alive", "drivers": "hiding"}
 
 
 def flown(
@@ -70,18 +77,23 @@ def flown(
     for number in batches:
         rng = stream(seed, "tracking flights", number)
         pilot = make(rng)
-        protocol = protocol_of_batch(rng, varied=isinstance(pilot, Oracle))
-        late = "0" if isinstance(pilot, Oracle) else str(rng.choice(_LATENCIES))
+        pupil = isinstance(pilot, Pupil)
+        hides = pupil and _TURN[number % len(_TURN)] in _COVERED and rng.random() < _HIDING
+        protocol = protocol_of_batch(rng, varied=not pupil, hides=bool(hides))
+        late = str(rng.choice(_LATENCIES)) if pupil else "0"
         flight = BatchFlight(_episodes(rng, number), protocol, pilot, delay_from(late))
         for _ in flight.fly():
             pass
         yield Shots.of(pilot.shots)
 
 
-def protocol_of_batch(rng: np.random.Generator, *, varied: bool) -> Protocol:
-    """Return the settings of a batch; `varied`: with other heights and pitches."""
+def protocol_of_batch(rng: np.random.Generator, *, varied: bool, hides: bool = False) -> Protocol:
+    """Return the settings of a batch; `varied`: with other heights and pitches; `hides`: with
+    drivers who hide.
+    """
+    traffic = _TRAFFIC[rng.integers(len(_TRAFFIC))]
     changes: dict[str, Any] = {
-        "traffic": _TRAFFIC[rng.integers(len(_TRAFFIC))],
+        "traffic": _HIDDEN if hides else traffic,
         "done": {"total_steps": _STEPS},
         "light": {"sun": {"uniform": [-0.3, 0.3]}},
     }

@@ -19,8 +19,12 @@ PERIOD = 0.128
 _FORGETS = 1.5
 """Time constant of the oracle's disturbance [s]."""
 
-_LOST, _PATIENCE = 3.0, 1.5
-"""A pupil is lost whose filter is off by more than this [m] for longer than this [s]."""
+_LOST, _PATIENCE = 3.0, (1.5, 10.0)
+"""A pupil is lost whose filter is off by more than this [m] for longer than this [s]: soon, to see
+more of its target, or late, to wait for it among others."""
+
+_PATIENT = 0.3
+"""Share of those who are found late."""
 
 _AT_RANDOM = 0.01
 """Share of the looks at which a pupil is corrected, lost or not."""
@@ -84,6 +88,7 @@ class Pupil:
         self._tracker.begin(start)
         count = len(start.seeds)
         self._lost = np.zeros(count)
+        self._patience = np.where(self._rng.random(count) < _PATIENT, *_PATIENCE[::-1])
         self._next = 0.0
 
     def act(self, sight: PolicyInput) -> Decision:
@@ -103,7 +108,7 @@ class Pupil:
         away = motion.place - targets.centre[:, :2]
         off = np.asarray(exact.hypot(away[:, 0], away[:, 1]))
         self._lost = np.where(off > _LOST, self._lost + PERIOD, 0.0)
-        back = (self._lost > _PATIENCE) | (self._rng.random(len(off)) < _AT_RANDOM)
+        back = (self._lost > self._patience) | (self._rng.random(len(off)) < _AT_RANDOM)
         rows = np.flatnonzero(back & sight.deciding)
         self._lost[rows] = 0.0
         wrong = self._rng.uniform(0.2, 2.0)
