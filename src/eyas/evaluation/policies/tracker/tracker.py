@@ -41,7 +41,7 @@ _NO_BOX = Failure(
     None,
 )
 
-_LEAST_RENEWAL = 0.02
+_LEAST_RENEWAL = 0.001
 """Share of the latest look in the memory of how the target looks, after many looks."""
 
 _SURE_PIXELS = 8.0
