@@ -33,6 +33,9 @@ _WIDE = 5.0
 _PLACE = 0.3
 """Weight of the place within a cell."""
 
+_APART = 0.3
+"""Weight of whose key it is among those of all groups."""
+
 _WARM_UP = 200
 """Steps in which the rate of learning rises, at most a quarter of all."""
 
@@ -72,7 +75,9 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     column, row = (sample.place / STRIDE).long().unbind(1)
     cell = row.clamp(0, height - 1) * width + column.clamp(0, width - 1)
     rows = torch.arange(len(cell))
-    key, known = _keys(network.keys_of(answers)[rows, cell], sample.seen, rng)
+    own = network.keys_of(answers)[rows, cell]
+    key, known = _keys(own, sample.seen, rng)
+    told_apart = _told_apart(network, own, (key, known), sample.seen)
     next_group = _as_light(sample.picture)
     other = _impostors(sample.spread, known, next_group, rng)
     key = torch.where(other[:, None], key[next_group], key)
@@ -90,7 +95,7 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     cells_of = network.cells[best.clamp(max=height * width - 1)]
     near = (cells_of - sample.place).abs().amax(1) <= 1.5 * STRIDE
     right = torch.where(shown, (best < height * width) & near, best == height * width)
-    total = cells + _PLACE * wrong.sum() / sample.seen.sum().clamp(min=1)
+    total = cells + _PLACE * wrong.sum() / sample.seen.sum().clamp(min=1) + _APART * told_apart
     return Loss(total, cells, right, off.sqrt())
 
 
@@ -142,6 +147,25 @@ def _impostors(spread: Tensor, known: Tensor, others: Tensor, rng: np.random.Gen
     chosen = torch.from_numpy(rng.random(len(known)) < _IMPOSTORS)
     both = (known * known[others])[:, 0] > 0.0
     return chosen & both & (spread > _WIDE)
+
+
+def _told_apart(
+    network: DetectorNetwork, own: Tensor, given: tuple[Tensor, Tensor], seen: Tensor
+) -> Tensor:
+    """Return the cross entropy of the group to which each seen key belongs, by how far it is from
+    the keys of all groups.
+    """
+    key, known = given
+    groups, number = len(own) // GROUP, torch.arange(len(own))
+    others = key.view(groups, GROUP, -1)[:, 0]
+    apart = (own[:, None] - others[None]).square().sum(-1)
+    mine = (own - key).square().sum(-1)
+    here = torch.nn.functional.one_hot(number // GROUP, groups).bool()
+    apart = torch.where(here, mine[:, None], apart)
+    none = (known.view(groups, GROUP)[:, 0] == 0.0)[None] & ~here
+    chance = torch.log_softmax((-network.alike[1].exp() * apart).masked_fill(none, -1e9), 1)
+    counts = (known[:, 0] * seen).float()
+    return -(chance[number, number // GROUP] * counts).sum() / counts.sum().clamp(min=1.0)
 
 
 def _keys(keys: Tensor, seen: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
