@@ -125,10 +125,10 @@ class TrackerTraining(Config):
     """How a tracker is taught."""
 
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
-        Round(flights=18, steps=1000),
-        Round(flights=12, steps=900),
-        Round(flights=9, steps=900),
-        Round(flights=0, steps=1600),
+        Round(flights=24, steps=1200),
+        Round(flights=20, steps=1200),
+        Round(flights=20, steps=1500),
+        Round(flights=0, steps=4500),
     )
     """Flights and lessons; the first round needs flights."""
     drives: Annotated[int, Field(ge=1, le=100_000)] = 45
