@@ -22,7 +22,7 @@ from eyas.evaluation.policies.tracker.detector import OUTPUTS
 from eyas.evaluation.policies.tracker.metadata import OBSERVED
 from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.evaluation.protocols import protocol_named
-from eyas.learning.tracking import driving, flights
+from eyas.learning.tracking import driving, flights, lessons, samples
 from eyas.learning.tracking.driving import driven
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.forecast import Forecast, taught_forecast
@@ -50,15 +50,16 @@ def network():
     return DetectorNetwork(SIZE, width=16, keys=8)
 
 
-def spots(count=12, times=8):
-    """Pictures with one white spot, which is the target, or none."""
+def spots(count=12, times=8, colour=(250, 250, 250)):
+    """Pictures with one spot, which is the target, or none."""
     rng = np.random.default_rng(5)
     picture = rng.integers(0, 60, (count, times, 3, *SIZE)).astype(np.uint8)
     place = rng.uniform(2.0, (SIZE[1] - 2, SIZE[0] - 2), (count, times, 2)).astype(np.float32)
     share = (rng.random((count, times)) < 0.7).astype(np.float32)
     for flight, time in np.argwhere(share > 0):
         column, row = place[flight, time].astype(int)
-        picture[flight, time, :, row - 1 : row + 2, column - 1 : column + 2] = 250
+        spot = picture[flight, time, :, row - 1 : row + 2, column - 1 : column + 2]
+        spot[:] = np.array(colour)[:, None, None]
     nan = np.full_like(place, np.nan)
     return Shots(picture, place, share, nan, nan[..., 0], np.ones_like(share, bool))
 
@@ -73,6 +74,46 @@ def test_it_learns_to_find_spots():
             loss_of(each, sample, np.random.default_rng(0)) for each in (network(), learner)
         )
     assert after.cells < 0.7 * before.cells
+
+
+def test_it_learns_whose_key_it_is(monkeypatch):
+    """Spots of two colours, anywhere: with the key of one colour those of the other are not seen,
+    which lessons without keys of others do not teach.
+    """
+    colours = (250, 40, 40), (40, 40, 250)
+    shots = [spots(colour=colour) for colour in colours]
+    monkeypatch.setattr(samples.Samples, "_changed", unchanged)
+    margin = {}
+    for impostors, apart in ((lessons._IMPOSTORS, lessons._APART), (0.0, 0.0)):
+        monkeypatch.setattr(lessons, "_IMPOSTORS", impostors)
+        monkeypatch.setattr(lessons, "_APART", apart)
+        learner, rng = network(), np.random.default_rng(7)
+        list(taught(learner, Samples(Shots.joined(shots), rng), 60, 8e-3, rng))
+        seen = [Samples(each, np.random.default_rng(9)).draw(8) for each in shots]
+        margin[impostors > 0] = np.mean([by_key(learner, *pair) for pair in (seen, seen[::-1])])
+    assert margin[True] > 0.25 > 2.0 * abs(margin[False])
+
+
+def unchanged(_, picture):
+    return picture, np.zeros((len(picture), 2), bool)
+
+
+def by_key(learner, one, other):
+    """Return by how much likelier targets are thought seen with keys of theirs than of others."""
+    with torch.no_grad():
+        keys = []
+        for each in (one, other):
+            answers = learner.see(each.picture)[1]
+            cell = (each.place / 4).long().clamp(min=0)
+            cell = cell[:, 1].clamp(max=5) * (SIZE[1] // 4) + cell[:, 0].clamp(max=7)
+            keys.append(learner.keys_of(answers)[torch.arange(len(cell)), cell][each.seen].mean(0))
+        features, answers = learner.see(one.picture)
+        many, wide = torch.ones(len(one.place), 1), torch.full((len(one.place), 1), 20.0)
+        own, others = (
+            learner.scores(features, answers, (one.place, wide, key * many, many)) for key in keys
+        )
+        unseen = [torch.softmax(each, 1)[:, -1][one.seen].mean() for each in (own, others)]
+    return float(unseen[1] - unseen[0])
 
 
 def test_a_sample_keeps_place_and_picture_together():
@@ -207,14 +248,14 @@ def test_what_would_change_nothing_is_refused(changes, why, tmp_path):
 
 def test_steps_are_pictures_in_lessons():
     tracker = load_settings(preset_file("eyas")).train.tracker
-    assert tracker.pictures == 563_200
+    assert tracker.pictures == 1_075_200
     small = updated(tracker, tracker.scaled(12_800))
-    assert (small.drives, small.drive_steps) == (1, 227)
+    assert (small.drives, small.drive_steps) == (1, 119)
     assert [(each.flights, each.steps) for each in small.rounds] == [
-        (1, 23),
-        (1, 20),
-        (1, 20),
-        (0, 36),
+        (1, 14),
+        (1, 14),
+        (1, 18),
+        (0, 54),
     ]
     with pytest.raises(ConfigError, match=r"rounds.0.flights: 0 is not allowed"):
         updated(tracker, {"rounds": [{"flights": 0, "steps": 5}]})
