@@ -188,7 +188,7 @@ def test_an_unseen_target_is_where_the_network_says():
     course.answer(ROWS, 9.0 + ahead)  # the first answer counts
     start = 94 * 0.032 * velocity
     left = np.array([[0.0, 2.0], [-2.0, 0.0]])
-    for time in (0.128, 1.3, 5.0):
+    for time in (0.128, 1.3, 0.5):
         course.pass_time(ROWS, np.full(2, time))
         assert course.known(ROWS).all()
         place, now, spread, since = course.here(ROWS)
@@ -197,6 +197,26 @@ def test_an_unseen_target_is_where_the_network_says():
         np.testing.assert_allclose(spread, since, rtol=1e-5)
     course.leave(ROWS[:1])
     assert course.known(ROWS).tolist() == [False, True]
+
+
+def test_a_covered_target_is_expected_straight_on_and_early():
+    course, velocity = on_course()
+    course.set_out(ROWS)
+    ahead = np.zeros((2, len(HORIZONS), 3), np.float32)
+    ahead[:, :, 1] = 6.0 * HORIZONS  # it would turn to the left
+    course.answer(ROWS, ahead)
+    start = 94 * 0.032 * velocity
+    course.pass_time(ROWS, np.full(2, 2.0))
+    turned = course.here(ROWS)[0] - start
+    np.testing.assert_allclose(turned[0], (16.0, 12.0), atol=1e-5)
+    course.pass_time(ROWS, np.full(2, 1.0))
+    place, now, _, since = course.here(ROWS)
+    speed = np.hypot(velocity.sum(axis=1), 6.0)
+    heading = velocity / velocity.sum(axis=1, keepdims=True)
+    way = speed * 4.0  # of two seconds, then of twice the last one
+    np.testing.assert_allclose(place, start + way[:, None] * heading, atol=1e-4)
+    np.testing.assert_allclose(now, 2.0 * speed[:, None] * heading, atol=1e-4)
+    np.testing.assert_allclose(since, 3.0)
 
 
 def test_what_stands_or_was_just_seen_first_has_no_course_or_a_short_past():

@@ -32,6 +32,17 @@ _KEPT = 64
 _SLOWEST = 0.5
 """Of targets that have a course [m/s]."""
 
+_COVERED = 2.0
+"""How long a target is followed as the network says [s]. One that is hidden for longer is below a
+tunnel, a deck or a row of trees: had it turned off, it would have been seen."""
+
+_STRAIGHTENING = 1.0
+"""How long it then takes until it is expected straight on [s]."""
+
+_PACE = 2.0
+"""How many times as fast it is expected from then on, until it is waited for: a drone that is ahead
+of it sees it come out and pass; from one that is behind it drives away unseen."""
+
 
 class Course:
     """The courses of N targets.
@@ -115,6 +126,17 @@ class Course:
         2), the standard deviation of the places [m], (K,), and the time since they were seen [s].
         """
         since = self._now[rows] - self.seen[rows]
+        covered = np.maximum(since - _COVERED, 0.0)
+        pace = np.where(covered > 0.0, _PACE, 1.0)[:, None]
+        offset, velocity, spread = self._as_said(rows, since + (_PACE - 1.0) * covered)
+        straight, heading = covered / _STRAIGHTENING, self._from[rows, 2:]
+        place = self._from[rows, :2] + _straightened(offset, heading, straight)
+        return place, pace * _straightened(velocity, heading, straight), spread, since
+
+    def _as_said(self, rows: Rows, since: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the ways of K targets after a time as the network says [m], their velocities, and
+        the standard deviation of the places; beyond what it says, straight on.
+        """
         times = np.concatenate(((0.0,), HORIZONS))
         part = np.clip(np.searchsorted(times, since, side="right") - 1, 0, len(HORIZONS) - 1)
         ahead = self._ahead[rows]
@@ -122,13 +144,20 @@ class Course:
         spreads = np.concatenate((np.zeros((len(rows), 1)), exact.exp(ahead[..., 2])), axis=1)
         each = np.arange(len(rows))
         lasts = times[part + 1] - times[part]
-        share = (since - times[part]) / lasts  # beyond the last one: straight on
+        share = (since - times[part]) / lasts
         slope = (points[each, part + 1] - points[each, part]) / lasts[:, None]
         aside = points[each, part] + slope * (since - times[part])[:, None]
         spread = spreads[each, part] + share * (spreads[each, part + 1] - spreads[each, part])
-        start, velocity = self._from[rows, :2], self._from[rows, 2:]
-        place = start + velocity * since[:, None] + _out_of(velocity, aside)
-        return place, velocity + _out_of(velocity, slope), spread, since
+        velocity = self._from[rows, 2:]
+        offset = velocity * since[:, None] + _out_of(velocity, aside)
+        return offset, velocity + _out_of(velocity, slope), spread
+
+
+def _straightened(vectors: Floats, heading: Floats, share: Floats) -> Floats:
+    """Return vectors (K, 2), turned to headings of any length by a share, at most wholly, (K,)."""
+    ahead = heading * (_length(vectors) / _length(heading))[:, None]
+    share = np.minimum(share, 1.0)[:, None]
+    return (1.0 - share) * vectors + share * ahead
 
 
 def _length(vectors: Floats) -> Floats:
