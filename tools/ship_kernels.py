@@ -27,7 +27,17 @@ from eyas.lanes.cuda import code as ptx
 from eyas.lanes.folder import read_trusted
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
-from eyas.lanes.shipped import ARCHIVE, LEVEL, VARIABLE, archive_of, features, needed, read_archive
+from eyas.lanes.shipped import (
+    ARCHIVE,
+    LEVEL,
+    VARIABLE,
+    WIDE_ARCHIVE,
+    WIDE_LEVEL,
+    archive_of,
+    features,
+    read_archive,
+    wide_needed,
+)
 from eyas.lanes.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
@@ -160,7 +170,8 @@ FOR_DEVICES = ("eyas.render.kernels.stages", "eyas.sim.device.", "eyas.envs.devi
 """Rooms of kernels that run on graphics processors; they ship as PTX."""
 
 DRAWING = "draw_views"
-"""The function whose modules ship: to make them takes longer than those of all others together."""
+"""The function whose modules ship: to make them takes longer than those of all others together. Its
+code also ships for AVX-512."""
 
 
 def main() -> None:
@@ -170,9 +181,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ARCHIVE.parent, help="folder to write into")
     options = parser.parse_args()
     if options.check:
-        raise SystemExit(missing(read_archive(ARCHIVE)) or compiled())
-    if lacks := needed - features():  # the code is run to know which kernels there are
-        raise SystemExit(f"{LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
+        raise SystemExit(missing(read_archive(ARCHIVE)) or not_wide() or compiled())
+    if lacks := wide_needed - features():  # the code is run to know which kernels there are
+        raise SystemExit(f"{WIDE_LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
     program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
@@ -182,6 +193,11 @@ def main() -> None:
         codes = codes_in(folder)
         (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
         (options.out / modules.ARCHIVE.name).write_bytes(modules.archive_of(folder, DRAWING))
+    with tempfile.TemporaryDirectory() as cache:
+        use_all(cache, {"NUMBA_CPU_NAME": WIDE_LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"})
+        wide = codes_in(Path(cache, "kernels", language_hash()))
+        drawing = {name: code for name, code in wide.items() if draws(name)}
+        (options.out / WIDE_ARCHIVE.name).write_bytes(archive_of(drawing))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
         (options.out / ptx.ARCHIVE.name).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
@@ -232,6 +248,17 @@ def missing(codes: Mapping[str, MachineCode]) -> str | None:
     """Return which kernels of the package are not in an archive; None if all are."""
     lacks = [name for name in sorted(kernels()) if not any(c.startswith(f"{name}-") for c in codes)]
     return f"not in {ARCHIVE}: {', '.join(lacks)}" if lacks else None
+
+
+def not_wide() -> str | None:
+    """Return what draws and does not ship for AVX-512; None if all does."""
+    lacks = set(filter(draws, read_archive(ARCHIVE))) - set(read_archive(WIDE_ARCHIVE))
+    return f"not in {WIDE_ARCHIVE}: {', '.join(sorted(lacks))}" if lacks else None
+
+
+def draws(name: str) -> bool:
+    """Return whether machine code with that name draws."""
+    return name.startswith(f"{DRAWING}-")
 
 
 def kernels() -> set[str]:

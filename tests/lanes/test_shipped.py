@@ -115,6 +115,28 @@ def test_on_a_processor_that_lacks_something_kernels_are_compiled(ships, compile
     assert len(compiled) == 1
 
 
+def test_what_draws_has_code_of_its_own_where_there_is_avx_512(
+    ships, monkeypatch, machine, tmp_path
+):
+    ((name, code),) = read_archive(ships).items()
+    wide = tmp_path / "wide.eyk"
+    wide.write_bytes(archive_of({name: code._replace(needs=("memcpy",))}))
+    monkeypatch.setattr(shipped, "WIDE_ARCHIVE", wide)
+    assert shipped.shipped_code(name).needs == code.needs
+    machine.features = shipped.wide_needed
+    shipped._shipped.cache_clear()
+    assert shipped.shipped_code(name).needs == ("memcpy",)
+    wide.unlink()
+    shipped._shipped.cache_clear()
+    assert shipped.shipped_code(name).needs == code.needs
+
+
+def test_all_that_draws_ships_for_avx_512():
+    names = {name for name in read_archive(shipped.ARCHIVE) if name.startswith("draw_views-")}
+    assert names
+    assert set(read_archive(shipped.WIDE_ARCHIVE)) == names
+
+
 def test_on_other_machines_kernels_are_compiled(ships, compiled, machine):
     machine.machine = "aarch64"
     assert doubled() == 2.0

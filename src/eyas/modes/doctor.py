@@ -22,11 +22,13 @@ from eyas.lanes.shipped import (
     ARCHIVE,
     LEVEL,
     VARIABLE,
+    WIDE_LEVEL,
     features,
     is_shipped,
     needed,
     read_archive,
     wanted,
+    wide_needed,
 )
 from eyas.render.kernels.draw import draw_views
 
@@ -143,7 +145,8 @@ def _shipped() -> str:
         return f"{ARCHIVE}: damaged or missing ({error}): {compiled}"
     if not codes:
         return f"of another version: {compiled}"
-    said = f"{len(codes)} for {LEVEL}, which serve this machine"
+    drawn = f" (what draws: {WIDE_LEVEL})" if wide_needed <= features() else ""
+    said = f"{len(codes)} for {LEVEL}{drawn}, which serve this machine"
     if is_shipped(code_name("draw_views", identity(draw_views.function))):
         return said
     return f"{said}, but what draws has changed since: it is compiled at the first start"
