@@ -15,6 +15,9 @@ fit."""
 _TRIED = 50
 """Number of seeds that are tried for each episode."""
 
+_HOPELESS = 1_000
+"""Number of starts after which no more are tried if none of them fits."""
+
 _PARTS = 25
 """In how many parts: looking at a few together costs less than at each alone."""
 
@@ -53,12 +56,13 @@ def first_fitting(  # noqa: PLR0913  # what is asked for, and of what
             for episode, own in zip(part, fits(part, protocol), strict=True):
                 if own and len(found[episode.direction]) < count:
                     found[episode.direction].append(episode)
-            if all(len(own) == count for own in found.values()):
+            tested, full = begin + len(part), all(len(own) == count for own in found.values())
+            if full or (tested >= _HOPELESS and not any(found.values())):
                 break
-        else:
+        if not full:
             raise SpawnError(
-                f"protocol '{protocol.name}': of {len(starts)} starts in '{place.map}' too few "
-                f"have {wanted}; {count} are needed for each direction"
+                f"protocol '{protocol.name}': of {tested} starts in '{place.map}' too few have "
+                f"{wanted}; {count} are needed for each direction"
             )
         chosen += [
             found[turn][number]._replace(variant=variant)
