@@ -9,10 +9,12 @@ from eyas.evaluation.episode import Place
 from eyas.evaluation.episode_batch import EpisodeBatch
 from eyas.evaluation.fitting import first_fitting
 from eyas.evaluation.plan import EvaluationPlan, opened
+from eyas.evaluation.policies.follow import follow
+from eyas.evaluation.policies.oracle_helm import flown_over
 from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.predictors import constant_velocity
 from eyas.evaluation.protocols import PROTOCOLS
-from eyas.evaluation.setting_out import AT_REST, AT_SPEED
+from eyas.evaluation.setting_out import AT_REST, AT_SPEED, leaves_its_way
 
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")
 FLOWN = PROTOCOLS["flown"]
@@ -76,6 +78,34 @@ def test_a_command_takes_effect_after_40_ms(episodes):
 
     assert (flown(5) == 0.0).all()
     assert (flown(6) > 0.0).all()
+
+
+def test_targets_that_just_go_on_or_stay_are_left_out():
+    time = np.arange(70) * 0.256
+    on = np.stack([12.0 * time, np.zeros(70)], axis=1)
+    ways = {
+        "drives on": (on, False),
+        "stands": (0.0 * on, False),
+        "turns": (np.where(time[:, None] < 6.0, on, 72.0 + 0.0 * on), True),
+        "turns too late": (np.where(time[:, None] < 10.0, on, 120.0 + 0.0 * on), False),
+        "sets out": (np.maximum(on - 60.0, 0.0), True),
+    }
+    found = leaves_its_way(np.stack([way for way, _ in ways.values()]))
+    assert dict(zip(ways, found.tolist(), strict=True)) == {
+        name: leaves for name, (_, leaves) in ways.items()
+    }
+
+
+def test_velocities_steer_where_the_drone_is_told_to_be(batch):
+    """What it is behind its command is on its way already."""
+    env = follow({"actions": "velocity"}).env
+    state = batch.snapshot()
+    place, still = state.targets.centre[:, :2], np.zeros((8, 2))
+    before = np.asarray(flown_over(state, place, still, env))[:, :2]
+    state.trackers.commanded_position[:, 0] += 3.0
+    change = np.asarray(flown_over(state, place, still, env))[:, :2] - before
+    yaw = state.trackers.euler[:, 2]
+    assert change == pytest.approx(-3.0 * np.stack([np.cos(yaw), -np.sin(yaw)], axis=1))
 
 
 @pytest.mark.slow

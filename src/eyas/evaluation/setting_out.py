@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.evaluation.episode import EpisodeSpec, Place
@@ -18,7 +19,7 @@ from eyas.evaluation.fitting import first_fitting
 from eyas.evaluation.from_above import seen_from_above
 from eyas.evaluation.protocol import Protocol
 
-__all__ = ["AT_REST", "AT_SPEED", "at_rest_and_at_speed", "setting_out"]
+__all__ = ["AT_REST", "AT_SPEED", "at_rest_and_at_speed", "leaves_its_way", "setting_out"]
 
 AT_REST, AT_SPEED = "at-rest", "at-speed"
 """Variants: the target stands at the start, and the drone hovers; both drive."""
@@ -58,12 +59,23 @@ def setting_out(
     speed = np.asarray(exact.hypot(first[:, 0], first[:, 1]))
     begins = speed < _STANDS if at_rest else speed >= _DRIVES
     visible = seen.shares[:, :_FIRST].min(axis=1) >= _VISIBLE
-    looks = round(_WITHIN / _PERIOD)
-    way = first[:, None] * (np.arange(looks) * _PERIOD)[:, None]
-    off = seen.places[:, :looks] - (seen.places[:, :1] + way)
-    leaves = np.asarray(exact.hypot(off[..., 0], off[..., 1])).max(axis=1) >= _AWAY
-    fits: list[bool] = (begins & visible & leaves).tolist()
+    fits: list[bool] = (begins & visible & leaves_its_way(seen.places)).tolist()
     return fits
+
+
+def leaves_its_way(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return whether N targets soon are elsewhere than where they would be if they went on as at
+    first, shape (N,).
+
+    Args:
+        places: Of each at K looks, east and north [m], shape (N, K, 2).
+    """
+    seen = places[:, : round(_WITHIN / _PERIOD)]
+    step = seen[:, 1] - seen[:, 0]
+    off = seen - (seen[:, :1] + step[:, None] * np.arange(seen.shape[1])[:, None])
+    away = np.asarray(exact.hypot(off[..., 0], off[..., 1]))
+    found: NDArray[np.bool_] = away.max(axis=1) >= _AWAY
+    return found
 
 
 def at_rest_and_at_speed(
