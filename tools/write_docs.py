@@ -79,7 +79,7 @@ def tables() -> dict[Path, str]:
     head, rest = (pages.get(path) or path.read_text()).split(begin)
     rows = ["| table | episodes | where | command |", "|---|---|---|---|"]
     rows += [
-        f"| {table.title} | {sum(row.plan.count for row in table.rows):,} | "
+        f"| {table.title} | {sum(row.episodes for row in table.rows):,} | "
         f"[{table.page}]({table.page}) | `eyas reproduce {table.name}` |"
         for table in TABLES.values()
     ]

@@ -26,6 +26,24 @@ class Spinner:
         return 4
 
 
+class Coaster:
+    """Sees nothing, and flies on as fast and where it flew at first, whatever the wind."""
+
+    env_settings = {"observation": {"parts": ["sensors"]}, "actions": "velocity"}
+
+    def __init__(self):
+        self.first = None
+
+    def act(self, readings):
+        if self.first is None:
+            self.first = readings[3:5]
+        yaw = readings[18]
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        ahead = cosine * self.first[0] + sine * self.first[1]
+        left = cosine * self.first[1] - sine * self.first[0]
+        return np.array([ahead, left, 0.0, 0.0], np.float32)
+
+
 class TrueState:
     """Reads the target's true place from its observation."""
 

@@ -92,10 +92,11 @@ def test_one_seed_and_several_are_not_said_together():
 
 
 def test_a_run_has_a_hundred_episodes():
-    """`unseen` has them in its own six places together; `recover-camera` has two losses in each."""
+    """`unseen` has them in its own six places together; `recover-camera` has two losses in each;
+    `flown` has a hundred of each kind of start."""
     for protocol in PROTOCOLS.values():
         # Of these, the versions of an episode are one observation.
-        told = protocol.name == "referring" or protocol.team or protocol.reference
+        told = protocol.name in ("referring", "flown") or protocol.team or protocol.reference
         versions = max(len(protocol.variants), 1) if told else 1
         episodes = EvaluationPlan(policy="hover", protocol=protocol.name).count / versions
         least = 48 if protocol.name in ("recover-camera", "corrupted") else 96

@@ -28,12 +28,13 @@ def specs(*seeds, place="citystreet"):
     return [EpisodeSpec(Place(place, "day", "SUMO_VEHICLE"), 0.0, seed) for seed in seeds]
 
 
+@pytest.mark.parametrize("kind", ["discrete", "velocity"])
 @pytest.mark.parametrize("name", ORACLES)
-def test_an_oracle_that_does_not_see_the_target_knows_nothing_of_it(name):
+def test_an_oracle_that_does_not_see_the_target_knows_nothing_of_it(name, kind):
     """Its actions are the same wherever the target is."""
 
     def actions(shift):
-        policy = open_policy(name, {})
+        policy = open_policy(name, {"actions": kind})
         batch = EpisodeBatch(specs(5, 6), PROTOCOLS["paper"], policy.env)
         every, nobody = np.ones(2, np.bool_), np.zeros(2, np.bool_)
         policy.begin(Start(np.array([5, 6]), lambda: np.zeros((2, 4), np.int32), None, batch.roads))

@@ -10,11 +10,12 @@ from eyas.evaluation.delay import delay_from
 from eyas.evaluation.entry import EntryClass, entry_class
 from eyas.evaluation.episode import Place
 from eyas.evaluation.flight import BatchFlight
-from eyas.evaluation.policies.policy import PolicyInput, Start
+from eyas.evaluation.policies.policy import PolicyInput, Start, env_config
 from eyas.evaluation.policies.table import open_policy
 from eyas.evaluation.policies.tracker.course import HORIZONS, LAGS, PAST, Course
 from eyas.evaluation.policies.tracker.detector import Clue, Detector
 from eyas.evaluation.policies.tracker.ground import Ground
+from eyas.evaluation.policies.tracker.helm import Helm
 from eyas.evaluation.policies.tracker.motion import MotionFilter
 from eyas.evaluation.policies.tracker.settings import TrackerSettings
 from eyas.evaluation.protocols import protocol_named
@@ -33,6 +34,22 @@ def test_pixels_and_offsets_are_inverse():
     assert offsets[0, 1] > 0.0 > offsets[2, 1]  # and the first columns to the left
     further = ground.pixels(offsets[1:2] + np.array([[0.0, 1.0]]))
     assert pixels[1, 0] - further[0, 0] == pytest.approx(ground.pixels_per_metre, rel=1e-9)
+
+
+@pytest.mark.parametrize(("lag", "last"), [(0.0, 7.81), (2.0, 2.34)])
+def test_a_drone_that_follows_late_is_not_asked_twice_for_the_same_way(lag, last):
+    """It stands yet, 5 m from its target; its commands of a second lead it most of the way."""
+    env = env_config({"actions": "velocity", "action_repeat": 4})
+    ground = Ground(TrackerSettings(), (60, 80))
+    helm = Helm(1, env, ground, 0.05, lag)
+    row, place = np.zeros(1, np.int64), np.zeros((1, 2))
+    target = ground.middle[None] + [5.0, 0.0], np.zeros((1, 2))
+    told = []
+    for _ in range(40):
+        since = helm.time_since(row, None)
+        told.append(helm.steer(row, (place, np.zeros(1)), since, target)[0, 0])
+    assert told[0] == pytest.approx(5.0 * 0.05 / 0.032)
+    assert told[-1] == pytest.approx(last, abs=0.01)
 
 
 class Answers:

@@ -235,6 +235,7 @@ def test_another_build_does_not_go_on(tmp_path):
     ("changes", "why"),
     [
         ({"world": {"map": "village"}}, "world: not allowed here"),
+        ({"tracker": {"supervised": False}}, "supervised: .* --preset eyas' also writes policy-fl"),
         ({"env": {"actions": "discrete"}}, "env: not allowed here"),
         ({"env": {"observation": {"height": 32}}}, "32x32 is not allowed: .* such as 80x60"),
         ({"train": {"begin_from": "runs/eyas"}}, "begin_from: not allowed"),

@@ -48,6 +48,16 @@ def test_a_table_that_is_equal_says_so(small, tmp_path, capsys):
     assert "small: equal to the documents, every printed digit" in said
 
 
+@pytest.mark.slow
+def test_rows_of_two_starts_are_one_evaluation(tmp_path):
+    plan = EvaluationPlan(policy="hover", protocol="flown", episodes=1, seeds=(60_000_000,))
+    rows = tuple(Row(f"`hover`, {part}", plan, part) for part in ("at-speed", "at-rest"))
+    found = made(Table("starts", "none.md", "Starts", ("tsr",), rows), tmp_path, quiet=True)
+    assert [row.n for row in found.rows] == [4, 4]
+    assert found.rows[0].cells["tsr"] < found.rows[1].cells["tsr"]  # 0.1 and 0.2
+    assert [path.name for path in tmp_path.iterdir()] == ["hover"]
+
+
 def test_a_digit_that_differs_is_named_with_the_build_that_made_it(small, tmp_path, capsys):
     right = made(SMALL, tmp_path / "made", quiet=True)
     forged = json.loads(right.model_dump_json())
@@ -72,7 +82,7 @@ def test_the_documents_hold_the_tables_as_they_are_expected(name):
     table, said = TABLES[name], expected(name)
     assert said is not None, "python tools/write_tables.py"
     assert [row.label for row in said.rows] == [row.label for row in table.rows]
-    assert [row.n for row in said.rows] == [row.plan.count for row in table.rows]
+    assert [row.n for row in said.rows] == [row.episodes for row in table.rows]
     assert markdown(table, said) in (DOCS / table.page).read_text()
 
 

@@ -4,11 +4,13 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from eyas.core.errors import UnknownNameError
 from eyas.envs.choice import settings_of_kinds, steps_per_action
 from eyas.envs.tracking_env import TrackingEnv
+from eyas.evaluation.protocols import PROTOCOLS
 from eyas.settings.file import load_settings
 from eyas.settings.legacy.adapter import is_legacy
 from eyas.settings.legacy.layout import flat
@@ -53,6 +55,24 @@ def test_training_starts_from_every_side():
     config = load_settings(preset_file("dat-train"))
     assert config.start.direction.uniform == pytest.approx((-math.pi, math.pi))
     assert config.reward.view_range == 0.7
+
+
+def test_the_flown_drone_is_that_of_the_protocol():
+    config, rules = load_settings(preset_file("flown")), PROTOCOLS["flown"].settings
+    for name in ("tracker", "control", "reward", "camera"):
+        assert getattr(config, name) == getattr(rules, name), name
+    for name in ("pitch", "height", "velocity"):
+        assert getattr(config.start, name) == getattr(rules.start, name), name
+    assert config.traffic.demand is rules.traffic.demand
+    assert config.done.total_steps == rules.done.total_steps
+
+
+def test_the_flown_drone_begins_as_fast_as_its_target():
+    env = TrackingEnv("flown")
+    observation, info = env.reset(seed=0)
+    assert set(observation) == {"image", "sensors"}
+    assert np.linalg.norm(info["velocity"]) > 3.0
+    assert info["relative_velocity"][:2] == pytest.approx([0.0, 0.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("name", sorted({*PRESETS} - {"lively", "noisy"}))

@@ -15,8 +15,14 @@ fit."""
 _TRIED = 50
 """Number of seeds that are tried for each episode."""
 
+_HOPELESS = 1_000
+"""Number of starts after which no more are tried if none of them fits."""
 
-def first_fitting(
+_PARTS = 25
+"""In how many parts: looking at a few together costs less than at each alone."""
+
+
+def first_fitting(  # noqa: PLR0913  # what is asked for, and of what
     places: Sequence[Place],
     protocol: Protocol,
     count: int,
@@ -24,6 +30,7 @@ def first_fitting(
     *,
     fits: Fits,
     wanted: str,
+    tried: int = _TRIED,
 ) -> list[EpisodeSpec]:
     """Return the first episodes of each place and direction that fit, in all variants.
 
@@ -34,24 +41,27 @@ def first_fitting(
         first_seed: Seed of the first one that is tried.
         fits: Tells which fit.
         wanted: What they must have, for the message.
+        tried: Number of seeds that are tried for each episode.
 
     Raises:
         SpawnError: There are too few.
     """
-    turns, chosen = len(protocol.directions), []
+    chosen = []
     for place in places:
-        tried = episodes_of([place], protocol.directions, count * _TRIED, first_seed)
+        starts = episodes_of([place], protocol.directions, count * tried, first_seed)
         found: dict[float, list[EpisodeSpec]] = {turn: [] for turn in protocol.directions}
-        for begin in range(0, len(tried), 2 * count * turns):
-            part = tried[begin : begin + 2 * count * turns]
+        together = max(len(starts) // _PARTS, 1)
+        for begin in range(0, len(starts), together):
+            part = starts[begin : begin + together]
             for episode, own in zip(part, fits(part, protocol), strict=True):
                 if own and len(found[episode.direction]) < count:
                     found[episode.direction].append(episode)
-            if all(len(own) == count for own in found.values()):
+            tested, full = begin + len(part), all(len(own) == count for own in found.values())
+            if full or (tested >= _HOPELESS and not any(found.values())):
                 break
-        else:
+        if not full:
             raise SpawnError(
-                f"protocol '{protocol.name}': of {len(tried)} starts in '{place.map}' too few have "
+                f"protocol '{protocol.name}': of {tested} starts in '{place.map}' too few have "
                 f"{wanted}; {count} are needed for each direction"
             )
         chosen += [

@@ -21,7 +21,7 @@ from eyas.evaluation.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
 from eyas.evaluation.policies.apart import open_apart, runs_code
 from eyas.evaluation.policies.policy import Policy
-from eyas.evaluation.policies.table import BUILT_IN, fingerprint, open_policy
+from eyas.evaluation.policies.table import BUILT_IN, ORACLES, fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols import PROTOCOLS, protocol_named
 from eyas.evaluation.record import EpisodeRecord
@@ -199,7 +199,8 @@ def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
     foreign = plan.policy not in BUILT_IN and runs_code(plan.policy)
     apart = foreign and not plan.in_process
     make = open_apart if apart else open_policy
-    policy = make(plan.policy, plan.env, sampled=plan.sampled)
+    usual = plan.rules.oracles if plan.policy in ORACLES else {}
+    policy = make(plan.policy, {**usual, **plan.env}, sampled=plan.sampled)
     plan.rules.envelope.refuse(policy.env, plan.protocol)
     beside = foreign and plan.in_process
     return policy, entry_of(policy, plan.latency, apart=apart, beside=beside)

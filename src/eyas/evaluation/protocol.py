@@ -136,6 +136,9 @@ class Protocol:
     """Whether policies are told the target's true box in the first picture."""
     tells_solvable: bool = False
     """Whether records say if the policy `sighted` solves the episode, where a TSR can say so."""
+    oracles: Mapping[str, Any] = field(default_factory=dict)
+    """Changes of `env` for the oracles, before those of a user's: it is theirs that the drone can
+    be flown, and no part of what is measured."""
     envelope: Envelope = ENVELOPE
     """What drones may do."""
 

@@ -35,6 +35,6 @@ def solvable(episodes: list[EpisodeSpec], protocol: Protocol) -> list[bool | Non
 
 def _kept_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
     """Return the TSR of `sighted` in each episode, shape (E,)."""
-    flight = BatchFlight(episodes, protocol, sighted({}), delay_from("0"))
+    flight = BatchFlight(episodes, protocol, sighted(protocol.oracles), delay_from("0"))
     kept = {record.name: record.tsr for ended in flight.fly() for record in ended}
     return np.array([kept[episode.name] for episode in episodes])

@@ -10,8 +10,8 @@ __all__ = ["DAT_MODES", "PRESETS", "TRAININGS", "WORLDS", "preset_file"]
 DAT_MODES = ("dat-eval", "dat-train")
 """The modes of the DAT benchmark."""
 
-WORLDS = ("easy", "lively", "noisy")
-"""Worlds that are easier or harder than the default."""
+WORLDS = ("easy", "flown", "lively", "noisy")
+"""Worlds that are easier or harder than the default; in one, a flight controller flies."""
 
 TRAININGS = ("eyas", "eyas-words", "fast", "paper")
 """How the policies that come with Eyas were trained, and a published training."""

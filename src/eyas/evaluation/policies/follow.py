@@ -3,11 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
-from eyas.core import exact
+from eyas.evaluation.policies.oracle_helm import actions_of_oracles, flown_over
 from eyas.evaluation.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
-from eyas.evaluation.steering import towards
 
 __all__ = ["Follow", "follow"]
 
@@ -19,20 +16,18 @@ class Follow:
     told = frozenset({"truth"})
 
     def __init__(self, changes: Mapping[str, Any]) -> None:
-        self.env = env_config(BLIND, {**changes, "actions": "discrete"})
+        self.env = env_config(
+            BLIND, {**changes, "actions": actions_of_oracles(changes.get("actions"))}
+        )
 
     def begin(self, start: Start) -> None:
         """Do nothing, for it remembers nothing."""
 
     def act(self, sight: PolicyInput) -> Decision:
-        """Fly along the axis with the larger error."""
-        trackers, _, targets, episodes, _ = sight.snapshot()
-        error = targets.centre[:, :2] - episodes.view_centre[:, :2]
-        yaw = trackers.euler[:, 2]
-        sine, cosine = exact.sin(yaw), exact.cos(yaw)
-        ahead = cosine * error[:, 0] + sine * error[:, 1]
-        left = -sine * error[:, 0] + cosine * error[:, 1]
-        return Decision(towards(np.stack((ahead, left), axis=-1), self.env))
+        """Fly there."""
+        state = sight.snapshot()
+        places, velocities = state.targets.centre[:, :2], state.targets.velocity[:, :2]
+        return Decision(flown_over(state, places, velocities, self.env))
 
 
 def follow(changes: Mapping[str, Any]) -> Follow:

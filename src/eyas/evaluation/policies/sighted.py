@@ -9,10 +9,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
+from eyas.evaluation.policies.oracle_helm import actions_of_oracles, flown_over
 from eyas.evaluation.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
-from eyas.evaluation.steering import towards
 
 __all__ = ["Clue", "Motion", "Predictor", "SightOracle"]
 
@@ -25,6 +24,10 @@ ENOUGH = 0.15
 _LOOK_TICKS = 16
 """Physics steps between two looks at what is visible: as often as the figures count pixels, so
 that both share one picture."""
+
+
+_FASTEST = 30.0
+"""What moves faster has not moved, but is another guess [m/s]."""
 
 
 class Motion(NamedTuple):
@@ -62,6 +65,15 @@ class Clue(NamedTuple):
     """Whose camera shows nothing, shape (N,)."""
 
 
+class _Flown(NamedTuple):
+    """Where an oracle has flown to."""
+
+    places: Floats
+    """[m], shape (N, 2)."""
+    age: Floats
+    """See `Clue` [s], shape (N,)."""
+
+
 class Predictor(Protocol):
     """Says where targets are that are out of sight."""
 
@@ -89,7 +101,9 @@ class SightOracle:
     told = frozenset({"truth"})
 
     def __init__(self, changes: Mapping[str, Any], predictor: Predictor) -> None:
-        self.env = env_config(BLIND, {**changes, "actions": "discrete"})
+        self.env = env_config(
+            BLIND, {**changes, "actions": actions_of_oracles(changes.get("actions"))}
+        )
         self._predictor = predictor
 
     def begin(self, start: Start) -> None:
@@ -101,6 +115,7 @@ class SightOracle:
         self._seen_at = np.full(count, -1)
         """Physics step at which each was seen last, or at which it began; -1: it has not begun."""
         self._looked_at = np.full(count, -_LOOK_TICKS)
+        self._before = _Flown(np.zeros((count, 2)), np.zeros(count))
         self._predictor.begin(start)
 
     def forget(self, ended: Mask) -> None:
@@ -109,8 +124,9 @@ class SightOracle:
         self._seen_at[ended], self._looked_at[ended] = -1, -_LOOK_TICKS
 
     def act(self, sight: PolicyInput) -> Decision:
-        """Fly along the axis with the larger error."""
-        trackers, _, _, episodes, _ = sight.snapshot()
+        """Fly there."""
+        state = sight.snapshot()
+        trackers, _, _, episodes, _ = state
         tick, middle, yaw = episodes.tick, episodes.view_centre[:, :2], trackers.euler[:, 2]
         new = self._seen_at < 0
         self._last.place[new], self._seen_at[new] = middle[new], tick[new]
@@ -123,11 +139,18 @@ class SightOracle:
             yaw,
             sight.covered,
         )
-        error = self._places(clue, sight) - middle
-        sine, cosine = exact.sin(yaw), exact.cos(yaw)
-        ahead = cosine * error[:, 0] + sine * error[:, 1]
-        left = -sine * error[:, 0] + cosine * error[:, 1]
-        return Decision(towards(np.stack((ahead, left), axis=-1), self.env))
+        places = self._places(clue, sight)
+        return Decision(flown_over(state, places, self._speeds(places, clue), self.env))
+
+    def _speeds(self, places: Floats, clue: Clue) -> Floats:
+        """Return how fast the places move to which it flies [m/s], shape (N, 2): where it guesses,
+        as far as they have moved since the last action; a guess that jumps stands.
+        """
+        time = (clue.age - self._before.age)[:, None]
+        moved = (places - self._before.places) / np.where(time > 0.0, time, np.inf)
+        moved[np.square(moved).sum(axis=1) > _FASTEST * _FASTEST] = 0.0
+        self._before = _Flown(places, clue.age)
+        return np.where((clue.age == 0.0)[:, None], clue.last.velocity, moved)
 
     def _places(self, clue: Clue, sight: PolicyInput) -> Floats:
         """Return where to fly, east and north [m], shape (N, 2)."""

@@ -12,7 +12,7 @@ from eyas.evaluation.policies.shipped import file_of, shipped_names
 if TYPE_CHECKING:  # its observations know the whole simulation, and here are names
     from eyas.evaluation.policies.policy import Policy
 
-__all__ = ["BUILT_IN", "FILES", "fingerprint", "open_policy"]
+__all__ = ["BUILT_IN", "FILES", "ORACLES", "fingerprint", "open_policy"]
 
 _ROOM = "eyas.evaluation.policies"
 
@@ -34,6 +34,10 @@ BUILT_IN = {
     },
 }
 """Functions that take changes of `env` and return a policy, by name."""
+
+ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
+"""Those that are told the truth, and fly by seven actions or, where `env.actions` says so, by
+velocities."""
 
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",

@@ -7,6 +7,7 @@ from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.protocols.corrupted import CORRUPTED
 from eyas.evaluation.protocols.crowd import CROWD
 from eyas.evaluation.protocols.evade import EVADE
+from eyas.evaluation.protocols.flown import FLOWN
 from eyas.evaluation.protocols.lasting import DISTRACTOR, LONG, SEARCH
 from eyas.evaluation.protocols.published import PAPER, STANDARD, UNSEEN
 from eyas.evaluation.protocols.recover import RECOVER, RECOVER_CAMERA
@@ -16,7 +17,7 @@ from eyas.evaluation.protocols.team import PAIR, TEAM
 __all__ = ["PROTOCOLS", "protocol_named"]
 
 _ALL = (
-    *(PAPER, STANDARD, UNSEEN, CORRUPTED, LONG, SEARCH, DISTRACTOR),
+    *(PAPER, STANDARD, UNSEEN, CORRUPTED, LONG, SEARCH, DISTRACTOR, FLOWN),
     *(RECOVER, RECOVER_CAMERA, EVADE, REFERRING, CROWD, PAIR, TEAM),
 )
 

@@ -80,6 +80,11 @@ def _refuse_unlike(config: EyasConfig) -> None:
     Raises:
         ConfigError: There is one, or no such picture can be seen.
     """
+    if not config.tracker.supervised:
+        raise ConfigError(
+            "tracker.supervised: false is not allowed here: a tracker learns on supervised drones; "
+            "'eyas train --preset eyas' also writes policy-flown.onnx, for flown ones"
+        )
     seen = config.env.observation
     size = {"width": seen.width, "height": seen.height}
     wanted = updated(load_settings(preset_file("eyas")), {"env": {"observation": size}})

@@ -73,7 +73,7 @@ def made(table: Table, out: Path, *, quiet: bool = False, keep: bool = False) ->
     build = this_build()
     rows = []
     for row in table.rows:
-        folder = out / re.sub(r"\W+", "-", row.label).strip("-")
+        folder = out / re.sub(r"\W+", "-", row.evaluation).strip("-")
         if not (keep and _is_flown(folder, row)):
             if not quiet:
                 print(f"{table.name}: {row.plan.command}", flush=True)
@@ -87,10 +87,11 @@ def _is_flown(folder: Path, row: Row) -> bool:
 
 
 def _row(row: Row, table: Table, records: list[EpisodeRecord]) -> ExpectedRow:
-    figures = rows_of(records, row.plan.rules)[0].figures
+    rows = rows_of(records, row.plan.rules)
+    figures = next(each for each in rows if each.name == row.part).figures
     return ExpectedRow(
         label=row.label,
-        n=len(records),
+        n=row.episodes,
         cells={name: cell(figures.get(name)) for name in table.columns},
     )
 
@@ -123,7 +124,7 @@ def listing() -> str:
     """Return a line for each table: name, title, document, number of episodes."""
     return "\n".join(
         f"{table.name:<12} {table.title} (docs/{table.page}); "
-        f"{sum(row.plan.count for row in table.rows):,} episodes"
+        f"{sum(row.episodes for row in table.rows):,} episodes"
         for table in TABLES.values()
     )
 

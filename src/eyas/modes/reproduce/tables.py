@@ -8,18 +8,35 @@ from typing import NamedTuple
 from eyas.core.config import Config, validated
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.plan import EvaluationPlan
+from eyas.evaluation.setting_out import AT_REST, AT_SPEED
 
 __all__ = ["TABLES", "Expected", "ExpectedRow", "Row", "Table", "expected", "table_named"]
 
 THREE_SETS = (1_000_000, 11_000_000, 21_000_000)
 """First seeds of three sets of episodes: one lucky set is then seen as one."""
 
+FLOWN_SETS = (1_000_000, 2_000_000, 3_000_000)
+"""Those of the tracker's other figures, see docs/following-one-target.md."""
+
 
 class Row(NamedTuple):
-    """A row of a table: one evaluation."""
+    """A row of a table: one evaluation, or those of its episodes that begin alike."""
 
     label: str
     plan: EvaluationPlan
+    part: str = "all"
+    """A variant of the protocol."""
+
+    @property
+    def episodes(self) -> int:
+        """Number of its episodes."""
+        parts = 1 if self.part == "all" else len(self.plan.rules.variants)
+        return self.plan.count // parts
+
+    @property
+    def evaluation(self) -> str:
+        """Name of the evaluation, which the parts share."""
+        return self.label.removesuffix(f", {self.part}")
 
 
 class Table(NamedTuple):
@@ -150,6 +167,13 @@ def _long_flights() -> Iterator[Table]:
     ):
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
     yield Table(
+        "flown",
+        "protocols/flown.md",
+        "`flown`, citystreet by day",
+        ("tsr", "kept", "flawless", "worst_fifth", "crashed"),
+        tuple(_by_start()),
+    )
+    yield Table(
         "referring",
         "protocols/referring.md",
         "`referring`, seeds that no baseline was tuned on",
@@ -160,6 +184,14 @@ def _long_flights() -> Iterator[Table]:
             seeds=THREE_SETS[1:2],
         ),
     )
+
+
+def _by_start() -> Iterator[Row]:
+    for policy in ("hover", "constant-velocity", "sighted", "follow", "eyas-flown"):
+        seeds = FLOWN_SETS if policy == "eyas-flown" else FLOWN_SETS[:1]
+        plan = EvaluationPlan(policy=policy, protocol="flown", seeds=seeds)
+        for part in (AT_SPEED, AT_REST):
+            yield Row(f"`{policy}`, {part}", plan, part)
 
 
 def _flown(protocol: str, policies: Sequence[str], **common: object) -> tuple[Row, ...]:

@@ -27,16 +27,21 @@ class Helm:
         env: Speeds of the actions, and how long they last.
         ground: The camera over the level of the targets.
         gain: Share of the distance from the middle that an action makes up for.
+        lag: Of `TrackerSettings`.
     """
 
-    def __init__(self, count: int, env: EnvConfig, ground: Ground, gain: float) -> None:
+    def __init__(
+        self, count: int, env: EnvConfig, ground: Ground, gain: float, lag: float = 0.0
+    ) -> None:
         self.period = _CONTROL_STEP * env.action_repeat
-        self._ground, self._gain = ground, gain
+        self._ground, self._gain, self._lag = ground, gain, lag
         self._fastest = env.speeds.forward_speed
         self._looked = np.full(count, np.nan)
         """When each looked last [s]; NaN: not yet."""
         self._command = np.zeros((count, 2))
         """Latest command of each, east and north [m/s]."""
+        self._told = np.zeros((count, 2))
+        """Where the commands of each bring it, east and north [m]."""
 
     def time_since(self, rows: Rows, clock: float | None) -> Floats:
         """Return the time since the last look of each [s], shape (K,); NaN: there was none.
@@ -72,13 +77,35 @@ class Helm:
         (place, yaw), (where, velocity) = pose, target
         late = np.where(since > 1.5 * self.period, since, 0.0)[:, None]
         lasts = np.maximum(late, self.period)
-        away = where - place + late * (velocity - self._command[rows])
+        if self._lag == 0.0:
+            away = where - place + late * (velocity - self._command[rows])
+        else:
+            away = where + late * velocity - self._led_to(rows, place, since)
         away = away - turned(np.tile(self._ground.middle, (len(rows), 1)), yaw)
         self._command[rows] = velocity + self._gain * away / lasts
         ahead = turned(self._command[rows], -yaw)
         ahead = np.clip(ahead, -self._fastest, self._fastest)
         self._command[rows] = turned(ahead, yaw)
         return ahead
+
+    def _led_to(self, rows: Rows, place: Floats, since: Floats) -> Floats:
+        """Return where the commands until now bring drones, east and north [m], shape (K, 2).
+
+        One that a flight controller flies is behind its command while it tilts, and on its way: who
+        steers where it is asks for that way again with each action, until it swings.
+
+        Args:
+            rows: K of the drones, shape (K,).
+            place: Where they are [m], shape (K, 2).
+            since: Of `time_since`.
+        """
+        time = np.where(np.isnan(since), 0.0, since)[:, None]
+        told = self._told[rows] + self._command[rows] * time
+        told = np.where(
+            time > 0.0, told + (place - told) * np.minimum(time / self._lag, 1.0), place
+        )
+        self._told[rows] = told
+        return told
 
 
 def turned(vectors: Floats, angle: Floats) -> Floats:

@@ -56,7 +56,11 @@ class TrackerSettings(Config):
     gain: Share = 0.6
     """Share of the distance from the middle that an action makes up for."""
 
+    lag: Annotated[float, Field(ge=0.0, le=1e3)] = 0.0
+    """Time constant with which the place to which its commands lead a drone is taken to be where it
+    is [s]; 0: at once, as supervised ones are."""
 
-FLOWN = TrackerSettings(gain=0.05)
+
+FLOWN = TrackerSettings(gain=0.05, lag=2.0)
 """For a drone that its flight controller flies: it cannot follow commands at once, so that a larger
-gain makes it swing about its target."""
+gain, or steering where it is, makes it swing about its target."""

@@ -101,7 +101,8 @@ class Tracker:
         self._key = np.zeros((count, self.detector.keys), np.float32)
         self._renewed = np.zeros(count)
         """How often each memory of how the target looks was renewed."""
-        self._helm = Helm(count, self.env, self.ground, self.settings.gain)
+        own = self.settings
+        self._helm = Helm(count, self.env, self.ground, own.gain, own.lag)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Look, and fly to where the targets should be when the action takes effect."""
