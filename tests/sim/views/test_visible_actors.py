@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from eyas.lanes import kernel
 from eyas.sim.assets import load_assets
 from eyas.sim.views.actor_bounds import NOWHERE, bounds_of, made_row
+from eyas.sim.views.near_lights import NearLights
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.motion import ActorState
@@ -216,3 +217,37 @@ def test_a_motion_of_two_samples_is_enough(assets):
         np.zeros(1, int), np.array([50.0]), np.zeros(1, int), cameras, 1.0
     )
     assert len(np.unique(movers.object_id[movers.part >= 0])) == assets.traffic.actors
+
+
+def test_pictures_are_those_with_the_lights_of_all_signals(town):
+    """Also where two views share a world; most lights are listed for none of the views."""
+    signals, rng = town.signals, np.random.default_rng(11)
+    reach = float(town.renderer.part_reach()[signals.first_part :].max())
+    looks, times = looks_of(town.traffic.motion, 12), rng.uniform(5.0, 120.0, 12)
+    cameras = cameras_before(signals, rng)
+    row = np.concatenate([np.arange(12), np.arange(4)])
+    motion, far = town.traffic.motion, np.full(len(town.rigs.casts), 60.0)
+    near = VisibleActors(motion, town.rigs, looks, far, lights=NearLights(signals, reach))
+    worlds = np.arange(12)
+    for _ in range(2):  # the second time, there is room for all at once
+        short = near.of(worlds, times, row, cameras, 0.75)
+        few = drawn(town, short, cameras, row)
+    without = VisibleActors(motion, town.rigs, looks, far).of(worlds, times, row, cameras, 0.75)
+    dark = drawn(town, without, cameras, row)
+    assert_same(few, drawn(town, signals.added(without, times), cameras, row))
+    listed = (short.part >= signals.first_part).sum()
+    assert 12 <= listed < 0.5 * 12 * len(signals.row)
+    assert (few.rgb != dark.rgb).any(axis=(1, 2, 3)).sum() >= 8
+
+
+def cameras_before(signals, rng) -> CameraState:
+    """Sixteen cameras, each a few metres before the light of a signal and towards it."""
+    pole = rng.integers(len(signals.pose), size=16)
+    rotation = signals.pose[pole, :, :3].astype(np.float64)
+    rotation /= np.linalg.norm(rotation, axis=1, keepdims=True)
+    away, side = rng.uniform(5.0, 9.0, (16, 1)), rng.choice([-1.0, 1.0], (16, 1))
+    return CameraState(
+        signals.pose[pole, :, 3] + side * away * rotation[:, :, 0] + np.array([0.0, 0.0, 3.0]),
+        np.stack([-side * rotation[:, :, 0], -side * rotation[:, :, 1], rotation[:, :, 2]], -1),
+        np.full(16, 1.2),
+    )

@@ -30,7 +30,7 @@ class _Found(NamedTuple):
     and `Listed.needed` tells how many slots there must be.
     """
 
-    count: NDArray[np.int64]
+    number: NDArray[np.int64]
     """Shape (1,)."""
     pole: NDArray[np.int64]
     """Shape (F,)."""
@@ -55,7 +55,7 @@ def _list_lights(poles: _Poles, query: ViewQuery, listed: Listed, found: _Found)
                 used += 1
         listed.used[w] = used
         listed.needed[1] = max(listed.needed[1], used)
-    found.count[0] = count
+    found.number[0] = count
 
 
 class NearLights:
@@ -77,7 +77,7 @@ class NearLights:
     def bind(self, query: ViewQuery, listed: Listed) -> None:
         """Use these buffers from now on."""
         most = listed.part.size
-        self._found = _Found(np.zeros(1, np.int64), np.zeros(most, np.int64), np.zeros(most, int))
+        self._found = _Found(*(np.zeros(size, np.int64) for size in (1, most, most)))
         self.list = _list_lights.bind(self._poles, query, listed, self._found)
 
     def write(self, time: NDArray[np.float64], slots: int, flat: DrawList) -> None:
@@ -88,7 +88,7 @@ class NearLights:
             slots: Slots in the list of a world.
             flat: The lists of all worlds, as of one.
         """
-        count, lights = int(self._found.count[0]), self._lights
+        count, lights = int(self._found.number[0]), self._lights
         if count == 0:
             return
         pole, slot = self._found.pole[:count], self._found.slot[:count]
