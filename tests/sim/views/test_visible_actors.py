@@ -1,5 +1,7 @@
 """Actors that no view may show are left out, and no byte of a picture changes by it."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -251,3 +253,20 @@ def cameras_before(signals, rng) -> CameraState:
         np.stack([-side * rotation[:, :, 0], -side * rotation[:, :, 1], rotation[:, :, 2]], -1),
         np.full(16, 1.2),
     )
+
+
+def test_no_camera_sees_a_light_that_is_none(town):
+    """Lights are told apart eight at once; what fills up the last eight is nowhere."""
+    lights = town.signals
+    few = dataclasses.replace(
+        lights, row=lights.row[:3], pose=lights.pose[:3], object_id=lights.object_id[:3]
+    )
+    motion, looks = town.traffic.motion, looks_of(town.traffic.motion, 64)
+    times, rng = np.full(64, 20.0), np.random.default_rng(3)
+    cameras = cameras_among(town, times, rng)
+    cameras.field_of_view[:] = 3.1
+    far = np.full(len(town.rigs.casts), 1.0)
+    near = VisibleActors(motion, town.rigs, looks, far, lights=NearLights(few, 5.0))
+    movers = near.of(np.arange(64), times, None, cameras, 1.0)
+    seen = np.isin(movers.object_id, few.object_id) & (movers.part >= lights.first_part)
+    assert (movers.part >= lights.first_part).sum() == seen.sum() > 0

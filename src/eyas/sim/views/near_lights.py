@@ -69,8 +69,9 @@ class NearLights:
     def __init__(self, lights: SignalLights, reach: float) -> None:
         self._lights = lights
         count = len(lights.pose)
-        sphere = np.full((4, -(-count // WIDTH) * WIDTH), -1e9, np.float32)
+        sphere = np.zeros((4, -(-count // WIDTH) * WIDTH), np.float32)
         sphere[:3, :count] = lights.pose[:, :, 3].T
+        sphere[3, count:] = -1e9  # so far behind all edges that no camera sees them
         sphere[3, :count] = 1.001 * reach * _scale(lights.pose) + SLACK
         self._poles = Held(_Poles(sphere))
 
