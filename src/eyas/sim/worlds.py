@@ -8,6 +8,7 @@ from eyas.lanes import interpreted
 from eyas.sensors.camera.poses import Moving
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
+from eyas.sim.views.near_lights import NearLights
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
@@ -85,9 +86,14 @@ class Worlds:
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
         renderer, rigs = assets.renderer, assets.rigs
-        reach = renderer.influence(rigs.reach(renderer.part_reach()))
+        far, lights = renderer.part_reach(), None
+        reach = renderer.influence(rigs.reach(far))
+        if assets.signals is not None:
+            lights = NearLights(assets.signals, float(far[assets.signals.first_part :].max()))
         wet = assets.lighting.spray > 0.0
-        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach, spray=wet)
+        self._near = VisibleActors(
+            assets.traffic.motion, rigs, self.looks, reach, spray=wet, lights=lights
+        )
 
     @property
     def models(self) -> NDArray[np.int32]:
@@ -201,8 +207,6 @@ class Worlds:
         """
         worlds, rows, time = self._at(trackers, tick, later)
         movers = self._near.of(worlds, time, rows, cameras, aspect)
-        if self._assets.signals is not None:
-            movers = self._assets.signals.added(movers, time)
         rows = np.arange(len(trackers)) if rows is None else rows
         return rows.astype(np.int32), movers
 

@@ -59,16 +59,20 @@ class SignalPlan(NamedTuple):
 
     def at(self, time: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the `Aspect` of all edges at W times of the traffic [s], shape (W, E)."""
+        return self.shown(time[:, None], np.arange(len(self.edges))[None])
+
+    def shown(self, time: NDArray[np.float64], edge: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Return the `Aspect` of edges at times of the traffic [s], of shapes that fit."""
         # Whole microseconds: a phase that ends at a physics step is over then.
         # It is done for each picture, and thrice as fast as with `mod` and a sum over the phases.
-        turn = time[:, None] - self.offset
-        into = np.round(turn - self.cycle * np.floor(turn / self.cycle), 6)
-        into[into >= self.cycle] = 0.0
-        place = np.zeros(into.shape, np.int64) + self.end.shape[1] * np.arange(len(self.edges))
+        cycle, turn = self.cycle[edge], time - self.offset[edge]
+        into = np.round(turn - cycle * np.floor(turn / cycle), 6)
+        into[into >= cycle] = 0.0
+        place = np.zeros(into.shape, np.int64) + self.end.shape[1] * edge
         for end in self.end.T:
-            place += into >= end
-        shown: NDArray[np.int64] = self.aspect.ravel().take(place)
-        return shown
+            place += into >= end[edge]
+        aspect: NDArray[np.int64] = self.aspect.ravel().take(place)
+        return aspect
 
     def only(self, row: int) -> "SignalPlan":
         """Return the plan of one light."""

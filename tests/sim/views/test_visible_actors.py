@@ -1,5 +1,7 @@
 """Actors that no view may show are left out, and no byte of a picture changes by it."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from hypothesis import strategies as st
 from eyas.lanes import kernel
 from eyas.sim.assets import load_assets
 from eyas.sim.views.actor_bounds import NOWHERE, bounds_of, made_row
+from eyas.sim.views.near_lights import NearLights
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.motion import ActorState
@@ -216,3 +219,54 @@ def test_a_motion_of_two_samples_is_enough(assets):
         np.zeros(1, int), np.array([50.0]), np.zeros(1, int), cameras, 1.0
     )
     assert len(np.unique(movers.object_id[movers.part >= 0])) == assets.traffic.actors
+
+
+def test_pictures_are_those_with_the_lights_of_all_signals(town):
+    """Also where two views share a world; most lights are listed for none of the views."""
+    signals, rng = town.signals, np.random.default_rng(11)
+    reach = float(town.renderer.part_reach()[signals.first_part :].max())
+    looks, times = looks_of(town.traffic.motion, 12), rng.uniform(5.0, 120.0, 12)
+    cameras = cameras_before(signals, rng)
+    row = np.concatenate([np.arange(12), np.arange(4)])
+    motion, far = town.traffic.motion, np.full(len(town.rigs.casts), 60.0)
+    near = VisibleActors(motion, town.rigs, looks, far, lights=NearLights(signals, reach))
+    worlds = np.arange(12)
+    for _ in range(2):  # the second time, there is room for all at once
+        short = near.of(worlds, times, row, cameras, 0.75)
+        few = drawn(town, short, cameras, row)
+    without = VisibleActors(motion, town.rigs, looks, far).of(worlds, times, row, cameras, 0.75)
+    dark = drawn(town, without, cameras, row)
+    assert_same(few, drawn(town, signals.added(without, times), cameras, row))
+    listed = (short.part >= signals.first_part).sum()
+    assert 12 <= listed < 0.5 * 12 * len(signals.row)
+    assert (few.rgb != dark.rgb).any(axis=(1, 2, 3)).sum() >= 8
+
+
+def cameras_before(signals, rng) -> CameraState:
+    """Sixteen cameras, each a few metres before the light of a signal and towards it."""
+    pole = rng.integers(len(signals.pose), size=16)
+    rotation = signals.pose[pole, :, :3].astype(np.float64)
+    rotation /= np.linalg.norm(rotation, axis=1, keepdims=True)
+    away, side = rng.uniform(5.0, 9.0, (16, 1)), rng.choice([-1.0, 1.0], (16, 1))
+    return CameraState(
+        signals.pose[pole, :, 3] + side * away * rotation[:, :, 0] + np.array([0.0, 0.0, 3.0]),
+        np.stack([-side * rotation[:, :, 0], -side * rotation[:, :, 1], rotation[:, :, 2]], -1),
+        np.full(16, 1.2),
+    )
+
+
+def test_no_camera_sees_a_light_that_is_none(town):
+    """Lights are told apart eight at once; what fills up the last eight is nowhere."""
+    lights = town.signals
+    few = dataclasses.replace(
+        lights, row=lights.row[:3], pose=lights.pose[:3], object_id=lights.object_id[:3]
+    )
+    motion, looks = town.traffic.motion, looks_of(town.traffic.motion, 64)
+    times, rng = np.full(64, 20.0), np.random.default_rng(3)
+    cameras = cameras_among(town, times, rng)
+    cameras.field_of_view[:] = 3.1
+    far = np.full(len(town.rigs.casts), 1.0)
+    near = VisibleActors(motion, town.rigs, looks, far, lights=NearLights(few, 5.0))
+    movers = near.of(np.arange(64), times, None, cameras, 1.0)
+    seen = np.isin(movers.object_id, few.object_id) & (movers.part >= lights.first_part)
+    assert (movers.part >= lights.first_part).sum() == seen.sum() > 0

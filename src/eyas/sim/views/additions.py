@@ -109,6 +109,11 @@ class SignalLights:
     first_part: int
     """Part that shows `Aspect.RED`; the other aspects follow."""
 
+    def parts(self, time: NDArray[np.float64], pole: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Return what poles show at times of the traffic [s], of shapes that fit; -1: nothing."""
+        aspect = self.plan.shown(time, self.row[pole])
+        return np.where(aspect < 0, -1, self.first_part + aspect).astype(np.int32)
+
     def added(self, movers: DrawList, time: NDArray[np.float64]) -> DrawList:
         """Return a draw list with the lights after the movers.
 
@@ -116,8 +121,8 @@ class SignalLights:
             movers: Lists of W worlds.
             time: Time of the traffic in each [s], shape (W,).
         """
-        aspect, worlds = self.plan.at(time)[:, self.row], len(time)
-        part = np.where(aspect < 0, -1, self.first_part + aspect).astype(np.int32)
+        worlds = len(time)
+        part = self.parts(time[:, None], np.arange(len(self.row))[None])
         pose = np.broadcast_to(self.pose, (worlds, *self.pose.shape))
         ids = np.broadcast_to(self.object_id, part.shape)
         white = np.ones((*part.shape, 3), np.float32)

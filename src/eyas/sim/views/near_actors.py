@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.elementary import tan
-from eyas.lanes.vector import magnitude
+from eyas.lanes.vector import bits_of, load, magnitude
 from eyas.render.kernels.scalars import f4
 from eyas.sim.views.spray import SPRAY_REACH
 from eyas.state.motion import ActorState, Motion
@@ -22,11 +22,13 @@ from eyas.traffic.lamps import shining
 
 __all__ = [
     "CAMERA",
+    "SLACK",
     "Entry",
     "KindTable",
     "Listed",
     "ViewQuery",
     "column_actors",
+    "eight_may_matter",
     "kind_table",
     "may_show",
     "one_may_matter",
@@ -34,7 +36,7 @@ __all__ = [
     "write_entry",
 ]
 
-_SLACK = 0.05
+SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
 
 CAMERA: Final = np.dtype(
@@ -144,6 +146,22 @@ def may_show(
 
 
 @kernel(inline=True)
+def eight_may_matter(
+    query: ViewQuery, w: int, sphere: NDArray[np.float32], first: int, reach: float
+) -> int:
+    """Return which of eight columns of rows x, y, z and radius a view of world `w` may show, a bit
+    each.
+    """
+    width = sphere.shape[1]
+    x, y, z = load(sphere, first), load(sphere, width + first), load(sphere, 2 * width + first)
+    around = load(sphere, 3 * width + first) + f4(reach)
+    seen = 0
+    for v in range(query.end[w - 1] if w > 0 else 0, query.end[w]):
+        seen |= bits_of(may_show(query.camera[v], x, y, z, around))
+    return seen
+
+
+@kernel(inline=True)
 def one_may_matter(query: ViewQuery, w: int, pose: ActorPose, reach: float) -> bool:
     """Return whether a view of world `w` may show something of an actor."""
     x, y, z = f4(pose.x), f4(pose.y), f4(pose.z)
@@ -204,7 +222,7 @@ def kind_table(rigs: Rigs, reach: NDArray[np.float64], *, spray: bool = False) -
     return KindTable(
         end=np.cumsum([len(cast.group.actor) for cast in rigs.casts], dtype=np.int64),
         slots=np.array([cast.rig.slots for cast in rigs.casts], np.int64),
-        reach=np.asarray(reach, np.float64) * 1.001 + _SLACK + SPRAY_REACH * spray,
+        reach=np.asarray(reach, np.float64) * 1.001 + SLACK + SPRAY_REACH * spray,
     )
 
 

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, compiled, kernel
-from eyas.lanes.vector import WIDTH, bits_of, first_bit, load
-from eyas.render.kernels.scalars import f4
+from eyas.lanes import Held, compiled
+from eyas.lanes.vector import WIDTH, first_bit
 from eyas.sensors.camera.poses import Moving
 from eyas.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
 from eyas.sim.views.near_actors import (
@@ -22,12 +21,13 @@ from eyas.sim.views.near_actors import (
     Listed,
     ViewQuery,
     column_actors,
+    eight_may_matter,
     kind_table,
-    may_show,
     one_may_matter,
     set_camera,
     write_entry,
 )
+from eyas.sim.views.near_lights import NearLights
 from eyas.sim.views.spray import spray_of, throwing
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
@@ -43,20 +43,6 @@ _LONGEST = 3.0
 
 _CHOICES = 32
 """Groups of actors that are kept: those of one picture are mostly those of the next."""
-
-
-@kernel(inline=True)
-def _eight_may_matter(
-    query: ViewQuery, w: int, sphere: NDArray[np.float32], first: int, reach: float
-) -> int:
-    """Return which of eight columns of a row of bounds a view of world `w` may show, a bit each."""
-    width = sphere.shape[1]
-    x, y, z = load(sphere, first), load(sphere, width + first), load(sphere, 2 * width + first)
-    around = load(sphere, 3 * width + first) + f4(reach)
-    seen = 0
-    for v in range(query.end[w - 1] if w > 0 else 0, query.end[w]):
-        seen |= bits_of(may_show(query.camera[v], x, y, z, around))
-    return seen
 
 
 @compiled
@@ -82,7 +68,7 @@ def _list_actors(  # the records that it reads
             time = query.time[w]
             sphere = bounds.sphere[made_row(bounds, motion, sample_before(motion, time))]
             for first in range(begin, end, WIDTH):
-                seen = _eight_may_matter(query, w, sphere, first, reach)
+                seen = eight_may_matter(query, w, sphere, first, reach)
                 seen &= (1 << min(end - first, WIDTH)) - 1
                 while seen != 0:
                     actor = bounds.actor[first + first_bit(seen)]
@@ -121,6 +107,7 @@ class VisibleActors:
         looks: Models and colours of the actors of all worlds; may change.
         reach: Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,).
         spray: Whether vehicles throw up water.
+        lights: The lights of signals, which are listed behind the actors; None: there are none.
     """
 
     def __init__(
@@ -131,7 +118,9 @@ class VisibleActors:
         reach: NDArray[np.float64],
         *,
         spray: bool = False,
+        lights: NearLights | None = None,
     ) -> None:
+        self._lights = lights
         self._throws = throwing(rigs.kinds) if spray else None
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
@@ -163,6 +152,8 @@ class VisibleActors:
             self._first[count] = self._movers.first(count)
         if self._throws is not None:
             self._first[count].spray = spray_of(self._listed, self._throws, count)
+        if self._lights is not None:
+            self._lights.write(time, self._size.slots, self._flat)
         return self._first[count]
 
     def moving(
@@ -208,6 +199,8 @@ class VisibleActors:
         query.rotation[:views] = cameras.rotation[order]
         query.field_of_view[:views] = cameras.field_of_view[order]
         self._list()
+        if self._lights is not None:
+            self._lights.list()
         entries, slots = self._listed.needed.tolist()
         if entries > self._size.entries or slots > self._size.slots:
             self._grow(_Size(0, 0, entries, slots))
@@ -272,3 +265,5 @@ class VisibleActors:
             lamps=self._movers.lamps,
         )
         self._list = _list_actors.bind(*self._given, self._query, self._listed)
+        if self._lights is not None:
+            self._lights.bind(self._query, self._listed)
