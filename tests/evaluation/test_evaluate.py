@@ -56,6 +56,14 @@ def test_the_command_that_repeats_it_survives_a_shell():
     assert _changes(said) == {"env": plan.env, **plan.settings}
 
 
+@pytest.mark.parametrize("maps", [("citystreet",), ("village",), ("village", "citystreet")])
+@pytest.mark.parametrize("protocol", ["paper", "recover"])
+def test_that_command_names_the_maps_that_are_not_the_protocol_s_own(protocol, maps):
+    words = shlex.split(EvaluationPlan(policy="hover", protocol=protocol, maps=maps).command)
+    named = tuple(text for option, text in pairwise(words) if option == "--map")
+    assert (named or EvaluationPlan(policy="hover", protocol=protocol).maps) == maps
+
+
 @pytest.mark.slow
 def test_several_sets_of_seeds_are_flown_as_if_each_were_alone(tmp_path):
     sets = EvaluationPlan(policy="random", episodes=1, seeds=seed_sets("2"), batch=3)

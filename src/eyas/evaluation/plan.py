@@ -93,10 +93,12 @@ class EvaluationPlan(Config):
     @property
     def command(self) -> str:
         """The command that repeats it."""
-        told = self.model_dump(
-            exclude_defaults=True,
-            exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"},
+        usual = {name: field.default for name, field in type(self).model_fields.items()}
+        usual["maps"] = EvaluationPlan(policy=self.policy, protocol=self.protocol).maps
+        chosen = self.model_dump(
+            exclude={"env", "settings", "sampled", "in_process", "policy", "seeds"}
         )
+        told = {name: value for name, value in chosen.items() if value != usual[name]}
         words = ["eyas", "evaluate", "--policy", self.policy]
         if self.seeds != (FIRST_SEED,):
             words += [
