@@ -29,7 +29,11 @@ CHOSEN: dict[str, dict[str, object]] = {
 }
 """Settings of each film, by the names that `--set` takes."""
 
-FLOWN = {"box": ("eyas", "distractor"), "words": ("eyas-words", "referring")}
+FLOWN = {
+    "box": ("eyas", "distractor"),
+    "flown": ("eyas-flown", "flown"),
+    "words": ("eyas-words", "referring"),
+}
 """Policy and protocol of each film of a flight."""
 LENGTH = 375
 """Pictures of such a film, 12 s."""

@@ -3,7 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.evaluation.policies.tracker.helm import turned
 from eyas.evaluation.steering import towards
@@ -44,10 +43,7 @@ def flown_over(
     trackers, yaw = state.trackers, state.trackers.euler[:, 2]
     error = places - state.episodes.view_centre[:, :2]
     if env.actions is not ActionKind.VELOCITY:
-        sine, cosine = exact.sin(yaw), exact.cos(yaw)
-        ahead = cosine * error[:, 0] + sine * error[:, 1]
-        left = -sine * error[:, 0] + cosine * error[:, 1]
-        return towards(np.stack((ahead, left), axis=-1), env)
+        return towards(turned(error, -yaw), env)
     error = error - (trackers.commanded_position - trackers.position)[:, :2]
     wanted = turned(velocities + _RATE * error, -yaw)
     return np.concatenate((wanted, np.zeros_like(wanted)), axis=1)
