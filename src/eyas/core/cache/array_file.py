@@ -64,20 +64,22 @@ def map_arrays(path: Path) -> Content:
         raise ValueError(f"{path}: not as Eyas writes it: {error}") from None
     if name != path.name:
         raise ValueError(f"{path}: in the place of another entry")
+    let_go(whole)  # the checksum has read it to its end
     return Content(flat, arrays)
 
 
 def let_go(array: NDArray[Any]) -> None:
     """Let go of the memory of an array that has just been mapped, and that nobody has written into.
 
-    Its pages come back one by one when they are used, from the system's memory. The checksum reads
-    all of a file; of the motion of 400 people, for example, a process needs little.
+    Its pages come back one by one when they are used, from the system's memory, and without their
+    neighbours: of a map, or of the motion of 400 people, a process needs a part only.
     """
     owner: Any = array
     while isinstance(owner, np.ndarray | memoryview):
         owner = owner.base if isinstance(owner, np.ndarray) else owner.obj
     if isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED"):
-        owner.madvise(mmap.MADV_DONTNEED)
+        for advice in (mmap.MADV_DONTNEED, mmap.MADV_RANDOM):
+            owner.madvise(advice)
 
 
 def _plain(kind: str) -> np.dtype[Any]:
