@@ -17,7 +17,7 @@ import pkgutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import eyas
@@ -32,11 +32,8 @@ from eyas.lanes.shipped import (
     LEVEL,
     VARIABLE,
     WIDE_ARCHIVE,
-    WIDE_LEVEL,
     archive_of,
-    features,
     read_archive,
-    wide_needed,
 )
 from eyas.lanes.syntax import INDEX, index_of
 from eyas.sim.step import step_of
@@ -119,6 +116,41 @@ with tempfile.TemporaryDirectory() as folder:
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+MAKES_WIDE = (
+    """
+import os
+from eyas.lanes import calls, entry, machine_code
+from eyas.lanes.shipped import WIDE_LEVEL
+
+function_of, loaded = calls.ParallelCall._function, entry.load
+
+
+def named(level):
+    os.environ["NUMBA_CPU_NAME"] = level
+    machine_code.cpu.cache_clear()
+    machine_code._machine.cache_clear()
+
+
+def made(self, bundles):
+    if self.function.__name__ != "draw_views":
+        return function_of(self, bundles)
+    level = os.environ["NUMBA_CPU_NAME"]
+    named(WIDE_LEVEL)
+    entry.load = lambda code: 1
+    function_of(self, bundles)
+    entry.load = loaded
+    named(level)
+    return nothing
+
+
+nothing = calls._ENTRY(lambda *_: 0)
+calls.ParallelCall._function = made
+"""
+    + USES_ALL
+)
+"""A program that makes what draws for AVX-512, and does not run it: this processor may lack it."""
+
+
 USES_DEVICE = """
 from pathlib import Path
 import numpy as np
@@ -182,22 +214,20 @@ def main() -> None:
     options = parser.parse_args()
     if options.check:
         raise SystemExit(missing(read_archive(ARCHIVE)) or not_wide() or compiled())
-    if lacks := wide_needed - features():  # the code is run to know which kernels there are
-        raise SystemExit(f"{WIDE_LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
     program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
     with tempfile.TemporaryDirectory() as cache:
-        use_all(cache, {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"})
+        variables = {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
+        use_all(cache, variables)
         folder = Path(cache, "kernels", language_hash())
-        codes = codes_in(folder)
+        files = set(folder.glob(f"*{SUFFIX}"))
+        codes = codes_in(files)
         (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
         (options.out / modules.ARCHIVE.name).write_bytes(modules.archive_of(folder, DRAWING))
-    with tempfile.TemporaryDirectory() as cache:
-        use_all(cache, {"NUMBA_CPU_NAME": WIDE_LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"})
-        wide = codes_in(Path(cache, "kernels", language_hash()))
-        drawing = {name: code for name, code in wide.items() if draws(name)}
-        (options.out / WIDE_ARCHIVE.name).write_bytes(archive_of(drawing))
+        use_all(cache, variables, MAKES_WIDE)
+        wide = codes_in(set(folder.glob(f"*{SUFFIX}")) - files)
+        (options.out / WIDE_ARCHIVE.name).write_bytes(archive_of(wide))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
         (options.out / ptx.ARCHIVE.name).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
@@ -226,9 +256,8 @@ def use_all(cache: str, variables: dict[str, str], program: str = USES_ALL) -> N
     subprocess.run([sys.executable, "-c", program], env=environment, check=True)
 
 
-def codes_in(folder: Path) -> dict[str, MachineCode]:
-    """Return the machine code in a folder, by the names by which it is found."""
-    files = folder.glob(f"*{SUFFIX}")
+def codes_in(files: Iterable[Path]) -> dict[str, MachineCode]:
+    """Return the machine code in some files, by the names by which it is found."""
     codes = {file.stem.rpartition("-")[0]: read_code(file) for file in files}
     return {name: code for name, code in codes.items() if code is not None}
 

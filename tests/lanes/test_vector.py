@@ -33,10 +33,12 @@ from eyas.lanes.vector import (
     load_words,
     load_words_two,
     magnitude,
+    prefetch,
     root,
     select,
     splat,
     store,
+    store_greater,
     store_triples,
     store_triples_two,
     store_where,
@@ -268,6 +270,37 @@ def test_squares_are_the_elements_after_each_other_and_a_step_on():
     expected = [words[index + after] for after in (0, 1, step, step + 1)]
     np.testing.assert_array_equal(wide, expected)
     np.testing.assert_array_equal(single, expected)
+
+
+@kernel
+def greatest(numbers, new):
+    for at in range(0, len(numbers), WIDTH):
+        store_greater(numbers, at, load(new, at), load(numbers, at))
+
+
+def test_the_greater_of_keys_is_kept():
+    distances = RNG.uniform(0.01, 1e5, (2, 1000 * WIDTH)).astype(f4)
+    tags = RNG.integers(0, 2**32, distances.shape)
+    old, new = (distances.view(i4).astype(i8) << 32) | tags
+    new[1::7] = (old[1::7] >> 32 << 32) | (new[1::7] & 0xFFFFFFFF)  # as far away: the tag decides
+    old[2::7] = 0  # the sky
+    new[3::7] |= i8(-(2**63))  # not wanted
+    expected = np.maximum(old, new)
+    greatest(old, new)
+    np.testing.assert_array_equal(old, expected)
+
+
+@kernel
+def fetching(numbers, index):
+    for at in range(0, len(index), WIDTH):
+        prefetch(numbers, load(index, at))
+        prefetch(numbers, index[at])
+
+
+def test_prefetching_changes_nothing_and_may_reach_beyond_the_end():
+    numbers = A.copy()
+    fetching(numbers, np.array([0, 1, 2**30, 2**31 - 1] * WIDTH, i4))
+    np.testing.assert_array_equal(numbers, A)
 
 
 def test_a_row_that_all_lanes_want_is_in_all_of_them():

@@ -39,6 +39,7 @@ __all__ = [
     "load_words_two",
     "magnitude",
     "own",
+    "prefetch",
     "root",
     "scatter",
     "select",
@@ -79,6 +80,7 @@ load = Intrinsic(_MEMORY, "load")
 load_two = Intrinsic(_MEMORY, "load_two")
 load_words = Intrinsic(_MEMORY, "load_words")
 load_words_two = Intrinsic(_MEMORY, "load_words_two")
+prefetch = Intrinsic(_MEMORY, "prefetch")
 scatter = Intrinsic(_MEMORY, "scatter")
 store = Intrinsic(_MEMORY, "store")
 store_greater = Intrinsic(_MEMORY, "store_greater")

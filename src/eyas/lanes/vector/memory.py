@@ -12,7 +12,8 @@ from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type, lanes_are_
 
 __all__ = [
     "agree", "claim_some", "gather", "gather_column", "gather_pair", "gather_pair_after",
-    "gather_square", "load", "load_two", "load_words", "load_words_two", "scatter", "store",
+    "gather_square", "load", "load_two", "load_words", "load_words_two", "prefetch", "scatter",
+    "store",
     "store_greater", "store_largest", "store_triples", "store_triples_two", "store_where",
     "store_words", "transposed",
 ]  # fmt: skip
@@ -211,6 +212,29 @@ def transposed(typing_context, array, index, first, width):
     return result(array, index, first, width), generate
 
 
+@intrinsic
+def prefetch(typing_context, array, index):
+    """Have elements, and what lies beside them, brought into the cache, to be loaded later.
+
+    Where lanes are threads, nothing is done: others work while some wait.
+    """
+
+    def generate(context, builder, sig, args):
+        if not lanes_are_threads(context):
+            for at in _each(context, builder, index, args[1]):
+                pointer = _pointer(context, builder, array, args[0], at)
+                pointer = builder.bitcast(pointer, ir.IntType(8).as_pointer())
+                kinds = [pointer.type, _I32, _I32, _I32]
+                name, kind = f"llvm.prefetch.{pointer.type.intrinsic_name}", ir.VoidType()
+                call = cgutils.get_or_insert_function(
+                    builder.module, ir.FunctionType(kind, kinds), name
+                )
+                builder.call(call, [pointer, _I32(0), _I32(3), _I32(1)])  # to read, often, data
+        return context.get_dummy_value()
+
+    return types.void(array, index), generate
+
+
 def _place(
     context: Any, builder: Any, sig: Any, args: Any, kind: ir.Type, size: int
 ) -> tuple[ir.Value, int]:
@@ -335,9 +359,31 @@ def store(typing_context, array, at, value):
     return types.void(array, at, value), _storing(array.dtype.bitwidth // 8)
 
 
+def _greatest(builder: Any, a: ir.Value, b: ir.Value) -> ir.Value:
+    """Return the greater of numbers, compared as the float64 that have their bits.
+
+    That is one instruction. The fence hides from LLVM that old numbers may be stored again, which
+    it would leave out by a masked store: those take some processors ten times as long.
+    """
+    kind = ir.VectorType(ir.DoubleType(), WIDTH)
+    name = f"v{WIDTH}f64"
+    most = cgutils.get_or_insert_function(
+        builder.module, ir.FunctionType(kind, [kind, kind]), f"llvm.maxnum.{name}"
+    )
+    fence = cgutils.get_or_insert_function(
+        builder.module, ir.FunctionType(kind, [kind]), f"llvm.arithmetic.fence.{name}"
+    )
+    found = builder.call(
+        most, [builder.bitcast(a, kind), builder.bitcast(b, kind)], fastmath=("nnan", "nsz")
+    )
+    return builder.bitcast(builder.call(fence, [found]), a.type)
+
+
 @intrinsic
 def store_greater(typing_context, array, at, value, old):
     """Write eight int64 in a row where they are greater than the old ones, which were loaded there.
+
+    As float64, their bits must not be NaN; at most one of two that are compared may be negative.
 
     Threads of a graphics processor do so in one step, since other workers may write there too.
     """
@@ -346,7 +392,7 @@ def store_greater(typing_context, array, at, value, old):
         pointer, align = _place(context, builder, sig, args, args[2].type, 8)
         greater = builder.icmp_signed(">", args[2], args[3])
         if not lanes_are_threads(context):
-            chosen = builder.select(greater, args[2], args[3])
+            chosen = _greatest(builder, args[2], args[3])
             return _store(context, builder, chosen, pointer, align)
         with builder.if_then(greater):
             builder.atomic_rmw("max", pointer, args[2], "monotonic")

@@ -4,15 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.render.kernels.bundles import SHADING_COLUMNS
 from eyas.render.pack.materials import MaterialTable
 from eyas.state.mesh import Mesh
 
-__all__ = ["SHADING", "gradients", "shading_rows", "solid_triangles"]
-
-SHADING = 32
-"""Columns of `Geometry.shading`: columns 0 to 13 of `gradients`; tiles in a metre, negative where
-the normal is not the same all over; texture; surface, and bed of snow times 256; tint; emission;
-middle of the crown; object id; gradients of the normal. Whole numbers lie there as int32."""
+__all__ = ["gradients", "shading_rows", "solid_triangles"]
 
 _SLIVER = 1e-12
 """Squared sine of the least angle between sides: thousands of times the rounding of a float64."""
@@ -89,7 +85,7 @@ def shading_rows(
         objects: Object ids, shape (T,).
         materials: Of each triangle.
     """
-    rows = np.empty((len(slopes), SHADING), np.float32)
+    rows = np.empty((len(slopes), SHADING_COLUMNS), np.float32)
     whole = rows.view(np.int32)
     rows[:, :14] = slopes[:, :14]
     rows[:, 14] = slopes[:, 23]

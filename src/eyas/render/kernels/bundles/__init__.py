@@ -10,7 +10,7 @@ themselves. Numbers of a bundle are float32 if their names are those of light, e
 """
 
 from eyas.render.kernels.bundles.band import Band
-from eyas.render.kernels.bundles.geometry import GROUP, Geometry, Movers
+from eyas.render.kernels.bundles.geometry import GROUP, SHADING_COLUMNS, Geometry, Movers
 from eyas.render.kernels.bundles.lens import (
     DARK,
     ELSEWHERE,
@@ -39,6 +39,7 @@ __all__ = [
     "GROUP",
     "LENS_TILE",
     "NEAR",
+    "SHADING_COLUMNS",
     "TILE",
     "Air",
     "Band",

@@ -5,10 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GROUP", "Geometry", "Movers"]
+__all__ = ["GROUP", "SHADING_COLUMNS", "Geometry", "Movers"]
 
 GROUP = 16
 """Chunks, or fixtures, that are culled together first."""
+
+SHADING_COLUMNS = 32
+"""Columns of `Geometry.shading`: a row fills two lines of a cache of 64 bytes each."""
 
 
 class Geometry(NamedTuple):
@@ -25,8 +28,10 @@ class Geometry(NamedTuple):
     """Texture coordinates u and v of corner a, of b and of c [tiles] of the eight triangles in each
     cluster, shape (T / 8, 6, 8)."""
     shading: NDArray[np.float32]
-    """Data of each triangle for shading in one place, see `eyas.render.pack.triangles.SHADING`,
-    shape (T, 32)."""
+    """Data of each triangle for shading in one place: columns 0 to 13 of `gradients` in
+    `eyas.render.pack.triangles`; tiles in a metre, negative where the normal is not the same all
+    over; texture; surface, and bed of snow times 256; tint; emission; middle of the crown; object
+    id; gradients of the normal. Whole numbers lie there as int32. Shape (T, SHADING_COLUMNS)."""
     material: NDArray[np.int32]
     """Material of each triangle, shape (T,)."""
     object_id: NDArray[np.int32]

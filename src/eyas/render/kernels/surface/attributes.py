@@ -7,16 +7,13 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bit_pattern, like, magnitude, root, select, transposed
-from eyas.render.kernels.bundles import Band
+from eyas.render.kernels.bundles import SHADING_COLUMNS, Band
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.wind import sways
 
 __all__ = ["Attributes", "Frame", "attributes_of", "instance_frame"]
 
 Vector = tuple[float, float, float]
-
-_COLUMNS = 32
-"""Columns of `Geometry.shading`."""
 
 
 class Frame(NamedTuple):
@@ -158,10 +155,10 @@ def attributes_of(band: Band, row: int, triangle: int, point: Vector) -> Attribu
         point: The point [m].
     """
     shading, moved = band.geometry.shading, row >= 0
-    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, _COLUMNS)
-    v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, _COLUMNS)
+    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS)
+    v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, SHADING_COLUMNS)
     kind, red, green, blue, emission, crown, building, nx_x = transposed(
-        shading, triangle, 16, _COLUMNS
+        shading, triangle, 16, SHADING_COLUMNS
     )
     own = point
     if moved:
@@ -170,7 +167,9 @@ def attributes_of(band: Band, row: int, triangle: int, point: Vector) -> Attribu
     u, v = u0 + u_x * x + u_y * y + u_z * z, v0 + v_x * x + v_y * y + v_z * z
     bent = density < f4(0.0)
     if any_of(bent):
-        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(shading, triangle, 24, _COLUMNS)
+        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(
+            shading, triangle, 24, SHADING_COLUMNS
+        )
         nx += nx_x * x + nx_y * y + nx_z * z
         ny += ny_x * x + ny_y * y + ny_z * z
         nz += nz_x * x + nz_y * y + nz_z * z

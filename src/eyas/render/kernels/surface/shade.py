@@ -201,21 +201,7 @@ def shade_point(
     span = f4(256.0) * density * distance * pixel
     detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
     blend = pixel < SHARP
-    low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
-    asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
-    red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
-    if any_of(marked):
-        share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
-        paint, rest = share * alpha, one - share
-        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
-        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
-        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
-    painted, wet = surface == PAINT, surface == WATER
-    if row >= 0 and any_of(painted):
-        frame = instance_frame(band, row)
-        red = select(painted, red * frame.red, red)
-        green = select(painted, green * frame.green, green)
-        blue = select(painted, blue * frame.blue, blue)
+    painted, wet, bright = surface == PAINT, surface == WATER, like(span, one)
     if any_of(wet):
         waves, bright = _wavy(
             geometry.texture, at.layer, detail, blend, (at.u, at.v), normal, cosine
@@ -226,6 +212,30 @@ def shade_point(
             select(wet, waves[2], normal[2]),
         )
         cosine = -_dot(normal, way)
+
+    # What lies anywhere in memory is read in one go, so that one wait for it covers the others.
+    leafy = surface == FOLIAGE
+    unit = f4(1.0 / 255.0)
+    sun_share, sky_share = to_f4(shade & byte) * unit, to_f4((shade >> u4(8)) & byte) * unit
+    direct, reaching = like(sun_share, zero), like(sun_share, zero)
+    if lit.sun_colour.x > zero:  # not below a closed sky
+        direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
+    open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
+    asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
+    red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
+    if any_of(marked):
+        share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
+        paint, rest = share * alpha, one - share
+        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
+        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
+        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
+    if row >= 0 and any_of(painted):
+        frame = instance_frame(band, row)
+        red = select(painted, red * frame.red, red)
+        green = select(painted, green * frame.green, green)
+        blue = select(painted, blue * frame.blue, blue)
+    if any_of(wet):
         red = select(wet, at.tint[0] * bright, red)
         green = select(wet, at.tint[1] * bright, green)
         blue = select(wet, at.tint[2] * bright, blue)
@@ -253,15 +263,8 @@ def shade_point(
             (red, green, blue), light, air.litter, at.bed, point, normal[2], footprint
         )
 
-    leafy = surface == FOLIAGE
-    unit = f4(1.0 / 255.0)
-    sun_share, sky_share = to_f4(shade & byte) * unit, to_f4((shade >> u4(8)) & byte) * unit
-    direct, reaching = like(sun_share, zero), like(sun_share, zero)
-    if lit.sun_colour.x > zero:  # not below a closed sky
-        direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
     tilt = f4(0.5) * normal[2]
     tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
-    open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
     up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share * open_share
     # Where walls hide the sky, what they and the ground throw back is not blue.
     seen, thrown = up * open_share, up * (one - open_share)

@@ -4,10 +4,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, splat
-from eyas.render.kernels.bundles import Band, Geometry, Planes, Point, Projection, View
+from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, prefetch, splat
+from eyas.render.kernels.bundles import (
+    SHADING_COLUMNS,
+    Band,
+    Geometry,
+    Planes,
+    Point,
+    Projection,
+    View,
+)
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.clusters import (
+    BOUNDS_ROWS,
     CLUSTER,
     CLUSTER_ROWS,
     LEAVES,
@@ -29,7 +38,7 @@ from eyas.render.kernels.visibility.triangles import (
 )
 from eyas.state.draw import DrawStage
 
-__all__ = ["draw_cluster", "draw_mesh", "level_of_detail"]
+__all__ = ["draw_cluster", "draw_mesh", "fetch_mesh", "level_of_detail"]
 
 VERTICES = int(DrawStage.VERTICES)
 
@@ -38,6 +47,9 @@ PIXELS_PER_TRIANGLE = 1.5
 
 TEXELS = 256.0
 """Texels along a side of a texture."""
+
+_ROWS_IN_LINE = 2
+"""Rows of eight float32 in a line of the cache."""
 
 ASIDE = 1.0 / 64.0
 """See `rasterise`: less would let roads rise over their paint at their far edges."""
@@ -55,6 +67,13 @@ def level_of_detail(
         if triangles * PIXELS_PER_TRIANGLE <= size * size:
             return mesh
     return last
+
+
+@kernel(inline=True)
+def _fetch(array: NDArray[np.float32], number: int, rows: int) -> None:
+    """Have a cluster, or bounds, with that many rows of eight numbers brought into the cache."""
+    for row in range(0, rows, _ROWS_IN_LINE):
+        prefetch(array, (number * rows + row) * CLUSTER)
 
 
 @kernel(inline=True)
@@ -90,7 +109,16 @@ def draw_mesh(
         while left != 0:
             cluster = first + start + first_bit(left)
             left &= left - 1
+            if left != 0:
+                _fetch(geometry.cluster, first + start + first_bit(left), CLUSTER_ROWS)
             draw_cluster(band, key, cluster, screen, planes, focal, smallest, tag)
+
+
+@kernel(inline=True)
+def fetch_mesh(geometry: Geometry, mesh: NDArray[np.int32]) -> None:
+    """Have what is read first of a mesh, see `draw_mesh`, brought into the cache."""
+    _fetch(geometry.bounds, mesh[2], BOUNDS_ROWS)
+    _fetch(geometry.cluster, mesh[0] // CLUSTER, CLUSTER_ROWS)
 
 
 @kernel(inline=True)
@@ -170,6 +198,9 @@ def _draw_triangles(
             if level >= 0:
                 layer = i8(gather(geometry.layer, i8(gather(geometry.material, at))))
                 holes = holes_of(geometry.texture, layer, level)
+        # It will be shaded, unless something nearer is drawn over it.
+        prefetch(geometry.shading, at * SHADING_COLUMNS)
+        prefetch(geometry.shading, at * SHADING_COLUMNS + SHADING_COLUMNS // 2)
         fill_or_record(band, key, column, tag + at, layer, holes)
 
 
