@@ -116,7 +116,13 @@ with tempfile.TemporaryDirectory() as folder:
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+DRAWING = "draw_views"
+"""The function whose modules ship: to make them takes longer than those of all others together. Its
+code also ships for AVX-512."""
+
+
 MAKES_WIDE = (
+    f"DRAWING = {DRAWING!r}"
     """
 import os
 from eyas.lanes import calls, entry, machine_code
@@ -132,7 +138,7 @@ def named(level):
 
 
 def made(self, bundles):
-    if self.function.__name__ != "draw_views":
+    if self.function.__name__ != DRAWING:
         return function_of(self, bundles)
     level = os.environ["NUMBA_CPU_NAME"]
     named(WIDE_LEVEL)
@@ -145,8 +151,7 @@ def made(self, bundles):
 
 nothing = calls._ENTRY(lambda *_: 0)
 calls.ParallelCall._function = made
-"""
-    + USES_ALL
+""" + USES_ALL
 )
 """A program that makes what draws for AVX-512, and does not run it: this processor may lack it."""
 
@@ -200,10 +205,6 @@ PACKAGE = Path(eyas.__file__).parent
 
 FOR_DEVICES = ("eyas.render.kernels.stages", "eyas.sim.device.", "eyas.envs.device.")
 """Rooms of kernels that run on graphics processors; they ship as PTX."""
-
-DRAWING = "draw_views"
-"""The function whose modules ship: to make them takes longer than those of all others together. Its
-code also ships for AVX-512."""
 
 
 def main() -> None:

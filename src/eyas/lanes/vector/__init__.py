@@ -4,8 +4,8 @@ A kernel written with these functions handles eight pixels, triangles, boxes or 
 arguments are lanes, and one where they are numbers, as in a thread of a graphics processor: every
 function here takes either. `docs/lanes.md` tells how to write such a kernel.
 
-What the functions do is written in `eyas.lanes.vector.memory` and `eyas.lanes.vector.values`; those
-import numba, so they are loaded only when a kernel is compiled.
+What the functions do is written in `loads`, `stores` and `values` of this package; those import
+numba, so they are loaded only when a kernel is compiled.
 """
 
 from eyas.lanes.intrinsics import Intrinsic
@@ -67,29 +67,30 @@ BLOCK = 32
 """Threads that a graphics processor starts together of a kernel on lanes: one warp, so that none
 waits for others to end. What the lanes of a worker share is laid out for so many."""
 
-_MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
+_LOADS, _STORES = "eyas.lanes.vector.loads", "eyas.lanes.vector.stores"
+_VALUES = "eyas.lanes.vector.values"
 
-agree = Intrinsic(_MEMORY, "agree")
-claim_some = Intrinsic(_MEMORY, "claim_some")
-gather = Intrinsic(_MEMORY, "gather")
-gather_column = Intrinsic(_MEMORY, "gather_column")
-gather_pair = Intrinsic(_MEMORY, "gather_pair")
-gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
-gather_square = Intrinsic(_MEMORY, "gather_square")
-load = Intrinsic(_MEMORY, "load")
-load_two = Intrinsic(_MEMORY, "load_two")
-load_words = Intrinsic(_MEMORY, "load_words")
-load_words_two = Intrinsic(_MEMORY, "load_words_two")
-prefetch = Intrinsic(_MEMORY, "prefetch")
-scatter = Intrinsic(_MEMORY, "scatter")
-store = Intrinsic(_MEMORY, "store")
-store_greater = Intrinsic(_MEMORY, "store_greater")
-store_largest = Intrinsic(_MEMORY, "store_largest")
-store_triples = Intrinsic(_MEMORY, "store_triples")
-store_triples_two = Intrinsic(_MEMORY, "store_triples_two")
-store_where = Intrinsic(_MEMORY, "store_where")
-store_words = Intrinsic(_MEMORY, "store_words")
-transposed = Intrinsic(_MEMORY, "transposed")
+agree = Intrinsic(_STORES, "agree")
+claim_some = Intrinsic(_STORES, "claim_some")
+gather = Intrinsic(_LOADS, "gather")
+gather_column = Intrinsic(_LOADS, "gather_column")
+gather_pair = Intrinsic(_LOADS, "gather_pair")
+gather_pair_after = Intrinsic(_LOADS, "gather_pair_after")
+gather_square = Intrinsic(_LOADS, "gather_square")
+load = Intrinsic(_LOADS, "load")
+load_two = Intrinsic(_LOADS, "load_two")
+load_words = Intrinsic(_LOADS, "load_words")
+load_words_two = Intrinsic(_LOADS, "load_words_two")
+prefetch = Intrinsic(_LOADS, "prefetch")
+scatter = Intrinsic(_STORES, "scatter")
+store = Intrinsic(_STORES, "store")
+store_greater = Intrinsic(_STORES, "store_greater")
+store_largest = Intrinsic(_STORES, "store_largest")
+store_triples = Intrinsic(_STORES, "store_triples")
+store_triples_two = Intrinsic(_STORES, "store_triples_two")
+store_where = Intrinsic(_STORES, "store_where")
+store_words = Intrinsic(_STORES, "store_words")
+transposed = Intrinsic(_LOADS, "transposed")
 
 all_of = Intrinsic(_VALUES, "all_of")
 any_of = Intrinsic(_VALUES, "any_of")

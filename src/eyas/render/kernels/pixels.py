@@ -7,6 +7,7 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
     agree,
+    any_of,
     bits_of,
     first_bit,
     gather,
@@ -16,6 +17,8 @@ from eyas.lanes.vector import (
     load_two,
     own,
     scatter,
+    select,
+    splat,
     store,
     store_triples,
     store_triples_two,
@@ -34,6 +37,7 @@ __all__ = [
     "write_pixels",
     "write_plane",
     "write_tile",
+    "written",
 ]
 
 ACROSS = 4
@@ -203,3 +207,15 @@ def keys_of(key: NDArray[np.int64], line: int, sample: int, step: int) -> int:
     if step == 1:
         return load(key, at)
     return gather(key, lane_numbers() * i4(step) + i4(at))
+
+
+@kernel(inline=True)
+def written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> int:
+    """Return the packed bytes that eight pixels have already, 0 where the mask is not set."""
+    packed = splat(u4(0))
+    if any_of(mask):
+        at = (lane_numbers() + i4(row * pixels.shape[1] + first)) * i4(3)
+        at = select(mask, at, i4(0))
+        words = pack(gather(pixels, at), gather(pixels, at + i4(1)), gather(pixels, at + i4(2)))
+        packed = select(mask, words, packed)
+    return packed

@@ -7,6 +7,7 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
     agree,
+    all_of,
     any_of,
     bits_of,
     first_bit,
@@ -33,6 +34,7 @@ from eyas.render.kernels.pixels import (
     write_colours,
     write_pixels,
     write_tile,
+    written,
 )
 from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
 from eyas.render.kernels.samples import owns_pixels
@@ -42,8 +44,6 @@ from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_o
 
 __all__ = ["shade_band"]
 
-
-_ALL = (1 << WIDTH) - 1
 
 Colour = tuple[float, float, float]
 Four = tuple[int, int, int, int]
@@ -122,7 +122,7 @@ def _colours_of(
         ray, distance = (ray[0] * part, ray[1] * part, ray[2] * part), distance * wide
     row, triangle = drawn_of(tag), triangle_of(tag)
     which = lane(row, 0)
-    if bits_of(wanted & (row == which)) == _ALL:  # as in nine of ten tiles
+    if all_of(wanted & (row == which)):  # as in nine of ten tiles
         return _one_instance(band, which, triangle, eye, ray, distance, rays.pixel, shade)
     red, green, blue, left = splat(f4(0.0)), splat(f4(0.0)), splat(f4(0.0)), bits_of(wanted)
     while left != 0:
@@ -277,7 +277,7 @@ def _shade_several(
         keys = keys_all[k]
         seen = inside & (keys > i8(0))
         shown |= bits_of(seen)
-        sky = _written(pixels, row, first, inside & (keys == i8(0)))
+        sky = written(pixels, row, first, inside & (keys == i8(0)))
         both, green = both + each * (sky & even), green + each * ((sky >> eight) & even)
         tag, is_first, count, inverse, down, right, wide = _alike(bent, keys_all, places, k, across)
         seen &= is_first
@@ -391,15 +391,3 @@ def _words_within(band: Band, line: int, sample: int, across: int) -> int:
     for k in range(1, 4):
         words |= gather(shade, first + i4(k)) << u4(8 * k)
     return words
-
-
-@kernel(inline=True)
-def _written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> int:
-    """Return the packed bytes that eight pixels have already, 0 where the mask is not set."""
-    packed = splat(u4(0))
-    if any_of(mask):
-        at = (lane_numbers() + i4(row * pixels.shape[1] + first)) * i4(3)
-        at = select(mask, at, i4(0))
-        words = pack(gather(pixels, at), gather(pixels, at + i4(1)), gather(pixels, at + i4(2)))
-        packed = select(mask, words, packed)
-    return packed
