@@ -120,6 +120,26 @@ def test_processes_share_the_memory_of_what_they_only_read(tmp_path):
     assert set(own("write")) == {"4"}  # one page of 8 MiB, in KiB
 
 
+def resident(path):
+    """Return how much of a mapped file this process holds [KiB], from Linux's list."""
+    inside = False
+    for line in Path("/proc/self/smaps").read_text().splitlines():
+        inside = str(path) in line if "-" in line.split()[0] else inside
+        if inside and line.startswith("Rss:"):
+            return int(line.split()[1])
+    raise AssertionError(f"{path} is not mapped")
+
+
+@pytest.mark.skipif(not Path("/proc/self/smaps").exists(), reason="Linux tells what is held")
+def test_a_process_holds_what_it_uses_of_a_file(tmp_path):
+    path = tmp_path / "a.npy"
+    values = np.arange(1 << 22, dtype=np.float32)  # 16 MiB
+    path.write_bytes(b"".join(array_file(Content(None, [values]), path.name)))
+    (mapped,) = map_arrays(path).arrays
+    assert mapped[1 << 20] == 1 << 20
+    assert resident(path) <= 4096  # of a file just written, Linux may map 2 MiB at once
+
+
 def test_pages_that_were_let_go_come_back(tmp_path):
     values = np.arange(1 << 20, dtype=np.float32)
     path = tmp_path / "a.npy"
