@@ -3,6 +3,7 @@
 import logging
 import os
 import runpy
+import shutil
 import signal
 import sys
 from pathlib import Path
@@ -42,6 +43,17 @@ def pytest_collection_modifyitems(config, items):
     if left_out:
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in set(left_out)]
+
+
+@pytest.fixture(scope="session")
+def emulated():
+    """What has `eyas.lanes.cuda` find a card that runs PTX on this processor."""
+    if shutil.which("cc") is None:
+        pytest.skip("there is no C compiler")
+    sys.path.append(str(Path(__file__).parents[1] / "tools"))
+    from emulated_card import emulated_card
+
+    return emulated_card
 
 
 @pytest.fixture

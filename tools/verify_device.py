@@ -2,17 +2,21 @@
 
     python tools/verify_device.py            # on a machine with a card: some minutes
     python tools/verify_device.py --emulate --views 50 --maps village
+    python tools/verify_device.py --ptx --views 2 --maps village
 
 Please send us what it prints: the table in docs/gpu.md is made of it.
 
 With `--emulate` the kernels of the card run on this processor, with several numbers of workers that
-take turns in orders drawn by lot; that needs no card, and measures nothing. `--write` makes
-`device_checksums.json` anew, after pictures have changed on purpose.
+take turns in orders drawn by lot; that needs no card, and measures nothing. With `--ptx` a driver
+that runs the card's own code on this processor stands for a card (`emulated_card`); that takes
+seconds a picture, and a C compiler. `--write` makes `device_checksums.json` anew, after pictures
+have changed on purpose.
 """
 
 import argparse
 import json
 import math
+import shutil
 import statistics
 import subprocess
 import sys
@@ -25,6 +29,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from emulated_card import emulated_card
 from numpy.typing import NDArray
 
 from eyas import EyasVectorEnv, __version__
@@ -70,6 +75,16 @@ Checksums = dict[str, dict[str, list[int]]]
 def main() -> int:
     """Check and measure; return 1 if anything differs, 2 if there is no card."""
     asked = _arguments()
+    if asked.ptx and shutil.which("cc") is None:
+        print("verify_device: --ptx needs a C compiler, cc", file=sys.stderr)
+        return 2
+    if asked.ptx:
+        with emulated_card(seed=1):
+            return _checked(asked)
+    return _checked(asked)
+
+
+def _checked(asked: argparse.Namespace) -> int:
     conditions = [(m, w) for m in asked.maps.split(",") for w in asked.weathers.split(",")]
     if asked.write:
         return _write(conditions)
@@ -87,10 +102,12 @@ def main() -> int:
             return 2
     begun = time.perf_counter()
     print(f"Eyas {__version__}, build {this_build().id}, {describe_machine()}")
-    print("emulated on this processor" if asked.emulate else gpu_line(), flush=True)
+    emulated = asked.emulate or asked.ptx
+    print("emulated on this processor" if emulated else gpu_line(), flush=True)
     wrong = _pictures(devices, conditions, asked.views)
-    wrong += _states("host" if asked.emulate else "cuda", asked.emulate)
-    if not asked.emulate:
+    count, steps = (4, 10) if asked.ptx else (8, 40) if asked.emulate else (64, STEPS)
+    wrong += _states("host" if asked.emulate else devices[0] if asked.ptx else "cuda", count, steps)
+    if not emulated:
         _table(devices[0])
     print(f"{'EVERYTHING IS EQUAL' if wrong == 0 else f'DIFFERENT: {wrong}'}, ", end="")
     print(f"{time.perf_counter() - begun:.0f} s")
@@ -100,6 +117,7 @@ def main() -> int:
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--emulate", action="store_true", help="needs no card")
+    parser.add_argument("--ptx", action="store_true", help="needs no card, but a C compiler")
     parser.add_argument("--views", type=int, default=VIEWS, help="of each map and weather")
     parser.add_argument("--maps", default=",".join(MAPS))
     parser.add_argument("--weathers", default=",".join(WEATHERS))
@@ -258,9 +276,8 @@ def _different(a: NDArray[Any], b: NDArray[Any]) -> int:
     return sum(one.tobytes() != other.tobytes() for one, other in zip(a, b, strict=True))
 
 
-def _states(device: str, emulated: bool) -> int:
+def _states(device: Device | str, count: int, steps: int) -> int:
     """Compare what environments give on a device, step by step, with those of this processor."""
-    count, steps = (8, 40) if emulated else (64, STEPS)
     near, far = EyasVectorEnv(count), EyasVectorEnv(count, device=device)
     allowed: Any = near.single_action_space
     random, wrong = np.random.default_rng(1), 0

@@ -1,4 +1,6 @@
-"""A real card of NVIDIA: memory, PyTorch, and kernels with the bytes of this processor."""
+"""A card of NVIDIA, or, where there is none, one that this processor emulates: memory, PyTorch, and
+kernels with the bytes of this processor.
+"""
 
 import subprocess
 import sys
@@ -28,15 +30,31 @@ from eyas.lanes.elementary import (
 )  # fmt: skip
 from eyas.lanes.vector import WIDTH, load, root, select, store
 
-pytestmark = pytest.mark.card
+
+@pytest.fixture(scope="module")
+def there():
+    """Whether there is a card."""
+    try:
+        cuda_device()
+    except CudaError:
+        return False
+    return True
 
 
 @pytest.fixture(scope="module")
-def card():
-    try:
-        return cuda_device()
-    except CudaError:
-        pytest.skip(gpu_line())
+def card(there, emulated):
+    if there:
+        yield cuda_device()
+    else:
+        with emulated(1):
+            yield cuda_device()
+
+
+@pytest.fixture
+def real_card(there):
+    if not there:
+        pytest.skip("there is no graphics processor of NVIDIA")
+    return cuda_device()
 
 
 class Points(NamedTuple):
@@ -137,11 +155,12 @@ def test_arrays_come_back_as_they_went(card, kind):
     assert card.read(card.upload(values[:0])).shape == (0, 3)
 
 
-def test_pytorch_shares_memory_and_order(card):
+@pytest.mark.card
+def test_pytorch_shares_memory_and_order(real_card):
     torch = pytest.importorskip("torch")
     if not torch.cuda.is_available():
         pytest.skip("this PyTorch is for the CPU only")
-    task = task_of(card, 20_000)
+    task = task_of(real_card, 20_000)
     host = task_of(HostDevice(), 20_000)
     HostDevice().launch(compute, 1, HostDevice().held(host))
     for share in (torch.from_dlpack, lambda array: torch.as_tensor(array, device="cuda")):
@@ -150,14 +169,14 @@ def test_pytorch_shares_memory_and_order(card):
         assert found.data_ptr() == task.found.address
         for _ in range(3):
             found.fill_(-1.0)
-            card.launch(compute, 20_000, card.held(task))
+            real_card.launch(compute, 20_000, real_card.held(task))
             doubled = found * 2.0  # comes after the kernel without waiting for it
             np.testing.assert_array_equal(doubled.cpu().numpy(), host.found * 2.0)
     rows = torch.from_dlpack(task.found[5:7])
     rows.zero_()
-    assert not card.read(task.found)[5:7].any()
+    assert not real_card.read(task.found)[5:7].any()
     with torch.cuda.stream(torch.cuda.Stream()):
-        card.launch(compute, 20_000, card.held(task))
+        real_card.launch(compute, 20_000, real_card.held(task))
         other = torch.from_dlpack(task.found).clone()
     torch.cuda.synchronize()
     np.testing.assert_array_equal(other.cpu().numpy(), host.found)
@@ -182,16 +201,18 @@ def test_recorded_launches_are_done_again_by_one_call(card):
     assert card.event().since(begin) > 0.0
 
 
-def test_what_cannot_be_is_said_in_a_line(card):
+@pytest.mark.card
+def test_what_cannot_be_is_said_in_a_line(real_card):
     with pytest.raises(CudaError, match=r"too little memory: 9\d+\.\d\d GiB were asked for"):
-        card.empty(10**15 // 1000, np.uint8)
+        real_card.empty(10**15 // 1000, np.uint8)
     text = b".version 8.0\n.target sm_80\n.address_size 64\n.entry f() { nonsense; }\n"
     with pytest.raises(CudaError, match=r"compiling broken for .*INVALID_PTX.*\n.*nonsense"):
-        function_of(card.context, Ptx("f", text), "broken")
-    assert card.name in gpu_line()
+        function_of(real_card.context, Ptx("f", text), "broken")
+    assert real_card.name in gpu_line()
 
 
-def test_a_process_that_holds_shared_arrays_ends_quietly(card):
+@pytest.mark.card
+def test_a_process_that_holds_shared_arrays_ends_quietly(real_card):
     program = """
 import numpy as np
 from eyas.lanes.cuda import cuda_device

@@ -15,6 +15,7 @@ ASKED = ["--emulate", "--views", "2", "--maps", "village", "--weathers", "day"]
 
 @pytest.fixture
 def run(monkeypatch, capsys):
+    monkeypatch.syspath_prepend(TOOL.parent)
     spec = importlib.util.spec_from_file_location("verify_device", TOOL)
     tool = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(tool)
@@ -34,6 +35,20 @@ def test_emulated_pictures_and_environments_are_equal(run):
     assert code == 0, said.out
     assert "village day: equal (2 of 2 with checksums" in said.out
     assert "observations, rewards and ends equal" in said.out
+
+
+def test_a_cards_own_code_is_run(run, emulated):
+    code, said = run("--ptx", *ASKED[1:])
+    assert code == 0, said.out
+    assert "village day: equal (2 of 2 with checksums" in said.out
+    assert "environments: 4, 10 steps: observations, rewards and ends equal" in said.out
+
+
+def test_without_a_compiler_there_is_one_line(run, monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    code, said = run("--ptx")
+    assert (code, said.out) == (2, "")
+    assert said.err == "verify_device: --ptx needs a C compiler, cc\n"
 
 
 def test_another_checksum_is_told(run, monkeypatch, tmp_path):

@@ -16,6 +16,7 @@ from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.device.actions import DeviceActions
 from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.vector_env import EyasVectorEnv
+from eyas.lanes.cuda import cuda_device
 from eyas.lanes.device import HostDevice
 from eyas.lanes.ptx import ptx_of
 from eyas.sim.device.records import arrays_of
@@ -209,6 +210,24 @@ def test_nothing_is_read_here_that_is_there(case, mode):
         theirs = usual.step(actions)
         for told, expected in zip(mine[:4], theirs[:4], strict=True):
             assert_same(as_numpy(told), expected)
+
+
+@pytest.mark.parametrize(("case", "mode"), [("plain", MODES[0]), ("plain", MODES[1])])
+def test_a_card_gives_what_the_usual_ones_give(emulated, case, mode):
+    torch = pytest.importorskip("torch")
+    usual, _ = pair(case, 2, 1, mode)
+    settings, own = CASES[case]
+    choices = {"autoreset_mode": mode, "observation": SMALL, **own}
+    with emulated(1):
+        ours = EyasVectorEnv(2, SHORT | settings, device=cuda_device(), **choices)
+        observation, _ = ours.reset(seed=2)
+        assert_same(as_numpy(observation), usual.reset(seed=2)[0])
+        rng = np.random.default_rng(0)
+        for step in range(31):  # episodes end after 28
+            actions = actions_of(usual, rng)
+            mine = ours.step(torch.from_numpy(actions) if step % 2 else actions)
+            for told, expected in zip(mine[:4], usual.step(actions)[:4], strict=True):
+                assert_same(as_numpy(told), expected)
 
 
 @pytest.mark.parametrize(
