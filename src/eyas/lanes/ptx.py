@@ -72,12 +72,29 @@ def ptx_of(
         function.add_function_attribute("convergent")
     # Loops that do several turns at once need more registers, which all threads share.
     improve(module, name, machine, loops=False)
+    _without_failures(module, machine)
     module = llvm.parse_assembly(_with_shared_records(str(module)))
     module.verify()
     text: str = machine.emit_assembly(module)
     head, entry, body = text.partition(f".entry {name}(")
     limits = f".maxnreg {_REGISTERS}\n" + (f".maxntid {BLOCK}\n" if threads > 1 else "")
     return head + entry + body.replace("\n)\n", f"\n)\n{limits}", 1)
+
+
+def _without_failures(module: llvm.ModuleRef, machine: llvm.TargetMachine) -> None:
+    """Leave out what callers do if a function fails that, as it is now known, never does.
+
+    A way out of a loop is more than an instruction: threads that have gone different ways would
+    meet again where all ways end, not at the end of the turn.
+    """
+    passes = llvm.create_new_module_pass_manager()
+    if not hasattr(passes, "add_ipsccp_pass"):  # llvmlite before 0.45: same bytes, longer waits
+        return
+    passes.add_ipsccp_pass()
+    passes.add_simplify_cfg_pass()
+    passes.add_instruction_combine_pass()
+    passes.add_simplify_cfg_pass()
+    passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options()))
 
 
 def _retargeted(text: str, name: str, layout: str, threads: int) -> str:

@@ -42,9 +42,9 @@ CLUSTERS = 2048
 """Clusters of eight triangles of a view that are kept for those who project them; more are
 projected where they are found."""
 
-RECORDS_PER_ROW, UNITS_PER_ROW = 32, 64
-"""Triangles of a view that are kept for the fillers, and eights of their rows, for each row of
-samples; more are filled where they are found."""
+RECORDS_PER_ROW, UNITS_PER_ROW = 32, 256
+"""Triangles of a view that are kept for the fillers, and their rows, for each row of samples; more
+are filled where they are found."""
 
 ITEMS = 512
 """Chunks and instances of a view that are kept for those who look for their clusters; more are
@@ -184,8 +184,7 @@ class DeviceRenderer:
             found=device.zeros((views, 2), np.int64),
             record=device.empty((views, records // WIDTH, TRIANGLE_ROWS, CLUSTER), np.float64),
             record_shown=device.empty((views, records, 2), np.int64),
-            # Lanes of a processor write back what lies beside what they write: one row more.
-            unit=device.empty((views + 1, UNITS_PER_ROW * plane[1]), np.int32),
+            unit=device.empty((views, UNITS_PER_ROW * plane[1]), np.int32),
             recorded=device.zeros((views, 1), np.int64),
             bent_tile=device.empty((0, 0, 4), np.int32),
         )

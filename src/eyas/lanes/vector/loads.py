@@ -165,7 +165,8 @@ def transposed(typing_context, array, index, first, width):
     """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
 
     Eight loads and shuffles take the place of 64 loads; where all lanes want the same row, as many
-    do, each number is loaded into all of them.
+    do, each number is loaded into all of them. Where lanes are threads, each loads four numbers at
+    once: in arrays of whole rows, `width` and `first` must be multiples of four.
     """
     result = types.UniTuple(_numbered(index, types.float32), 8)
 
@@ -180,8 +181,16 @@ def transposed(typing_context, array, index, first, width):
         def numbers_of(row: ir.Value) -> list[ir.Value]:
             return [builder.load(builder.gep(row_at(row), [I64(k)])) for k in range(8)]
 
+        def halves_of(row: ir.Value) -> list[ir.Value]:
+            four = ir.VectorType(ir.FloatType(), 4)
+            place = builder.bitcast(row_at(row), four.as_pointer())
+            halves = [builder.load(builder.gep(place, [I64(k)]), align=16) for k in range(2)]
+            return [builder.extract_element(half, I32(k)) for half in halves for k in range(4)]
+
         places = each_index(context, builder, index, args[1])
-        if not isinstance(index, Lanes) or lanes_are_threads(context):
+        if lanes_are_threads(context):
+            return context.make_tuple(builder, result, halves_of(places[0]))
+        if not isinstance(index, Lanes):
             return context.make_tuple(builder, result, numbers_of(places[0]))
         kind = ir_type(F4, threads=False)
         with builder.if_else(_all_alike(builder, args[1])) as (alike, apart):

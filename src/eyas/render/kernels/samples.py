@@ -14,7 +14,8 @@ __all__ = [
     "empty_box",
     "local_camera",
     "own_row",
-    "owns_pixels",
+    "own_rows",
+    "pixel_row",
     "point_of",
     "ray_of_row",
 ]
@@ -41,13 +42,31 @@ class LocalCamera(NamedTuple):
 
 
 @kernel(inline=True)
-def owns_pixels(band: Band, row: int) -> bool:
-    """Return whether a worker writes the colours of a row of pixels: every so many pairs of them.
+def own_rows(band: Band, first: int, last: int) -> tuple[int, int]:
+    """Return which of its own rows of pixels a worker has from `first` on, and before `last`: the
+    numbers for `pixel_row`.
 
     What is drawn over a picture is drawn by who has shaded what lies below, so there is no need to
-    wait for others.
+    wait for others. Threads that went through all rows and left out those of others would wait for
+    each other in each.
     """
-    return (row >> 1) % band.members == band.member
+    return _rows_before(band, first), _rows_before(band, last)
+
+
+@kernel(inline=True)
+def _rows_before(band: Band, row: int) -> int:
+    pair, part = row >> 1, 0
+    if pair % band.members == band.member:
+        part = row & 1
+    return (pair - band.member + band.members - 1) // band.members * 2 + part
+
+
+@kernel(inline=True)
+def pixel_row(band: Band, k: int) -> int:
+    """Return the row of pixels that is a worker's own with number `k`: it has every so many pairs
+    of them.
+    """
+    return (band.member + band.members * (k >> 1)) * 2 + (k & 1)
 
 
 @kernel(inline=True)

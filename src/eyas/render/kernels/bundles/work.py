@@ -96,9 +96,9 @@ class Scratch(NamedTuple):
     record_shown: NDArray[np.int64]
     """Their tags, and layer and mip level of their holes, -1: none, shape (K, R, 2)."""
     unit: NDArray[np.int32]
-    """Eight rows of one of them: its number times 64, and which eight; -1: none, shape (K, U)."""
+    """A row of one of them: its number times 1,024, and which row; -1: none, shape (K, U)."""
     recorded: NDArray[np.int64]
-    """Units asked for, in the upper half, and records, shape (K, 1)."""
+    """Rows asked for, in the upper half, and records, shape (K, 1)."""
     bent_tile: NDArray[np.int32]
     """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 

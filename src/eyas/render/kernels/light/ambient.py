@@ -211,23 +211,23 @@ def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal
     rows, columns = shares.shape
     zero, one = f4(0.0), like(x, f4(1.0))
     inside = (column >= zero) & (row >= zero)
-    inside &= (column < f4(columns - 1)) & (row < f4(rows - 1))
+    inside &= (column < f4(i4(columns - 1))) & (row < f4(i4(rows - 1)))
     column, row = select(inside, column, zero), select(inside, row, zero)
     i, j = to_i4(row), to_i4(column)
     across, down = column - to_f4(j), row - to_f4(i)
-    at = i * i4(columns) + j
+    at = to_i4(i * i4(columns) + j)
     upper, lower = gather_pair(shares, at), gather_pair_after(shares, at, columns)
     byte, half = u4(255), u4(16)
-    a, b = to_f4(upper & byte), to_f4((upper >> half) & byte)
-    c, d = to_f4(lower & byte), to_f4((lower >> half) & byte)
+    a, b = to_f4(to_i4(upper & byte)), to_f4(to_i4((upper >> half) & byte))
+    c, d = to_f4(to_i4(lower & byte)), to_f4(to_i4((lower >> half) & byte))
     first, second = a + across * (b - a), c + across * (d - c)
     hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
     # Higher up less is hidden; at the top of what hides it, nothing. Of four texels two on a
     # diagonal hold the top, two the base. Where neighbours differ, the lower ones are walls' feet.
-    even = ((i + j) & i4(1)) == i4(0)
+    even = (to_i4(i + j) & i4(1)) == i4(0)
     eight = u4(8)
-    one_a, one_b = (upper >> eight) & byte, lower >> u4(24)
-    two_a, two_b = upper >> u4(24), (lower >> eight) & byte
+    one_a, one_b = to_i4((upper >> eight) & byte), to_i4(lower >> u4(24))
+    two_a, two_b = to_i4(upper >> u4(24)), to_i4((lower >> eight) & byte)
     one_c, two_c = to_f4(lesser(one_a, one_b)), to_f4(lesser(two_a, two_b))
     top, base = select(even, one_c, two_c), select(even, two_c, one_c)
     above = z - (frame.ground + base)

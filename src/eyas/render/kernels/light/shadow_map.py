@@ -16,7 +16,7 @@ from eyas.render.kernels.visibility.clusters import (
     has_leaves,
 )
 from eyas.render.kernels.visibility.fill import fill
-from eyas.render.kernels.visibility.holes import holes_of, no_holes
+from eyas.render.kernels.visibility.holes import LEVELS, holes_of, no_holes
 from eyas.render.kernels.visibility.key import distance_inverse
 from eyas.render.kernels.visibility.transform import object_projection
 from eyas.render.kernels.visibility.triangles import Corners, set_up, set_up_leaves
@@ -209,5 +209,7 @@ def _draw(
                 # tree does not change with what else stands in the map.
                 if drawn < 0 or ((triangle - mesh[0]) >> 2) % drawn != 0:
                     continue
-                holes = holes_of(geometry.texture, geometry.layer[material], LEAF_LEVEL)
+                holes = holes_of(
+                    geometry.texture, i8(geometry.layer[material]) * LEVELS + LEAF_LEVEL
+                )
             fill(prepared, number, 0, BLOCK_TEXELS, key, i8(0), holes, bake.span[worker])

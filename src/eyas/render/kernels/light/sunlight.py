@@ -27,7 +27,7 @@ def _first_texel(light: Light, line: int, column: int) -> int:
     column and line, and the one beside both, lie in the same tile.
     """
     tile = (line >> TILE_BITS) * i4(light.shadow_tile.shape[1]) + (column >> TILE_BITS)
-    return gather(light.shadow_tile, tile) + line * i4(TILE + 1) + column
+    return to_i4(gather(light.shadow_tile, to_i4(tile)) + line * i4(TILE + 1) + column)
 
 
 @kernel(inline=True)
@@ -40,8 +40,8 @@ def sunlit(light: Light, x: float, y: float, z: float) -> float:
     height = x * rows[2, 0] + y * rows[2, 1] + z * rows[2, 2] + rows[2, 3]
     zero, one = f4(0.0), like(x, f4(1.0))
     # The outermost tiles are empty: places beyond them are lit, like theirs.
-    column = greater(lesser(column, f4(columns * TILE - 1)), zero)
-    line = greater(lesser(line, f4(lines * TILE - 1)), zero)
+    column = greater(lesser(column, f4(i4(columns * TILE - 1))), zero)
+    line = greater(lesser(line, f4(i4(lines * TILE - 1))), zero)
     top = to_i4(greater(height, zero))  # the map's zero is nothing at all
     i, j = to_i4(line), to_i4(column)
     across, down = column - to_f4(j), line - to_f4(i)

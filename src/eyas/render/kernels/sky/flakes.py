@@ -14,7 +14,7 @@ from eyas.render.kernels.bundles import Band, Canvas, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.light.tone import tone_bytes
-from eyas.render.kernels.samples import owns_pixels
+from eyas.render.kernels.samples import own_rows, pixel_row
 from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.sky.falling import (
     Falling,
@@ -316,9 +316,8 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
         share *= share
     strength = share * min(1.0, 2.6 * drawn / (drawn + length))
     strength *= snowfall.falling.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
-    for i in range(first, last):
-        if not owns_pixels(band, i):
-            continue
+    for k in range(*own_rows(band, first, last)):
+        i = pixel_row(band, k)
         for j in range(start, stop):
             shown = key[i * down, j * across]
             if shown < i8(0) or distance_inverse(shown) > inverse:

@@ -28,7 +28,7 @@ from eyas.lanes.vector import (
 from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.light.caster import Caster, caster_of, has_lamps
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
-from eyas.render.kernels.samples import owns_pixels
+from eyas.render.kernels.samples import own_rows, pixel_row
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.sky.flakes import seen_from
 from eyas.render.kernels.sky.plumes import on_screen
@@ -158,9 +158,8 @@ def _draw(
     exposed = f4(band.lit.air.exposure)
     # A pixel cannot show a core that is smaller than itself.
     core = f4((_CORE / _ANGLE) ** 2 + 0.16 / (tall * wide))
-    for i in range(first, last):
-        if not owns_pixels(band, i):
-            continue
+    for k in range(*own_rows(band, first, last)):
+        i = pixel_row(band, k)
         y = (i + top + 0.5 - row) / tall
         for j in range(start // WIDTH * WIDTH, stop, WIDTH):
             x = (to_f4(lane_numbers()) + f4(j + 0.5 - column)) * f4(1.0 / wide)

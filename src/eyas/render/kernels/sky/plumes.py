@@ -29,7 +29,7 @@ from eyas.render.kernels.bundles import Band, Canvas
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.lens.look import shown_at
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
-from eyas.render.kernels.samples import owns_pixels
+from eyas.render.kernels.samples import own_rows, pixel_row
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.falling import drift, lit_by_lamps, sky_lit
 from eyas.render.kernels.sky.flakes import bytes_of, seen_from
@@ -194,9 +194,8 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
     )
     pale = bytes_of(band.light, lit.air.exposure, colour)
     soft = f4(0.5 / puff.width)
-    for i in range(first, last):
-        if not owns_pixels(band, i):
-            continue
+    for k in range(*own_rows(band, first, last)):
+        i = pixel_row(band, k)
         # Counted from the top of the picture, so that bands agree to the last bit.
         y = (i + top + 0.5 - row) / tall
         half = wide * math.sqrt(max(1.0 - y * y, 0.0))

@@ -30,7 +30,7 @@ from eyas.lanes.vector import (
 from eyas.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
 from eyas.render.kernels.pixels import keys_of, write_colours
 from eyas.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
-from eyas.render.kernels.samples import owns_pixels
+from eyas.render.kernels.samples import own_rows, pixel_row
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
 from eyas.render.kernels.sky.mist import glare, veil
@@ -373,9 +373,8 @@ def draw_backdrop(band: Band, canvas: Canvas) -> None:
     """
     view, light, lit, width = band.camera, band.light, band.lit, band.columns
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
-    for row in range(band.lines):
-        if not owns_pixels(band, row):
-            continue
+    for k in range(*own_rows(band, 0, band.lines)):
+        row = pixel_row(band, k)
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:

@@ -6,7 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, bit_pattern, like, magnitude, root, select, transposed
+from eyas.lanes.vector import (
+    any_of,
+    bit_pattern,
+    like,
+    magnitude,
+    root,
+    select,
+    to_i4,
+    transposed,
+)
 from eyas.render.kernels.bundles import SHADING_COLUMNS, Band
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.wind import sways
@@ -185,6 +194,6 @@ def attributes_of(band: Band, row: int, triangle: int, point: Vector) -> Attribu
         normal = (nx * scale, ny * scale, nz * scale)
     kinds = bit_pattern(kind)
     return Attributes(
-        u, v, (u_x, u_y, u_z), normal, own, density, bit_pattern(layer), kinds & i4(255),
-        kinds >> i4(8), (red, green, blue), emission, crown, bit_pattern(building),
+        u, v, (u_x, u_y, u_z), normal, own, density, bit_pattern(layer), to_i4(kinds & i4(255)),
+        to_i4(kinds >> i4(8)), (red, green, blue), emission, crown, bit_pattern(building),
     )  # fmt: skip

@@ -37,7 +37,7 @@ from eyas.render.kernels.pixels import (
     written,
 )
 from eyas.render.kernels.rays import Rays, place_in_face, place_in_tile, ray_of, rays_of
-from eyas.render.kernels.samples import owns_pixels
+from eyas.render.kernels.samples import own_rows, pixel_row
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.shade import shade_point
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
@@ -357,9 +357,8 @@ def shade_band(band: Band, canvas: Canvas) -> None:
             for first in range(0, width, ACROSS):
                 _shade_tile(band, rays, canvas, (rows, width), row, first)
         return
-    for row in range(rows):
-        if owns_pixels(band, row):
-            _shade_row(band, rays, canvas, row)
+    for k in range(*own_rows(band, 0, rows)):
+        _shade_row(band, rays, canvas, pixel_row(band, k))
 
 
 @kernel(inline=True)

@@ -110,6 +110,11 @@ def painted_share(
 
 
 @kernel(inline=True)
+def _byte(word: int, at: int) -> float:
+    return to_f4(to_i4((word >> u4(at)) & u4(255)))
+
+
+@kernel(inline=True)
 def _dot(a: Colour, b: Colour) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
@@ -170,7 +175,7 @@ def shade_point(
         shade: Effect of moving things on its light, four bytes, see `Scratch.shade`.
     """
     geometry, light, lit, air = band.geometry, band.light, band.lit, band.lit.air
-    one, zero, byte = f4(1.0), f4(0.0), u4(255)
+    one, zero = f4(1.0), f4(0.0)
     point = (eye[0] + ray[0] * distance, eye[1] + ray[1] * distance, eye[2] + ray[2] * distance)
     at = attributes_of(band, row, triangle, point)
     normal, surface = at.normal, at.surface
@@ -216,7 +221,7 @@ def shade_point(
     # What lies anywhere in memory is read in one go, so that one wait for it covers the others.
     leafy = surface == FOLIAGE
     unit = f4(1.0 / 255.0)
-    sun_share, sky_share = to_f4(shade & byte) * unit, to_f4((shade >> u4(8)) & byte) * unit
+    sun_share, sky_share = _byte(shade, 0) * unit, _byte(shade, 8) * unit
     direct, reaching = like(sun_share, zero), like(sun_share, zero)
     if lit.sun_colour.x > zero:  # not below a closed sky
         direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
@@ -277,7 +282,7 @@ def shade_point(
         glow = select(signal, at.emission, zero)
         light_r, light_g, light_b = light_r + glow, light_g + glow, light_b + glow
     if air.lamps > zero:
-        head, tail = to_f4((shade >> u4(16)) & byte), to_f4(shade >> u4(24))
+        head, tail = _byte(shade, 16), _byte(shade, 24)
         lamp_r, lamp_g, lamp_b = night_light(light, air.lamps, point, normal, head, tail)
         glow = air.lamps * select(signal, zero, at.emission)
         light_r += lamp_r + glow
@@ -314,7 +319,7 @@ def shade_point(
             share = select(mirror > zero, share, zero)
             red, green, blue = blended((red, green, blue), mirrored, share)
     if air.wet > zero:
-        unblocked = to_f4((shade >> u4(8)) & byte) * unit
+        unblocked = _byte(shade, 8) * unit
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         red, green, blue = wetted(
             light, lit, (red, green, blue), at.bed, point, normal, way, open_share, unblocked,

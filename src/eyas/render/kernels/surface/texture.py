@@ -63,7 +63,7 @@ def detail_of(texels_squared: float) -> int:
     256 steps are one mip level. The exponent of a square grows by two from level to level, and its
     upper bits with the mantissa's are nearly a logarithm.
     """
-    steps = (bit_pattern(texels_squared) - _ONE) >> i4(16)
+    steps = to_i4(bit_pattern(texels_squared) - _ONE) >> i4(16)
     return to_i4(lesser(greater(steps, i4(0)), _COARSEST << i4(8)))
 
 
@@ -80,8 +80,8 @@ def first_texel(level: int, side: int) -> int:
 
     Left of it lie 129 + 65 + ... = 255 - 2 side + level columns; for level 0 that is negative.
     """
-    left = to_i4(greater(level - side - side + i4(255), i4(0)))
-    return left + select(level > i4(0), like(level, _BELOW), i4(0))
+    left = greater(to_i4(level - side - side + i4(255)), i4(0))
+    return to_i4(left + select(level > i4(0), like(level, _BELOW), i4(0)))
 
 
 @kernel(inline=True)
@@ -103,7 +103,7 @@ def texel(
         Red and blue in bits 0 to 7 and 16 to 23 of a number, green and alpha in those of another;
         the bits between are not zero.
     """
-    level = (detail + i4(128)) >> i4(8)
+    level = to_i4(detail + i4(128)) >> i4(8)
     low, high = _of_level(textures, layer, level, u, v)
     if blend:
         away = detail - (level << i4(8))
@@ -129,7 +129,7 @@ def _of_level(
     Two bytes are blended with one multiplication: weights are 0 to 256 and sum to 256, so the
     lower product cannot reach the upper byte.
     """
-    bits = _COARSEST - level
+    bits = to_i4(_COARSEST - level)
     one = like(level, i4(1))
     side = to_i4(one << bits)
     size = to_f4(side)
@@ -138,16 +138,16 @@ def _of_level(
     column, row = to_i4(x), to_i4(y)
     across = to_u4(to_i4((x - to_f4(column)) * f4(256.0)))
     down = to_u4(to_i4((y - to_f4(row)) * f4(256.0)))
-    mask = side - i4(1)
-    first = first_texel(level, side) + layer * _LAYER
+    mask = to_i4(side - i4(1))
+    first = to_i4(first_texel(level, side) + layer * _LAYER)
     at = to_i4(first + (row & mask) * _ROW + (column & mask))
     a, b, c, d = gather_square(textures, at, TEXELS_IN_ROW)
     even, eight = u4(0x00FF00FF), u4(8)
-    both = to_u4((across * down) >> eight)
-    w01, w10 = across - both, down - both
-    w00 = u4(256) - across - w10
-    low = w00 * (a & even) + w01 * (b & even) + w10 * (c & even) + both * (d & even)
-    high = (
+    both = to_u4(to_u4(across * down) >> eight)
+    w01, w10 = to_u4(across - both), to_u4(down - both)
+    w00 = to_u4(u4(256) - across - w10)
+    low = to_u4(w00 * (a & even) + w01 * (b & even) + w10 * (c & even) + both * (d & even))
+    high = to_u4(
         w00 * ((a >> eight) & even)
         + w01 * ((b >> eight) & even)
         + w10 * ((c >> eight) & even)
@@ -163,6 +163,7 @@ def colour_of(low: int, high: int) -> tuple[float, float, float, float]:
     Textures hold square roots of linear colours.
     """
     scale, byte, half = f4(1.0 / 255.0), u4(255), u4(16)
-    red, green = to_f4(low & byte) * scale, to_f4(high & byte) * scale
-    blue, alpha = to_f4((low >> half) & byte) * scale, to_f4((high >> half) & byte) * scale
+    red, green = to_f4(to_i4(low & byte)) * scale, to_f4(to_i4(high & byte)) * scale
+    blue = to_f4(to_i4((low >> half) & byte)) * scale
+    alpha = to_f4(to_i4((high >> half) & byte)) * scale
     return red * red, green * green, blue * blue, alpha

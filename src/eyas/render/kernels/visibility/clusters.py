@@ -13,7 +13,7 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, greater, lane_numbers, load, select, to_f8
 from eyas.render.kernels.bundles import NEAR, Plane, Planes, Point, Projection, Row, View
 from eyas.render.kernels.scalars import f4, i4
-from eyas.render.kernels.visibility.cull import in_boxes
+from eyas.render.kernels.visibility.cull import Sides, in_boxes
 from eyas.render.kernels.visibility.triangles import Corners
 
 __all__ = [
@@ -67,19 +67,19 @@ _SLACK = 0.02
 
 @kernel(inline=True)
 def clusters_seen(
-    bounds: NDArray[np.float32], row: int, planes: Planes, eye: Point, smallest: float
+    bounds: NDArray[np.float32], row: int, sides: Sides, eye: Point, smallest: float
 ) -> int:
     """Return which of eight clusters may be seen, a bit each.
 
     Args:
         bounds: See `Geometry`.
         row: Row of `bounds`.
-        planes: Planes around what is shown, in the frame of the mesh.
+        sides: Planes around what is shown, in the frame of the mesh.
         eye: Optical centre in that frame [m].
         smallest: Size of the smallest detail to draw [m].
     """
     at = row * BOUNDS_ROWS * CLUSTER
-    seen = in_boxes(planes, bounds, at, CLUSTER)
+    seen = in_boxes(sides, bounds, at, CLUSTER)
     seen &= load(bounds, at + LARGEST * CLUSTER) >= f4(smallest)
     if not any_of(seen):
         return 0

@@ -5,6 +5,7 @@ allow for its rounding.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,15 @@ from eyas.lanes.vector import bits_of, load
 from eyas.render.kernels.bundles import NEAR, Plane, Planes, Projection, Row
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["boxes_seen", "in_boxes", "planes_of", "sphere_is_visible", "spheres_seen"]
+__all__ = [
+    "Sides",
+    "boxes_seen",
+    "in_boxes",
+    "planes_of",
+    "sides_of",
+    "sphere_is_visible",
+    "spheres_seen",
+]
 
 SLACK = 0.05
 """How far outside a plane things are still kept [m]: more than float32 rounds places off."""
@@ -50,58 +59,95 @@ def planes_of(screen: Projection, width: float, height: float, top: float, botto
     )
 
 
+class Side(NamedTuple):
+    """A plane, of float32; things outside by no more than `SLACK` are taken for inside."""
+
+    x: float
+    y: float
+    z: float
+    least: float
+    """What `x`, `y` and `z` times a place come to inside, at least."""
+    length: float
+
+
+class Sides(NamedTuple):
+    """Planes around what is shown."""
+
+    left: Side
+    right: Side
+    top: Side
+    bottom: Side
+    near: Side
+
+
 @kernel(inline=True)
-def _box_reaches(plane: Plane, boxes: NDArray[np.float32], at: int, step: int) -> bool:
+def _side(plane: Plane) -> Side:
+    least = f4(-plane.w - SLACK * plane.length)
+    return Side(f4(plane.x), f4(plane.y), f4(plane.z), least, f4(plane.length))
+
+
+@kernel(inline=True)
+def sides_of(planes: Planes) -> Sides:
+    """Return planes in float32; once for a loop, as a card takes long to convert them."""
+    return Sides(
+        _side(planes.left),
+        _side(planes.right),
+        _side(planes.top),
+        _side(planes.bottom),
+        _side(planes.near),
+    )
+
+
+@kernel(inline=True)
+def _box_reaches(side: Side, boxes: NDArray[np.float32], at: int, step: int) -> bool:
     """Return which of eight boxes may reach inside a plane."""
-    x, y, z = f4(plane.x), f4(plane.y), f4(plane.z)
-    reach = x * load(boxes, at + (3 * step if x > f4(0.0) else 0))
-    reach += y * load(boxes, at + (4 * step if y > f4(0.0) else step))
-    reach += z * load(boxes, at + (5 * step if z > f4(0.0) else 2 * step))
-    return reach > f4(-plane.w - SLACK * plane.length)
+    reach = side.x * load(boxes, at + (3 * step if side.x > f4(0.0) else 0))
+    reach += side.y * load(boxes, at + (4 * step if side.y > f4(0.0) else step))
+    reach += side.z * load(boxes, at + (5 * step if side.z > f4(0.0) else 2 * step))
+    return reach > side.least
 
 
 @kernel(inline=True)
-def in_boxes(planes: Planes, boxes: NDArray[np.float32], at: int, step: int) -> bool:
+def in_boxes(sides: Sides, boxes: NDArray[np.float32], at: int, step: int) -> bool:
     """Return which of eight boxes may reach inside all planes.
 
     Args:
-        planes: The planes.
+        sides: The planes.
         boxes: Lower corner x, y, z and upper corner x, y, z of boxes, a row each.
         at: Index of the first number of the first box.
         step: Length of the rows.
     """
     return (
-        _box_reaches(planes.left, boxes, at, step)
-        & _box_reaches(planes.right, boxes, at, step)
-        & _box_reaches(planes.top, boxes, at, step)
-        & _box_reaches(planes.bottom, boxes, at, step)
-        & _box_reaches(planes.near, boxes, at, step)
+        _box_reaches(sides.left, boxes, at, step)
+        & _box_reaches(sides.right, boxes, at, step)
+        & _box_reaches(sides.top, boxes, at, step)
+        & _box_reaches(sides.bottom, boxes, at, step)
+        & _box_reaches(sides.near, boxes, at, step)
     )
 
 
 @kernel(inline=True)
-def boxes_seen(planes: Planes, boxes: NDArray[np.float32], first: int) -> int:
+def boxes_seen(sides: Sides, boxes: NDArray[np.float32], first: int) -> int:
     """Return which of the eight boxes from column `first` on may reach inside all planes, a bit
     each.
     """
-    return bits_of(in_boxes(planes, boxes, first, boxes.shape[1]))
+    return bits_of(in_boxes(sides, boxes, first, boxes.shape[1]))
 
 
 @kernel(inline=True)
-def _sphere_reaches(plane: Plane, x: float, y: float, z: float, radius: float) -> bool:
-    height = f4(plane.x) * x + f4(plane.y) * y + f4(plane.z) * z + f4(plane.length) * radius
-    return height > f4(-plane.w - SLACK * plane.length)
+def _sphere_reaches(side: Side, x: float, y: float, z: float, radius: float) -> bool:
+    return side.x * x + side.y * y + side.z * z + side.length * radius > side.least
 
 
 @kernel(inline=True)
-def spheres_seen(planes: Planes, x: float, y: float, z: float, radius: float) -> bool:
+def spheres_seen(sides: Sides, x: float, y: float, z: float, radius: float) -> bool:
     """Return which spheres, of float32, may reach inside all planes."""
     return (
-        _sphere_reaches(planes.left, x, y, z, radius)
-        & _sphere_reaches(planes.right, x, y, z, radius)
-        & _sphere_reaches(planes.top, x, y, z, radius)
-        & _sphere_reaches(planes.bottom, x, y, z, radius)
-        & _sphere_reaches(planes.near, x, y, z, radius)
+        _sphere_reaches(sides.left, x, y, z, radius)
+        & _sphere_reaches(sides.right, x, y, z, radius)
+        & _sphere_reaches(sides.top, x, y, z, radius)
+        & _sphere_reaches(sides.bottom, x, y, z, radius)
+        & _sphere_reaches(sides.near, x, y, z, radius)
     )
 
 

@@ -21,7 +21,6 @@ from eyas.lanes.vector import (
     load,
     own,
     select,
-    splat,
     store,
     store_greater,
     store_largest,
@@ -53,7 +52,7 @@ from eyas.render.kernels.visibility.triangles import (
     Y,
 )
 
-__all__ = ["SPAN_ROWS", "fill", "fill_rows", "slopes_of"]
+__all__ = ["SPAN_ROWS", "fill", "fill_row", "fill_rows", "slopes_of"]
 
 SPAN_ROWS = 7
 """Rows of `Scratch.span`: a column for each of eight rows of samples."""
@@ -174,39 +173,37 @@ def slopes_of(triangle: NDArray[np.float64], number: int, holes: Holes) -> Slope
 
 
 @kernel(inline=True)
-def _fill_span(
-    key: NDArray[np.int64],
-    at: int,
-    length: int,
-    value: float,
-    texture: tuple[float, float],
+def fill_row(
+    triangle: NDArray[np.float64],
+    number: int,
     slopes: Slopes,
+    row: int,
+    top: int,
+    width: int,
+    key: NDArray[np.int64],
     tag: int,
     holes: Holes,
 ) -> None:
-    """Draw a row of a triangle, sample by sample.
-
-    Args:
-        key: See `fill`.
-        at: Index of the first sample.
-        length: Number of samples.
-        value: 1/distance there.
-        texture: u/distance and v/distance there.
-        slopes: Those of the triangle.
-        tag: See `fill`.
-        holes: See `fill`.
-    """
-    for k in range(length):
-        steps = f4(k)
+    """Draw a row of a triangle, sample by sample; for kernels of threads. See `fill_rows`."""
+    line, u, v = float(row), f4(0.0), f4(0.0)
+    first, last = _ends(triangle, number, line, float(width))
+    value = _values(triangle, number, START, 1.0, line, first)
+    if holes.level >= 0:
+        u = _values(triangle, number, U, holes.size, line, first)
+        v = _values(triangle, number, V, holes.size, line, first)
+    at, left, steps = (row - top) * key.shape[1] + i8(first), i4(last - first), f4(0.0)
+    while left > i4(0):  # numbers of 32 bits: those of 64 take a card twice the time
         inverse = lesser(greater(value + slopes.step * steps, slopes.least), slopes.most)
         new = key_of(inverse, tag)
         if holes.level < 0:
-            store_largest(key, at + k, new)
-        elif new > gather(key, at + k):
+            store_largest(key, at, new)
+        elif new > gather(key, at):
             w = f4(1.0) / inverse
-            u, v = texture[0] + slopes.u_step * steps, texture[1] + slopes.v_step * steps
-            if has_leaf(holes, u * w, v * w):
-                store_largest(key, at + k, new)
+            if has_leaf(holes, (u + slopes.u_step * steps) * w, (v + slopes.v_step * steps) * w):
+                store_largest(key, at, new)
+        at += 1
+        steps += f4(1.0)
+        left = i4(left - i4(1))
 
 
 @kernel(inline=True)
@@ -224,18 +221,9 @@ def _fill_own_row(
     span: NDArray[np.int32],
 ) -> None:
     """Draw what `fill_rows` does; each thread draws a row of its own."""
-    numbers, none = lane_numbers(), splat(f4(0.0))
-    rows = to_f8(numbers + i4(row))
-    first, last = _ends(triangle, number, rows, float(width))
-    value, u, v = _values(triangle, number, START, 1.0, rows, first), none, none
-    if holes.level >= 0:
-        u = _values(triangle, number, U, holes.size, rows, first)
-        v = _values(triangle, number, V, holes.size, rows, first)
-    line = i8(own(numbers)) + row
+    line = i8(own(lane_numbers())) + row
     if line < last_row:
-        begin = i8(own(first))
-        at, length = (line - top) * key.shape[1] + begin, i8(own(last)) - begin
-        _fill_span(key, at, length, own(value), (own(u), own(v)), slopes, tag, holes)
+        fill_row(triangle, number, slopes, line, top, width, key, tag, holes)
     agree()
 
 

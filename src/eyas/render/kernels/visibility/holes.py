@@ -10,10 +10,13 @@ from eyas.lanes.vector import gather, to_i4, whole
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.surface.texture import TEXELS_IN_ROW, first_texel
 
-__all__ = ["Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
+__all__ = ["LEVELS", "Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
 
 SMALLEST_HOLES = 4
 """Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
+
+LEVELS = 16
+"""A layer of the texture times this, and a mip level, are one number."""
 
 _BITS = 8
 """Binary logarithm of the texels along a side of level 0."""
@@ -38,8 +41,11 @@ def no_holes(texture: NDArray[np.uint32]) -> Holes:
 
 
 @kernel(inline=True)
-def holes_of(texture: NDArray[np.uint32], layer: int, level: int) -> Holes:
-    """Return the holes of a layer at a mip level, below 8."""
+def holes_of(texture: NDArray[np.uint32], leaves: int) -> Holes:
+    """Return the holes that `eyas.render.kernels.visibility.leaves.leaves_of` tells of."""
+    if leaves < 0:
+        return no_holes(texture)
+    layer, level = leaves // LEVELS, leaves % LEVELS
     side = 1 << (_BITS - level)
     first = i8(layer * texture.shape[1] + first_texel(i4(level), i4(side)))
     return Holes(texture, first, i8(level), float(side))

@@ -14,7 +14,7 @@ from eyas.lanes.vector import claim_some, count_bits, first_bit
 from eyas.render.kernels.bundles import Band, Point, Projection, Row
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.clusters import CLUSTER, clusters_seen
-from eyas.render.kernels.visibility.cull import planes_of
+from eyas.render.kernels.visibility.cull import planes_of, sides_of
 from eyas.render.kernels.visibility.meshes import draw_cluster, draw_mesh
 from eyas.render.kernels.visibility.passes import item_at, list_scene
 from eyas.state.draw import DrawStage
@@ -50,26 +50,43 @@ def list_items(band: Band) -> int:
     """
     listed, count = list_scene(band)
     rows, room = i8(0), min(listed, len(band.item))
-    for k in range(listed):
-        own = k % band.members == band.member
-        if k >= room:
-            if own and band.until > CULLING:
-                _draw_at_once(band, k)
-            continue
-        mesh, screen, eye, focal, smallest, tag = item_at(band, k)
+    for k in range(room):
         band.item_row[k] = rows
-        rows += (mesh[1] - mesh[0] + CLUSTER * CLUSTER - 1) // (CLUSTER * CLUSTER)
-        if own:
-            into = band.item[k]
-            _write_row(into, 0, screen.column)
-            _write_row(into, 4, screen.row)
-            _write_row(into, 8, screen.distance)
-            into[12], into[13], into[14] = eye.x, eye.y, eye.z
-            into[FOCAL], into[SMALLEST], into[TAG] = focal, smallest, tag
-            into[FIRST], into[LAST], into[BOUNDS] = mesh[0], mesh[1], mesh[2]
+        rows += _bounds_of(band, k)
+    for k in range(band.member, listed, band.members):
+        if k < room:
+            _write_item(band, k)
+        elif band.until > CULLING:
+            _draw_at_once(band, k)
     band.item_row[room] = rows
     band.found[_ROWS] = rows
     return count
+
+
+@kernel(inline=True)
+def _bounds_of(band: Band, k: int) -> int:
+    """Return how many rows of `Geometry.bounds` the mesh in row `k` of `Band.order` has."""
+    geometry, item = band.geometry, band.order[k] & i8(0xFFFFFFFF)
+    chunks = geometry.chunk_range.shape[0]
+    if item < chunks:
+        triangles = geometry.chunk_range[item, 1] - geometry.chunk_range[item, 0]
+    else:
+        mesh = band.mesh[item - chunks]
+        triangles = geometry.mesh_range[mesh, 1] - geometry.mesh_range[mesh, 0]
+    return (triangles + CLUSTER * CLUSTER - 1) // (CLUSTER * CLUSTER)
+
+
+@kernel(inline=True)
+def _write_item(band: Band, k: int) -> None:
+    """Write what is listed in row `k` of `Band.order` to `Band.item`."""
+    mesh, screen, eye, focal, smallest, tag = item_at(band, k)
+    into = band.item[k]
+    _write_row(into, 0, screen.column)
+    _write_row(into, 4, screen.row)
+    _write_row(into, 8, screen.distance)
+    into[12], into[13], into[14] = eye.x, eye.y, eye.z
+    into[FOCAL], into[SMALLEST], into[TAG] = focal, smallest, tag
+    into[FIRST], into[LAST], into[BOUNDS] = mesh[0], mesh[1], mesh[2]
 
 
 @kernel(inline=True, apart=True)
@@ -115,8 +132,8 @@ def find_clusters(band: Band) -> None:
             k += 1
         own, row = _item(band, k), at - band.item_row[k]
         first, last = i8(band.item[k, FIRST]), i8(band.item[k, LAST])
-        planes = planes_of(own.screen, view.width, view.height, view.top, bottom)
-        seen = clusters_seen(bounds, i8(band.item[k, BOUNDS]) + row, planes, own.eye, own.smallest)
+        sides = sides_of(planes_of(own.screen, view.width, view.height, view.top, bottom))
+        seen = clusters_seen(bounds, i8(band.item[k, BOUNDS]) + row, sides, own.eye, own.smallest)
         clusters = (last - first + CLUSTER - 1) // CLUSTER - row * CLUSTER
         if clusters < CLUSTER:
             seen &= (1 << clusters) - 1

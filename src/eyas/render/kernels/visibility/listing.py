@@ -19,7 +19,13 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.bundles import GROUP, Band
 from eyas.render.kernels.scalars import i4, i8
-from eyas.render.kernels.visibility.cull import boxes_seen, sphere_is_visible, spheres_seen
+from eyas.render.kernels.visibility.cull import (
+    Sides,
+    boxes_seen,
+    sides_of,
+    sphere_is_visible,
+    spheres_seen,
+)
 from eyas.render.kernels.visibility.meshes import level_of_detail
 from eyas.render.kernels.visibility.transform import scale_of
 from eyas.render.kernels.wind import leaned, sways
@@ -47,14 +53,14 @@ def _sort_key(distance: float, item: int) -> int:
 def list_chunks(band: Band) -> int:
     """List the visible chunks; return how many there are."""
     geometry, view, order = band.geometry, band.camera, band.order
-    boxes, eye, count = geometry.chunk_box, view.eye, i8(0)
+    boxes, eye, count, sides = geometry.chunk_box, view.eye, i8(0), sides_of(view.planes)
     for eight in range(0, geometry.chunk_group_box.shape[1], EIGHT):
-        groups = boxes_seen(view.planes, geometry.chunk_group_box, eight)
+        groups = boxes_seen(sides, geometry.chunk_group_box, eight)
         while groups != 0:
             group = eight + first_bit(groups)
             groups &= groups - 1
             for start in range(group * GROUP, (group + 1) * GROUP, EIGHT):
-                seen = boxes_seen(view.planes, boxes, start)
+                seen = boxes_seen(sides, boxes, start)
                 while seen != 0:
                     i = start + first_bit(seen)
                     seen &= seen - 1
@@ -105,14 +111,15 @@ def _list_instance(
 @kernel(inline=True)
 def list_fixtures(band: Band, chunks: int) -> int:
     """List the visible fixtures; return how many there are."""
-    geometry, view, light, count = band.geometry, band.camera, band.light, i8(0)
+    geometry, light, count = band.geometry, band.light, i8(0)
+    sides = sides_of(band.camera.planes)
     for eight in range(0, geometry.fixture_group_box.shape[1], EIGHT):
-        groups = boxes_seen(view.planes, geometry.fixture_group_box, eight)
+        groups = boxes_seen(sides, geometry.fixture_group_box, eight)
         while groups != 0:
             group = eight + first_bit(groups)
             groups &= groups - 1
             for start in range(group * GROUP, (group + 1) * GROUP, EIGHT):
-                seen = boxes_seen(view.planes, geometry.fixture_box, start)
+                seen = boxes_seen(sides, geometry.fixture_box, start)
                 while seen != 0:
                     i = start + first_bit(seen)
                     seen &= seen - 1
@@ -128,7 +135,7 @@ def list_fixtures(band: Band, chunks: int) -> int:
 
 
 @kernel(inline=True)
-def _slots_seen(band: Band, first: int, last: int) -> int:
+def _slots_seen(band: Band, sides: Sides, first: int, last: int) -> int:
     """Return which of eight slots may be seen, a bit each."""
     geometry, movers, world = band.geometry, band.movers, band.world
     slot = lane_numbers() + i4(first)
@@ -150,7 +157,7 @@ def _slots_seen(band: Band, first: int, last: int) -> int:
     x += xx * a + xy * b + xz * c
     y += yx * a + yy * b + yz * c
     z += zx * a + zy * b + zz * c
-    return bits_of(wanted & spheres_seen(band.camera.planes, x, y, z, radius))
+    return bits_of(wanted & spheres_seen(sides, x, y, z, radius))
 
 
 @kernel(inline=True)
@@ -161,8 +168,9 @@ def list_slots(band: Band, first: int, last: int, chunks: int, count: int) -> in
     fixtures = len(geometry.fixture_prototype)
     if len(geometry.sphere) == geometry.part_first:  # no part at all, so no row to gather
         return count
+    sides = sides_of(band.camera.planes)
     for start in range(first, last, EIGHT):
-        seen = _slots_seen(band, start, last)
+        seen = _slots_seen(band, sides, start, last)
         while seen != 0:
             slot = start + first_bit(seen)
             seen &= seen - 1

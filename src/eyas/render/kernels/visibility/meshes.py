@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, prefetch, splat
+from eyas.lanes.vector import any_of, bits_of, first_bit, lane_numbers, prefetch, splat
 from eyas.render.kernels.bundles import (
     SHADING_COLUMNS,
     Band,
@@ -19,18 +19,18 @@ from eyas.render.kernels.visibility.clusters import (
     BOUNDS_ROWS,
     CLUSTER,
     CLUSTER_ROWS,
-    LEAVES,
     UV_ROWS,
     clusters_seen,
     has_leaves,
     project_cluster,
 )
-from eyas.render.kernels.visibility.cull import planes_of
-from eyas.render.kernels.visibility.holes import holes_level, holes_of, no_holes
-from eyas.render.kernels.visibility.records import fill_or_record
+from eyas.render.kernels.visibility.cull import planes_of, sides_of
+from eyas.render.kernels.visibility.fill import fill
+from eyas.render.kernels.visibility.holes import holes_of
+from eyas.render.kernels.visibility.leaves import leaves_of, tiles_of
+from eyas.render.kernels.visibility.records import record_triangles
 from eyas.render.kernels.visibility.transform import clip_near
 from eyas.render.kernels.visibility.triangles import (
-    INVERSE,
     Corners,
     load_corners,
     set_up,
@@ -44,9 +44,6 @@ VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
 """Size of the triangles for which a level of detail is fine enough [pixels]."""
-
-TEXELS = 256.0
-"""Texels along a side of a texture."""
 
 _ROWS_IN_LINE = 2
 """Rows of eight float32 in a line of the cache."""
@@ -102,10 +99,11 @@ def draw_mesh(
     geometry, view = band.geometry, band.camera
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
+    sides = sides_of(planes)
     first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
     for start in range(0, clusters, CLUSTER):
         row = mesh[2] + start // CLUSTER
-        left = clusters_seen(geometry.bounds, row, planes, eye, smallest)
+        left = clusters_seen(geometry.bounds, row, sides, eye, smallest)
         while left != 0:
             cluster = first + start + first_bit(left)
             left &= left - 1
@@ -176,51 +174,45 @@ def _draw_triangles(
     tag: int,
 ) -> None:
     """Draw triangles of a cluster, then those that the near plane cuts, a bit each."""
-    geometry, triangle = band.geometry, band.triangle
+    geometry, view, triangle = band.geometry, band.camera, band.triangle
     whole, number = True, i8(0)
+    if band.members > 1 and drawn != 0:
+        drawn = record_triangles(band, drawn, cluster, i8(-1), focal, tag)
     while drawn != 0 or cut != 0:
         if drawn == 0:
             whole, number = False, first_bit(cut)
             cut &= cut - 1
-            drawn = _cut_triangle(band, cluster, number, screen)
+            drawn = _cut_triangle(band, cluster, number, screen, focal, tag)
             continue
         column = first_bit(drawn)
         drawn &= drawn - 1
         if whole:
             number = column
-        holes, layer = no_holes(geometry.texture), i8(0)
-        tiles = _tiles(geometry, cluster, number)
         at = CLUSTER * cluster + number
-        if tiles >= 0.0:
-            level = holes_level(
-                TEXELS * tiles / (focal * gather(triangle, INVERSE * CLUSTER + column))
-            )
-            if level >= 0:
-                layer = i8(gather(geometry.layer, i8(gather(geometry.material, at))))
-                holes = holes_of(geometry.texture, layer, level)
+        holes = holes_of(geometry.texture, leaves_of(geometry, at, triangle, column, focal))
         # It will be shaded, unless something nearer is drawn over it.
         prefetch(geometry.shading, at * SHADING_COLUMNS)
         prefetch(geometry.shading, at * SHADING_COLUMNS + SHADING_COLUMNS // 2)
-        fill_or_record(band, key, column, tag + at, layer, holes)
-
-
-@kernel(inline=True)
-def _tiles(geometry: Geometry, cluster: int, number: int) -> float:
-    """Return `LEAVES` of a triangle."""
-    return gather(geometry.cluster, (cluster * CLUSTER_ROWS + LEAVES) * CLUSTER + number)
+        fill(triangle, column, view.top, view.width, key, tag + at, holes, band.span)
 
 
 @kernel(inline=True, apart=True)
-def _cut_triangle(band: Band, cluster: int, number: int, screen: Projection) -> int:
-    """Prepare what the near plane leaves of a triangle: one or two, a bit each."""
+def _cut_triangle(
+    band: Band, cluster: int, number: int, screen: Projection, focal: float, tag: int
+) -> int:
+    """Prepare what the near plane leaves of a triangle, and record it, if workers share the band;
+    return what is to be filled: none, one or two, a bit each.
+    """
     geometry, view, triangle, polygon = band.geometry, band.camera, band.triangle, band.polygon
     pieces = clip_near(
         screen, geometry.cluster[cluster], geometry.corner_uv[cluster], number,
         0.5 * view.width, 0.5 * view.height, polygon,
     )  # fmt: skip
     corners, numbers = load_corners(polygon), lane_numbers()
-    leafy = splat(_tiles(geometry, cluster, number) >= 0.0)
+    leafy = splat(tiles_of(geometry, CLUSTER * cluster + number) >= 0.0)
     drawn = bits_of(_prepared(corners, numbers < i4(pieces), leafy, view, triangle))
     if drawn != 0:
         set_up_leaves(corners, polygon, 9 * CLUSTER, triangle)
+        if band.members > 1:
+            drawn = record_triangles(band, drawn, cluster, number, focal, tag)
     return drawn
