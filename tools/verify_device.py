@@ -25,6 +25,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +68,8 @@ COUNTS = (256, 1024, 4096, 16384)
 STEPS = 200
 INSTANT = 300.0
 """Time of the traffic [s]."""
+
+_TENSORS = find_spec("torch") is not None
 
 Checksums = dict[str, dict[str, list[int]]]
 """Of each map and weather, by the name of an output: one of each picture."""
@@ -278,6 +281,9 @@ def _different(a: NDArray[Any], b: NDArray[Any]) -> int:
 
 def _states(device: Device | str, count: int, steps: int) -> int:
     """Compare what environments give on a device, step by step, with those of this processor."""
+    if device != "host" and not _TENSORS:
+        print("environments: not compared: their tensors are PyTorch's, which is not here")
+        return 0
     near, far = EyasVectorEnv(count), EyasVectorEnv(count, device=device)
     allowed: Any = near.single_action_space
     random, wrong = np.random.default_rng(1), 0
@@ -314,7 +320,7 @@ def _table(device: Device) -> None:
         print(f"{views} | " + " | ".join(rates), flush=True)
     print(f"power while 4096 views are drawn: {watts or 'not readable'} W")
     print("environments | whole steps /s")
-    for count in COUNTS:
+    for count in COUNTS if _TENSORS else ():
         print(f"{count} | {_steps(device, count):,.0f}", flush=True)
 
 
