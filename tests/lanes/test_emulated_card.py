@@ -174,6 +174,7 @@ def test_what_would_stop_a_card_is_told(device, body, told):
         "fma.rn.f64 %rd6, %rd2, %rd3, %rd3;",
         "mul.f32 %r2, %r2, %r2;",
         "@%p1 add.s64 %rd6, 1, 1;",
+        'cvt.rzi.s64+system("false").f64 %rd6, %rd2;',
     ],
 )
 def test_what_is_not_known_is_refused(device, line):

@@ -31,6 +31,8 @@ def statement(opcode: str) -> str:
     Raises:
         ValueError: It is not known here.
     """
+    if not re.fullmatch(r"[a-z][a-z0-9]*(\.[a-z0-9]+)*", opcode):  # it becomes part of a program
+        raise ValueError(f"the emulated card does not know the instruction {opcode}")
     parts = opcode.split(".")
     known = _MEMORY.get(parts[0]) or _VALUES.get(parts[0])
     text = known(parts) if known else None
