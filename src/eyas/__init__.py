@@ -114,8 +114,8 @@ if TYPE_CHECKING:
     from eyas.world.weather import Weather as Weather
 
 __version__: str
-"""Version of this Eyas, by the tags of git (`tools/version.py`), without what marks one in
-development: `build_id` tells exactly which it is."""
+"""Version of this Eyas, by the tags of git (`tools/version.py`); "0" in a folder that is not
+installed. `build_id` identifies the code exactly."""
 
 build_id: str
 """Identifies code and data of this Eyas, see `eyas.core.build`: results of the same build, settings
@@ -198,11 +198,11 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
         from importlib.metadata import PackageNotFoundError, version
 
         try:
-            told = version("eyas")
-        except PackageNotFoundError:  # run from a folder that is not installed
-            told = "0"
-        globals()[name] = told.partition(".dev")[0]
-        return globals()[name]
+            found = version("eyas")
+        except PackageNotFoundError:
+            found = "0"
+        globals()[name] = found
+        return found
     if name in _MODULE_OF:
         from importlib import import_module
 

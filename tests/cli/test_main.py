@@ -9,7 +9,7 @@ import pytest
 import typer
 
 import eyas
-from eyas import __version__
+from eyas import __version__, build_id
 from eyas.cli.app import app
 from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
@@ -146,7 +146,10 @@ def test_help_keeps_its_units(monkeypatch, capsys):
 
 
 def test_version_and_maps(monkeypatch, capsys):
-    assert run(monkeypatch, capsys, "--version")[:2] == (0, f"eyas {__version__}\n")
+    assert run(monkeypatch, capsys, "--version")[:2] == (
+        0,
+        f"eyas {__version__} (build {build_id})\n",
+    )
     listed = run(monkeypatch, capsys, "maps", "list")[1].splitlines()
     assert listed[0].startswith("citystreet: ")
     assert listed[0].endswith("(day, foggy, night, snow, rain, dusk, overcast, dust, autumn)")
@@ -257,7 +260,7 @@ def test_the_package_is_the_command():
     done = subprocess.run(
         [sys.executable, "-m", "eyas", "--version"], capture_output=True, text=True, check=True
     )
-    assert done.stdout == f"eyas {__version__}\n"
+    assert done.stdout == f"eyas {__version__} (build {build_id})\n"
 
 
 def commands(group, *names):

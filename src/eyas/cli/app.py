@@ -75,9 +75,9 @@ app.add_typer(traffic.app, name="traffic")
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
-        from eyas import __version__  # reads the metadata, so only when it is asked for
+        from eyas import __version__, build_id  # read files, so only when they are asked for
 
-        typer.echo(f"eyas {__version__}")
+        typer.echo(f"eyas {__version__} (build {build_id})")
         raise typer.Exit
 
 
@@ -87,7 +87,10 @@ def _options(
     version: Annotated[  # used by its callback
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version and the build.",
         ),
     ] = False,
     verbose: Annotated[
