@@ -82,6 +82,8 @@ class Problem:
     """Allowed values of a choice of names; for an unknown key, the known keys."""
     unknown_key: bool = False
     """Whether the key is wrong, not its value."""
+    others: str = ""
+    """What else is allowed instead of this value, in words."""
 
     def error(self) -> ConfigError:
         """Return the error to raise, one line."""
@@ -90,7 +92,7 @@ class Problem:
             hint = nearest(self.path[-1], self.names)
             return ConfigError(f"{path}: unknown key{hint}; known: {', '.join(self.names)}")
         if self.names and isinstance(self.value, str):
-            return UnknownNameError(path, self.value, self.names)
+            return UnknownNameError(path, self.value, self.names, others=self.others)
         return ConfigError(f"{path}: {shown(self.value)} is not allowed: {self.allowed}")
 
 
@@ -220,7 +222,9 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
         return _group_problem(path, group, values, said)
     assert field is not None
     allowed = said or describe(field.annotation, field.metadata)
-    return Problem(path, values, allowed, names_of(field.annotation))
+    elsewhere = getattr(field.annotation, "elsewhere", None)  # of an enumeration, see `TargetName`
+    others = elsewhere(values) if elsewhere and isinstance(values, str) else ""
+    return Problem(path, values, allowed, names_of(field.annotation), others=others)
 
 
 def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:

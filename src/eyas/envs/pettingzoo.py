@@ -20,7 +20,7 @@ from eyas.envs.choice import (
     settings_of_kinds,
 )
 from eyas.envs.information import Info, by_term, of_one
-from eyas.envs.keys import hover
+from eyas.envs.keys import hover_action
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
 
@@ -148,7 +148,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
                 f"{', '.join(self.agents)}"
             )
         active = np.array([agent in actions for agent in self.possible_agents])
-        rest = hover(self._batch.actions.space)
+        rest = hover_action(self._batch.actions.space)
         outcome = self._batch.step(
             [actions.get(agent, rest) for agent in self.possible_agents], active
         )
