@@ -213,8 +213,8 @@ def list_policies(*, as_json: AsJson = False) -> None:
                 for table, rows in flown_of(name).items()
                 for _, one, build in rows
             ]
-            card = card_of(name).model_dump(mode="json")
-            listed.append({"name": name, **card, "figures": figures})
+            said = card_of(name).model_dump(mode="json")
+            listed.append({"name": name, **said, "figures": figures})
         typer.echo(json.dumps(listed, indent=1))
         return
     for name in BUILT_IN:

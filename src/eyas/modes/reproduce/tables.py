@@ -100,7 +100,7 @@ def flown_with(table: Table) -> dict[str, str]:
     plans = [row.plan for row in table.rows]
     protocols = {f"protocol {plan.protocol}": plan.rules.hash for plan in plans}
     policies = {plan.policy for plan in plans} & set(shipped_names())
-    return protocols | {f"policy {name}": fingerprint(name) for name in sorted(policies)}
+    return protocols | {f"policy {name}": str(fingerprint(name)) for name in sorted(policies)}
 
 
 def flown_of(policy: str) -> dict[str, list[tuple[Row, ExpectedRow, str]]]:
