@@ -24,7 +24,10 @@ def packet(kind, **fields):
     return message.pack(common.MAVLink(None, 255, 190))
 
 
-BEAT = dict(type=6, autopilot=8, base_mode=0, custom_mode=0, system_status=4, mavlink_version=3)
+BEAT = {
+    **{"type": 6, "autopilot": 8, "base_mode": 0, "custom_mode": 0},
+    **{"system_status": 4, "mavlink_version": 3},
+}
 
 
 def velocity(north):

@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from eyas.core.errors import EyasError
+from eyas.core.errors import one_line
 
 __all__ = ["FaultLog"]
 
@@ -37,6 +37,5 @@ class FaultLog:
                 return
             others = f" (and {self._silent} others)" if self._silent else ""
             self._reported, self._silent = now, 0
-            # EyasError makes one printable line of any text.
-            line = EyasError(f"{what} ignored{others}: {type(error).__name__}: {error}")
+            line = one_line(f"{what} ignored{others}: {type(error).__name__}: {error}")
             _LOG.warning("%s", line)

@@ -57,7 +57,7 @@ class Px4:
             with connection:
                 try:
                     self._fly(connection)
-                except (ConnectionError, TimeoutError, EOFError):
+                except (OSError, EOFError):  # whatever has ended the connection
                     _LOG.info("PX4 has gone; waiting for another")
 
     def _fly(self, connection: socket.socket) -> None:
