@@ -119,7 +119,8 @@ class _Line(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         word = "warning: " if record.levelno >= logging.WARNING else ""
-        return f"eyas: {word}{one_line(record.getMessage())}"
+        lines = map(one_line, record.getMessage().split("\n"))  # several with a traceback
+        return f"eyas: {word}" + "\n".join(lines)
 
 
 def run() -> int:

@@ -377,7 +377,11 @@ class Simulation:
         Raises:
             EyasError: A number of a camera is not finite.
         """
-        cameras = cameras._replace(field_of_view=_checked_fields(cameras.field_of_view))
+        cameras = cameras._replace(
+            position=checked(cameras.position, FARTHEST, "position of a camera"),
+            rotation=checked(cameras.rotation, 1e3, "rotation of a camera"),
+            field_of_view=_checked_fields(cameras.field_of_view),
+        )
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._present.pictures.draw_from(chosen, cameras, picture, rules)
 
