@@ -13,10 +13,11 @@ import typer.core
 from eyas.cli import data, drone, evaluate, maps, reproduce, runs, targets, tools, traffic
 from eyas.cli.about import about
 from eyas.cli.completion import completion
-from eyas.cli.said import say
+from eyas.cli.said import lacks_memory, say
 from eyas.cli.switches import as_switches
-from eyas.core.errors import EyasError
+from eyas.core.errors import EyasError, one_line
 from eyas.core.own_code import ended
+from eyas.core.scratch import remove_left_scratch
 
 __all__ = ["app", "run"]
 
@@ -101,6 +102,7 @@ def _options(
         bool, typer.Option("--quiet", "-q", help="Print nothing but errors, and what is asked for.")
     ] = False,
 ) -> None:
+    remove_left_scratch()
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
         context.default_map = _quiet(context.command)
@@ -120,7 +122,8 @@ class _Line(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         word = "warning: " if record.levelno >= logging.WARNING else ""
-        return f"eyas: {word}{record.getMessage()}"
+        lines = map(one_line, record.getMessage().split("\n"))  # several with a traceback
+        return f"eyas: {word}" + "\n".join(lines)
 
 
 def run() -> int:
@@ -143,13 +146,24 @@ def run() -> int:
         raise carried.interrupt from None
     except typer.Abort:
         raise KeyboardInterrupt from None
-    except OSError as error:
-        return _not_printed(error)
+    except (OSError, ValueError) as error:
+        return _not_ours(error)
     except SystemExit as error:
         if isinstance(error.__context__, BrokenPipeError):  # Typer and rich end so
             return 1  # the reader of our output has seen enough
         return _failed(f"code of a map, a writer or a file {ended(error)}")
     return status if isinstance(status, int) else 0
+
+
+def _not_ours(error: OSError | ValueError) -> int:
+    """Return the exit code of an error that is not an `EyasError`; a fault is raised again."""
+    if isinstance(error, OSError) and error.errno is not None and not lacks_memory(error):
+        return _not_printed(error)
+    from eyas.lanes import ThreadCountError  # half a second to import
+
+    if not isinstance(error, ThreadCountError):
+        raise error
+    return _failed(str(error))
 
 
 def _not_printed(error: OSError) -> int:

@@ -21,6 +21,7 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
+from eyas.cli.said import say
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -128,7 +129,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
-        typer.echo(f"eyas: note: {said}", err=True)
+        say(f"note: {said}")
     from eyas.modes.video import (
         run as video,  # compiled kernels: slow to import, so only after all checks
     )
@@ -288,7 +289,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     settings = load()
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
-        typer.echo(f"eyas: note: {said}", err=True)
+        say(f"note: {said}")
     from eyas.modes.serve.run import run  # after all checks
 
     run(settings, root, load if file == root / SETTINGS_FILE else None)

@@ -17,6 +17,7 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
+from eyas.cli.said import say
 
 if TYPE_CHECKING:
     from eyas.settings.config import EyasConfig
@@ -108,7 +109,7 @@ def show_config(
         with originals_named(settings):
             MAPS.get(settings.world.map).light(settings.world.weather)
     for setting, name in code_of(settings):
-        typer.echo(f"eyas: note: {setting} names code, which a run calls: {name!r}", err=True)
+        say(f"note: {setting} names code, which a run calls: {name!r}")
     typer.echo(_text(settings, legacy=legacy))
 
 

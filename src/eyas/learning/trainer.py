@@ -147,7 +147,6 @@ class _Run:
         rate = updates * config.update_decisions / seconds
         progress.block += 1
         scores = self._evaluated(stage)
-        progress.seconds += time.monotonic() - start
         row = self._row(shards.finished(), columns) | scores._asdict()
         progress.rows.append(row)
         self._tell(row, rate)
@@ -227,7 +226,7 @@ class _Run:
     def _tell(self, row: dict[str, float], rate: float) -> None:
         """Tell how it goes."""
         progress, self._told = self.progress, time.monotonic()
-        left = max(self._total - progress.decisions, 0) * progress.seconds / progress.decisions
+        left = max(self._total - progress.decisions, 0) / rate
         physics = rate * steps_per_action(self.config)
         tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
         self._say(
