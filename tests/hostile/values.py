@@ -49,16 +49,15 @@ def json_contents(value: Any, chance: random.Random, most: int) -> Iterator[byte
     parsers: depth, length of numbers, double keys.
     """
     count = sum(1 for _ in leaves(value))
-    cases = [(leaf, bad) for leaf in range(count)
-             for bad in (*ABSURD, *NOT_FINITE, *HUGE_WHOLE, *TEXTS, None, True, [], {})]  # fmt: skip
+    hostile = (*ABSURD, *NOT_FINITE, *HUGE_WHOLE, *TEXTS, None, True, [], {})
+    cases = [(leaf, bad) for leaf in range(count) for bad in hostile]
     for leaf, bad in chance.sample(cases, min(most, len(cases))):
         yield json.dumps(with_value(value, leaf, bad)).encode()
     yield json.dumps(with_value(value, 0, 0)).encode().replace(b"0", b"1" * 5000, 1)
     yield b"[" * 100_000
     yield b'{"a":' * 100_000
     yield b'{"a": 1, "a": 2}'
-    for odd in (b"null", b"[]", b"{}", b"0", b'"\\ud800"', b"\xff\xfe{\x00}\x00", b""):
-        yield odd
+    yield from (b"null", b"[]", b"{}", b"0", b'"\\ud800"', b"\xff\xfe{\x00}\x00", b"")
 
 
 def mutated(content: bytes, chance: random.Random, most: int) -> Iterator[bytes]:

@@ -13,6 +13,7 @@ from typing import Any
 
 from eyas import __version__
 from eyas.core.build import this_build
+from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
@@ -228,8 +229,8 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(read_limited(path, 1 << 28))
-    except (DataFileError, ValueError, RecursionError):
+        found = read_json(path, 1 << 28)
+    except DataFileError:
         return {}
     return found if isinstance(found, dict) else {}
 

@@ -1,13 +1,12 @@
 """What is sent in to a leaderboard: a folder of records, whoever has made it."""
 
-import json
 import logging
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from eyas.core.decoding import read_json
 from eyas.core.errors import DataFileError, EyasError
-from eyas.core.files import read_limited
 from eyas.evaluation.entry import Entry
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocols import PROTOCOLS
@@ -90,8 +89,8 @@ def complete_run(folder: Path) -> tuple[Stamp, Entry, list[EpisodeRecord]]:
 def _text_in(path: Path, name: str) -> str:
     """Return a text of a JSON file; `-` if there is none."""
     try:
-        values = json.loads(read_limited(path, _LARGEST))
-    except (EyasError, ValueError, RecursionError):
+        values = read_json(path, _LARGEST)
+    except EyasError:
         return "-"
     text = values.get(name) if isinstance(values, dict) else None
     return text[:200] if isinstance(text, str) else "-"
