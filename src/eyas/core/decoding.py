@@ -30,8 +30,11 @@ __all__ = ["decoded_arrays", "decoded_json", "decoded_picture", "gunzipped", "np
 _MOST_ARRAYS = 64
 """Largest number of arrays in a `.npz`."""
 
-_LONG = re.compile(rb"\d{19}|[eE]\+?0*\d{3}")
-"""A number that may be outside of those of 64 bits."""
+_LARGEST_NUMBER = 2.0**64
+"""Largest size of a number in JSON: nothing that Eyas reads has a larger one."""
+
+_LONG = re.compile(rb"\d{19}|[eE]\+?0*(?:1[89]|[2-9]\d|[1-9]\d\d)")
+"""A number that may be larger."""
 
 _INVALID = re.compile(rb"NaN|Infinity|\\u[dD][89a-fA-F]")
 """What JSON may not hold, and escapes of which a text cannot be written in UTF-8 if one of a pair
@@ -58,7 +61,7 @@ def read_json(path: Path, largest: int, kind: str = "valid JSON") -> Any:  # noq
 
 
 def decoded_json(content: bytes, pairs: Pairs | None = None) -> Any:  # noqa: ANN401  # JSON
-    """Return what a text of JSON holds: numbers are finite and of 64 bits, texts can be written.
+    """Return what a text of JSON holds: numbers are below 2^64, texts can be written as UTF-8.
 
     Args:
         content: UTF-8, perhaps with a byte order mark.
@@ -74,7 +77,7 @@ def decoded_json(content: bytes, pairs: Pairs | None = None) -> Any:  # noqa: AN
         raise ValueError("not a text in UTF-8") from None
     hooks: dict[str, Any] = {}
     if _LONG.search(content):
-        hooks = {"parse_int": _whole, "parse_float": _finite}
+        hooks = {"parse_int": _whole, "parse_float": _number}
     try:
         value = json.loads(text, object_pairs_hook=pairs, parse_constant=_refused, **hooks)
         if _INVALID.search(content):
@@ -88,15 +91,14 @@ def decoded_json(content: bytes, pairs: Pairs | None = None) -> Any:  # noqa: AN
 
 
 def _whole(text: str) -> int:
-    if len(text) > 20 or not -(2**63) <= int(text) < 2**64:
-        raise ValueError(f"the number {text[:20]}... is not allowed: up to 64 bits")
+    _number(text)
     return int(text)
 
 
-def _finite(text: str) -> float:
+def _number(text: str) -> float:
     number = float(text)
-    if not math.isfinite(number):
-        raise ValueError(f"the number {text[:40]} is not allowed: finite numbers")
+    if not abs(number) < _LARGEST_NUMBER:
+        raise ValueError(f"the number {text[:30]} is not allowed: less than 2^64")
     return number
 
 
