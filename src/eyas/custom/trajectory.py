@@ -143,8 +143,7 @@ def _numbers(path: Path, number: int, line: list[str], names: list[str]) -> list
     for name, value in zip(names, values, strict=True):
         if abs(value) > _LIMITS.get(name, np.inf):
             raise DataFileError(
-                f"{path}: line {number}: {name} = {value:g} is not allowed: up to "
-                f"{_LIMITS[name]:g}"
+                f"{path}: line {number}: {name} = {value:g} is not allowed: up to {_LIMITS[name]:g}"
             )
     return values
 

@@ -206,6 +206,9 @@ class Format(Protocol):
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
+    first_sight: ClassVar[bool] = False
+    """Whether episodes begin with the first frame in which the target is visible, as one-pass
+    trackers need it; an episode in which it never is is left out."""
 
     @abstractmethod
     def __init__(self, job: Job) -> None: ...

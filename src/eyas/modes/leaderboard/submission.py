@@ -11,8 +11,8 @@ from eyas.evaluation.entry import Entry
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import EpisodeRecord
-from eyas.evaluation.rows import figures_of
 from eyas.evaluation.result import STAMP, load_run
+from eyas.evaluation.rows import figures_of
 from eyas.modes.evaluate import TIMING
 from eyas.modes.leaderboard.card import ModelCard, read_card
 from eyas.modes.leaderboard.mark import Mark, fitting_mark
