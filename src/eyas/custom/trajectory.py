@@ -54,6 +54,12 @@ class Trajectory:
     velocity: Floats | None = None
     """At the points, if smoothed [m/s], shape (N, 3); None: central differences."""
 
+    @classmethod
+    def of_track(cls, time: Floats, track: Floats) -> "Trajectory":
+        """Return the trajectory of x, y and heading at times, shape (N, 3), on the ground."""
+        on_ground = np.where([True, True, False], track, np.nan)
+        return cls(time, on_ground, None)
+
     def jumps(self) -> NDArray[np.intp]:
         """Return the points that cannot be reached from those before, shape (K,)."""
         return np.flatnonzero(self.steps() > JUMP * np.diff(self.time)) + 1

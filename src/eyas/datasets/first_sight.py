@@ -1,4 +1,4 @@
-"""Episodes from the first frame in which their target is visible: one-pass trackers begin with it."""
+"""Episodes from the first frame in which their target is visible, with which trackers begin."""
 
 from functools import cached_property
 from pathlib import Path

@@ -3,7 +3,7 @@
 import gzip
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import IntEnum
 from functools import cache
@@ -81,15 +81,22 @@ def read_plan(path: Path) -> MapPlan:
     raise DataFileError(plan[0])
 
 
-def problems(path: Path) -> list[str]:
+def problems(
+    path: Path, opened: Callable[[MapPlan, Path], Iterable[str]] = lambda plan, folder: ()
+) -> list[str]:
     """Return what is wrong with a plan in a file, a line each; none if it is a plan.
+
+    Args:
+        path: The file.
+        opened: Yields what is wrong with the files that a plan names, which lie in a folder.
 
     Raises:
         DataFileError: It cannot be read.
     """
     plan = _read(path)
     if isinstance(plan, MapPlan):
-        return [f"{path}: {line}" for line in road_faults(plan, path.parent)]
+        wrong = list(road_faults(plan, path.parent)) or opened(plan, path.parent)
+        return [f"{path}: {line}" for line in wrong]
     return plan
 
 
