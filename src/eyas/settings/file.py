@@ -10,7 +10,7 @@ from typing import Any
 from eyas.core.clock import PHYSICS_RATE, physics_steps
 from eyas.core.config import group_of, updated, validated
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import write_atomic
+from eyas.core.files import read_limited, write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
 from eyas.settings.legacy.messages import named_path
@@ -25,6 +25,9 @@ Nested = dict[str, Any]
 
 SCHEMA_KEY = "$schema"
 """By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
+
+_LARGEST = 16 << 20
+"""Largest file of settings [bytes]."""
 
 _CLIENT_KEY = "Benchmark"
 """The one group of the `config.json` of the original's client."""
@@ -112,10 +115,8 @@ def read_settings(path: Path) -> Nested:
         DataFileError: The file is missing, unreadable, cut off, or not a JSON object.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_limited(path, _LARGEST).decode("utf-8-sig")
         values = json.loads(text, object_pairs_hook=_without_doubles)
-    except OSError as error:
-        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:
