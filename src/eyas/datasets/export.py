@@ -57,6 +57,7 @@ class ExportOptions:
     copies: bool = False
     least_side: int = 1
     least_visible: float = 0.0
+    ignore_parked: bool = False
     resume: bool = False
     """Whether an interrupted export in the folder is continued."""
     overwrite: bool = False
@@ -95,6 +96,7 @@ def export(
         copies=options.copies,
         least_side=options.least_side,
         least_visible=options.least_visible,
+        ignore_parked=options.ignore_parked,
     )
     form = make(job)
     with folder_lock(folder, "exporting into it"):
@@ -200,6 +202,7 @@ def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[s
         "pictures": "copied" if options.copies else "linked",
         "least_side": options.least_side,
         "least_visible": options.least_visible,
+        "ignore_parked": options.ignore_parked,
         "eyas": __version__,
         "build_id": this_build().id,
     }

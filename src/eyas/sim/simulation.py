@@ -14,6 +14,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
+from eyas.sim.starts import starts_in
 from eyas.sim.stepper import Stepper
 from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
@@ -92,7 +93,10 @@ class Simulation:
         sensors, seen, samplers = self._stepper.sensors, self._stepper.seen, self._stepper.samplers
         if wind is not None:
             samplers = [*samplers, light.blow]
-        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, samplers)
+        starts = starts_in(assets, self.snapshot, worlds, shared_target=config.same_target)
+        self._episodes = Episodes(
+            config, assets.traffic, worlds, light, self.snapshot, samplers, starts
+        )
         view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
         self._present = self.view = view(seen)
         if seen.is_late:
