@@ -56,8 +56,12 @@ class Config(BaseModel):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the values of fields that stay when some are changed; others get defaults."""
-        return {name: getattr(self, name) for name in type(self).model_fields}
+        """Return the values of fields that stay when some are changed; others get defaults.
+
+        A value that no one has set is left out, so that `model_fields_set` stays right.
+        """
+        set_ = self.model_fields_set
+        return {name: value for name, value in self if name in set_ or isinstance(value, Config)}
 
     @classmethod
     def __get_pydantic_core_schema__(

@@ -43,7 +43,7 @@ class EyasPufferEnv(PufferEnv):  # type: ignore[misc]  # no types
         num_envs: N.
         config: Settings, see `eyas.envs.choice.Source`.
         buf: PufferLib's arrays; None: new ones.
-        seed: Seed of the first reset; None: that of the configuration.
+        seed: Seed of the first reset; None: that of the configuration, or a fresh one.
         render_mode: `rgb_array` or None.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`; an observation has one
             part.
