@@ -282,7 +282,7 @@ def test_a_reader_that_goes_away_is_no_error():
 def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch, capsys, tmp_path):
     served = []
 
-    def run_server(config, root, load):
+    def run_server(config, root, load, until_idle):
         served.append(config.model_copy(update={"mode": "train", "original": None}))
         file = root / SETTINGS_FILE
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,7 @@ from eyas.cli.options import (
     MapName,
     Overrides,
     Preset,
+    UntilIdle,
     chosen_file,
     gathered,
 )
@@ -253,6 +254,7 @@ def webots_shim(
             "folder where the program is started.",
         ),
     ] = None,
+    until_idle: UntilIdle = None,
     set_: Overrides = None,
 ) -> None:
     """Install a program named webots that starts 'eyas serve', for programs that start Webots."""
@@ -260,6 +262,6 @@ def webots_shim(
     from eyas.settings.file import load_settings
 
     load_settings(None, set_ or ())  # a mistake is told now
-    path = write(install, root, set_ or ())
+    path = write(install, root, set_ or (), until_idle)
     typer.echo(f"{path}: starts Eyas in the place of Webots where its folder comes first in PATH:")
     typer.echo(f'export PATH="{path.parent.resolve()}{os.pathsep}$PATH"')

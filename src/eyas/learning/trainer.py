@@ -117,7 +117,7 @@ class _Run:
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
         stage = self.config.train.stages[self.progress.stage]
-        settings = updated(self.config, stage.settings)
+        settings = updated(self.config, stage.changes(self.config.world))
         shards = self._make_shards(settings, self.network)
         done = self.progress.stage_decisions >= stage.total_timesteps
         while not done:
@@ -247,7 +247,7 @@ def _refuse_later_errors(config: EyasConfig) -> None:
     evaluation_episodes(config)
     _refuse_test_seeds(config, "")
     for number, stage in enumerate(config.train.stages):
-        changed = updated(config, stage.settings)
+        changed = updated(config, stage.changes(config.world))
         if changed.train != config.train:
             raise ConfigError(
                 f"train.stages.{number}.settings.train: not allowed: all stages learn alike"

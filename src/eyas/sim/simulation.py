@@ -141,6 +141,11 @@ class Simulation:
         """
         self._episodes.continue_from(other._episodes)
 
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each tracker, shape (N,)."""
+        return self._episodes.seeds
+
     def episode_key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return self._episodes.key(tracker)

@@ -99,7 +99,8 @@ def _note(hashes: _Hashes, observation: object, info: Info) -> None:
         picture = part in ("image", "depth", "classes", "cameras")
         hashes.add_array("pictures" if picture else "packets", values)
     for name, value in sorted(info.items()):
-        hashes.add_array("rewards" if name.startswith("reward") else "packets", value)
+        if name != "seed":  # of the run, not of what it gives
+            hashes.add_array("rewards" if name.startswith("reward") else "packets", value)
 
 
 def recording_of(config: EyasConfig) -> dict[str, str]:
