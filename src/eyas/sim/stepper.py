@@ -36,6 +36,10 @@ Floats = NDArray[np.float64]
 _FAST = 1e3
 """Length of all commands together beyond which each is looked at [m/s]."""
 
+_JUMP, _SPIN = 1e3, 1e2
+"""Most speed [m/s] and turn rate [rad/s] that a place far away gives: a flown body could not be
+integrated with more."""
+
 _SELDOM = 16
 """Calls of the step between two looks at where trackers are, unless commands are fast: a look takes
 a fifth of the time of one tracker's step."""
@@ -172,6 +176,9 @@ class Stepper:
         self._orders.placed[0] = 1
         self.carry(1)
         self._orders.placed[0] = 0
+        state = self._snapshot.trackers
+        state.velocity[:] = limited(state.velocity, _JUMP)
+        state.angular_velocity[:] = limited(state.angular_velocity, _SPIN)
 
     def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
