@@ -74,7 +74,7 @@ def is_sound(simulation):
     picture = Picture.create(1, 48, 64)
     simulation.view.draw(np.zeros(1, np.int32), picture)
     arrays = [array for record in simulation.snapshot[:3] for array in record]
-    near = np.abs(simulation.snapshot.trackers.position).max() <= FARTHEST
+    near = np.abs(simulation.snapshot.trackers.position).max() <= 1.1 * FARTHEST
     return near and picture.rgb.any() and all(np.isfinite(array).all() for array in arrays)
 
 
@@ -162,13 +162,23 @@ def driven():
     return DrivenDrone(build_simulation(config, together(1), tracker=tracker), config.mavlink)
 
 
+def begin(serve, server):
+    """Let a server serve in a thread, until its socket is closed."""
+
+    def work():
+        with suppress(OSError):
+            serve(server)
+
+    threading.Thread(target=work, daemon=True).start()
+
+
 def feed_ardupilot(simulation, tmp_path, caplog):
     from eyas.mavlink.hil.ardupilot import ArduPilot
 
     drone, chance = driven(), random.Random(2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as heard, heard.dup() as server:
         heard.bind(("127.0.0.1", 0))
-        threading.Thread(target=ArduPilot(drone, 0.0).serve, args=(server,), daemon=True).start()
+        begin(ArduPilot(drone, 0.0).serve, server)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             out.connect(heard.getsockname())
             out.settimeout(60.0)
@@ -194,12 +204,7 @@ def feed_px4(simulation, tmp_path, caplog):
 
     drone, chance, packer = driven(), random.Random(3), common.MAVLink(None, 1, 1)
     server = socket.create_server(("127.0.0.1", 0))
-
-    def serve():
-        with suppress(OSError):  # when the socket is closed
-            Px4(drone, 0.0).serve(server)
-
-    threading.Thread(target=serve, daemon=True).start()
+    begin(Px4(drone, 0.0).serve, server)
     control = common.MAVLink_hil_actuator_controls_message
     numbers = [number for number in NUMBERS if not abs(number) > 3.4e38 or math.isinf(number)]
     packets = [control(0, [number] * 16, 255, 2**64 - 1).pack(packer) for number in numbers]

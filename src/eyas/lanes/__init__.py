@@ -9,7 +9,7 @@ from eyas.lanes.held import Held
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
     Kernel,
-    ThreadCountError,
+    VariableError,
     interpreted,
     kernel,
     limit_threads,
@@ -24,7 +24,7 @@ __all__ = [
     "Intrinsic",
     "Kernel",
     "ParallelCall",
-    "ThreadCountError",
+    "VariableError",
     "address_of",
     "bits_of_float",
     "claim",

@@ -13,7 +13,7 @@ from eyas.lanes.interrupts import shielded
 
 __all__ = [
     "Kernel",
-    "ThreadCountError",
+    "VariableError",
     "interpreted",
     "kernel",
     "limit_threads",
@@ -24,20 +24,20 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class ThreadCountError(ValueError):
-    """`NUMBA_NUM_THREADS` is not a number of threads."""
+class VariableError(ValueError):
+    """An environment variable has a value that cannot be used."""
 
 
 def thread_count() -> int:
     """Return the number of threads that draw: all cores, or `NUMBA_NUM_THREADS`.
 
     Raises:
-        ThreadCountError: That is not a number of threads.
+        VariableError: That is not a number of threads.
     """
     named = os.environ.get("NUMBA_NUM_THREADS")
     if named:
         if not re.fullmatch("[0-9]{1,4}", named) or not int(named):
-            raise ThreadCountError(
+            raise VariableError(
                 f"NUMBA_NUM_THREADS: {named!r} is not allowed; allowed: 1 to 9999 threads"
             )
         return int(named)

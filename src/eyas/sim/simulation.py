@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact as elementary
-from eyas.core.bounds import FARTHEST, LARGEST, checked, limited
+from eyas.core.bounds import FARTHEST, LARGEST, checked
 from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
@@ -196,7 +196,7 @@ class Simulation:
         """
         allowed = (self.count, WIDTH), (self.count, WITH_GIMBAL)
         assert commands.shape in allowed, f"commands: shape {commands.shape}, not (N, 4) or (N, 8)"
-        self._stepper.fly(limited(commands, LARGEST), physics_steps, active)
+        self._stepper.fly(commands, physics_steps, active)
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:

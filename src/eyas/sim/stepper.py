@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.bounds import FARTHEST, checked
+from eyas.core.bounds import FARTHEST, LARGEST, checked, limited
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
 from eyas.lanes import BoundCall, Held
@@ -32,6 +32,17 @@ from eyas.trackers.tracker import Tracker
 __all__ = ["Stepper", "step_kernels", "step_state"]
 
 Floats = NDArray[np.float64]
+
+_FAST = 1e3
+"""Length of all commands together beyond which each is looked at [m/s]."""
+
+_JUMP, _SPIN = 1e3, 1e2
+"""Most speed [m/s] and turn rate [rad/s] that a place far away gives: a flown body could not be
+integrated with more."""
+
+_SELDOM = 16
+"""Calls of the step between two looks at where trackers are, unless commands are fast: a look takes
+a fifth of the time of one tracker's step."""
 
 
 def step_kernels(config: SimConfig, tracker: Tracker) -> StepKernels:
@@ -84,6 +95,7 @@ class Stepper:
     ) -> None:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
+        self._calls = 0
         self._memory = tracker.memory(count, terrain)
         around = StepSurroundings(assets.traffic.motion, terrain)
         self._state_by = partial(step_state, config, tracker, snapshot, self._memory, around)
@@ -137,12 +149,13 @@ class Stepper:
             clock = self._snapshot.episodes.step_count
             pieces = list(self._late.pieces(commands, steps, clock))
         for piece, some in pieces:
-            if piece.shape[1] == WITH_GIMBAL:
-                self._turning_orders.commands[:] = piece
-                self._take(self._fly_and_turn(), some)
-            else:
-                self._orders.commands[:] = piece
-                self._take(self._step.fly, some)
+            turns = piece.shape[1] == WITH_GIMBAL
+            commands = (self._turning_orders if turns else self._orders).commands
+            commands[:] = piece
+            if not np.vdot(commands, commands) <= _FAST * _FAST:
+                commands[:] = limited(commands, LARGEST)
+                self._calls = -1
+            self._take(self._fly_and_turn() if turns else self._step.fly, some)
 
     def _fly_and_turn(self) -> BoundCall:
         """Return the step that also turns cameras; it is compiled when it is first needed."""
@@ -163,6 +176,9 @@ class Stepper:
         self._orders.placed[0] = 1
         self.carry(1)
         self._orders.placed[0] = 0
+        state = self._snapshot.trackers
+        state.velocity[:] = limited(state.velocity, _JUMP)
+        state.angular_velocity[:] = limited(state.angular_velocity, _SPIN)
 
     def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
@@ -184,13 +200,16 @@ class Stepper:
         self.seen.see()
 
     def _stay_near(self) -> None:
-        """Keep trackers and their cameras within `FARTHEST`.
+        """Stop trackers that have come farther than `FARTHEST` there.
 
         Raises:
             EyasError: A tracker of a user's own is nowhere.
         """
-        trackers = self._snapshot.trackers
-        for places in (trackers.position, trackers.commanded_position):
-            near = checked(places, FARTHEST, "place of a tracker")
-            if near is not places:
-                places[:] = near
+        self._calls += 1
+        if self._calls % _SELDOM == 0:
+            trackers = self._snapshot.trackers
+            for places in (trackers.position, trackers.commanded_position):
+                near = checked(places, FARTHEST, "place of a tracker")
+                if near is not places:
+                    trackers.velocity[(near != places).any(axis=1)] = 0.0
+                    places[:] = near
