@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
-from eyas.custom.proto_parser import Node, Proto, parsed
+from eyas.custom.proto_parser import Node, parsed
 
 __all__ = ["GEOMETRY", "Part", "read_proto"]
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from eyas import __version__
 from eyas.core.build import this_build
+from eyas.core.config import shown
 from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
@@ -230,8 +231,8 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
         if different:
             key = different[0]
             raise OutputError(
-                f"{folder}: not continued: its {key} was {found.get(key)!r}, is {identity[key]!r};"
-                " start again with --overwrite"
+                f"{folder}: not continued: its {key} was {shown(found.get(key))}, is "
+                f"{shown(identity[key])}; start again with --overwrite"
             )
         _delete_parts(folder)
         damaged = next(damaged_files(folder), None) if known == FINISHED else None

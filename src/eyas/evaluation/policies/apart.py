@@ -8,6 +8,7 @@ Messages are JSON and raw arrays in both directions, never pickles, which would 
 import atexit
 import contextlib
 import json
+import math
 import os
 import subprocess
 import sys
@@ -64,14 +65,17 @@ def receive(stream: IO[bytes]) -> tuple[dict[str, Any], list[Array]]:
         ValueError: It is not one.
     """
     size = int.from_bytes(_exactly(stream, 4), "little")
-    head = json.loads(_exactly(stream, size))
-    arrays = []
-    for name, shape in head.pop("arrays"):
-        kind = np.dtype(name)
-        if kind.kind not in _PLAIN or any(not 0 <= side < _LARGEST for side in shape):
-            raise ValueError(f"an array of {name!r} with shape {shape}")
-        data = _exactly(stream, kind.itemsize * int(np.prod(shape, dtype=np.int64)))
-        arrays.append(np.frombuffer(bytearray(data), kind).reshape(shape))
+    content, arrays = _exactly(stream, size), []
+    try:
+        head = json.loads(content)
+        for name, shape in head.pop("arrays"):
+            kind = np.dtype(name)
+            if kind.kind not in _PLAIN or any(not 0 <= side < _LARGEST for side in shape):
+                raise ValueError(f"an array of {name!r} with shape {shape}")
+            data = _exactly(stream, kind.itemsize * math.prod(shape))
+            arrays.append(np.frombuffer(bytearray(data), kind).reshape(shape))
+    except (TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise ValueError(f"not a message: {error}") from None
     return head, arrays
 
 
