@@ -22,6 +22,7 @@ from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import objects_of
 from eyas.datasets.recording import load
 from eyas.datasets.registry import FORMATS
+from eyas.exports.checksums import CHECKSUMS
 from eyas.modes.export import run
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 
@@ -357,3 +358,26 @@ def test_labels_of_another_size_are_refused(foreign, data):
     root = foreign("labels.jsonl", "".join(f"{json.dumps(each)}\n" for each in labels).encode())
     with pytest.raises(DataFileError, match=r"labels.jsonl: line 1: its picture is not \d+x\d+"):
         run(root, ["got10k"], None, ExportOptions())
+
+
+@pytest.mark.parametrize("spoil", ["cut", "flip", "delete", "no sums"])
+def test_a_finished_export_that_was_damaged_is_made_again(data, tmp_path, caplog, spoil):
+    folder = tmp_path / "otb"
+    export(data, "otb", folder, ExportOptions())
+    whole = contents(folder)
+    path = sorted(folder.glob("train/*/groundtruth_rect.txt"))[0]
+    if spoil == "cut":
+        path.write_bytes(path.read_bytes()[:20])
+    elif spoil == "flip":
+        content = bytearray(path.read_bytes())
+        content[3] ^= 1
+        path.write_bytes(content)
+    else:
+        path = folder / CHECKSUMS if spoil == "no sums" else path
+        path.unlink()
+    export(data, "otb", folder, ExportOptions(resume=True))
+    assert contents(folder) == whole
+    assert f"{path}: not as it was exported" in caplog.text
+    caplog.clear()
+    export(data, "otb", folder, ExportOptions(resume=True))
+    assert not caplog.text

@@ -196,7 +196,8 @@ class _Mender:
             raise ValueError("an accessor outside of its buffer")
         flat = np.frombuffer(data, np.uint8)
         at = first + stride * np.arange(count)[:, None] + np.arange(row)
-        return flat[at].view(dtype).reshape(count, width)
+        values: NDArray[Any] = flat[at].view(dtype).reshape(count, width)
+        return values
 
     def _buffer(self, number: int) -> bytes:
         if number not in self._files:

@@ -102,6 +102,10 @@ def read_mesh(path: Path) -> Triangles:
     if path.suffix.lower() == ".proto":
         read, left_out = read_proto(path, _mesh_of_proto)
         return replace(_joined([Triangles(*part) for part in read]), left_out=left_out)
+    return _from_trimesh(path)
+
+
+def _from_trimesh(path: Path) -> Triangles:
     trimesh, left_out = _trimesh(), ""
     try:
         if path.suffix.lower() in _GLTF_ENDINGS:

@@ -19,6 +19,8 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|0[xX][0-9a-fA-F]+")
 
 _DEEPEST = 64
 """Largest nesting of nodes and lists."""
+_LARGEST = 1e9
+"""Largest number; most are metres."""
 _MOST = 4_000_000
 """Largest number of words and numbers in a file."""
 
@@ -146,7 +148,10 @@ class _Reader:
         numbers = []
         while self._at < len(self._tokens) and _NUMBER.fullmatch(self._tokens[self._at]):
             word = self._next()
-            numbers.append(float(int(word, 16)) if word[:2] in ("0x", "0X") else float(word))
+            number = float(int(word, 16)) if word[:2] in ("0x", "0X") else float(word)
+            if not abs(number) <= _LARGEST:
+                self._fail(f"the number {word[:30]} is not allowed: up to {_LARGEST:g}")
+            numbers.append(number)
         return numbers
 
     def _peek(self) -> str:

@@ -14,6 +14,7 @@ from typing import Any
 
 from eyas import __version__
 from eyas.core.build import this_build
+from eyas.core.config import shown
 from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
@@ -22,7 +23,7 @@ from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
 from eyas.datasets.registry import FORMATS, SETTING
-from eyas.exports.checksums import CHECKSUMS, read_checksums
+from eyas.exports.checksums import CHECKSUMS, damaged_files, read_checksums, seal_folder
 
 __all__ = [
     "EXPORTS",
@@ -42,6 +43,9 @@ EXPORTS = "exports"
 
 FINISHED, GROWING = "export.json", ".export.json"
 """What an export is of, when it is complete, and while it is in progress."""
+
+_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)
+"""What is no part of a finished export."""
 
 DONE = ".done"
 """Names of the episodes that are written completely, a line each."""
@@ -102,6 +106,7 @@ def export(
     with folder_lock(folder, "exporting into it"):
         if _open(folder, _identity(recording, name, options), options):
             form.finish(_add_all(form, recording, folder, told))
+            seal_folder(folder, _ASIDE)
             with refusals(folder):
                 (folder / GROWING).replace(folder / FINISHED)
         else:
@@ -151,6 +156,7 @@ def finish_export(folder: Path, named: str, name: str, recording: Recording) -> 
         episode.__dict__.pop("labels", None)
     form.finish(exported)
     shutil.rmtree(folder / KEPT, ignore_errors=True)
+    seal_folder(folder, _ASIDE)
     identity = {**_identity(recording, name, ExportOptions()), "recording": named}
     write_atomic(folder / FINISHED, (json.dumps(identity, indent=1) + "\n").encode())
 
@@ -228,11 +234,16 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
         if different:
             key = different[0]
             raise OutputError(
-                f"{folder}: not continued: its {key} was {found.get(key)!r}, is {identity[key]!r};"
-                " start again with --overwrite"
+                f"{folder}: not continued: its {key} was {shown(found.get(key))}, is "
+                f"{shown(identity[key])}; start again with --overwrite"
             )
         _delete_parts(folder)
-        return known == GROWING
+        damaged = next(damaged_files(folder), None) if known == FINISHED else None
+        if damaged is None:
+            return known == GROWING
+        _LOG.warning("%s: not as it was exported, so all is exported again", damaged)
+        _empty(folder)
+        names = set()
     if names:
         raise OutputError(
             f"{folder}: not empty; continue its export with --resume, replace it with --overwrite,"

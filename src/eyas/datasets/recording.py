@@ -142,7 +142,8 @@ class RecordedFrame:
             raise DataFileError(f"{path}: cannot read: not a PNG of {width}x{height} pixels")
         try:
             with av.open(io.BytesIO(content), mode="r", format="png_pipe") as container:
-                stored = next(container.decode(video=0)).to_ndarray(format="rgb48le")
+                picture = next(container.decode(video=0))
+                stored: NDArray[np.uint16] = picture.to_ndarray(format="rgb48le")
         except (av.error.FFmpegError, OSError, ValueError, EOFError, StopIteration) as error:
             told = getattr(error, "strerror", None) or error
             raise DataFileError(f"{path}: cannot read: {told}") from error

@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from eyas.core import exact
+from eyas.core.decoding import read_json
+from eyas.core.errors import DataFileError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.png import png_bytes
 from eyas.exports.frame import CameraPose, Frame
@@ -39,9 +41,9 @@ class CameraWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of frames; None if a file is missing."""
         try:
-            told = json.loads((folder / _POSES).read_text())
+            told = read_json(folder / _POSES, 1 << 30)
             frames = {told["frames"], *(len(camera["poses"]) for camera in told["cameras"])}
-        except (OSError, ValueError, RecursionError, KeyError, TypeError):
+        except (DataFileError, KeyError, TypeError):
             return None
         for number in range(self._count):
             found = numbered(folder, f"cameras/{number:02d}-{{:06d}}.png")

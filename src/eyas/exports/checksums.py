@@ -1,12 +1,16 @@
-"""`checksums.sha256` of a recording, as `sha256sum` writes and checks it."""
+"""`checksums.sha256` of a finished folder, as `sha256sum` writes and checks it."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from eyas.core.files import read_limited
+from eyas.core.checked import flushed, sum_of
+from eyas.core.errors import DataFileError
+from eyas.core.files import read_limited, refusals, write_atomic
 
-__all__ = ["CHECKSUMS", "GROWING", "checksum_lines", "read_checksums"]
+__all__ = [
+    "CHECKSUMS", "GROWING", "checksum_lines", "damaged_files", "read_checksums", "seal_folder",
+]  # fmt: skip
 
 CHECKSUMS, GROWING = "checksums.sha256", ".checksums"
 """Names of the file, and of the one that grows during a recording, in the recording's folder."""
@@ -30,3 +34,48 @@ def read_checksums(path: Path) -> dict[str, str]:
 def checksum_lines(sums: Mapping[str, str]) -> bytes:
     """Return the content of the file, in the order of the names."""
     return "".join(f"{digest}  {name}\n" for name, digest in sorted(sums.items())).encode()
+
+
+def seal_folder(folder: Path, aside: Collection[str]) -> None:
+    """Write the checksums of all files of a folder, which are then on the disk.
+
+    Args:
+        folder: The folder.
+        aside: Names of files and folders in it that are left out.
+
+    Raises:
+        OutputError: The disk has not taken them.
+        DataFileError: A file cannot be read.
+    """
+    with refusals(folder):
+        paths = sorted(_files_in(folder, {*aside, CHECKSUMS}))
+    sums = {f"./{path.relative_to(folder).as_posix()}": sum_of(path) for path in paths}
+    write_atomic(folder / CHECKSUMS, checksum_lines(sums))
+    # Others have the same content elsewhere, in the recording that they are a link to.
+    flushed([*(path for path in paths if path.stat().st_nlink == 1), folder / CHECKSUMS])
+
+
+def damaged_files(folder: Path) -> Iterator[Path]:
+    """Yield the files that are missing or not as they were when the folder was finished."""
+    try:
+        sums = read_checksums(folder / CHECKSUMS)
+    except DataFileError:
+        yield folder / CHECKSUMS
+        return
+    for name, digest in sums.items():
+        try:
+            whole = sum_of(folder / name) == digest
+        except DataFileError:
+            whole = False
+        if not whole:
+            yield folder / name
+
+
+def _files_in(folder: Path, aside: Collection[str]) -> Iterator[Path]:
+    for inside in folder.iterdir():
+        if inside.name in aside:
+            continue
+        if inside.is_dir():
+            yield from _files_in(inside, ())
+        else:
+            yield inside

@@ -5,6 +5,8 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+from eyas.core.decoding import read_json
+from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.exports.frame import Frame
 from eyas.exports.writer import EndedEpisode, Episode, Files, Gather, Run, Summary, Writer
@@ -43,8 +45,8 @@ class MarkWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of marks."""
         try:
-            marks = json.loads((folder / MARK).read_text())
-        except (OSError, ValueError, RecursionError):
+            marks = read_json(folder / MARK, 1 << 30)
+        except DataFileError:
             return None
         return Summary(len(marks)) if isinstance(marks, dict) else None
 

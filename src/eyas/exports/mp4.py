@@ -57,7 +57,7 @@ class Mp4Writer(Writer):
             # Only as what it should be: of a playlist, FFmpeg would open what it names.
             with self._av.open(str(folder / MOVIE), format="mp4") as container:
                 return Summary(container.streams.video[0].frames)
-        except (OSError, ValueError, IndexError):
+        except (self._av.error.FFmpegError, OSError, ValueError, IndexError):
             return None
 
 

@@ -12,7 +12,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from eyas.core import exact
-from eyas.core.files import write_atomic
+from eyas.core.errors import DataFileError
+from eyas.core.files import read_limited, write_atomic
 from eyas.exports.frame import Frame, RecordedBody
 from eyas.exports.writer import EndedEpisode, Episode, Files, Gather, Run, Summary, Writer
 from eyas.state.motion import ActorView
@@ -101,8 +102,8 @@ class ScenarioWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of frames that the file states."""
         try:
-            text = (folder / NAME).read_bytes()
-        except OSError:
+            text = read_limited(folder / NAME, 1 << 30)
+        except DataFileError:
             return None
         told = re.search(rb'description="(\d+) frames', text[:400])
         return Summary(int(told[1])) if told and text.endswith(_END) else None

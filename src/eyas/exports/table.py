@@ -7,7 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, DataFileError
+from eyas.core.files import read_limited
 from eyas.exports.frame import Floats, Frame
 from eyas.exports.writer import Episode, Files, Gather, Run, Summary, Writer
 from eyas.task.packet_rows import SENSOR_COLUMNS
@@ -43,8 +44,8 @@ class TableWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of rows."""
         try:
-            lines = (folder / self.table).read_text().splitlines()
-        except (OSError, ValueError):
+            lines = read_limited(folder / self.table, 1 << 30).decode().splitlines()
+        except (DataFileError, ValueError):
             return None
         return Summary(len(lines) - 1) if lines and lines[0].startswith("frame,step,") else None
 

@@ -135,7 +135,7 @@ def _signal_plan(
     if signals is not Signals.WORKING and not graph.finished:
         return None
     kept = recipe.shipped(SIGNALS_FILE)
-    if kept is not None and seed == 0 and drivers is not Drivers.EVADING:
+    if kept is not None and not graph.finished and seed == 0 and drivers is not Drivers.EVADING:
         return load_plan(kept)  # so that it needs no SUMO
     return signal_plan(SumoNet(graph.finished or _signalled(graph, drivers)))
 

@@ -138,7 +138,15 @@ class SumoNet:
     @cached_property
     def connections(self) -> tuple[NetConnection, ...]:
         """Ways through junctions."""
-        return self._read("connection", _connection)
+        found = self._read("connection", _connection)
+        links = {
+            one.name: min((len(phase.state) for phase in one.phases), default=0)
+            for one in self.programs
+        }
+        for one in found:
+            if one.light in links and not 0 <= one.link < links[one.light]:
+                raise self.error(f"<connection>: linkIndex {one.link}: no such link")
+        return found
 
     @cached_property
     def programs(self) -> tuple[NetProgram, ...]:
@@ -173,7 +181,8 @@ def _connection(one: ElementTree.Element) -> NetConnection:
 
 def _program(logic: ElementTree.Element) -> NetProgram:
     phases = (
-        NetPhase(_number(one.attrib["duration"]), one.attrib["state"]) for one in logic.iter("phase")
+        NetPhase(_number(one.attrib["duration"]), one.attrib["state"])
+        for one in logic.iter("phase")
     )
     offset = _number(logic.get("offset", "0"))
     return NetProgram(logic.attrib["id"], logic.get("type", "static"), offset, tuple(phases))

@@ -43,6 +43,20 @@ def test_one_that_is_complete_is_left_alone(plan, made, contents):
     assert contents(made) == before
 
 
+def test_one_that_was_damaged_is_mended(plan, made, contents, tmp_path, caplog):
+    out = shutil.copytree(made, tmp_path / "damaged")
+    before = contents(out)
+    label = sorted(out.glob("parts/*/*/*/episode0/labels.jsonl"))[0]
+    exported = [path for path in sorted(out.glob("exports/*/**/*.*")) if path.is_file()][0]
+    for path in (out / "README.md", label, exported):
+        content = path.read_bytes()[:100]
+        path.unlink()  # it may be a link
+        path.write_bytes(content)
+    make(plan, out, Making(resume=True))
+    assert contents(out) == before
+    assert "README.md: not as it was made (3 such files)" in caplog.text
+
+
 @pytest.fixture(scope="module")
 def shards(shard, tmp_path_factory):
     folders = [tmp_path_factory.mktemp("shards") / f"shard{number}" for number in (1, 2, 3)]

@@ -11,15 +11,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
-from eyas.core.errors import MissingExtraError
+from eyas.core.decoding import npz_arrays
+from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.core.files import read_limited
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
 from eyas.datasets.recording import RecordedEpisode
 
 if TYPE_CHECKING:
     import pyarrow
+
+_LARGEST = 1 << 28
+"""Largest arrays of an episode [bytes]."""
 
 __all__ = ["LeRobot"]
 
@@ -108,8 +112,11 @@ class LeRobot(Format):
         inside = f"chunk-{chunk:03d}/file-{file:03d}"
         self._job.settle(f"{episode.name}.mp4", f"videos/{CAMERA}/{inside}.mp4")
         count = episode.frames
-        with np.load(self._job.folder / KEPT / f"{episode.name}.npz") as stored:
-            arrays = dict(stored)
+        path = self._job.folder / KEPT / f"{episode.name}.npz"
+        try:
+            arrays = npz_arrays(read_limited(path, _LARGEST), _LARGEST)
+        except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
+            raise DataFileError(f"{path}: {error}; start again with --overwrite") from None
         counters = {
             "timestamp": np.arange(count, dtype=np.float64) / kept["fps"],
             "frame_index": np.arange(count),
@@ -250,10 +257,7 @@ def _stats(values: NDArray[Any]) -> Stats:
 def _colour_stats(episode: RecordedEpisode) -> Stats:
     """Return the statistics of red, green, blue, 0 to 1, over some pictures, shape (3, 1, 1)."""
     chosen = np.unique(np.linspace(0, len(episode) - 1, _LOOKED_AT).astype(int)).tolist()
-    pixels = []
-    for number in chosen:
-        with Image.open(episode.picture_file(number)) as picture:
-            pixels.append(np.asarray(picture).reshape(-1, 3)[::7])
+    pixels = [episode[number].picture().reshape(-1, 3)[::7] for number in chosen]
     own = _stats(np.concatenate(pixels) / 255.0)
     return {
         kind: [len(chosen)] if kind == "count" else [[[value]] for value in values]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from eyas.core.errors import MissingExtraError
-from eyas.core.files import atomic_path, refusals
+from eyas.core.files import atomic_path, read_limited, refusals
 from eyas.datasets.format import Format, Job, SeenObject, objects_of, split_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.boxes import box_of, camera_pose, quaternion_of
@@ -112,7 +112,7 @@ def _messages(frame: RecordedFrame, time: int) -> Iterator[tuple[str, Json]]:
     label, seen = frame.label, list(objects_of(frame.label))
     stamp = {"sec": time // 10**9, "nsec": time % 10**9}
     seal = {"timestamp": stamp, "frame_id": "camera"}
-    picture = frame.episode.picture_file(frame.number).read_bytes()
+    picture = read_limited(frame.episode.picture_file(frame.number), 1 << 28)
     data = base64.b64encode(picture).decode()
     yield "/camera/image", {**seal, "data": data, "format": frame.episode.picture_kind}
     yield "/camera/calibration", {**seal, **_calibration(label)}

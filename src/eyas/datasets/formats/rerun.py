@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from eyas.core.errors import MissingExtraError
+from eyas.core.files import read_limited
 from eyas.datasets.format import Format, Job, objects_of, split_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.boxes import box_of, camera_pose, quaternion_of
@@ -65,7 +66,7 @@ class Rerun(Format):
             stream.log("world/camera/image", rr.AnyValues(**bends))
         file = frame.episode.picture_file(frame.number)
         kind = f"image/{frame.episode.picture_kind}"
-        picture = rr.EncodedImage(contents=file.read_bytes(), media_type=kind)
+        picture = rr.EncodedImage(contents=read_limited(file, 1 << 28), media_type=kind)
         stream.log("world/camera/image", picture)
         seen = list(objects_of(label))
         colours = [_TARGET if each.is_target else _OTHER for each in seen]

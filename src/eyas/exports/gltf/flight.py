@@ -1,6 +1,5 @@
 """A flight as one animated glTF file: the map, the tracker, its camera, and all that moves."""
 
-import json
 import struct
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.core.decoding import decoded_json
 from eyas.exports.boxes import quaternion_of
 from eyas.exports.frame import CameraPose, Frame, Subject
 from eyas.exports.gltf.boxes import box_mesh
@@ -85,11 +85,11 @@ class SceneWriter(Writer):
         try:
             with (folder / NAME).open("rb") as file:
                 _, _, whole, length, _ = struct.unpack("<IIIII", file.read(20))
-                told = json.loads(file.read(min(length, _LONGEST)))
+                told = decoded_json(file.read(min(length, _LONGEST)))
                 if whole != (folder / NAME).stat().st_size:
                     return None
             return Summary(int(told["asset"]["extras"][_FRAMES]))
-        except (OSError, ValueError, struct.error, RecursionError, KeyError, TypeError):
+        except (OSError, ValueError, OverflowError, struct.error, KeyError, TypeError):
             return None
 
     def _encoded(self, moments: Sequence[_Moment]) -> bytes:

@@ -1,9 +1,10 @@
 """Writers of bags of ROS 2: a folder for each episode that `ros2 bag` plays."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from eyas.core.decoding import read_json
+from eyas.core.errors import DataFileError
 from eyas.core.files import refusals, write_atomic
 from eyas.exports.frame import Frame
 from eyas.exports.ros.messages import TOPICS, Messages, nanoseconds
@@ -50,9 +51,9 @@ class RosbagWriter(Writer):
         """Return the number of frames that the bag's description states."""
         path = self._path(folder)
         try:
-            told = json.loads((path.parent / _DESCRIPTION).read_text())
+            told = read_json(path.parent / _DESCRIPTION, 1 << 30)
             frames = int(told["rosbag2_bagfile_information"]["custom_data"]["eyas_frames"])
-        except (OSError, ValueError, RecursionError, KeyError, TypeError):
+        except (DataFileError, ValueError, KeyError, TypeError):
             return None
         return Summary(frames) if path.is_file() else None
 

@@ -4,6 +4,7 @@ The same plan gives the same bytes: on one core or many, in shards or at once, k
 or not.
 """
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,14 +12,15 @@ from pathlib import Path
 
 from rich.console import Console
 
-from eyas.core.errors import OutputError
+from eyas.core.errors import EyasError, OutputError
 from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
-from eyas.datasets.export import exports_folder, finish_export
+from eyas.datasets.export import EXPORTS, exports_folder, finish_export
 from eyas.datasets.layout import MAKING_FILE, Plan, read_plan, write_plan
 from eyas.datasets.plan import Part
 from eyas.datasets.recording import DATASET_FILE, Recording, load_part
 from eyas.datasets.statistics import PartFacts
+from eyas.exports.checksums import damaged_files, seal_folder
 from eyas.lanes import thread_count
 from eyas.modes.dataset.describe import describe
 from eyas.modes.dataset.parts import (
@@ -33,6 +35,8 @@ from eyas.modes.dataset.workers import work
 from eyas.modes.progress import frames_bar
 
 __all__ = ["Making", "Recorded", "complete", "continuable", "make", "open_folder", "report"]
+
+_LOG = logging.getLogger("eyas")
 
 EXPORTED = ".exported"
 """Names of the parts whose exports are complete, a line each, while a data set is being made."""
@@ -132,9 +136,39 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
         DataFileError: What is there cannot be read.
     """
     found = _left(root, plan, resume=resume)
-    if found is None:
+    if found == DATASET_FILE:
+        damaged = list(_damaged(root, plan))
+        if not damaged:
+            return False
+        _LOG.warning(
+            "%s: not as it was made (%d such files), so what is of it is made again",
+            *(damaged[0], len(damaged)),
+        )
+    if found != MAKING_FILE:
         write_plan(root, plan)
-    return found != DATASET_FILE
+    with refusals(root):
+        (root / DATASET_FILE).unlink(missing_ok=True)
+    return True
+
+
+def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
+    """Yield the files of a finished data set that have changed since; parts that have some are no
+    longer known as complete.
+    """
+    yield from damaged_files(root)
+    for name in plan.recipe.formats if plan.shard is None else ():
+        yield from damaged_files(exports_folder(root, name, None))
+    for part in plan.parts():
+        folder = root / part.folder
+        try:
+            known = read_facts(folder) is not None
+        except EyasError:
+            known = False
+        damaged = [*damaged_files(folder), *([] if known else [folder / PART_FILE])]
+        if damaged:
+            with refusals(folder):
+                (folder / PART_FILE).unlink(missing_ok=True)
+        yield from damaged
 
 
 def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
@@ -194,6 +228,7 @@ def complete(plan: Plan, root: Path, making: Making) -> None:
     if plan.shard is None:
         _export(plan, [part for part, _ in described], root, making)
         describe(plan, described, root)
+    seal_folder(root, ("parts", EXPORTS, MAKING_FILE, DATASET_FILE, EXPORTED, LOCK))
     write_plan(root, plan, described)
     with refusals(root):
         for name in (MAKING_FILE, EXPORTED):

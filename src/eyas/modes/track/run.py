@@ -273,7 +273,7 @@ def _scored(
             table = np.loadtxt(io.BytesIO(content), delimiter=",", ndmin=2)
     except ValueError as error:
         raise DataFileError(f"{path}: cannot read: {error}; start again with --overwrite") from None
-    if table.shape != (len(episode), 5) or not np.isfinite(table).all():
+    if table.shape != (len(episode), 5) or not (np.abs(table) <= 1e9).all():
         wrong = f"{path}: has not five numbers for each frame"
         raise DataFileError(f"{wrong}; start again with --overwrite")
     boxes, truth = table[:, :4], true_boxes(episode)

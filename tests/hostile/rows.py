@@ -1,0 +1,819 @@
+"""Feeds each reader of the package contents that nobody wrote for it, and says what came out.
+
+    python tests/hostile/rows.py FOLDER MOST SEED [ROW ...]
+
+A row writes a small valid file, mostly with the product's own writer, then damaged and hostile ones
+in its place. Only an `EyasError` of one line or a value may come out, within limits of memory and
+of processor time. The report is JSON on the standard output: for each row how many contents were
+tried and refused, and the faults.
+"""
+
+import gzip
+import io
+import json
+import logging
+import random
+import resource
+import shutil
+import signal
+import sys
+import time
+import warnings
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+from values import json_contents, mutated  # noqa: E402  # beside this file
+
+import eyas  # noqa: E402
+from eyas.core.errors import EyasError  # noqa: E402
+
+MEMORY = 700 << 20
+"""Memory that a content may make resident, beside what the row needed before [bytes]."""
+SECONDS = 20
+"""Processor time that a content may take; usual are milliseconds."""
+
+
+class Row(NamedTuple):
+    """One reader, or several that read the same file."""
+
+    path: Path
+    read: Callable[[], object]
+    contents: Iterator[bytes]
+    """Hostile contents of the file; it holds a valid one at first."""
+    refuses: bool = True
+    """Whether what is refused raises; otherwise it is left out, or read as nothing."""
+
+
+Make = Callable[[Path, random.Random, int], Row]
+ROWS: dict[str, Make] = {}
+
+
+def row(*names: str) -> Callable[[Make], Make]:
+    def entered(make: Make) -> Make:
+        ROWS.update(dict.fromkeys(names, make))
+        return make
+
+    return entered
+
+
+def of_json(path: Path, read: Callable[[], object], chance: random.Random, most: int, **more: Any):
+    """Return the row of a JSON file."""
+    content = path.read_bytes()
+    values = json.loads(content)
+
+    def contents() -> Iterator[bytes]:
+        yield from json_contents(values, chance, most)
+        yield from mutated(content, chance, most)
+
+    return Row(path, read, contents(), **more)
+
+
+def of_bytes(path: Path, read: Callable[[], object], chance: random.Random, most: int, *bombs: Any):
+    """Return the row of another file, with contents that unpack to much."""
+    content = path.read_bytes()
+
+    def contents() -> Iterator[bytes]:
+        for bomb in bombs:
+            yield bomb() if callable(bomb) else bomb
+        yield from mutated(content, chance, most)
+
+    return Row(path, read, contents())
+
+
+def with_words(text: str, words: tuple[str, ...]) -> Iterator[bytes]:
+    """Yield a text in which one number after the other is an absurd one."""
+    import re
+
+    found = list(re.finditer(r"-?\d+(?:\.\d+)?", text))
+    for place in found[:40]:
+        for word in words:
+            yield (text[: place.start()] + word + text[place.end() :]).encode()
+
+
+ABSURD_WORDS = ("1e300", "-1.7e308", "inf", "nan", "9" * 400, "1e999", str(2**62))
+
+
+# Files of settings, maps and roads.
+
+
+@row("json")
+def _json(folder, chance, most):
+    from eyas.core.decoding import read_json
+
+    path = folder / "a.json"
+    path.write_text(json.dumps({"a": [1, 2.5, "x", True], "b": {"c": None}}))
+    return of_json(path, lambda: json.dumps(read_json(path, 1 << 20)).encode(), chance, most)
+
+
+@row("settings")
+def _settings(folder, chance, most):
+    from eyas.settings.config import EyasConfig
+    from eyas.settings.file import load_settings, save_settings
+
+    path = folder / "config.json"
+    save_settings(EyasConfig(), path)
+    return of_json(path, lambda: load_settings(path), chance, most)
+
+
+EXAMPLE = {
+    "format": "eyas-plan-1", "name": "own", "size": [300.0, 300.0], "seed": 3,
+    "roads": {
+        "nodes": [{"name": "a", "x": -90, "y": 0}, {"name": "b", "x": 90, "y": 0}],
+        "edges": [{"name": "ab", "start": "a", "end": "b", "lanes": 2, "lane_width": 3.5,
+                   "speed": 13.9, "shape": [[0, 5]]}],
+    },
+    "library": [{"name": "bench"}],
+    "layers": [{"layer": "things", "kinds": ["bench"], "kind": [0], "pose": [[1, 2, 0, 0, 1]]}],
+    "survey": {"trees": [[1.0, 2.0, 8.0]], "lamps": [[3.0, 4.0]]},
+}  # fmt: skip
+
+
+@row("plan")
+def _plan(folder, chance, most):
+    from eyas.modes.maps.plan_files import named_file_problems
+    from eyas.world.plan.file import problems
+
+    path = folder / "own.plan.json"
+    path.write_text(json.dumps(EXAMPLE))
+
+    def read() -> None:
+        wrong = problems(path, named_file_problems)
+        if wrong:
+            raise EyasError(wrong[0])
+
+    return of_json(path, read, chance, most)
+
+
+def gzip_bomb() -> bytes:
+    return gzip.compress(bytes(300 << 20), 1)
+
+
+@row("plan.gz")
+def _plan_gz(folder, chance, most):
+    from eyas.world.plan.file import read_plan
+
+    path = folder / "own.plan.json.gz"
+    path.write_bytes(gzip.compress(json.dumps(EXAMPLE).encode()))
+    return of_bytes(path, lambda: read_plan(path), chance, most, gzip_bomb)
+
+
+@row("map.json")
+def _map_json(folder, chance, most):
+    from dataclasses import asdict
+
+    from eyas.world.maps.files import Origin, origin_of
+
+    path = folder / "map.json"
+    origin = Origin("own", "Own", "own.osm", 8.5, 47.4, (300.0, 300.0), checksums={"a": "0" * 64})
+    path.write_text(json.dumps(asdict(origin)))
+    return of_json(path, lambda: origin_of(folder), chance, most)
+
+
+NET = """<net version="1.20"><edge id="a" from="s" to="e"><lane id="a_0" index="0" speed="13.5"
+width="3.2" shape="-50,0 50,0"/></edge><junction id="s" shape="0,0 1,0 1,1"/><junction id="e"
+shape="9,0 9,1 8,1"/><connection from="a" to="a" fromLane="0" toLane="0" tl="t" linkIndex="0"
+dir="s"/><tlLogic id="t" type="static" offset="5"><phase duration="30" state="G"/></tlLogic></net>"""
+
+
+@row("roads")
+def _roads(folder, chance, most):
+    from eyas.traffic.net_file import SumoNet, road_network
+    from eyas.traffic.signals import signal_plan
+    from eyas.world.maps.files import roads_in
+
+    path = folder / "roads.net.xml"
+    path.write_text(NET)
+
+    def read() -> None:
+        net = SumoNet(roads_in(path))
+        road_network(net, "")
+        signal_plan(net).at(np.array([0.0, 1.5, 1e4]))
+
+    laughs = "".join(f'<!ENTITY a{k} "{f"&a{k - 1};" * 10 if k else "ha"}">' for k in range(12))
+    bombs = (
+        gzip_bomb,
+        f"<?xml version='1.0'?><!DOCTYPE net [{laughs}]><net>&a11;</net>".encode(),
+        b"<net>" + b"<edge>" * 300_000,
+        *with_words(NET, ABSURD_WORDS),
+    )
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("network")
+def _network(folder, chance, most):
+    from dataclasses import replace
+
+    from eyas.modes.maps.info import _lengths, street_lines
+    from eyas.traffic.net_file import SumoNet, road_network
+    from eyas.world.roads.network_file import load_network, save_network
+
+    path = folder / "network.npz"
+    network = road_network(SumoNet(NET.encode()), "0" * 64)
+    save_network(path, network)
+
+    def read() -> None:
+        found = load_network(path)
+        street_lines(found)
+        _lengths(found)
+
+    def spoilt() -> Iterator[bytes]:
+        for name in ("lane_points", "lane_width", "lane_speed", "junction_points"):
+            for value in (1e300, -1.7e308, np.inf, np.nan, 1e18):
+                array = getattr(network, name).copy()
+                array.flat[0] = value
+                yield saved(replace(network, **{name: array}))
+        for name in ("lane_first", "lane_edge", "lane_index", "junction_first"):
+            for value in (2**30, -1, -(2**31)):
+                array = getattr(network, name).copy()
+                array.flat[-1] = value
+                yield saved(replace(network, **{name: array}))
+            yield saved(replace(network, **{name: getattr(network, name)[:-1]}))
+            yield saved(replace(network, **{name: getattr(network, name).astype(np.float64)}))
+        for name in ("edges", "edge_start", "junctions"):
+            yield saved(replace(network, **{name: ()}))
+            yield saved(replace(network, **{name: ("\0x",) * len(getattr(network, name))}))
+        yield npz_bomb()
+
+    def saved(other) -> bytes:
+        beside = folder / "other.npz"
+        save_network(beside, other)
+        return beside.read_bytes()
+
+    good = path.read_bytes()
+    return of_bytes(path, read, chance, most, *spoilt(), good[:100])
+
+
+def npz_bomb() -> bytes:
+    """Return an npz whose array claims to be as large as it is, 1 GiB."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        with archive.open("lane_points.npy", "w", force_zip64=True) as file:
+            np.lib.format.write_array_header_1_0(
+                file, {"descr": "<f8", "fortran_order": False, "shape": (1 << 26, 2)}
+            )
+            for _ in range(64):
+                file.write(bytes(16 << 20))
+    return buffer.getvalue()
+
+
+OSM = """<osm version="0.6"><bounds minlat="48.1" minlon="11.5" maxlat="48.102" maxlon="11.503"/>
+<node id="1" lat="48.1005" lon="11.501"/><node id="2" lat="48.1015" lon="11.502"/>
+<node id="3" lat="48.1012" lon="11.5012"><tag k="natural" v="tree"/><tag k="height" v="12"/></node>
+<way id="21"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/><tag k="lanes" v="2"/></way>
+<way id="22"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="1"/><tag k="building" v="yes"/>
+<tag k="height" v="9"/><tag k="building:levels" v="3"/></way></osm>"""
+
+
+@row("osm")
+def _osm(folder, chance, most):
+    from eyas.world.osm.houses import houses_of
+    from eyas.world.osm.projection import Projection
+    from eyas.world.osm.reader import covered, read_osm
+    from eyas.world.osm.rings import Shapes
+    from eyas.world.osm.streets import street_file
+
+    path = folder / "town.osm"
+    path.write_text(OSM)
+
+    def read() -> None:
+        import shapely
+
+        data = read_osm(path)
+        limits = covered(data, None, str(path))
+        projection = Projection(round((limits[0] + limits[2]) / 2, 7), (limits[1] + limits[3]) / 2)
+        street_file(data, limits, lambda key: None)
+        extent = shapely.box(-200, -200, 200, 200)
+        for house in houses_of(
+            Shapes(data, projection, extent, lambda what: None), lambda key: None
+        ):
+            sizes = house.height, house.levels, house.roof_height
+            assert all(size is None or 0 <= size <= 1000 for size in sizes), sizes
+
+    bombs = (
+        lambda: gzip.compress(b"<osm>" + b" " * (500 << 20), 1),
+        lambda: gzip.compress(b"<osm><node id='1' lat='1' lon='1'>" + b"x" * (300 << 20), 1),
+        b"<osm>" + b"<way>" * 100_000,
+        *with_words(OSM, ABSURD_WORDS),
+    )
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("pbf")
+def _pbf(folder, chance, most):
+    import osmium
+
+    from eyas.world.osm.reader import read_osm
+
+    path = folder / "town.osm.pbf"
+    source = folder / "source.osm"
+    source.write_text(OSM.replace(" lon", " version='1' lon").replace("<way", "<way version='1'"))
+    with osmium.SimpleWriter(str(path)) as writer:
+        for thing in osmium.FileProcessor(str(source)):
+            writer.add(thing)
+    return of_bytes(path, lambda: read_osm(path), chance, most)
+
+
+# Traffic, and targets of one's own.
+
+
+@row("traffic")
+def _traffic(folder, chance, most):
+    from eyas.traffic.config import TrafficConfig, VehicleType
+    from eyas.traffic.recording import Provenance, Recording
+    from eyas.traffic.recording_file import RecordingFile, load, save
+
+    path = folder / "traffic.npz"
+    position = np.rint(np.cumsum(np.ones((60, 2, 2)), axis=0) * 80) * 0.01
+    origin = Provenance(
+        map_name="own", map_seed=0, graph_hash="0" * 16, config=TrafficConfig(max_vehicles=2),
+        duration=5.9, warm_up=60.0, options=("--x",), sumo_version="1", eyas_version="1",
+    )  # fmt: skip
+    save(
+        Recording(10.0, position, np.zeros((60, 2)), np.ones((60, 2), np.bool_),
+                  (VehicleType.PASSENGER,) * 2, np.full(2, 5.0), origin),
+        path,
+    )  # fmt: skip
+
+    def read() -> None:
+        RecordingFile.read(path).outline()
+        load(path)
+
+    return of_bytes(path, read, chance, most, npz_bomb)
+
+
+TRACK = "t,x,y,z,yaw\n0,0,0,0,0\n1,1,0,0.5,0.1\n2,2,1,0,0.2\n3,3,1,0,0.1\n"
+
+
+@row("trajectory")
+def _trajectory(folder, chance, most):
+    from eyas.custom.problems import of_noise, of_trajectory, worst
+    from eyas.custom.smoothing import smoothed
+    from eyas.custom.trajectory import read_trajectory
+
+    path = folder / "track.csv"
+    path.write_text(TRACK)
+
+    def read() -> None:
+        trajectory = read_trajectory(path)
+        problem = worst(of_trajectory(trajectory, (900.0, 900.0), "citystreet"))
+        list(of_noise(trajectory))
+        if problem:
+            raise EyasError(f"{path}: {problem}")
+        trajectory.at(np.arange(int(10 * trajectory.time[-1]) + 1) / 10.0)
+        smoothed(trajectory, 1.0)
+
+    return of_bytes(path, read, chance, most, *with_words(TRACK, ABSURD_WORDS))
+
+
+OBJ = """mtllib a.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 0 1
+vt 0 0
+usemtl red
+f 1/1 2/1 3/1
+f 1 2 4
+f -1 -2 -3
+"""
+
+
+def of_mesh(folder, name, content, chance, most, *bombs):
+    from eyas.custom.config import CustomConfig
+    from eyas.custom.kind import own_target
+
+    path = folder / name
+    path.write_bytes(content)
+    return of_bytes(path, lambda: own_target(CustomConfig(mesh=str(path))), chance, most, *bombs)
+
+
+@row("obj")
+def _obj(folder, chance, most):
+    (folder / "a.mtl").write_text("newmtl red\nKd 1 0 0\nmap_Kd /dev/zero\n")
+    words = with_words(OBJ, ABSURD_WORDS)
+    return of_mesh(folder, "box.obj", OBJ.encode(), chance, most, b"mtllib /dev/zero\n", *words)
+
+
+def _export(ending: str) -> Make:
+    def make(folder, chance, most):
+        import trimesh
+
+        content = trimesh.creation.box((1.0, 2.0, 0.5)).export(file_type=ending)
+        return of_mesh(folder, f"box.{ending}", content, chance, most)
+
+    return make
+
+
+ROWS.update({ending: _export(ending) for ending in ("stl", "ply", "glb")})
+
+
+@row("gltf")
+def _gltf(folder, chance, most):
+    import base64
+
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32).tobytes()
+    data = points + np.array([0, 1, 2, 0, 1, 3], np.uint16).tobytes()
+    header = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0, "scale": [1, 1, 1]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR",
+             "sparse": {"count": 1, "indices": {"bufferView": 1, "componentType": 5123},
+                        "values": {"bufferView": 1}}},
+        ],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48},
+                        {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": 60, "uri": "data:;base64," + base64.b64encode(data).decode()}],
+    }  # fmt: skip
+    row = of_mesh(folder, "box.gltf", json.dumps(header).encode(), chance, most)
+    return of_json(row.path, row.read, chance, most)
+
+
+PROTO = """#VRML_SIM R2023b utf8
+EXTERNPROTO "Leg.proto"
+PROTO Cart [ field SFVec3f translation 0 0 0.4 field SFFloat high 0.5 field MFNode load [] ]
+{ Robot { translation IS translation children [
+ DEF BODY Shape { appearance PBRAppearance { baseColor 1 0.5 0 } geometry Box { size 2 1 0.5 } }
+ Pose { rotation 1 0 0 1.57 scale 1 1 2 children [ USE BODY Leg { length 2 } ] }
+ Shape { geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 0 0 0 1 0 ] }
+ coordIndex [ 0 1 2 -1 ] } } Group { children IS load } ] } }
+"""
+
+
+@row("proto")
+def _proto(folder, chance, most):
+    leg = "PROTO Leg [ field SFFloat length 1 ]\n{ Shape { geometry Cone { height IS length } } }"
+    (folder / "Leg.proto").write_text(leg)
+    words = with_words(PROTO, ABSURD_WORDS)
+    deep = ("PROTO a []{" + "Group{children[" * 5000).encode()
+    return of_mesh(folder, "cart.proto", PROTO.encode(), chance, most, deep, *words)
+
+
+# Policies, latencies, logs of flights.
+
+
+@row("latencies")
+def _latencies(folder, chance, most):
+    from eyas.evaluation.delay import delay_from
+
+    path = folder / "latency.txt"
+    path.write_text("12.5\n30\n44\n")
+    words = with_words(path.read_text(), ABSURD_WORDS)
+    return of_bytes(path, lambda: delay_from(str(path)), chance, most, *words)
+
+
+@row("drone log")
+def _drone_log(folder, chance, most):
+    from eyas.modes.drone.log import read_log
+
+    path = folder / "flight.csv"
+    names = ["time", *(f"velocity_{axis}" for axis in "xyz"),
+             *(f"orientation_{axis}" for axis in "wxyz"), *(f"rotor_{k}" for k in (1, 2, 3, 4))]  # fmt: skip
+    rows = (f"{0.01 * k:.2f},1,0,0,1,0,0,0,5,5,5,5" for k in range(220))
+    path.write_text("\n".join([",".join(names), *rows]))
+    words = with_words(path.read_text(), ABSURD_WORDS)
+    return of_bytes(path, lambda: read_log(path), chance, most, *words)
+
+
+@row("policy messages")
+def _messages(folder, chance, most):
+    from eyas.evaluation.policies.apart import receive, send
+
+    path, stream = folder / "message", io.BytesIO()
+    send(stream, {"a": 1}, [np.zeros((3, 4), np.float32)])
+    path.write_bytes(stream.getvalue())
+
+    def read() -> None:
+        try:
+            receive(io.BytesIO(path.read_bytes()))
+        except (EOFError, ValueError) as error:  # what its caller expects
+            raise EyasError(str(error)) from None
+
+    huge = json.dumps({"arrays": [["<f8", [10**9, 10**9]]]}).encode()
+    deep = b"[" * 100_000
+    framed = [len(text).to_bytes(4, "little") + text for text in (huge, deep, b"[1]", b'{"a":1}')]
+    return of_bytes(path, read, chance, most, b"\xff" * 8, *framed)
+
+
+@row("onnx")
+def _onnx(folder, chance, most):
+    from eyas.evaluation.policies import trained
+    from eyas.evaluation.policies.onnx import load_onnx
+
+    path = folder / "fast.onnx"
+    shutil.copy(Path(trained.__path__[0]) / "fast.onnx", path)
+    return of_bytes(path, lambda: load_onnx(path, {}, sampled=False), chance, most // 2)
+
+
+# Evaluations.
+
+
+RECORD = {
+    "name": "a", "map": "citystreet", "weather": "day", "target": "SUMO_VEHICLE", "direction": 0.5,
+    "seed": 3, "reason": "time", "duration": 90.0, "cr": 100.5, "tsr": 0.5, "seen": 0.5,
+    "visible": 0.5, "clear": 0.9, "found_after": 0.0, "lost_after": None, "watched": 90.0,
+    "losses": 1, "found_again": 1, "search_time": 0.5, "crashed": False, "centre_error": 0.1,
+    "path": 100.0, "height": 20.0, "jerk": 1.0, "figures": {"own": 0.5},
+    "published": {"actions": 5, "cr": 3.0, "tsr": 0.5},
+    "trace": {"reward": [0.5], "drone": [[0.0, 1.0]], "target": [[0.0, 2.0]]},
+}  # fmt: skip
+
+
+@row("records")
+def _records(folder, chance, most):
+    from eyas.evaluation.protocols import PROTOCOLS, protocol_named
+    from eyas.evaluation.record import read_records
+    from eyas.evaluation.result import table
+    from eyas.evaluation.rows import rows_of
+
+    path = folder / "episodes.jsonl"
+    path.write_text(json.dumps(RECORD))
+    name = next(iter(PROTOCOLS))
+
+    def read() -> None:
+        path.write_bytes(path.read_bytes().replace(b"\n", b" ") + b"\n")
+        records = read_records(path)
+        if records:
+            table(rows_of(records, protocol_named(name)), name).encode()
+
+    return of_json(path, read, chance, most)
+
+
+@row("stamp")
+def _stamp(folder, chance, most):
+    from eyas.evaluation.plan import EvaluationPlan, stamp
+    from eyas.evaluation.result import STAMP, load_run
+
+    path = folder / STAMP
+    path.write_text(stamp(EvaluationPlan(policy="hover")).model_dump_json())
+    return of_json(path, lambda: load_run(folder)[0].model_dump_json().encode(), chance, most)
+
+
+@row("card")
+def _card(folder, chance, most):
+    from eyas.modes.leaderboard.card import CARD, read_card
+
+    path = folder / CARD
+    path.write_text(json.dumps({"name": "x", "authors": ["y"], "link": "https://a.b/c"}))
+    return of_json(path, lambda: read_card(folder).model_dump_json().encode(), chance, most)
+
+
+@row("mark")
+def _mark(folder, chance, most):
+    from eyas.modes.leaderboard.mark import MARK, fitting_mark
+
+    path = folder / MARK
+    path.write_text(json.dumps({"build": "b", "seed": 1, "flown": ["a"], "episodes": 2,
+                                "content": "c", "signature": "s"}))  # fmt: skip
+    return of_json(path, lambda: fitting_mark(folder), chance, most, refuses=False)
+
+
+@row("submission")
+def _submission(folder, chance, most):
+    from eyas.modes.leaderboard.submission import _text_in
+
+    path = folder / "timing.json"
+    path.write_text(json.dumps({"machine": "a fast one", "mean_ms": 3.5}))
+    return of_json(path, lambda: _text_in(path, "machine").encode(), chance, most, refuses=False)
+
+
+# Recordings and data sets.
+
+
+def recorded(folder: Path) -> Path:
+    """Return a copy of a recording of two frames, which is made once."""
+    from eyas.modes.video.run import run
+    from eyas.sensors.config import CameraConfig
+    from eyas.settings.config import EyasConfig
+    from eyas.world.config import WorldConfig
+
+    made = folder.parent / "recorded"
+    if not made.exists():
+        writers = ("jpeg", "labels", "masks", "depth", "arrays", "flow")
+        config = EyasConfig(
+            world=WorldConfig(map="simpleway-grass"), camera=CameraConfig(width=48, height=32)
+        )
+        video = config.video.model_copy(
+            update={"channels": 1, "fps": 10.0, "total_time": 0.1, "writers": writers}
+        )
+        run(config.model_copy(update={"video": video}), made, quiet=True)
+    return shutil.copytree(made, folder / "run")
+
+
+def of_frame(folder, name: str, pattern: str, *bombs: Callable[[bytes], bytes]) -> Any:
+    run = recorded(folder)
+    path = sorted(run.glob(pattern))[0]
+    content = path.read_bytes()
+    frame = eyas.load(run)[0][0]
+    return path, getattr(frame, name), [bomb(content) for bomb in bombs]
+
+
+def png_bomb(content: bytes) -> bytes:
+    """Return a PNG of the same size in its header, whose data unpack to 1 GiB."""
+    machine = zlib.compressobj(1)
+    block = bytes(1 << 24)
+    data = b"".join(machine.compress(block) for _ in range(64)) + machine.flush()
+    check = zlib.crc32(b"IDAT" + data).to_bytes(4, "big")
+    return content[:33] + len(data).to_bytes(4, "big") + b"IDAT" + data + check + content[-12:]
+
+
+def png_of_giants(content: bytes) -> bytes:
+    """Return a PNG that claims to have 50,000 x 50,000 pixels."""
+    head = content[12:16] + (50_000).to_bytes(4, "big") * 2 + content[24:29]
+    return content[:12] + head + zlib.crc32(head).to_bytes(4, "big") + content[33:]
+
+
+@row("mask")
+def _mask(folder, chance, most):
+    path, read, bombs = of_frame(folder, "masks", "*/*/masks/*.png", png_bomb, png_of_giants)
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("depth")
+def _depth(folder, chance, most):
+    path, read, bombs = of_frame(folder, "depth", "*/*/depth/*.png", png_bomb, png_of_giants)
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("picture")
+def _picture(folder, chance, most):
+    path, read, _ = of_frame(folder, "picture", "*/*/*.jpeg")
+    return of_bytes(path, read, chance, most)
+
+
+@row("flow")
+def _flow(folder, chance, most):
+    path, read, bombs = of_frame(folder, "flow", "*/*/flow/*.png", png_bomb, png_of_giants)
+    return of_bytes(path, read, chance, most, *bombs)
+
+
+@row("arrays")
+def _arrays(folder, chance, most):
+    path, read, _ = of_frame(folder, "arrays", "*/*/arrays/*.npz")
+    return of_bytes(path, read, chance, most, npz_bomb())
+
+
+@row("labels")
+def _labels(folder, chance, most):
+    run = recorded(folder)
+    path = sorted(run.glob("*/*/labels.jsonl"))[0]
+    rest = path.read_bytes().partition(b"\n")[2]
+    path.write_bytes(path.read_bytes().partition(b"\n")[0])
+
+    def read() -> None:
+        whole = path.read_bytes().replace(b"\n", b" ") + b"\n" + rest
+        path.write_bytes(whole)
+        for frame in eyas.load(run)[0]:
+            frame.picture()
+            frame.masks()
+
+    return of_json(path, read, chance, most)
+
+
+@row("checksums")
+def _checksums(folder, chance, most):
+    run = recorded(folder)
+    path = run / "checksums.sha256"
+    row = of_bytes(path, lambda: len(eyas.load(run)[0]), chance, most)
+    return row._replace(refuses=False)
+
+
+@row("export")
+def _exported(folder, chance, most):
+    from eyas.datasets.export import ExportOptions, export
+
+    data = eyas.load(recorded(folder))
+    out = folder / "otb"
+    export(data, "otb", out, ExportOptions())
+    path = out / "export.json"
+    good = path.read_bytes()
+
+    def read() -> None:
+        try:
+            export(data, "otb", out, ExportOptions(resume=True))
+        finally:
+            path.write_bytes(good)
+
+    return of_json(path, read, chance, min(most, 20))
+
+
+@row("dataset")
+def _dataset(folder, chance, most):
+    path = folder / "dataset.json"
+    part = recorded(folder)
+    (folder / "parts" / "train").mkdir(parents=True)
+    part.rename(folder / "parts" / "train" / "first")
+    path.write_text(json.dumps({"parts": [{"split": "train", "name": "first"}]}))
+    return of_json(path, lambda: len(eyas.load(folder)), chance, most)
+
+
+@row("dataset plan")
+def _dataset_plan(folder, chance, most):
+    from eyas.datasets.layout import MAKING_FILE, Plan, read_plan, write_plan
+    from eyas.datasets.recipe import read_recipe
+
+    write_plan(folder, Plan.of(read_recipe("sot"), "sot", sample=False, shard=None))
+    path = folder / MAKING_FILE
+    return of_json(path, lambda: read_plan(path).parts(), chance, most)
+
+
+@row("boxes")
+def _boxes(folder, chance, most):
+    from eyas.modes.track.run import _boxes_file, _scored
+
+    episode = eyas.load(recorded(folder))[0]
+    path = _boxes_file(folder, episode)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    text = "# failures 0\n" + "1,2,3,4,1\n" * len(episode)
+    path.write_text(text)
+    return of_bytes(
+        path, lambda: _scored(folder, episode), chance, most, *with_words(text, ABSURD_WORDS)
+    )
+
+
+@row("checkpoint")
+def _checkpoint(folder, chance, most):
+    import torch
+
+    from eyas.learning.checkpoint import RunFolder, TrainingProgress
+
+    network = torch.nn.Linear(3, 2)
+    optimiser = torch.optim.Adam(network.parameters())
+    files = RunFolder(folder)
+    files.save(TrainingProgress(rows=[{"step": 1}]), network, optimiser)
+    path = next(folder.glob("*.pt"))
+    return of_bytes(path, lambda: files.load(network, optimiser), chance, most // 2)
+
+
+# The run.
+
+
+class _TooLongError(BaseException):
+    """Not an `Exception`, which a reader might catch."""
+
+
+def _too_long(number: int, frame: object) -> None:
+    raise _TooLongError
+
+
+def tried(name: str, folder: Path, most: int, seed: int) -> dict[str, Any]:
+    """Return the report about a row."""
+    folder.mkdir(parents=True)
+    chance = random.Random(f"{name} {seed}")
+    begun = time.process_time()
+    made = ROWS[name](folder, chance, most)
+    made.read()
+    faults, count, refused = [], 0, 0
+    for content in made.contents:
+        count += 1
+        made.path.write_bytes(content)
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        try:
+            made.read()
+        except EyasError as error:
+            refused += 1
+            line = str(error)
+            if "\n" in line or len(line) > 1500:
+                faults.append(f"{content[:60]!r}: a line of {len(line)} characters: {line[:200]!r}")
+        except _TooLongError:
+            faults.append(f"{content[:60]!r}: more than {SECONDS} s")
+        except Exception as error:
+            kept = folder / f"fault-{count}"
+            kept.write_bytes(content)
+            faults.append(f"{content[:60]!r}: {error!r:.300} ({kept})")
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+        grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+        if grown > MEMORY >> 10:
+            faults.append(f"{content[:60]!r}: {grown >> 10} MiB")
+    spent = time.process_time() - begun
+    return {"tried": count, "refused": refused, "refuses": made.refuses, "faults": faults,
+            "seconds": round(spent, 2)}  # fmt: skip
+
+
+def main(folder: str, most: str, seed: str, *names: str) -> None:
+    warnings.simplefilter("error")
+    logging.getLogger("eyas").setLevel(logging.CRITICAL)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (12 << 30, 12 << 30))
+    signal.signal(signal.SIGPROF, _too_long)
+    report = {}
+    for name in names or ROWS:
+        try:
+            report[name] = tried(name, Path(folder, name.replace(" ", "-")), int(most), int(seed))
+        except ImportError as error:
+            report[name] = {"missing": str(error)}
+    print(json.dumps(report))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
