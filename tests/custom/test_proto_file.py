@@ -12,6 +12,7 @@ from eyas.core.errors import EyasError
 from eyas.custom.config import CustomConfig
 from eyas.custom.kind import own_target
 from eyas.custom.mesh_file import loaded, read_mesh
+from eyas.modes.targets.check import check
 
 CART = """#VRML_SIM R2023b utf8
 # tags: nonDeterministic
@@ -178,3 +179,90 @@ def test_damaged_files_are_read_or_refused(tmp_path_factory, place, cut, put):
     with suppress(EyasError):
         shape = read_mesh(path)
         assert shape.corners.max() < len(shape.points)
+
+
+DOG = """#VRML_SIM R2023b utf8
+EXTERNPROTO "parts/Leg.proto"
+EXTERNPROTO "https://raw.githubusercontent.com/x/y/Tail.proto"
+PROTO Dog [ field SFVec3f translation 0 0 0 field MFNode hat [ Ear { } ] ]
+{
+  Robot {
+    translation IS translation
+    children [
+      Shape { appearance Fur { } geometry Box { size 1 0.4 0.2 } }
+      Leg { translation 0.4 0 0 length 0.8 }
+      Leg { translation -0.4 0 0 }
+      Tail { }
+      Propeller { slowHelix Solid { children [ Shape { geometry Box { size 0.1 2 0.1 } } ] } }
+      Slot { endPoint Ear { } }
+      Group { children IS hat }
+      Shape { geometry IndexedLineSet { coordIndex [ 0 1 -1 ] } }
+      Skin { }
+    ]
+  }
+}
+"""
+LEG = """PROTO Leg [ field SFVec3f translation 0 0 0 field SFFloat length 0.2 ]
+{ Solid { translation IS translation
+    children [ Shape { geometry Cylinder { radius 0.05 height IS length } } ] } }
+"""
+
+
+@pytest.fixture
+def dog(tmp_path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "Leg.proto").write_text(LEG)
+    (tmp_path / "Ear.proto").write_text(LEG.replace("Leg", "Ear"))
+    path = tmp_path / "Dog.proto"
+    path.write_text(DOG)
+    return path
+
+
+def test_protos_beside_it_are_read_with_the_fields_that_are_given(dog):
+    shape = read_mesh(dog)
+    assert np.allclose(shape.size, (1.0, 2.0, 0.8))  # the propeller is widest, one leg is longer
+    assert len(shape.corners) == 12 + 12 + 4 * 4 * 24  # two boxes, two legs, two ears
+
+
+def test_what_is_left_out_is_counted_and_named(dog, caplog):
+    told = "left out, as not read: 1 Fur (a colour), 1 IndexedLineSet, 1 Skin, 1 Tail"
+    assert read_mesh(dog).left_out == told
+    assert f"note: {told}" in check(str(dog), CustomConfig(mesh=str(dog)), "citystreet")[0]
+    own_target(CustomConfig(mesh=str(dog)))
+    assert f"{dog}: {told}" in caplog.text
+
+
+def test_a_proto_of_which_nothing_is_read_says_what_it_has(tmp_path):
+    path = tmp_path / "a.proto"
+    path.write_text("PROTO a [] { Robot { children [ Body { } Body { } ] } }")
+    with pytest.raises(EyasError, match=r"left out, as not read: 2 Body\); allowed: Box"):
+        read_mesh(path)
+
+
+def test_protos_that_name_each_other_end_in_one_line(tmp_path):
+    for one, other in ("ab", "ba"):
+        body = f"Group {{ children [ {other} {{ }} {other} {{ }} ] }}"
+        (tmp_path / f"{one}.proto").write_text(f"PROTO {one} [] {{ {body} }}")
+    with pytest.raises(EyasError, match=r"a\.proto: cannot read as a PROTO: nested too deep"):
+        read_mesh(tmp_path / "a.proto")
+
+
+def test_a_cad_shape_is_read_in_its_colours(tmp_path):
+    pytest.importorskip("trimesh")
+    (tmp_path / "red.mtl").write_text("newmtl red\nKd 1 0 0\n")
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    (tmp_path / "part.obj").write_text(f"mtllib red.mtl\n{corners}usemtl red\nf 1 2 3\nf 1 2 4\n")
+    path = tmp_path / "cart.proto"
+    path.write_text('PROTO cart [] { Pose { children [ CadShape { url "part.obj" } ] } }')
+    assert read_mesh(path).colours.tolist() == [[1.0, 0.0, 0.0]] * 2
+    path.write_text('PROTO cart [] { Pose { children [ CadShape { url "part.dae" } ] } }')
+    with pytest.raises(EyasError, match=r"part\.dae: not a mesh file; allowed: \.glb"):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize("mark", ["%<= fields.high.value >%", "%{= fields.high.value }%"])
+def test_templates_of_both_kinds_are_named(tmp_path, mark):
+    path = tmp_path / "t.proto"
+    path.write_text(f"PROTO t [] {{ Shape {{ geometry Box {{ size 1 1 {mark} }} }} }}")
+    with pytest.raises(EyasError, match=f"it is a template \\({mark[:2]} "):
+        read_mesh(path)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.custom.problems import of_noise, of_trajectory
+from eyas.custom.problems import of_noise, of_trajectory, worst
 from eyas.custom.trajectory import Trajectory, read_trajectory
 
 
@@ -93,3 +93,32 @@ def test_jumps_gaps_and_places_outside_the_map_are_told():
     assert told[0].text == "point 3: it jumps 399 m in 1 s; allowed: up to 100 m/s"
     assert told[1].text.startswith("2 of 4 points are outside the map 'meadow' (600 x 600 m")
     assert told[2].text.startswith("1 gap of more than 5 s")
+
+
+@pytest.mark.parametrize(
+    ("rows", "line"),
+    [
+        ("0,0,0,0,0\n1,1,0,1e300,0", "line 3: z = 1e\\+300 is not allowed: up to 1e\\+09"),
+        ("0,1e300,0,0,0\n1,1,0,0,0", "line 2: x = 1e\\+300 is not allowed"),
+        ("0,0,0,0,0\n1,1,0,0,-1e300", "line 3: yaw = -1e\\+300 is not allowed"),
+        ("-1.7e308,0,0,0,0\n1.7e308,1,0,0,0", "line 2: t = -1.7e\\+308 is not allowed"),
+        ("0,0,0,0,0\n1e9,1,0,0,0", "it lasts 1e\\+09 s; allowed: up to 86400 s"),
+        (f"0,0,0,0,0\\n1,1,0,{'9' * 5000},0", "finite numbers"),
+    ],
+)
+def test_absurd_numbers_are_one_short_line(tmp_path, rows, line):
+    path = tmp_path / "a.csv"
+    path.write_text("t,x,y,z,yaw\n" + rows)
+    with pytest.raises(DataFileError, match=line) as caught:
+        read_trajectory(path)
+    assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    ("heights", "line"),
+    [((0, 500, 0), "point 2: it jumps 500 m in 1 s"), ((2e4,) * 3, "point 1: z = 20000 m is not")],
+)
+def test_heights_are_bounded_as_places_are(heights, line):
+    places = [(k, 0.0, z) for k, z in enumerate(heights)]
+    trajectory = Trajectory(np.arange(3.0), np.array(places, np.float64), None)
+    assert line in worst(of_trajectory(trajectory, (900.0, 900.0), "citystreet"))

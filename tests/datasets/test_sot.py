@@ -1,7 +1,10 @@
 """Formats of single-object tracking, read by the toolkit of GOT-10k where it can."""
 
 import configparser
+import json
+import shutil
 from contextlib import redirect_stdout
+from hashlib import sha256
 from io import StringIO
 
 import numpy as np
@@ -10,10 +13,21 @@ from got10k.datasets import DTB70, GOT10k
 from got10k.experiments import ExperimentGOT10k
 from got10k.trackers import Tracker
 
+from eyas.datasets.export import ExportOptions, export
+from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.formats.sot import cover_levels
+from eyas.datasets.recording import Recording, load
+from eyas.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
+from eyas.exports.label import LABELS
 
 # It reads files with np.loadtxt, which warns of sequences of one frame; its report divides by 0.
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")
+
+
+@pytest.fixture
+def shown(data) -> Recording:
+    """The data set, from where its targets are first visible."""
+    return Recording(data.folder, [from_first_sight(episode) for episode in data])
 
 
 def quiet(make, *arguments, **options):
@@ -27,9 +41,9 @@ def clipped(label) -> list[int]:
 
 
 @pytest.mark.parametrize("subset", ["train", "val"])
-def test_got10k_loads(exported, data, subset):
+def test_got10k_loads(exported, shown, subset):
     loaded = quiet(GOT10k, exported("got10k"), subset=subset, return_meta=True)
-    episodes = {episode.name: episode for episode in data.split(subset)}
+    episodes = {episode.name: episode for episode in shown.split(subset)}
     assert loaded.seq_names == list(episodes)
     for name, (pictures, boxes, facts) in zip(loaded.seq_names, loaded, strict=True):
         labels = episodes[name].labels
@@ -78,21 +92,21 @@ def test_got10k_runs_a_tracker_and_writes_its_report(exported, tmp_path):
     assert (tmp_path / "reports/GOT-10k/Still/performance.json").is_file()
 
 
-def test_dtb70_loads(exported, data):
+def test_dtb70_loads(exported, shown):
     loaded = quiet(DTB70, exported("dtb70") / "train")
     for name, (pictures, boxes) in zip(loaded.seq_names, loaded, strict=True):
-        (episode,) = (each for each in data if each.name == name)
+        (episode,) = (each for each in shown if each.name == name)
         assert len(pictures) == len(episode)
         assert boxes.tolist() == [clipped(label) for label in episode.labels]
 
 
 @pytest.mark.parametrize("split", ["train", "val"])
-def test_vot_is_read_as_its_toolkit_does(exported, data, split):
+def test_vot_is_read_as_its_toolkit_does(exported, shown, split):
     folder = exported("vot") / split
     names = (folder / "list.txt").read_text().split()
-    assert names == [episode.name for episode in data.split(split)]
+    assert names == [episode.name for episode in shown.split(split)]
     for name in names:
-        (episode,) = (each for each in data if each.name == name)
+        (episode,) = (each for each in shown if each.name == name)
         boxes = np.loadtxt(folder / name / "groundtruth.txt", delimiter=",", ndmin=2)
         pictures = list((folder / name / "color").glob("????????.jpg"))
         visible = episode.array("visible_fraction") > 0
@@ -112,7 +126,7 @@ def test_vot_is_read_as_its_toolkit_does(exported, data, split):
         assert np.array_equal(shares, episode.array("visible_fraction"))
 
 
-def test_tags_of_vot_tell_motion(exported, data):
+def test_tags_of_vot_tell_motion(exported, shown):
     folder = exported("vot")
     tags = {}
     for path in folder.glob("*/*/*.tag"):
@@ -122,12 +136,12 @@ def test_tags_of_vot_tell_motion(exported, data):
     assert tags.keys() == kinds
     assert set(tags.pop("camera_motion")) <= {0.0, 1.0}
     assert all(set(values) == {0.0, 1.0} for values in tags.values())
-    assert all(len(values) == data.frame_count for values in tags.values())
+    assert all(len(values) == shown.frame_count for values in tags.values())
 
 
-def test_lasot_is_read_as_its_readers_do(exported, data):
+def test_lasot_is_read_as_its_readers_do(exported, shown):
     folder = exported("lasot")
-    for episode in data:
+    for episode in shown:
         labels = episode.labels
         (own,) = (folder / episode.split).glob(f"*/*-{episode.name}")
         assert own.name.split("-")[0] == own.parent.name
@@ -144,10 +158,10 @@ def test_lasot_is_read_as_its_readers_do(exported, data):
         assert (own / "nlp.txt").read_text().strip() == labels[0]["target_words"]
 
 
-def test_uav123_is_nan_where_the_target_is_absent(exported, data):
+def test_uav123_is_nan_where_the_target_is_absent(exported, shown):
     folder = exported("uav123")
     absent = 0
-    for episode in data:
+    for episode in shown:
         root = folder / episode.split
         boxes = np.loadtxt(root / f"anno/UAV123/{episode.name}.txt", delimiter=",", ndmin=2)
         visible = episode.array("visible_fraction") > 0
@@ -160,11 +174,68 @@ def test_uav123_is_nan_where_the_target_is_absent(exported, data):
     assert absent
 
 
-def test_otb_is_read_as_its_readers_do(exported, data):
+def test_otb_is_read_as_its_readers_do(exported, shown):
     folder = exported("otb")
-    for episode in data:
+    for episode in shown:
         own = folder / episode.split / episode.name
         boxes = np.loadtxt(own / "groundtruth_rect.txt", delimiter=",", ndmin=2)
         assert boxes.tolist() == [clipped(label) for label in episode.labels]
         names = sorted(path.name for path in (own / "img").iterdir())
         assert names == [f"{number:04d}.jpg" for number in range(1, len(episode) + 1)]
+
+
+@pytest.fixture(scope="module")
+def late(dataset, tmp_path_factory):
+    """The data set, whose first episode has no visible target for 3 frames, and its second none at
+    all.
+    """
+    root = shutil.copytree(dataset, tmp_path_factory.mktemp("late") / "dataset")
+    data = load(root)
+    for episode, hidden in zip(data.episodes, (3, len(data[1])), strict=False):
+        labels = [json.loads(line) for line in (episode.folder / LABELS).open()]
+        for label in labels[:hidden]:
+            label["visible_fraction"] = 0.0
+        labels[min(hidden, len(labels) - 1)]["visible_fraction"] = 0.0 if hidden > 3 else 1.0
+        text = "".join(f"{json.dumps(label)}\n" for label in labels).encode()
+        (episode.folder / LABELS).write_bytes(text)
+        run = episode.folder.parent.parent
+        sums = read_checksums(run / CHECKSUMS)
+        sums[(episode.folder / LABELS).relative_to(run).as_posix()] = sha256(text).hexdigest()
+        (run / CHECKSUMS).write_bytes(checksum_lines(sums))
+    return load(root)
+
+
+@pytest.mark.parametrize(
+    ("name", "boxes", "pictures"),
+    [
+        ("got10k", "train/*/groundtruth.txt", "train/{}/*.jpg"),
+        ("lasot", "train/*/*/groundtruth.txt", "train/*/*-{}/img/*.jpg"),
+        ("otb", "train/*/groundtruth_rect.txt", "train/{}/img/*.jpg"),
+        ("dtb70", "train/*/groundtruth_rect.txt", "train/{}/img/*.jpg"),
+        ("vot", "train/*/groundtruth.txt", "train/{}/color/*.jpg"),
+        ("uav123", "train/anno/UAV123/*.txt", "train/data_seq/UAV123/{}/*.jpg"),
+        (
+            "visdrone-sot",
+            "VisDrone2019-SOT-train/annotations/*.txt",
+            "VisDrone2019-SOT-train/sequences/{}/*.jpg",
+        ),
+    ],
+)
+def test_a_sequence_begins_where_its_target_is_first_visible(
+    late, tmp_path, caplog, name, boxes, pictures
+):
+    export(late, name, tmp_path / name, ExportOptions())
+    first, unseen = late[0], late[1]
+    assert f"{unseen.name}: left out: its target is never visible" in caplog.text
+    (rows,) = (
+        path.read_text().splitlines()
+        for path in (tmp_path / name).glob(boxes)
+        if first.name in path.as_posix()
+    )
+    found = sorted((tmp_path / name).glob(pictures.format(first.name)))
+    assert len(rows) == len(found) == len(first) - 3
+    assert rows[0] == ",".join(map(str, clipped(first.labels[3])))
+    assert found[0].read_bytes() == first.picture_file(3).read_bytes()
+    assert not [path for path in (tmp_path / name).rglob("*") if unseen.name in path.name]
+    lists = [path.read_text() for path in (tmp_path / name).rglob("list.txt")]
+    assert all(unseen.name not in text.split() for text in lists)

@@ -1,8 +1,10 @@
 """Machine code that comes with Eyas: used only where it is that of these sources and processors."""
 
 import lzma
+import re
 from types import SimpleNamespace
 
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
@@ -168,3 +170,18 @@ def test_what_a_card_draws_with_ships():
     stages = [one for one in vars(stages_of_cards).values() if isinstance(one, ParallelCall)]
     assert sum(name.startswith("each_view") for name in ships) == len(stages) == 7
     assert {"list_actors", "stack_pictures", "command_numbers"} <= set(ships)
+
+
+def test_machine_code_names_no_file_of_the_machine_that_made_it():
+    """numba would put the path of a file beside each exception that may be raised in it."""
+    folder = shipped.ARCHIVE.parent
+    codes = [bytes(c.code) for c in read_archive(shipped.ARCHIVE).values()]
+    codes += [bytes(c.code) for c in read_archive(shipped.WIDE_ARCHIVE).values()]
+    for packed in (*folder.glob("*.xz"), *folder.glob("*.eyp")):
+        _, pieces = unpacked(lzma.decompress(packed.read_bytes()))
+        bitcode = packed.suffix == ".xz"
+        codes += [
+            str(llvm.parse_bitcode(bytes(p))).encode() if bitcode else bytes(p) for p in pieces
+        ]
+    assert len(codes) > 100
+    assert not {name for code in codes for name in re.findall(rb"[\w./-]*/[\w.-]+\.py\b", code)}

@@ -355,3 +355,28 @@ def test_a_share_is_a_share(board):
     for share in (0.0, 1.5, -1.0):
         with pytest.raises(EyasError, match="--share"):
             list(verify(board, share=share))
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("timing.json", '"machine": "', '"machine": "\\ud800'),
+        ("run.json", '"policy": "', '"policy": "\\ud800'),
+        ("episodes.jsonl", '"losses":', f'"losses":1{"0" * 400}'),
+        ("episodes.jsonl", '"found_again":', f'"found_again":{2**62}'),
+        ("episodes.jsonl", '"path":', '"path":1e300'),
+        ("episodes.jsonl", '"cr":', '"cr":9999999999'),
+        ("episodes.jsonl", '"tsr":', '"tsr":-9'),
+    ],
+)
+def test_one_bad_entry_is_left_out_and_the_page_of_the_others_made(board, caplog, file, old, new):
+    path = board / "hover" / file
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    page_text = shown(board)
+    assert "follow" in page_text
+    if file == "timing.json":
+        assert "hover" in page_text  # the machine is not known, but the figures are
+    else:
+        assert "hover: left out: " in caplog.text

@@ -1,6 +1,8 @@
 """Plans written for maps, checked, and flown over."""
 
+import gzip
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -164,3 +166,53 @@ def test_a_plan_drawn_by_hand_flies(hamlet):
     assert len(scene.lamps.position) > 10
     assert scene.footways.told
     assert len(scene.footways.crossings) == 2
+
+
+NET = """<net version="1.20">
+<edge id="a" from="s" to="e"><lane id="a_0" index="0" speed="13" width="3.2" shape="{}"/></edge>
+<junction id="s" shape="0,0 1,0 1,1"/><junction id="e" shape="9,0 9,1 8,1"/>
+</net>"""
+
+
+@pytest.mark.parametrize(
+    ("content", "line"),
+    [
+        (NET.format("-50,0 50,0"), ""),
+        (gzip.compress(NET.format("-50,0 50,0").encode()), ""),
+        (NET.format("11000,0 12000,0"), "2 of 2 points of its lanes are outside of size"),
+        (NET.format("-50,0 1e300,0"), "'lane_points' are not all within 100 km"),
+        (NET.format("-50,0 nan,0"), "'lane_points' are not all within 100 km"),
+        (NET.format("-50,x"), "not a network of SUMO: a shape: could not convert"),
+        (NET.format("0,0 1,1").replace('speed="13"', 'speed="inf"'), "<edge>: inf is not allowed"),
+        (NET.format("0,0 1,1").replace(' id="a"', ""), "<edge> without 'id'"),
+        ("<osm/>", "not a network of SUMO: its content is <osm>"),
+        ("<net>", "not a network of SUMO: no element found"),
+        (gzip.compress(b" " * (257 << 20), 1), "larger than 256 MiB when unpacked"),
+        (gzip.compress(NET.encode())[:-9], "cannot read"),
+    ],
+)
+def test_the_roads_that_a_plan_names_are_opened(tmp_path, content, line):
+    name = "roads.net.xml"
+    (tmp_path / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    path = tmp_path / "own.plan.json"
+    plan = {"format": "eyas-plan-1", "name": "own", "size": [200, 200], "roads": {"file": name}}
+    path.write_text(json.dumps(plan))
+    done = eyas("check", path)
+    assert (done.exit_code, len(done.stdout.splitlines())) == (int(bool(line)), 1)
+    assert line in done.stdout
+    if not line:
+        assert len(load_network(str(path), 0).lane_points) == 2
+
+
+@pytest.mark.parametrize("number", [1e300, -1.7e308, 2e6, 10**400])
+def test_absurd_numbers_of_a_plan_are_one_short_line(tmp_path, number):
+    content = json.loads(EXAMPLE.read_text())
+    content["size"] = [300, number]
+    path = tmp_path / "odd.plan.json"
+    path.write_text(json.dumps(content))
+    try:
+        (line,) = problems(path)
+    except DataFileError as error:
+        line = str(error)
+    assert re.search("size.*is not allowed|the number 1.* is not allowed", line)
+    assert len(line) < 300

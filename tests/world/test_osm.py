@@ -163,7 +163,7 @@ def test_a_binary_file_without_pyosmium_says_how_to_install_it(tmp_path, monkeyp
         (b"<osm><node id='1' lat='a' lon='2'/></osm>", "not a readable"),
         (b"<?xml version='1.0' encoding='klingon'?><osm/>", "not a readable"),
         (b"<osm><node lat='1' lon='2'/></osm>", "not a readable"),
-        (b"<osm><node id='1' lat='nan' lon='2'/></osm>", "lies nowhere"),
+        (b"<osm><node id='1' lat='nan' lon='2'/></osm>", "not on the earth"),
         (b"<osm></osm>", "has no nodes"),
         (b"\x1f\x8bnot gzip", "cannot read"),
     ],

@@ -148,9 +148,10 @@ def check_plan(
     file: Annotated[Path, typer.Argument(help="A plan of a map: .plan.json or .plan.json.gz.")],
 ) -> None:
     """Say what is wrong with a plan, one line each."""
+    from eyas.modes.maps.plan_files import named_file_problems
     from eyas.world.plan.file import problems
 
-    wrong = problems(file)
+    wrong = problems(file, named_file_problems)
     for line in wrong:
         typer.echo(line)
     if wrong:

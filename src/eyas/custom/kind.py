@@ -1,8 +1,10 @@
 """The entry of a target of one's own in the catalogue."""
 
 import hashlib
+import logging
 import re
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +25,8 @@ from eyas.targets.colour_names import with_article
 from eyas.targets.kind import Kind, Model
 
 __all__ = ["as_custom", "kind_name_of", "own_target"]
+
+_LOG = logging.getLogger("eyas")
 
 
 def kind_name_of(config: CustomConfig) -> str:
@@ -96,11 +100,19 @@ def own_target(config: CustomConfig) -> OwnTarget:
         shape = loaded(config)
     except DataFileError as error:
         raise ConfigError(f"custom.mesh: {error}") from None
+    if shape.left_out:
+        _warn(f"custom.mesh: {config.mesh}: {shape.left_out}")
     if config.most_triangles is not None and np.isfinite(shape.points).all():
         shape = simplified(shape, config.most_triangles)
     if problem := worst(of_shape(shape)):
         raise ConfigError(f"custom.mesh: {config.mesh}: {problem}")
     return Shaped(shape.size, levels_of_detail(shape))
+
+
+@cache
+def _warn(line: str) -> None:
+    """Warn once in a process."""
+    _LOG.warning("%s", line)
 
 
 def _word(config: CustomConfig) -> str:

@@ -1,6 +1,10 @@
 """Reading of mesh files through trimesh: triangles in metres, each with one colour."""
 
+import io
+import logging
+import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -10,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.errors import DataFileError, MissingExtraError
-from eyas.core.files import user_path
+from eyas.core.errors import DataFileError, EyasError, MissingExtraError
+from eyas.core.files import read_limited, user_path
 from eyas.custom.config import ENDINGS, MESHES, CustomConfig
-from eyas.custom.proto_file import read_proto
+from eyas.custom.gltf_file import beside, mended_gltf
+from eyas.custom.proto_file import Part, read_proto
 
 __all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
 
@@ -23,6 +28,8 @@ LARGEST = 200_000
 _LARGEST_FILE = 512 << 20
 """[bytes]"""
 
+_GLTF_ENDINGS = (".glb", ".gltf")
+
 _GLTF = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Our axes by those of glTF: z ahead, x left, y up."""
 
@@ -31,6 +38,9 @@ _INSIDE = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4], [2, 2, 2]]) / 6.0
 
 _FINE = 20_000
 """Number of triangles up to which textured parts are cut, so that they show their texture."""
+
+_LARGEST_TEXTURE = 8192
+"""Largest side of a texture [pixels]."""
 
 _EVEN = 0.01
 """Mean deviation of the texture within triangles that is not worth a cut [sRGB 0 to 1]."""
@@ -49,6 +59,8 @@ class Triangles:
     """Vertices, counter-clockwise as seen from outside, shape (T, 3)."""
     colours: NDArray[np.float64]
     """sRGB 0 to 1, shape (T, 3)."""
+    left_out: str = ""
+    """What of the file is not read, in words."""
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -67,7 +79,7 @@ def loaded(config: CustomConfig) -> Triangles:
     """
     assert config.mesh is not None
     path = user_path(config.mesh)
-    up = config.up or ("y" if path.suffix.lower() in (".glb", ".gltf") else "z")
+    up = config.up or ("y" if path.suffix.lower() in _GLTF_ENDINGS else "z")
     return placed(read_mesh(path), up, config.turn, config.scale)
 
 
@@ -88,15 +100,19 @@ def read_mesh(path: Path) -> Triangles:
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
     if path.suffix.lower() == ".proto":
-        return _joined(
-            [
-                Triangles(points, corners, np.tile(colour, (len(corners), 1)))
-                for points, corners, colour in read_proto(path, _plain_mesh)
-            ]
-        )
-    trimesh = _trimesh()
+        read, left_out = read_proto(path, _mesh_of_proto)
+        return replace(_joined([Triangles(*part) for part in read]), left_out=left_out)
+    trimesh, left_out = _trimesh(), ""
     try:
-        parts = [_checked(part) for part in _parts(trimesh, path)]
+        if path.suffix.lower() in _GLTF_ENDINGS:
+            content, left_out = mended_gltf(path, _LARGEST_FILE)
+        else:
+            content = read_limited(path, _LARGEST_FILE)
+        with warnings.catch_warnings(), _quiet("trimesh"):
+            warnings.simplefilter("ignore")  # what is wrong with a file is said in our words
+            parts = [_checked(part) for part in _parts(trimesh, path, content)]
+    except EyasError:
+        raise
     except (KeyError, FileNotFoundError) as error:  # a buffer or a picture beside it
         missing = getattr(error, "filename", None) or next(iter(error.args), "")
         raise DataFileError(f"{path}: cannot read: it needs {missing!r}; there is none") from None
@@ -104,11 +120,23 @@ def read_mesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
     if not parts:
         raise DataFileError(f"{path}: holds no triangles")
-    return _joined(parts)
+    return replace(_joined(parts), left_out=left_out)
 
 
-def _plain_mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return points and corners of the mesh file that a PROTO names.
+@contextmanager
+def _quiet(library: str) -> Iterator[None]:
+    """Keep a library from writing its warnings to the screen."""
+    log = logging.getLogger(library)
+    before = log.disabled
+    log.disabled = True
+    try:
+        yield
+    finally:
+        log.disabled = before
+
+
+def _mesh_of_proto(path: Path) -> Part:
+    """Return points, corners and colours of the mesh file that a PROTO names.
 
     Raises:
         DataFileError: As from `read_mesh`.
@@ -116,7 +144,7 @@ def _plain_mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     if path.suffix.lower() not in MESHES:
         raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(MESHES)}")
     shape = read_mesh(path)
-    return shape.points, shape.corners
+    return shape.points, shape.corners, shape.colours
 
 
 def _joined(parts: Sequence[Triangles]) -> Triangles:
@@ -152,9 +180,24 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
     return replace(shape, points=points - middle)
 
 
-def _parts(trimesh: ModuleType, path: Path) -> Iterator[Triangles]:
-    # As it is: cleaned up, it would have lost the corners that are not numbers.
-    for part in trimesh.load_scene(str(path), process=False).dump():
+def _parts(trimesh: ModuleType, path: Path, content: bytes) -> Iterator[Triangles]:
+    class Beside(trimesh.resolvers.FilePathResolver):  # type: ignore[misc,name-defined]
+        """Reads files that a mesh names: materials, textures, buffers."""
+
+        def get(self, name: str) -> bytes:
+            found = beside(path, name.strip())
+            if not found.is_file():
+                raise FileNotFoundError(2, "no such file", name)
+            return read_limited(found, _LARGEST_FILE)
+
+    scene = trimesh.load_scene(
+        io.BytesIO(content),
+        file_type=path.suffix.lower()[1:],
+        resolver=Beside(str(path)),
+        # As it is: cleaned up, it would have lost the corners that are not numbers.
+        process=False,
+    )
+    for part in scene.dump():
         corners = getattr(part, "faces", None)
         if corners is not None and len(corners):
             points = np.asarray(part.vertices, np.float64)
@@ -208,32 +251,37 @@ def _textured(
 ) -> Triangles:
     """Return triangles with the mean of the texture in each, cut in four until they show it."""
     uv = np.asarray(visual.uv, np.float64)
-    pixels = np.asarray(_texture(visual).convert("RGB"), np.float64) / 255.0
-    factor = getattr(visual.material, "baseColorFactor", None)
-    if factor is not None:
-        pixels = pixels * (np.asarray(factor, np.float64)[:3] / 255.0)
-    seen = _looked_up(pixels, uv[corners])
+    image = _texture(visual)
+    if max(image.size) > _LARGEST_TEXTURE:
+        raise ValueError(f"a texture of {image.size} pixels; allowed: {_LARGEST_TEXTURE} a side")
+    pixels = np.asarray(image.convert("RGB"))
+    given = getattr(visual.material, "baseColorFactor", None)
+    factor = np.ones(3) if given is None else np.asarray(given, np.float64)[:3] / 255.0
+    seen = _looked_up(pixels, factor, uv[corners])
     while 4 * len(corners) <= _FINE and seen.std(axis=0).mean() > _EVEN:
         points, corners, more = trimesh.remesh.subdivide(
             points, corners, vertex_attributes={"": uv}
         )
         uv = more[""]
-        seen = _looked_up(pixels, uv[corners])
+        seen = _looked_up(pixels, factor, uv[corners])
     return Triangles(points, np.asarray(corners, np.int64), seen.mean(axis=0))
 
 
-def _looked_up(pixels: NDArray[np.float64], uv: NDArray[np.float64]) -> NDArray[np.float64]:
+def _looked_up(
+    pixels: NDArray[np.uint8], factor: NDArray[np.float64], uv: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Return the texture at four points of each triangle, shape (4, T, 3).
 
     Args:
         pixels: The texture, shape (H, W, 3).
+        factor: By which its colours are multiplied, shape (3,).
         uv: Coordinates in it of the corners of the triangles, shape (T, 3, 2).
     """
     height, width = pixels.shape[:2]
     u, v = np.moveaxis(exact.product(_INSIDE, uv), (2, 1), (0, 1))
     column = np.floor(u * width).astype(np.int64) % width
     row = np.floor((1.0 - v) * height).astype(np.int64) % height
-    return np.asarray(pixels[row, column])
+    return np.asarray(pixels[row, column] / 255.0 * factor)
 
 
 def _trimesh() -> ModuleType:

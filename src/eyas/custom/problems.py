@@ -56,6 +56,9 @@ it is hardly one of errors: that of errors falls by 1.5, if they last, to 2.5.""
 _TRIED = 3000
 """Number of points on which they are tried."""
 
+_HIGHEST = 10_000.0
+"""Largest height of a point, also below ground [m]."""
+
 _ALOFT = 3.0
 """Distance from the ground that is told [m]."""
 
@@ -108,11 +111,20 @@ def of_trajectory(
         size: Extent of the map in x and y; its middle is the origin [m].
         map_name: Its name.
     """
+    steps = trajectory.steps()
     for k in trajectory.jumps().tolist()[:3]:
-        step = float(exact.hypot(*(trajectory.position[k] - trajectory.position[k - 1])[:2]))
         seconds = trajectory.time[k] - trajectory.time[k - 1]
         yield Finding(
-            f"point {k + 1}: it jumps {step:.0f} m in {seconds:g} s; allowed: up to {JUMP:g} m/s",
+            f"point {k + 1}: it jumps {_metres(steps[k - 1])} m in {seconds:g} s; allowed: up to "
+            f"{JUMP:g} m/s",
+            fatal=True,
+        )
+    high = np.flatnonzero(np.abs(trajectory.position[:, 2]) > _HIGHEST)  # NaN: on the ground
+    if len(high):
+        z = trajectory.position[high[0], 2]
+        yield Finding(
+            f"point {high[0] + 1}: z = {_metres(z)} m is not allowed: up to {_HIGHEST:g} m from "
+            "the lowest ground of the map",
             fatal=True,
         )
     beyond = np.abs(trajectory.position[:, :2]) > 0.5 * np.array(size)
@@ -174,6 +186,10 @@ def of_noise(trajectory: Trajectory) -> Iterator[Finding]:
             f"cuts a sharp turn by up to {cut:.2g} m",
             fatal=False,
         )
+
+
+def _metres(length: float) -> str:
+    return f"{length:.0f}" if abs(length) < 1e7 else f"{length:.3g}"
 
 
 def _calming(trajectory: Trajectory) -> float:

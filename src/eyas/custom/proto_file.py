@@ -1,6 +1,8 @@
 """Shapes in Webots' `.proto` files: plain geometry, at the places where its nodes put it."""
 
 import math
+import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -21,94 +23,179 @@ GEOMETRY = ("Box", "Cylinder", "Sphere", "Cone", "Capsule", "IndexedFaceSet", "M
 _LARGEST_FILE = 64 << 20
 """[bytes]"""
 _MOST_PARTS, _MOST_TRIANGLES = 5000, 1_000_000
+_MOST_READ = 64 << 20
+"""Largest content of all PROTOs together, where one is read again for each node [bytes]."""
 _ROUND = 24
 """Number of sides of what is round."""
 _PLAIN = (0.62, 0.62, 0.62)
 """sRGB of what has no colour."""
-_INSIDE = ("children", "endPoint", "device", "value")
-"""Fields in which there may be shapes; not `boundingObject`, which nobody sees."""
+_INSIDE = (
+    "children", "endPoint", "device", "value", "slowHelix", "fastHelix", "animatedGeometries",
+)  # fmt: skip
+"""Fields in which there may be shapes; not `boundingObject`, which is not drawn."""
+_NOT_DRAWN = ("IndexedLineSet", "PointSet")
+"""Geometry without a surface."""
+_NODES = frozenset(
+    "Accelerometer Altimeter BallJoint Billboard Brake Camera Charger Compass Connector "
+    "DifferentialWheels Display DistanceSensor Emitter GPS Group Gyro Hinge2Joint HingeJoint "
+    "InertialUnit LED Lidar LightSensor LinearMotor Microphone Muscle Pen PointLight Pose "
+    "PositionSensor Propeller Radar RangeFinder Receiver Robot RotationalMotor Servo SliderJoint "
+    "Slot Solid SolidReference Speaker SpotLight Supervisor TouchSensor Track TrackWheel Transform "
+    "VacuumGripper".split()
+)
+"""Webots' own nodes that show nothing but what is inside them."""
 
 Floats = NDArray[np.float64]
 Faces = NDArray[np.int64]
-Part = tuple[Floats, Faces, tuple[float, float, float]]
-"""Points [m], shape (V, 3), triangles, shape (T, 3), and sRGB."""
+Part = tuple[Floats, Faces, Floats]
+"""Points [m], shape (V, 3), triangles, shape (T, 3), and sRGB of each, shape (T, 3)."""
 Solid = tuple[Floats, Faces]
 
 
-def read_proto(path: Path, mesh: Callable[[Path], Solid]) -> list[Part]:
-    """Return the parts of a shape.
+def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], str]:
+    """Return the parts of a shape, and a line about what of it was left out, or nothing.
+
+    Other PROTOs are read where they are files: named by `EXTERNPROTO`, or beside the file.
 
     Args:
         path: The file.
-        mesh: Reads a mesh file, of a `Mesh` node.
+        mesh: Reads a mesh file, of a `Mesh` or `CadShape` node.
 
     Raises:
         DataFileError: It cannot be read, or holds nothing that can be shown: one line.
     """
-    text = read_limited(path, _LARGEST_FILE).decode("utf-8", "replace")
-    walk = _Walk(path, mesh)
+    walk = _Walk(mesh)
     try:
-        walk.visit(parsed(text), np.eye(3), np.zeros(3), 0)
+        walk.read(path)
     except (ValueError, TypeError, IndexError, OverflowError) as error:
         raise DataFileError(f"{path}: cannot read as a PROTO: {error}") from None
+    counted = [f"{count} {kind}" for kind, count in sorted(walk.left_out.items())]
+    left_out = f"left out, as not read: {', '.join(counted):.300}" if counted else ""
     if not walk.parts:
+        told = f" ({left_out})" if counted else ""
         raise DataFileError(
-            f"{path}: no geometry that can be read; allowed: {', '.join(GEOMETRY)} in Shape nodes"
+            f"{path}: no geometry that can be read{told}; allowed: {', '.join(GEOMETRY)} in Shape "
+            "nodes, and CadShape"
         )
-    return walk.parts
+    return walk.parts, left_out
+
+
+class _Place:
+    """Where a node stands: the file it is in, and the frame of its parent.
+
+    Args:
+        path: The file.
+        externs: Addresses of the PROTOs that it names.
+        turn: Axes of the frame as columns, perhaps scaled.
+        origin: Origin of the frame [m].
+    """
+
+    def __init__(self, path: Path, externs: dict[str, str], turn: Floats, origin: Floats) -> None:
+        self.path, self._externs = path, externs
+        self.turn, self.origin = turn, origin
+
+    def inside(self, node: Node) -> "_Place":
+        """Return the same in the frame of a node."""
+        moved = exact.product(self.turn, _vector(node, "translation", (0.0, 0.0, 0.0)))
+        turn = exact.product(self.turn, _rotation(node.fields.get("rotation")))
+        turn = turn * _vector(node, "scale", (1.0, 1.0, 1.0))
+        return _Place(self.path, self._externs, turn, self.origin + moved)
+
+    def proto_of(self, kind: str) -> Path | None:
+        """Return the file of another PROTO; None if it is not on this machine."""
+        address = self._externs.get(kind, f"{kind}.proto")
+        if "://" in address or not re.fullmatch(r"[\w.-]+", kind):
+            return None
+        path = self.path.parent / address
+        try:
+            return path if path.is_file() else None
+        except (OSError, ValueError):  # a name that no file can have
+            return None
 
 
 class _Walk:
     """Gathers the parts of a tree of nodes."""
 
-    def __init__(self, path: Path, mesh: Callable[[Path], Solid]) -> None:
+    def __init__(self, mesh: Callable[[Path], Part]) -> None:
         self.parts: list[Part] = []
-        self._path, self._mesh = path, mesh
-        self._triangles = self._visited = 0
+        self.left_out: Counter[str] = Counter()
+        self._mesh = mesh
+        self._triangles = self._visited = self._parsed = 0
+        self._texts: dict[Path, str] = {}
 
-    def visit(self, node: Node, turn: Floats, place: Floats, depth: int) -> None:
-        """Add what a node shows, in the frame of its parent (a matrix and an origin)."""
+    def read(self, path: Path) -> None:
+        """Add what a file shows."""
+        self._visit_proto(path, {}, np.eye(3), np.zeros(3), 0)
+
+    def _visit_proto(
+        self, path: Path, given: dict[str, object], turn: Floats, origin: Floats, depth: int
+    ) -> None:
+        """Add what a PROTO shows. Its own node moves it: `translation` is passed on to that."""
+        if path not in self._texts:
+            self._texts[path] = read_limited(path, _LARGEST_FILE).decode("utf-8", "replace")
+        self._parsed += len(self._texts[path])
+        if depth and self._parsed > _MOST_READ:
+            raise ValueError("its PROTOs are too large together, or name each other without end")
+        try:
+            proto = parsed(self._texts[path], given)
+        except ValueError as error:
+            raise ValueError(f"{path.name}: {error}" if depth else str(error)) from None
+        self._visit(proto.body, _Place(path, proto.externs, turn, origin), depth + 1)
+
+    def _visit(self, node: Node, at: _Place, depth: int) -> None:
+        """Add what a node shows."""
         self._visited += 1
         if depth > 64 or self._visited > 20 * _MOST_PARTS:
             raise ValueError("nested too deep, or too many nodes")
-        place = place + exact.product(turn, _vector(node, "translation", (0.0, 0.0, 0.0)))
-        turn = exact.product(turn, _rotation(node.fields.get("rotation")))
-        turn = turn * _vector(node, "scale", (1.0, 1.0, 1.0))
         if node.kind == "Shape":
-            self._add(node, turn, place)
-            return
-        for name in _INSIDE:
-            inside = node.fields.get(name)
-            for child in inside if isinstance(inside, list) else [inside]:
-                if isinstance(child, Node):
-                    self.visit(child, turn, place, depth + 1)
+            self._add(node, at.inside(node))
+        elif node.kind == "CadShape":
+            here = at.inside(node)
+            self._put(here, *self._file(node, here))
+        elif node.kind in _NODES:
+            here = at.inside(node)
+            for name in _INSIDE:
+                inside = node.fields.get(name)
+                for child in inside if isinstance(inside, list) else [inside]:
+                    if isinstance(child, Node):
+                        self._visit(child, here, depth + 1)
+        elif (other := at.proto_of(node.kind)) is not None:
+            self._visit_proto(other, node.fields, at.turn, at.origin, depth + 1)
+        else:
+            self.left_out[node.kind] += 1
 
-    def _add(self, shape: Node, turn: Floats, place: Floats) -> None:
+    def _add(self, shape: Node, at: _Place) -> None:
         geometry = shape.fields.get("geometry")
         if not isinstance(geometry, Node):
             return
-        points, faces = self._solid(geometry)
-        if exact.dot(turn[0], np.cross(turn[1], turn[2])) < 0.0:
+        if geometry.kind in _NOT_DRAWN:
+            self.left_out[geometry.kind] += 1
+            return
+        if geometry.kind == "Mesh":
+            points, faces, _ = self._file(geometry, at)
+        elif geometry.kind in _SOLIDS:
+            points, faces = _SOLIDS[geometry.kind](geometry)
+        else:
+            raise ValueError(f"geometry {geometry.kind}; allowed: {', '.join(GEOMETRY)}")
+        appearance = shape.fields.get("appearance")
+        if isinstance(appearance, Node) and appearance.kind not in ("Appearance", "PBRAppearance"):
+            self.left_out[f"{appearance.kind} (a colour)"] += 1
+        self._put(at, points, faces, np.tile(_colour(shape), (len(faces), 1)))
+
+    def _put(self, at: _Place, points: Floats, faces: Faces, colours: Floats) -> None:
+        if exact.dot(at.turn[0], np.cross(at.turn[1], at.turn[2])) < 0.0:
             faces = faces[:, ::-1]  # mirrored
         self._triangles += len(faces)
         if len(self.parts) >= _MOST_PARTS or self._triangles > _MOST_TRIANGLES:
             raise ValueError(f"more than {_MOST_PARTS} shapes or {_MOST_TRIANGLES} triangles")
-        self.parts.append((exact.product(points, turn.T) + place, faces, _colour(shape)))
+        self.parts.append((exact.product(points, at.turn.T) + at.origin, faces, colours))
 
-    def _solid(self, node: Node) -> Solid:
-        if node.kind == "Mesh":
-            return self._file(node)
-        made = _SOLIDS.get(node.kind)
-        if made is None:
-            raise ValueError(f"geometry {node.kind}; allowed: {', '.join(GEOMETRY)}")
-        return made(node)
-
-    def _file(self, node: Node) -> Solid:
+    def _file(self, node: Node, at: _Place) -> Part:
         url = node.fields.get("url")
         url = url[0] if isinstance(url, list) and url else url
         if not isinstance(url, str) or "://" in url:
-            raise ValueError(f"Mesh: url {url!r}; allowed: a file beside the PROTO")
-        return self._mesh(self._path.parent / url)
+            raise ValueError(f"{node.kind}: url {url!r:.200}; allowed: a file beside the PROTO")
+        return self._mesh(at.path.parent / url)
 
 
 def _vector(node: Node, name: str, default: Sequence[float]) -> Floats:

@@ -1,14 +1,15 @@
 """The language of Webots' `.proto` files, a subset of VRML: text becomes nodes.
 
-Not read: templates (`%< >%`), scripts and routes, which a shape does not need.
+Not read: templates (`%< >%`, `%{ }%`), scripts and routes, which a shape does not need.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import NoReturn
 
-__all__ = ["Node", "parsed"]
+__all__ = ["Node", "Proto", "parsed"]
 
 _TOKEN = re.compile(
     r'\s*(?:,|#[^\n]*|(?P<text>"(?:[^"\\]|\\.)*")|(?P<mark>[\[\]{}])'
@@ -34,23 +35,39 @@ class Node:
     """Values: nodes, lists of values, numbers as a list of floats, text, truth, or None."""
 
 
+@dataclass(frozen=True, slots=True)
+class Proto:
+    """What a file tells."""
+
+    body: Node
+    """The node that the PROTO stands for."""
+    externs: dict[str, str]
+    """Addresses of other PROTOs, by their names."""
+
+
 class _Reader:
     """Reads one file.
 
     Args:
         text: Its content.
+        given: Values of the PROTO's fields that are not their defaults.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, given: Mapping[str, object]) -> None:
         self._tokens = list(_tokens(text))
         self._at = 0
         self._named: dict[str, Node] = {}
-        self._defaults: dict[str, object] = {}
+        self._values: dict[str, object] = {}
+        self._given = given
 
-    def proto(self) -> Node:
-        """Return the node that the PROTO stands for, with its fields at their defaults."""
+    def proto(self) -> Proto:
+        """Return what the file tells, with the values of the PROTO's fields in their places."""
+        externs = {}
         while (token := self._next()) != "PROTO":
-            if token not in ("EXTERNPROTO", "IMPORTABLE") and not token.startswith('"'):
+            if token.startswith('"'):
+                address = token[1:-1]
+                externs[address.rpartition("/")[2].removesuffix(".proto")] = address
+            elif token not in ("EXTERNPROTO", "IMPORTABLE"):
                 self._fail("no PROTO")
         self._next()
         self._expect("[")
@@ -60,7 +77,7 @@ class _Reader:
         self._expect("{")
         node = self._node(0)
         self._expect("}")
-        return node
+        return Proto(node, externs)
 
     def _interface(self) -> None:
         """Read `field TYPE name value`, which may list allowed values after the type."""
@@ -71,7 +88,8 @@ class _Reader:
             while self._next() != "}":
                 pass
         name = self._next()
-        self._defaults[name] = self._value(0)
+        usual = self._value(0)
+        self._values[name] = self._given.get(name, usual)
 
     def _node(self, depth: int) -> Node:
         if depth > _DEEPEST:
@@ -103,7 +121,7 @@ class _Reader:
             return self._list(depth)
         if token == "IS":
             self._next()
-            return self._defaults.get(self._next())
+            return self._values.get(self._next())
         if token.startswith('"'):
             return self._next()[1:-1]
         if token in _WORDS:
@@ -149,15 +167,21 @@ class _Reader:
         raise ValueError(f"{what} (word {self._at})")
 
 
-def parsed(text: str) -> Node:
-    """Return the node of a PROTO.
+def parsed(text: str, given: Mapping[str, object] = MappingProxyType({})) -> Proto:
+    """Return what the text of a PROTO tells.
+
+    Args:
+        text: The content of its file.
+        given: Values of its fields that are not their defaults.
 
     Raises:
         ValueError: It cannot be read; one line.
     """
-    if "%<" in text:
-        raise ValueError("it is a template (%< ... >%), which only Webots can fill in")
-    return _Reader(text).proto()
+    template = re.search("%[<{]", text)
+    if template is not None:
+        closed = {"%<": "%< ... >%", "%{": "%{ ... }%"}[template[0]]
+        raise ValueError(f"it is a template ({closed}), which only Webots can fill in")
+    return _Reader(text, given).proto()
 
 
 def _tokens(text: str) -> Iterator[str]:

@@ -24,6 +24,12 @@ JUMP = 100.0
 _LARGEST = 64 << 20
 """Largest size of a file [bytes]."""
 
+_LIMITS = {"t": 1e19, "x": 1e9, "y": 1e9, "z": 1e9, "yaw": 1e6}
+"""Largest numbers of the columns; times may count from 1970 in any unit."""
+
+_LONGEST = 86_400.0
+"""Longest trajectory: it is sampled as a whole [s]."""
+
 _STANDING = 0.2
 """Speed below which a heading that is not told is that before [m/s]."""
 
@@ -48,10 +54,20 @@ class Trajectory:
     velocity: Floats | None = None
     """At the points, if smoothed [m/s], shape (N, 3); None: central differences."""
 
+    @classmethod
+    def of_track(cls, time: Floats, track: Floats) -> "Trajectory":
+        """Return the trajectory of x, y and heading at times, shape (N, 3), on the ground."""
+        on_ground = np.where([True, True, False], track, np.nan)
+        return cls(time, on_ground, None)
+
     def jumps(self) -> NDArray[np.intp]:
         """Return the points that cannot be reached from those before, shape (K,)."""
-        step = exact.hypot(*np.diff(self.position[:, :2], axis=0).T)
-        return np.flatnonzero(step > JUMP * np.diff(self.time)) + 1
+        return np.flatnonzero(self.steps() > JUMP * np.diff(self.time)) + 1
+
+    def steps(self) -> Floats:
+        """Return the distance of each point from the one before [m], shape (N - 1,)."""
+        x, y, z = np.diff(self.position, axis=0).T
+        return exact.hypot(exact.hypot(x, y), np.where(np.isnan(z), 0.0, z))
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return position (S, 3) and heading (S,) at times (S,) within it.
@@ -83,7 +99,7 @@ def read_trajectory(path: Path) -> Trajectory:
 
     Raises:
         DataFileError: The file is missing, or does not hold a trajectory: time runs backwards, a
-            number is missing or not finite.
+            number is missing, not finite or absurd, or it lasts longer than a day.
     """
     text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
     try:
@@ -98,7 +114,7 @@ def read_trajectory(path: Path) -> Trajectory:
             f"{path}: line 1: no column '{missing[0]}' in {shown(','.join(names))}; allowed: "
             "t,x,y and perhaps z,yaw"
         )
-    rows = [_numbers(path, k, line, len(names)) for k, line in enumerate(lines[1:], 2) if line]
+    rows = [_numbers(path, k, line, names) for k, line in enumerate(lines[1:], 2) if line]
     values = np.array(rows, np.float64).reshape(-1, len(names))
     if len(values) < 2:
         raise DataFileError(f"{path}: {len(values)} points; a trajectory has two or more")
@@ -110,20 +126,31 @@ def read_trajectory(path: Path) -> Trajectory:
         raise DataFileError(
             f"{path}: point {k + 2}: t is {time[k + 1]:g} after {time[k]:g}: time must increase"
         )
+    if time[-1] - time[0] > _LONGEST:
+        raise DataFileError(
+            f"{path}: it lasts {time[-1] - time[0]:.6g} s; allowed: up to {_LONGEST:g} s: is t in "
+            "milliseconds? it is in seconds"
+        )
     z = column.get("z", np.full(len(time), np.nan))
     yaw = np.unwrap(column["yaw"]) if "yaw" in column else None
     return Trajectory(time - time[0], np.column_stack([column["x"], column["y"], z]), yaw)
 
 
-def _numbers(path: Path, number: int, line: list[str], count: int) -> list[float]:
+def _numbers(path: Path, number: int, line: list[str], names: list[str]) -> list[float]:
     try:
         values = [float(text) for text in line]
     except ValueError:
         values = []
-    if len(values) != count or not np.isfinite(values).all():
+    if len(values) != len(names) or not np.isfinite(values).all():
         raise DataFileError(
-            f"{path}: line {number}: {shown(','.join(line))} is not allowed: {count} finite numbers"
+            f"{path}: line {number}: {shown(','.join(line))} is not allowed: {len(names)} finite "
+            "numbers"
         )
+    for name, value in zip(names, values, strict=True):
+        if abs(value) > _LIMITS.get(name, np.inf):
+            raise DataFileError(
+                f"{path}: line {number}: {name} = {value:g} is not allowed: up to {_LIMITS[name]:g}"
+            )
     return values
 
 

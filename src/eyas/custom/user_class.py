@@ -85,7 +85,7 @@ def tracks_of(
         tracks = _numbers(target.tracks(scene, time, count, rng))
     _check(path, "tracks(...)", tracks, (len(time), count, 3))
     for body in range(count):
-        way = Trajectory(time, tracks[:, body], None)
+        way = Trajectory.of_track(time, tracks[:, body])
         if problem := worst(of_trajectory(way, scene.size, scene.name)):
             raise _refused(path, f"tracks(...), body {body + 1} of {count}: {problem}")
     return tracks

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import logging
 import re
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,9 +14,11 @@ from typing import Any
 
 from eyas import __version__
 from eyas.core.build import this_build
+from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
+from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
 from eyas.datasets.registry import FORMATS, SETTING
@@ -31,6 +34,8 @@ __all__ = [
     "formats_needs",
     "require_outputs",
 ]
+
+_LOG = logging.getLogger("eyas")
 
 EXPORTS = "exports"
 """Folder of the exports in that of a recording or data set."""
@@ -120,7 +125,9 @@ def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[Recorde
     """
     form = _format_of(name)(Job(folder, named))
     for episode in episodes:
-        form.add(episode)
+        shown = _shown(form, episode)
+        if shown is not None:
+            form.add(shown)
 
 
 def finish_export(folder: Path, named: str, name: str, recording: Recording) -> None:
@@ -135,8 +142,14 @@ def finish_export(folder: Path, named: str, name: str, recording: Recording) -> 
     Raises:
         EyasError: As `export`.
     """
-    exported = [Exported(each.name, each.split, len(each)) for each in recording.episodes]
-    _format_of(name)(Job(folder, named)).finish(exported)
+    form = _format_of(name)(Job(folder, named))
+    exported = []
+    for episode in recording.episodes:
+        shown = _shown(form, episode)
+        if shown is not None:
+            exported.append(Exported(episode.name, episode.split, len(shown)))
+        episode.__dict__.pop("labels", None)
+    form.finish(exported)
     shutil.rmtree(folder / KEPT, ignore_errors=True)
     identity = {**_identity(recording, name, ExportOptions()), "recording": named}
     write_atomic(folder / FINISHED, (json.dumps(identity, indent=1) + "\n").encode())
@@ -231,8 +244,8 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(read_limited(path, 1 << 28))
-    except (DataFileError, ValueError, RecursionError):
+        found = read_json(path, 1 << 28)
+    except DataFileError:
         return {}
     return found if isinstance(found, dict) else {}
 
@@ -263,16 +276,25 @@ def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> li
         finished.write(b"\n" * bool(finished.tell()))
         for episode in recording.episodes:
             count = len(episode)
-            if episode.name not in done:
+            shown = _shown(form, episode)
+            if shown is None:
+                _LOG.warning("%s: left out: its target is never visible", episode.name)
+            elif episode.name not in done:
                 sums.require_whole(episode, form.needs)
-                form.add(episode)
+                form.add(shown)
                 finished.write(f"{episode.name}\n".encode())
                 finished.flush()
-            exported.append(Exported(episode.name, episode.split or "train", count))
+            if shown is not None:
+                exported.append(Exported(episode.name, episode.split or "train", len(shown)))
             frames += count
             episode.__dict__.pop("labels", None)  # those of one episode are in memory at a time
             told(frames)
     return exported
+
+
+def _shown(form: Format, episode: RecordedEpisode) -> RecordedEpisode | None:
+    """Return what a format shows of an episode; None: nothing."""
+    return from_first_sight(episode) if getattr(form, "first_sight", False) else episode
 
 
 def _done(path: Path) -> set[str]:

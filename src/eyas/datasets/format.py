@@ -18,8 +18,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, Protocol
 
+from eyas.core.decoding import read_json
 from eyas.core.errors import DataFileError
-from eyas.core.files import atomic_path, read_limited, refusals, write_atomic
+from eyas.core.files import atomic_path, refusals, write_atomic
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.label import FIELDS, Label
 from eyas.state.scene import ObjectClass
@@ -177,9 +178,9 @@ class Job:
         """
         path = self.folder / KEPT / f"{name}.json"
         try:
-            return json.loads(read_limited(path, 1 << 30))
-        except (ValueError, RecursionError) as error:
-            raise DataFileError(f"{path}: {error}; start again with --overwrite") from None
+            return read_json(path, 1 << 30, "what was kept")
+        except DataFileError as error:
+            raise DataFileError(f"{error}; start again with --overwrite") from None
 
     def settle(self, kept: str, inside: str) -> None:
         """Give a file that `add` has kept its final place; may be called twice.
@@ -211,6 +212,9 @@ class Format(Protocol):
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
+    first_sight: ClassVar[bool] = False
+    """Whether episodes begin with the first frame in which the target is visible, as one-pass
+    trackers need it; an episode in which it never is is left out."""
 
     @abstractmethod
     def __init__(self, job: Job) -> None: ...

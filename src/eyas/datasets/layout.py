@@ -8,8 +8,9 @@ from typing import Any
 from eyas import __version__
 from eyas.core.build import this_build
 from eyas.core.config import Config, validated
+from eyas.core.decoding import read_json
 from eyas.core.errors import DataFileError
-from eyas.core.files import read_limited, write_atomic
+from eyas.core.files import write_atomic
 from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.recording import DATASET_FILE
@@ -100,9 +101,9 @@ def read_plan(path: Path) -> Plan:
         ConfigError: The recipe in it is not one of this Eyas; one line.
     """
     try:
-        found = json.loads(read_limited(path, 1 << 28))
+        found = read_json(path, 1 << 28, "the description of a data set")
         known = {name: found[name] for name in Plan.model_fields}
-    except (ValueError, TypeError, LookupError, RecursionError):
+    except (TypeError, LookupError):
         raise DataFileError(f"{path}: not the description of a data set") from None
     return validated(Plan, known)
 

@@ -8,12 +8,9 @@ frame.picture(), frame.label["target_words"]
 """
 
 import io
-import json
 import re
 import struct
-import zipfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -21,13 +18,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from eyas.core.config import validated
+from eyas.core.decoding import decoded_arrays, decoded_picture, read_json
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
 from eyas.core.folder_lock import LOCK
-from eyas.core.png_reading import grey_pixels
 from eyas.core.pyav import pyav
 from eyas.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.exports.label import LABELS, Label, read_labels
@@ -103,12 +99,7 @@ class RecordedFrame:
         """Return the motion of each pixel to the next frame, right and down [pixels], shape
         (H, W, 2), and whether it is known: where the point is in view there, shape (H, W).
         """
-        av = pyav("flow")
-        path = self.file("flow")
-        content = io.BytesIO(read_limited(path, _LARGEST))
-        with _reading(path), av.open(content, mode="r") as container:
-            stored = next(container.decode(video=0)).to_ndarray(format="rgb48le")
-        self._require_size(path, stored.shape[1::-1])
+        stored = self._flow_levels(self.file("flow"))
         values = stored.astype(np.float32)
         return (values[..., :2] - 32768.0) / 64.0, stored[..., 2] > 0
 
@@ -121,10 +112,13 @@ class RecordedFrame:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the lossless arrays: `depth`, `object_id`, `class_id`, each of shape (H, W)."""
-        path = self.file("arrays")
-        content = io.BytesIO(read_limited(path, _LARGEST))
-        with _reading(path), np.load(content, allow_pickle=False) as stored:
-            return dict(stored)
+        shape = self.episode.size[::-1]
+        kinds = {"depth": ("f", 2), "object_id": ("iu", 2), "class_id": ("iu", 2)}
+        arrays = decoded_arrays(self.file("arrays"), _LARGEST, "arrays of a frame", kinds)
+        for name, array in arrays.items():
+            if array.shape != shape:
+                raise DataFileError(f"{self.file('arrays')}: '{name}' has shape {array.shape}")
+        return arrays
 
     def file(self, output: str) -> Path:
         """Return the path of one of the frame's files.
@@ -135,25 +129,26 @@ class RecordedFrame:
         return self.episode.file(output, self.number)
 
     def _image(self, path: Path, kind: Any, colours: int = 1) -> NDArray[Any]:  # noqa: ANN401
-        content = read_limited(path, _LARGEST)
-        with _reading(path):
-            if content[16:24] == struct.pack(">II", *self.episode.size):  # a PNG of this size
-                grey = grey_pixels(content)
-                if grey is not None and colours == 1:
-                    return grey.astype(kind)
-            with Image.open(io.BytesIO(content)) as image:
-                self._require_size(path, image.size)
-                if len(image.getbands()) != colours:
-                    raise DataFileError(
-                        f"{path}: has {len(image.getbands())} colours, not {colours}"
-                    )
-                return np.asarray(image).astype(kind)
+        return decoded_picture(path, _LARGEST, self.episode.size, colours).astype(kind)
 
-    def _require_size(self, path: Path, found: tuple[int, ...]) -> None:
-        """Refuse a picture of another size, before it fills the memory."""
-        if found != self.episode.size:
-            sizes = ("x".join(map(str, size)) for size in (found, self.episode.size))
-            raise DataFileError(f"{path}: has {' pixels, not '.join(sizes)}")
+    def _flow_levels(self, path: Path) -> NDArray[np.uint16]:
+        """Return a PNG of 16 bits and three colours, which Pillow does not read."""
+        av = pyav("flow")
+        content = read_limited(path, _LARGEST)
+        # The size in its header, before FFmpeg makes a picture of it.
+        width, height = self.episode.size
+        head = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + struct.pack(">II", width, height)
+        if not content.startswith(head):
+            raise DataFileError(f"{path}: cannot read: not a PNG of {width}x{height} pixels")
+        try:
+            with av.open(io.BytesIO(content), mode="r", format="png_pipe") as container:
+                stored = next(container.decode(video=0)).to_ndarray(format="rgb48le")
+        except (av.error.FFmpegError, OSError, ValueError, EOFError, StopIteration) as error:
+            told = getattr(error, "strerror", None) or error
+            raise DataFileError(f"{path}: cannot read: {told}") from error
+        if stored.shape[1::-1] != self.episode.size:
+            raise DataFileError(f"{path}: has another size than its header tells")
+        return stored
 
 
 class RecordedEpisode(Sequence[RecordedFrame]):
@@ -332,11 +327,11 @@ def load_part(root: Path, split: str, name: str) -> list[RecordedEpisode]:
 
 def _table(path: Path, key: str) -> list[dict[str, Any]]:
     try:
-        table: list[dict[str, Any]] = json.loads(read_limited(path, 1 << 28))[key]
+        table: list[dict[str, Any]] = read_json(path, 1 << 28, "a description of a data set")[key]
         for row in table:
             if row["split"] not in SPLITS or not re.fullmatch(r"\w[\w.-]*", row["name"]):
                 raise ValueError(f"{key}: {row!r:.200}")
-    except (ValueError, TypeError, LookupError, RecursionError) as error:
+    except (ValueError, TypeError, LookupError) as error:
         raise DataFileError(f"{path}: not a description of a data set: {error}") from None
     return table
 
@@ -391,20 +386,3 @@ def _require_fitting(label: Label, size: tuple[int, int], where: str) -> None:
         left, top, right, bottom = box
         if not (left <= right <= size[0] and top <= bottom <= size[1]):
             raise DataFileError(f"{where}: the box {box} is not inside the picture")
-
-
-_UNREADABLE = (OSError, ValueError, SyntaxError, EOFError, StopIteration, zipfile.BadZipFile,
-               Image.DecompressionBombError)  # fmt: skip
-"""What the libraries raise that read pictures and arrays."""
-
-
-@contextmanager
-def _reading(path: Path) -> Iterator[None]:
-    """Turn errors of reading a file into one line."""
-    try:
-        yield
-    except UnidentifiedImageError:  # its own words tell an address in memory
-        raise DataFileError(f"{path}: cannot read: not a picture") from None
-    except _UNREADABLE as error:
-        told = getattr(error, "strerror", None) or error
-        raise DataFileError(f"{path}: cannot read: {told}") from error

@@ -1,6 +1,5 @@
 """Episode records: what is known of each flown episode, one line of JSON each."""
 
-import json
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -8,6 +7,7 @@ from types import TracebackType
 from typing import Self
 
 from eyas.core.config import Config, validated
+from eyas.core.decoding import decoded_json
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import read_limited, refusals, write_atomic
 
@@ -154,11 +154,11 @@ def read_records(path: Path) -> list[EpisodeRecord]:
     records = []
     for number, line in enumerate(content.split(b"\n")[:-1], 1):
         try:
-            values = json.loads(line)
+            values = decoded_json(line)
             if not isinstance(values, dict):
                 raise ValueError("not a JSON object")
             records.append(validated(EpisodeRecord, values))
-        except (ValueError, RecursionError, ConfigError) as error:
+        except (ValueError, ConfigError) as error:
             raise DataFileError(f"{path}: line {number}: not a record: {error}") from error
     return records
 

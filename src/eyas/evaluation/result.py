@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.core.config import validated
+from eyas.core.decoding import read_json
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.evaluation.plan import Stamp
@@ -15,7 +16,6 @@ from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord, read_records
 from eyas.evaluation.rows import TableRow, rows_of
 from eyas.evaluation.statistics import ENOUGH, FEWEST, Estimate
-from eyas.settings.file import read_settings
 
 __all__ = [
     "EPISODES",
@@ -54,6 +54,10 @@ UNITS = {
 """Units of the figures that have one."""
 
 
+_LARGEST_STAMP = 1 << 24
+"""Largest plan of an evaluation [bytes]."""
+
+
 def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
     """Return stamp and records of an evaluation.
 
@@ -63,7 +67,9 @@ def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
     path = folder / STAMP
     if not path.is_file():
         raise DataFileError(f"{folder}: not the folder of an evaluation: it has no {STAMP}")
-    values = read_settings(path)
+    values = read_json(path, _LARGEST_STAMP, "the plan of an evaluation")
+    if not isinstance(values, dict):
+        raise DataFileError(f"{path}: not the plan of an evaluation: not a JSON object")
     return validated(Stamp, values, str(path)), read_records(folder / EPISODES)
 
 

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 from eyas.core.clock import PHYSICS_RATE, physics_steps
 from eyas.core.config import group_of, updated, validated
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import write_atomic
+from eyas.core.files import read_limited, write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
 from eyas.settings.legacy.messages import named_path
@@ -25,6 +26,9 @@ Nested = dict[str, Any]
 
 SCHEMA_KEY = "$schema"
 """By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
+
+_LARGEST = 16 << 20
+"""Largest file of settings [bytes]."""
 
 _CLIENT_KEY = "Benchmark"
 """The one group of the `config.json` of the original's client."""
@@ -108,14 +112,15 @@ def save_settings(config: EyasConfig, path: Path) -> None:
 def read_settings(path: Path) -> Nested:
     """Return the JSON object that a file holds.
 
+    Comments, commas after a last value, and UTF-16 are read, too, with a warning.
+
     Raises:
         DataFileError: The file is missing, unreadable, cut off, or not a JSON object.
     """
     try:
-        text = path.read_text(encoding="utf-8-sig")
-        values = json.loads(text, object_pairs_hook=_without_doubles)
-    except OSError as error:
-        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+        content = read_limited(path, _LARGEST)
+        encoding = json.detect_encoding(content)
+        values = _parsed(content.decode(encoding), path)
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:
@@ -126,9 +131,36 @@ def read_settings(path: Path) -> Nested:
         raise DataFileError(f"{path}: not valid settings: {error}") from error
     if not isinstance(values, dict):
         raise DataFileError(f"{path}: line 1: not a JSON object")
+    if encoding not in ("utf-8", "utf-8-sig"):
+        _LOG.warning("%s: read as %s; JSON is UTF-8", path, encoding.upper())
     if isinstance(values.get(SCHEMA_KEY), str):
         del values[SCHEMA_KEY]
     return values
+
+
+_STRING = r'"(?:\\.|[^"\\])*(?:"|\Z)'
+_COMMENT = re.compile(rf"({_STRING})|//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_LAST_COMMA = re.compile(rf"((?:{_STRING}|[^\s\[{{,:\"])\s*),(?=\s*[}}\]])|({_STRING})", re.DOTALL)
+"""What is left out; groups stay."""
+
+
+def _parsed(text: str, path: Path) -> Any:  # noqa: ANN401  # JSON
+    """Return what JSON says, without comments and commas after a last value."""
+    try:
+        return json.loads(text, object_pairs_hook=_without_doubles)
+    except json.JSONDecodeError:
+        plain = _LAST_COMMA.sub(_blank, _COMMENT.sub(_blank, text))
+        if plain == text:
+            raise
+        values = json.loads(plain, object_pairs_hook=_without_doubles)
+    _LOG.warning("%s: not strictly JSON: comments and commas after a last value are left out", path)
+    return values
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return what stays and spaces for the rest, so that messages name the right place."""
+    kept = "".join(part or "" for part in found.groups())
+    return kept + re.sub(r"[^\n]", " ", found[0][len(kept) :])
 
 
 def _tell_surprises(config: EyasConfig) -> None:

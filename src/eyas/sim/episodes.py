@@ -222,6 +222,11 @@ class Episodes:
         """Count a tracker's steps, and those without reward, from 0 again."""
         self._episodes.step_count[tracker] = self._episodes.no_reward_count[tracker] = 0
 
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each tracker, shape (N,)."""
+        return self._streams.seed.copy()
+
     def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return EpisodeKey(

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.bounds import FARTHEST, checked
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
 from eyas.lanes import BoundCall, Held
@@ -170,12 +171,26 @@ class Stepper:
         if not self.sensors.follow and not self.seen.is_late:
             self._orders.steps[0] = steps
             step()
+            self._stay_near()
             if self.seen.vibration is not None:
                 self.seen.see()
             return
         self._orders.steps[0] = 1
         for _ in range(steps):
             step()
+            self._stay_near()
             self.sensors.advance()
             self.seen.record()
         self.seen.see()
+
+    def _stay_near(self) -> None:
+        """Keep trackers and their cameras within `FARTHEST`.
+
+        Raises:
+            EyasError: A tracker of a user's own is nowhere.
+        """
+        trackers = self._snapshot.trackers
+        for places in (trackers.position, trackers.commanded_position):
+            near = checked(places, FARTHEST, "place of a tracker")
+            if near is not places:
+                places[:] = near

@@ -1,11 +1,15 @@
 """Roads: the graph that a recipe draws, and the network that SUMO's netconvert builds from it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode"]
+__all__ = ["FARTHEST", "RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode", "network_problems"]
+
+FARTHEST = 1e5
+"""Largest coordinate on a map [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,3 +85,39 @@ class RoadNetwork:
     """Start of each polygon in `junction_points`, shape (J + 1,)."""
     junctions: tuple[str, ...]
     """Names of the junctions: the graph's nodes."""
+
+
+_WIDEST, _FASTEST, _MOST_LANES = 100.0, 200.0, 100
+
+
+def network_problems(network: RoadNetwork) -> Iterator[str]:
+    """Yield what is wrong with a network that someone else has made; the indices of one without
+    problems can be used.
+    """
+    lanes, edges = len(network.lane_width), len(network.edges)
+    counts = {
+        "lane_speed": lanes, "lane_edge": lanes, "lane_index": lanes,
+        "edge_start": edges, "edge_end": edges,
+    }  # fmt: skip
+    for name, count in counts.items():
+        if len(getattr(network, name)) != count:
+            yield f"'{name}' has {len(getattr(network, name))} rows, not {count}"
+    for kind, count, fewest in (("lane", lanes, 2), ("junction", len(network.junctions), 0)):
+        points = getattr(network, f"{kind}_points")
+        first = getattr(network, f"{kind}_first").astype(np.int64)
+        if points.shape[1] != 2 or not (np.abs(points) <= FARTHEST).all():
+            yield f"'{kind}_points' are not all within {FARTHEST / 1000:g} km of the middle"
+        whole = len(first) == count + 1 and first[0] == 0 and first[-1] == len(points)
+        if not whole or (np.diff(first) < fewest).any():
+            yield f"'{kind}_first' does not divide the {len(points)} points"
+    for name, low, high in (
+        ("lane_width", 0.01, _WIDEST), ("lane_speed", 0.0, _FASTEST),
+        ("lane_edge", 0, edges - 1), ("lane_index", 0, _MOST_LANES),
+    ):  # fmt: skip
+        wrong = getattr(network, name)
+        wrong = wrong[~((wrong >= low) & (wrong <= high))]
+        if len(wrong):
+            yield f"'{name}': {wrong[0]:.6g} is not allowed: {low:g} to {high:g}"
+    lost = {*network.edge_start, *network.edge_end} - set(network.junctions)
+    if lost:
+        yield f"the junction {min(lost)!r:.80} is not there"

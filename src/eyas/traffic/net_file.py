@@ -1,14 +1,15 @@
 """A finished network of SUMO, read once: lanes for cars, pavements, crossings, traffic lights."""
 
+from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import ConfigError
-from eyas.state.roads import RoadNetwork
+from eyas.core.errors import ConfigError, DataFileError
+from eyas.state.roads import RoadNetwork, network_problems
 
 if TYPE_CHECKING:
     import shapely
@@ -31,7 +32,11 @@ __all__ = [
 _SHORTEST = 0.05
 """Points nearer to each other are one [m]."""
 
+_LARGEST = 1e9
+"""Largest number that is read."""
+
 Line = NDArray[np.float64]
+T = TypeVar("T")
 
 
 class NetLane(NamedTuple):
@@ -103,32 +108,61 @@ class SumoNet:
     """What is read of a network, in the order of the file, as far as it is asked for.
 
     Args:
-        xml: SUMO's network file.
+        xml: SUMO's network file, perhaps someone else's.
+        source: What it is called in messages.
+
+    Raises:
+        DataFileError: It is not a network of SUMO, which may be noticed late.
     """
 
-    def __init__(self, xml: bytes) -> None:
-        self._root = ElementTree.fromstring(xml)
+    def __init__(self, xml: bytes, source: str = "roads") -> None:
+        self.source = source
+        try:
+            self._root = ElementTree.fromstring(xml)
+        except (ElementTree.ParseError, ValueError, LookupError) as error:
+            raise self.error(error) from None
+        if self._root.tag != "net":
+            raise self.error(f"its content is <{self._root.tag}>")
         self.version = self._root.get("version", "?")
 
     @cached_property
     def edges(self) -> tuple[NetEdge, ...]:
         """Streets, and parts of junctions."""
-        return tuple(map(_edge, self._root.iter("edge")))
+        return self._read("edge", _edge)
 
     @cached_property
     def junctions(self) -> dict[str, str]:
         """Shape of each junction, as the file tells it."""
-        return {one.attrib["id"]: one.get("shape", "") for one in self._root.iter("junction")}
+        return dict(self._read("junction", lambda one: (one.attrib["id"], one.get("shape", ""))))
 
     @cached_property
     def connections(self) -> tuple[NetConnection, ...]:
         """Ways through junctions."""
-        return tuple(map(_connection, self._root.iter("connection")))
+        return self._read("connection", _connection)
 
     @cached_property
     def programs(self) -> tuple[NetProgram, ...]:
         """Programs of traffic lights."""
-        return tuple(map(_program, self._root.iter("tlLogic")))
+        return self._read("tlLogic", _program)
+
+    def error(self, problem: object) -> DataFileError:
+        """Return the error to raise for a file that is not as SUMO writes it."""
+        return DataFileError(f"{self.source}: not a network of SUMO: {problem}")
+
+    def _read(self, tag: str, make: Callable[[ElementTree.Element], T]) -> tuple[T, ...]:
+        try:
+            return tuple(map(make, self._root.iter(tag)))
+        except KeyError as error:
+            raise self.error(f"<{tag}> without {error}") from None
+        except ValueError as error:
+            raise self.error(f"<{tag}>: {error}") from None
+
+
+def _number(text: str) -> float:
+    value = float(text)
+    if not abs(value) <= _LARGEST:  # also not a number: it is not
+        raise ValueError(f"{text:.30} is not allowed: up to {_LARGEST:g}")
+    return value
 
 
 def _connection(one: ElementTree.Element) -> NetConnection:
@@ -139,9 +173,9 @@ def _connection(one: ElementTree.Element) -> NetConnection:
 
 def _program(logic: ElementTree.Element) -> NetProgram:
     phases = (
-        NetPhase(float(one.attrib["duration"]), one.attrib["state"]) for one in logic.iter("phase")
+        NetPhase(_number(one.attrib["duration"]), one.attrib["state"]) for one in logic.iter("phase")
     )
-    offset = float(logic.get("offset", "0"))
+    offset = _number(logic.get("offset", "0"))
     return NetProgram(logic.attrib["id"], logic.get("type", "static"), offset, tuple(phases))
 
 
@@ -161,8 +195,8 @@ def _lane(lane: ElementTree.Element) -> NetLane:
     allowed = told.get("allow", "").split()
     return NetLane(
         told.get("shape", ""),
-        float(told.get("width", "3.2")),
-        float(told.get("speed", "13.89")),
+        _number(told.get("width", "3.2")),
+        _number(told.get("speed", "13.89")),
         bool(allowed) and {"pedestrian", "wheelchair"}.issuperset(allowed),
     )
 
@@ -176,6 +210,7 @@ def road_network(net: SumoNet, graph_hash: str) -> RoadNetwork:
 
     Raises:
         ConfigError: No car may drive anywhere in it.
+        DataFileError: It is not a network of SUMO, or not one of a city's size.
     """
     edges: list[NetEdge] = []
     lanes: list[tuple[int, int, NetLane]] = []
@@ -188,9 +223,12 @@ def road_network(net: SumoNet, graph_hash: str) -> RoadNetwork:
         raise ConfigError("the network has no street on which a car may drive")
     used = {name for edge in edges for name in (edge.start, edge.end)}
     junctions = {name: shape for name, shape in net.junctions.items() if name in used}
-    lane_points, lane_first = joined([_line(lane.points) for _, _, lane in lanes])
-    corners, corner_first = joined(list(map(points_of, junctions.values())))
-    return RoadNetwork(
+    try:
+        lane_points, lane_first = joined([_line(lane.points) for _, _, lane in lanes])
+        corners, corner_first = joined(list(map(points_of, junctions.values())))
+    except (ValueError, IndexError) as error:
+        raise net.error(f"a shape: {error}") from None
+    network = RoadNetwork(
         graph_hash=graph_hash,
         builder=f"network of SUMO's format {net.version}",
         lane_points=lane_points,
@@ -206,6 +244,9 @@ def road_network(net: SumoNet, graph_hash: str) -> RoadNetwork:
         junction_first=corner_first,
         junctions=tuple(junctions),
     )
+    for problem in network_problems(network):
+        raise net.error(problem)
+    return network
 
 
 def pavement_area(net: SumoNet) -> "shapely.Geometry":

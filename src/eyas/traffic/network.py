@@ -66,9 +66,12 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
     Raises:
         MissingExtraError: SUMO is not installed.
         ConfigError: Two nodes or edges have one name, or netconvert rejects the graph.
+        DataFileError: A file with its roads is not a network of SUMO.
     """
     if graph.finished:
-        return road_network(SumoNet(graph.finished), graph_hash(graph))
+        return road_network(
+            SumoNet(graph.finished, f"roads of '{graph.map_name}'"), graph_hash(graph)
+        )
     net = SumoNet(network_xml(graph))
     found = {edge.name: edge for edge in net.edges}
     lanes = [

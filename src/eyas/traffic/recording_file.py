@@ -9,8 +9,6 @@ import hashlib
 import io
 import json
 import lzma
-import math
-import zipfile
 from contextlib import suppress
 from dataclasses import asdict
 from importlib.resources.abc import Traversable
@@ -21,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.config import shown, validated
+from eyas.core.decoding import decoded_json, npz_arrays
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited, write_atomic
 from eyas.traffic.config import Mix, Signals, TrafficConfig, VehicleType
@@ -58,9 +57,6 @@ _FILTERS = [
 """Settings of LZMA for single bytes: their place says nothing, what stood before them much. With
 the preset's own dictionary it would need 0.7 GB."""
 
-_MOST_ARRAYS = 64
-"""Largest number of arrays in a file."""
-
 
 class Outline(NamedTuple):
     """What the header of a file says."""
@@ -96,8 +92,8 @@ class RecordingFile(NamedTuple):
             DataFileError: The content is truncated, damaged or not a recording.
         """
         try:
-            with np.load(io.BytesIO(self.data), allow_pickle=False) as file:
-                return _outline(json.loads(file["header"].tobytes()), self.source)
+            header = npz_arrays(self.data, _LARGEST, ("header",))["header"]
+            return _outline(decoded_json(header.tobytes()), self.source)
         except EyasError:
             raise
         except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy, json
@@ -187,7 +183,7 @@ def from_bytes(data: bytes, source: str) -> Recording:
 
 def _recording(arrays: Arrays, source: str) -> Recording:
     """Return the recording of arrays that have any shapes and types."""
-    header = json.loads(arrays["header"].tobytes())
+    header = decoded_json(arrays["header"].tobytes())
     position, yaw = _poses(arrays, header["format"])
     samples = position.shape[-1]
     flags = arrays["present"].astype(np.uint8, casting="safe")
@@ -247,8 +243,8 @@ def _read_arrays(data: bytes, source: str) -> Arrays:
         raise DataFileError(f"{source}: not a traffic recording (allowed: '{FORMAT}')")
     if not np.array_equal(arrays.pop("checksum"), _checksum(arrays)):
         raise DataFileError(f"{source}: damaged: its checksum does not match its content")
-    with suppress(ValueError, TypeError, LookupError, RecursionError):
-        kind = json.loads(arrays["header"].tobytes())["format"]
+    with suppress(ValueError, TypeError, LookupError):
+        kind = decoded_json(arrays["header"].tobytes())["format"]
         if kind in (FORMAT, _BEFORE):
             return arrays
         raise DataFileError(f"{source}: format {shown(kind)} (allowed: '{FORMAT}')")
@@ -266,7 +262,7 @@ def _checksum(arrays: Arrays) -> NDArray[np.uint8]:
 
 def _unpacked_npz(data: bytes) -> Arrays:
     """Return the arrays of a file, those in the rest among them."""
-    arrays = _read_npz(data, _LARGEST)
+    arrays = npz_arrays(data, _LARGEST)
     return arrays | _expanded(arrays.pop("rest"), _LARGEST) if "rest" in arrays else arrays
 
 
@@ -287,51 +283,4 @@ def _expanded(content: NDArray[np.generic], largest: int) -> Arrays:
     data = machine.decompress(content.tobytes(), largest)
     if not machine.eof:
         raise ValueError(f"cut off, or larger than {largest} bytes")
-    return _read_npz(data, largest)
-
-
-def _read_npz(data: bytes, largest: int) -> dict[str, NDArray[np.generic]]:
-    """Return the arrays of a `.npz` file that may come from anyone, read-only.
-
-    `numpy.load` makes arrays of the size that their headers claim before it reads them, and
-    decompresses whatever there is. Here every size is known and checked first.
-
-    Args:
-        data: Content of the file.
-        largest: Largest number of bytes of all arrays together.
-
-    Raises:
-        ValueError: The file is damaged or too large, or has other content than arrays of numbers or
-            text.
-        Exception: Other kinds, which `zipfile` and `zlib` raise for damaged bytes.
-    """
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        members = archive.infolist()
-        size = sum(member.file_size for member in members)
-        if len(members) > _MOST_ARRAYS or size > largest:
-            raise ValueError(f"{len(members)} arrays of {size} bytes; allowed: {largest} bytes")
-        return {
-            member.filename.removesuffix(".npy"): _array_of(_content(archive, member))
-            for member in members
-        }
-
-
-def _content(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
-    with archive.open(member) as file:
-        content = file.read(member.file_size + 1)  # never more, whatever there is
-    if len(content) != member.file_size:
-        raise ValueError(f"{member.filename}: cut off")
-    return content
-
-
-def _array_of(content: bytes) -> NDArray[np.generic]:
-    stream = io.BytesIO(content)
-    version = np.lib.format.read_magic(stream)
-    if version != (1, 0):
-        raise ValueError(f"npy version {version}; allowed: 1.0")
-    shape, by_columns, dtype = np.lib.format.read_array_header_1_0(stream)
-    rest = memoryview(content)[stream.tell() :]
-    if dtype.kind not in "biufU" or math.prod(shape) * dtype.itemsize != len(rest):
-        raise ValueError(f"an array of {dtype}, shape {shape}, in {len(rest)} bytes")
-    flat = np.frombuffer(rest, dtype)
-    return flat.reshape(shape, order="F" if by_columns else "C")
+    return npz_arrays(data, largest)

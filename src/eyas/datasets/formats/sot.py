@@ -32,6 +32,7 @@ class Sequences(Format):
     """What these formats have in common: a folder for each sequence, and `add` in two parts."""
 
     needs = frozenset({"jpeg", "labels"})
+    first_sight = True
     pictures: ClassVar[tuple[str, int, int]]
     """Folder of the pictures in that of the sequence, their first number, and its digits."""
     boxes: ClassVar[str]
@@ -144,6 +145,7 @@ class Uav123(Format):
     """
 
     needs = frozenset({"jpeg", "labels"})
+    first_sight = True
 
     def __init__(self, job: Job) -> None:
         self._job = job

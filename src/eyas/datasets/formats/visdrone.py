@@ -108,6 +108,7 @@ class VisDroneSot(Format):
     """
 
     needs = frozenset({"jpeg", "labels"})
+    first_sight = True
 
     def __init__(self, job: Job) -> None:
         self._job = job

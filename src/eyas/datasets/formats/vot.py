@@ -32,6 +32,7 @@ class Vot(Format):
     """VOT, as the vot-toolkit reads it."""
 
     needs = frozenset({"jpeg", "labels"})
+    first_sight = True
 
     def __init__(self, job: Job) -> None:
         self._job = job

@@ -88,6 +88,11 @@ class DeviceEnvs:
                 self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
         self._simulation.reset(trackers)
 
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each, shape (N,)."""
+        return self._simulation.seeds
+
     def step(self, actions: Any, active: Mask) -> tuple[Any, Any, Any]:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent, see `eyas.envs.batch.Batch.step`.
 

@@ -21,6 +21,12 @@ Floats = NDArray[np.float64]
 _LARGEST = 1 << 30
 """Largest size of a file [bytes]."""
 
+_LARGEST_NUMBER = 1e10
+"""Largest number in a table: the seconds since 1970 are less."""
+
+_LONGEST = 86_400.0
+"""Longest flight [s]."""
+
 _LEAST_ROWS = 200
 """Fewer say nothing about a lag."""
 
@@ -75,6 +81,8 @@ def read_log(path: Path) -> FlightLog:
         raise DataFileError(f"{file}: {len(time)} rows; at least {_LEAST_ROWS} are needed")
     if not (np.diff(time) > 0.0).all():
         raise DataFileError(f"{file}: its times do not rise")
+    if time[-1] - time[0] > _LONGEST:
+        raise DataFileError(f"{file}: it lasts {time[-1] - time[0]:.6g} s; up to {_LONGEST:g} s")
     attitude = _joined(columns, _ATTITUDE)
     sizes = np.sqrt((attitude * attitude).sum(axis=1))
     if (np.abs(sizes - 1.0) > _UNIT).any():
@@ -124,7 +132,10 @@ def _columns(path: Path) -> dict[str, Floats]:
                 value = float(row[place])
             except (IndexError, ValueError):
                 value = float("nan")
-            if not np.isfinite(value):
-                raise DataFileError(f"{path}: line {number}: '{name}' is no number")
+            if not abs(value) <= _LARGEST_NUMBER:  # also not a number: it is not
+                told = f"'{name}' is no number" if np.isnan(value) else f"'{name}' is {value:g}"
+                raise DataFileError(
+                    f"{path}: line {number}: {told}; allowed: up to {_LARGEST_NUMBER:g}"
+                )
             values[name].append(value)
     return {name: np.array(column) for name, column in values.items()}

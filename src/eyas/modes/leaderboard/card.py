@@ -1,14 +1,13 @@
 """The model card of an entry: who it is from, and what it was taught on."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config, validated
+from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import read_limited
 
 __all__ = ["CARD", "ModelCard", "read_card"]
 
@@ -54,9 +53,9 @@ def read_card(folder: Path) -> ModelCard | None:
     if not path.exists():
         return None
     try:
-        values = json.loads(read_limited(path, _LARGEST))
+        values = read_json(path, _LARGEST, "a card")
         if not isinstance(values, dict):
             raise ValueError("not a JSON object")
         return validated(ModelCard, values)
-    except (ValueError, RecursionError, ConfigError) as error:
+    except (ValueError, ConfigError) as error:
         raise DataFileError(f"{path}: not a card: {error}") from None

@@ -5,7 +5,6 @@ the verifier's machine has.
 """
 
 import hmac
-import json
 import os
 import secrets
 from hashlib import sha256
@@ -14,6 +13,7 @@ from pathlib import Path
 from platformdirs import user_data_dir
 
 from eyas.core.config import Config, validated
+from eyas.core.decoding import read_json
 from eyas.core.errors import EyasError
 from eyas.core.files import read_limited, refusals, user_path
 from eyas.evaluation.result import EPISODES, STAMP
@@ -73,11 +73,11 @@ def fitting_mark(folder: Path) -> Mark | None:
     the folder holds now.
     """
     try:
-        mark = validated(Mark, json.loads(read_limited(folder / MARK, _LARGEST)))
+        mark = validated(Mark, read_json(folder / MARK, _LARGEST))
         own = _signature(mark, _key(make=False))
         known = hmac.compare_digest(own.encode(), mark.signature.encode())
         return mark if known and mark.content == content_hash(folder) else None
-    except (EyasError, AttributeError, ValueError, RecursionError):
+    except (EyasError, AttributeError, ValueError):
         return None
 
 

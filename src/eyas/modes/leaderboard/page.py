@@ -1,6 +1,7 @@
 """A page that ranks evaluations: those that see what a drone sees, and oracles apart."""
 
 import html
+import logging
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +14,8 @@ from eyas.evaluation.rows import TableRow, rows_of
 from eyas.modes.leaderboard.submission import Submission, submissions_in
 
 __all__ = ["run"]
+
+_LOG = logging.getLogger("eyas")
 
 FIRST_LINE = (
     "Results repeat to the bit: the same command in the same build of Eyas gives the same "
@@ -56,6 +59,11 @@ def run(folder: Path, out: Path) -> str:
     tables: dict[tuple[str, ...], list[Submission]] = {}
     count = 0
     for entry in submissions_in(folder):
+        try:
+            _section([entry]).encode()
+        except Exception as error:  # whatever someone has sent in, the others have their page
+            _LOG.warning("%s: left out: it cannot be shown: %r", entry.folder, error)
+            continue
         stamp = entry.stamp
         names = ",".join(sorted(record.name for record in entry.records))
         key = (stamp.plan.protocol, stamp.protocol, stamp.program, names)

@@ -1,18 +1,18 @@
 """What is sent in to a leaderboard: a folder of records, whoever has made it."""
 
-import json
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from eyas.core.decoding import read_json
 from eyas.core.errors import DataFileError, EyasError
-from eyas.core.files import read_limited
 from eyas.evaluation.entry import Entry
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocols import PROTOCOLS
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import STAMP, load_run
+from eyas.evaluation.rows import figures_of
 from eyas.modes.evaluate import TIMING
 from eyas.modes.leaderboard.card import ModelCard, read_card
 from eyas.modes.leaderboard.mark import Mark, fitting_mark
@@ -23,6 +23,10 @@ _LOG = logging.getLogger("eyas")
 
 _LARGEST = 1 << 20
 """Largest size of the file with the timing [bytes]."""
+
+
+_BEYOND = 1e9
+"""Larger than every figure of a flight."""
 
 
 class Submission(NamedTuple):
@@ -84,14 +88,30 @@ def complete_run(folder: Path) -> tuple[Stamp, Entry, list[EpisodeRecord]]:
         )
     if len({record.name for record in records}) < len(records):
         raise DataFileError("an episode is there twice")
+    for problem in _problems(stamp, records):
+        raise DataFileError(problem)
     return stamp, stamp.entry, records
+
+
+def _problems(stamp: Stamp, records: Sequence[EpisodeRecord]) -> Iterator[str]:
+    """Yield figures that no flight can have, of which no mean could be made."""
+    for name, figure in figures_of(stamp.plan.rules, records).items():
+        low = -_BEYOND if figure.signed else 0.0
+        high = _BEYOND if figure.high is None else figure.high + 1e-6
+        for record in records:
+            value = figure.read(record)
+            if value is not None and not low <= value <= high:
+                yield (
+                    f"episode {record.name!r:.80}: {name} is {value:g}; allowed: {low:g} to "
+                    f"{high:.6g}"
+                )
 
 
 def _text_in(path: Path, name: str) -> str:
     """Return a text of a JSON file; `-` if there is none."""
     try:
-        values = json.loads(read_limited(path, _LARGEST))
-    except (EyasError, ValueError, RecursionError):
+        values = read_json(path, _LARGEST)
+    except EyasError:
         return "-"
     text = values.get(name) if isinstance(values, dict) else None
     return text[:200] if isinstance(text, str) else "-"

@@ -7,13 +7,14 @@ import shlex
 import shutil
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import shapely
 from rich.console import Console
 
+from eyas.core.checked import flushed, sum_of
 from eyas.core.errors import ConfigError, DataFileError, EyasError, OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.rng import stream
@@ -183,6 +184,9 @@ def _write_plan(folder: Path, origin: Origin, features: Survey) -> None:
     )
     write_plan(folder / PLAN_FILE, plan)
     write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
+    kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
+    flushed(folder / name for name in kept)
+    origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
     # Last, since a folder with this file is a map.
     write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
 

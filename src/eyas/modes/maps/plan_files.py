@@ -2,6 +2,7 @@
 
 import gzip
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -12,20 +13,22 @@ import shapely
 from numpy.typing import NDArray
 from PIL import Image
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, EyasError
 from eyas.core.files import atomic_path, refusals, write_atomic
 from eyas.mesh.assembly import transformed
 from eyas.modes.maps.info import street_lines
 from eyas.sim.scenes import load_network, load_scene
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
+from eyas.traffic.net_file import SumoNet, road_network
 from eyas.world.maps import MAPS
+from eyas.world.maps.files import roads_in
 from eyas.world.maps.place import projection_of
 from eyas.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
 from eyas.world.plan.file import write_plan
-from eyas.world.plan.plan import Roads
+from eyas.world.plan.plan import MapPlan, Roads
 
-__all__ = ["CLASSES", "write_layers", "write_plan_of"]
+__all__ = ["CLASSES", "named_file_problems", "write_layers", "write_plan_of"]
 
 CLASSES = {
     0: "ground", 1: "road", 2: "pavement", 3: "building", 4: "tree", 5: "structure", 6: "water",
@@ -47,6 +50,33 @@ _MOST = 40_000_000
 """Number of fine cells of a map from which on they are coarse."""
 
 Points = NDArray[np.float64]
+
+
+def named_file_problems(plan: MapPlan, folder: Path) -> Iterator[str]:
+    """Yield what is wrong with the file that a plan names, its roads, a line each.
+
+    Args:
+        plan: The plan.
+        folder: The folder of its file.
+    """
+    if not plan.roads.file:
+        return
+    path = folder / plan.roads.file
+    try:
+        network = road_network(SumoNet(roads_in(path), str(path)), "")
+    except EyasError as error:
+        yield f"roads.file: {error}"
+        return
+    lanes = np.abs(network.lane_points)
+    outside = int((lanes > 0.5 * np.array(plan.size)).any(axis=1).sum())
+    if outside:
+        width, height = plan.size
+        low, high = network.lane_points.min(axis=0), network.lane_points.max(axis=0)
+        yield (
+            f"roads.file: {plan.roads.file!r} is not allowed: {outside} of {len(lanes)} points of "
+            f"its lanes are outside of size, {width:g} x {height:g} m about the origin; they reach "
+            f"from ({low[0]:.0f}, {low[1]:.0f}) to ({high[0]:.0f}, {high[1]:.0f})"
+        )
 
 
 def write_layers(name: str, seed: int, folder: Path, cell: float | None) -> list[Path]:

@@ -67,6 +67,8 @@ def _findings(what: str, config: CustomConfig, map_name: str) -> Iterator[Findin
 
 def _mesh(config: CustomConfig) -> Iterator[Finding]:
     shape = loaded(config)
+    if shape.left_out:
+        yield Finding(shape.left_out, fatal=False)
     whole = len(shape.corners)
     if config.most_triangles is not None and np.isfinite(shape.points).all():
         shape = simplified(shape, config.most_triangles)
@@ -105,7 +107,7 @@ def _class(path: str, map_name: str) -> Iterator[Finding]:
     if isinstance(target, MovesItself):
         scene, time = load_scene(map_name), np.arange(10 * _SECONDS) / 10.0
         tracks = tracks_of(target, path, scene, time, 1, stream(0, "custom"))
-        way = Trajectory(time, tracks[:, 0], None)
+        way = Trajectory.of_track(time, tracks[:, 0])
         yield from of_trajectory(way, scene.size, map_name)
 
 

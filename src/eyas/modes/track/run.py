@@ -1,7 +1,9 @@
 """Score a box tracker on a recording or a data set: one pass, stratified by the truth."""
 
+import io
 import json
 import multiprocessing
+import warnings
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -13,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.build import this_build
+from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, EyasError, OutputError
 from eyas.core.files import read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
@@ -35,6 +38,9 @@ __all__ = ["Scoring", "run"]
 
 SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
+
+_LARGEST_BOXES = 1 << 28
+"""Largest file of boxes [bytes]."""
 
 SPEED = "timing.json"
 """How fast the tracker was here; the one file that does not repeat."""
@@ -134,8 +140,8 @@ def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None
         )
     if names and resume:
         try:
-            found = json.loads(read_limited(out / SCORING, 1 << 20))
-        except (DataFileError, ValueError, RecursionError):
+            found = read_json(out / SCORING, 1 << 20)
+        except DataFileError:
             found = None
         if found != asked:
             raise OutputError(f"{out}: not continued: it is of {found}, not of {asked}")
@@ -261,11 +267,15 @@ def _scored(
     """
     path = _boxes_file(out, episode)
     try:
-        table = np.loadtxt(path, delimiter=",", ndmin=2)
-    except (OSError, ValueError) as error:
+        content = read_limited(path, _LARGEST_BOXES)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a file without rows, which is refused below
+            table = np.loadtxt(io.BytesIO(content), delimiter=",", ndmin=2)
+    except ValueError as error:
         raise DataFileError(f"{path}: cannot read: {error}; start again with --overwrite") from None
-    if table.shape != (len(episode), 5):
-        raise DataFileError(f"{path}: has not a line for each frame; start again with --overwrite")
+    if table.shape != (len(episode), 5) or not np.isfinite(table).all():
+        wrong = f"{path}: has not five numbers for each frame"
+        raise DataFileError(f"{wrong}; start again with --overwrite")
     boxes, truth = table[:, :4], true_boxes(episode)
     visible = episode.array("visible_fraction") > 0.0
     started = np.maximum.accumulate(table[:, 4] > 0.0)

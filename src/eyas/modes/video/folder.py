@@ -11,8 +11,9 @@ from typing import Any
 from eyas import __version__
 from eyas.core.build import Build, this_build
 from eyas.core.config import validated
+from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
-from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
+from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.core.folder_lock import LOCK
 from eyas.core.lens import NO_LENS, Lens, camera_matrix
 from eyas.exports.checksums import CHECKSUMS, GROWING
@@ -174,14 +175,14 @@ def _contents(path: Path, config: EyasConfig) -> RecordedPaths:
     """Return the paths of a recording with these settings, and of the existing one."""
     names = dict.fromkeys((*WRITERS.built_in, *writers_in(config.video.writers)))
     files = [WRITERS.get(name).files for name in names]
-    with suppress(DataFileError, ValueError, TypeError, KeyError, RecursionError):
+    with suppress(DataFileError, ValueError, TypeError, KeyError):
         recorded = _origin(path)["files"]
         files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
     return RecordedPaths(joined(files), [*_OWN, *STEP_LOGS])
 
 
 def _origin(path: Path) -> Any:  # noqa: ANN401  # JSON, of anyone
-    return json.loads(read_limited(path / ORIGIN, 1 << 20))
+    return read_json(path / ORIGIN, 1 << 20)
 
 
 def _require_plain(path: Path) -> None:
@@ -229,7 +230,7 @@ def _require_same_build(path: Path) -> None:
     try:
         origin = _origin(path)
         version, build = origin["eyas"], Build(**origin["build"])
-    except (DataFileError, ConfigError, ValueError, TypeError, LookupError, RecursionError):
+    except (DataFileError, ConfigError, ValueError, TypeError, LookupError):
         told = "of an unknown version"
     else:
         differs = build.difference(this_build(), without=_NOT_PICTURED)

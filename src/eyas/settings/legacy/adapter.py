@@ -15,6 +15,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import LegacyEntry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
+from eyas.settings.legacy.older import renewed
 from eyas.settings.legacy.own_target import CUSTOM
 from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
@@ -65,7 +66,7 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
             original's path.
     """
     config = (base or LIKE_THE_ORIGINAL).model_copy(update={"original": {}})
-    return _with(config, every_key() | flat(values), ENTRIES)
+    return _with(config, every_key() | flat(renewed(values)), ENTRIES)
 
 
 def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
@@ -79,7 +80,7 @@ def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
     Raises:
         ConfigError: As from `from_legacy`.
     """
-    said = flat(changes)
+    said = flat(renewed(changes))
     if not GROUP_KEYS.isdisjoint(said):
         said = {KEEP_ALIVE: False} | said  # who says how groups come means that they do
     touched = [entry for entry in ENTRIES if not said.keys().isdisjoint(entry.keys)]

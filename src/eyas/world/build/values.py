@@ -18,6 +18,7 @@ from eyas.state.scene import ObjectClass
 from eyas.world.build.materials import FACADES, TEXTURES
 
 __all__ = [
+    "LARGEST_NUMBER",
     "Area",
     "ClassName",
     "Colour",
@@ -39,6 +40,9 @@ __all__ = [
     "Share",
     "Unit",
 ]
+
+LARGEST_NUMBER = 1e6
+"""Largest number of a plan: lengths are metres, and no map has 100 km."""
 
 Positive = Annotated[float, Gt(0.0)]
 """A number above 0."""
@@ -192,6 +196,8 @@ def _numbers(value: object, told: str) -> NDArray[np.float64]:
         plain, array = False, np.zeros(0)
     if not plain or not np.isfinite(array).all():
         raise ValueError(told)
+    if array.size and np.abs(array).max() > LARGEST_NUMBER:
+        raise ValueError(f"{told}, none of them beyond {LARGEST_NUMBER:g}")
     return array
 
 

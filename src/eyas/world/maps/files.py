@@ -8,16 +8,20 @@
 <folder>/<name>/ATTRIBUTION.txt   whose data it is
 """
 
-import json
 import logging
+import math
 import os
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from eyas.core.checked import require_sum
+from eyas.core.decoding import gunzipped, read_json
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import user_path
+from eyas.core.files import read_limited, user_path
 from eyas.world.maps.recipe import PLAN_FILE, PLAN_SUFFIXES, MapRecipe
 
 if TYPE_CHECKING:
@@ -33,6 +37,7 @@ __all__ = [
     "Origin",
     "maps_folder",
     "origin_of",
+    "roads_in",
 ]
 
 _LOG = logging.getLogger("eyas")
@@ -42,6 +47,9 @@ FOLDER_VARIABLE = "EYAS_MAPS_DIR"
 
 FORMAT = "eyas-map-2"
 MAP_FILE, ROADS_FILE = "map.json", "roads.net.xml.gz"
+
+_LARGEST_ROADS = 256 << 20
+"""Largest network of SUMO, unpacked [bytes]; that of 6 x 6 km of a city has 30 MB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +67,8 @@ class Origin:
     size: tuple[float, float]
     """Extent of the floor [m]."""
     format: str = FORMAT
+    checksums: dict[str, str] = field(default_factory=dict)
+    """SHA-256 of the files beside it, by name; of older maps none."""
 
 
 def maps_folder() -> Path:
@@ -80,12 +90,16 @@ def origin_of(folder: Path) -> Origin:
     """
     path = folder / MAP_FILE
     try:
-        said = json.loads(path.read_text(encoding="utf-8"))
+        said = read_json(path, 1 << 20, "the file of an imported map")
         origin = Origin(**{**said, "size": tuple(map(float, said["size"]))})
         width, height = origin.size
         if not all(isinstance(text, str) for text in (origin.name, origin.title, origin.source)):
             raise TypeError("name, title and source must be texts")
-    except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
+        if not all(map(math.isfinite, (origin.longitude, origin.latitude))):
+            raise TypeError("longitude and latitude must be numbers")
+        if not all(isinstance(text, str) for pair in origin.checksums.items() for text in pair):
+            raise TypeError("checksums must be texts")
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise DataFileError(f"{path}: not the file of an imported map: {error}") from error
     if origin.format != FORMAT or not (0 < width < 1e5 and 0 < height < 1e5):
         raise DataFileError(f"{path}: not the file of an imported map of this version; import it")
@@ -136,33 +150,50 @@ def _recipe(folder: Path) -> MapRecipe:
         return MapRecipe(
             name=origin.name,
             title=origin.title,
-            roads=partial(_roads, folder / ROADS_FILE, origin.name),
-            plan=partial(_plan, folder / PLAN_FILE),
+            roads=partial(_roads, folder / ROADS_FILE, origin.name, sums=origin.checksums),
+            plan=partial(_plan, folder / PLAN_FILE, sums=origin.checksums),
             home=folder,
+            checksums=origin.checksums,
         )
     except ConfigError as error:
         raise DataFileError(f"{folder / MAP_FILE}: {error}") from None
 
 
-def _roads(path: Path, name: str, seed: int) -> "RoadGraph":
-    """Return the streets in a file of SUMO, the same for every seed."""
-    import gzip
-    import zlib
+def roads_in(path: Path) -> bytes:
+    """Return SUMO's network in a file, `.net.xml` or `.net.xml.gz`.
 
+    Raises:
+        DataFileError: It cannot be read or unpacked.
+    """
+    content = read_limited(path, _LARGEST_ROADS)
+    try:
+        return gunzipped(content, _LARGEST_ROADS) if content[:2] == b"\x1f\x8b" else content
+    except ValueError as error:
+        raise DataFileError(f"{path}: cannot read: {error}") from None
+
+
+def _roads(
+    path: Path, name: str, seed: int, sums: Mapping[str, str] = MappingProxyType({})
+) -> "RoadGraph":
+    """Return the streets in a file of SUMO, the same for every seed."""
     from eyas.state.roads import RoadGraph
 
-    try:
-        return RoadGraph(name, seed, (), (), gzip.decompress(path.read_bytes()))
-    except (OSError, EOFError, zlib.error) as error:
-        raise DataFileError(f"{path}: cannot read: {error}") from error
+    require_sum(path, sums)
+    return RoadGraph(name, seed, (), (), roads_in(path))
 
 
-def _plan(path: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+def _plan(
+    path: Path,
+    network: "RoadNetwork",
+    seed: int,
+    sums: Mapping[str, str] = MappingProxyType({}),
+) -> "MapPlan":
     """Return a plan in a file; the seed decides anew what it leaves open."""
     from dataclasses import replace
 
     from eyas.world.plan.file import read_plan
 
+    require_sum(path, sums)
     plan = read_plan(path)
     return replace(plan, seed=plan.seed + seed) if plan.survey else plan
 

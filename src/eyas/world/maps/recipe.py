@@ -1,13 +1,14 @@
 """The definition of a map, one object for each."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eyas.core.checked import require_sum
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.program import definitions_in
 from eyas.core.registry import OWN
@@ -135,6 +136,8 @@ class MapRecipe:
     and the scene is not cached between runs."""
     home: Path | None = None
     """Folder of an imported map, which is not a package. It holds the same files."""
+    checksums: Mapping[str, str] = field(default_factory=dict)
+    """SHA-256 of files in it, by name."""
     file: Path | None = None
     """File with the plan of a map that has neither."""
     notice: str = ""
@@ -240,6 +243,7 @@ class MapRecipe:
         if found is None:
             return None
         with as_file(found) as path:
+            require_sum(path, self.checksums)
             return load_network(path)
 
     def _known(self, name: str) -> Weather:

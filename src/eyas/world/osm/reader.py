@@ -1,11 +1,8 @@
 """Reading of OpenStreetMap files: `.osm`, `.osm.gz` and `.osm.pbf`, told apart by their content."""
 
 import gzip
-import math
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 from xml.etree import ElementTree
 
 from eyas.core.errors import ConfigError, DataFileError
@@ -14,7 +11,7 @@ from eyas.world.osm.data import Bounds, OsmData, Relation, Tags, Way
 __all__ = ["covered", "read_osm"]
 
 _LARGEST = 400 << 20
-"""Largest file [bytes]; an extract of a dense square kilometre has about 6 MB."""
+"""Largest file, packed and unpacked [bytes]; one of a dense square kilometre has about 6 MB."""
 
 
 def read_osm(path: Path) -> OsmData:
@@ -82,36 +79,61 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
 
 
 def _read_xml(path: Path, *, compressed: bool) -> OsmData:
-    data = OsmData()
+    builder = _Builder(path)
+    parser = ElementTree.XMLParser(target=builder)
+    left = _LARGEST
     try:
         with gzip.open(path) if compressed else path.open("rb") as file:
-            for element in _elements(file, path):
-                _take(element, data)
+            while part := file.read(1 << 16):
+                left -= len(part)
+                if left < 0:
+                    raise DataFileError(f"{path}: larger than {_LARGEST >> 20} MiB when unpacked")
+                parser.feed(part)
+        parser.close()
     except ElementTree.ParseError as error:
         raise DataFileError(f"{path}: not a complete OpenStreetMap file: {error}") from error
     except (OSError, EOFError, zlib.error) as error:
         raise DataFileError(f"{path}: cannot read: {error}") from error
     except (ValueError, LookupError) as error:  # the encoding may be unknown
         raise DataFileError(f"{path}: not a readable OpenStreetMap file: {error!r}") from error
-    return data
+    return builder.gathered
 
 
-def _elements(file: IO[bytes] | gzip.GzipFile, path: Path) -> Iterator[ElementTree.Element]:
-    """Yield the file's nodes, ways, relations and bounds, and free each after its use."""
-    parser = ElementTree.iterparse(file, ("start", "end"))
-    _, root = next(parser)
-    if root.tag != "osm":
-        raise DataFileError(f"{path}: not an OpenStreetMap file: its content is <{root.tag}>")
-    for event, element in parser:
-        if event == "end" and element.tag in ("node", "way", "relation", "bounds"):
-            yield element
-            root.clear()
+class _Builder:
+    """Takes nodes, ways, relations and bounds one by one from a parser. The text in and between
+    elements, of which the format has none, is dropped: it would pile up in memory.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.gathered = OsmData()  # `data` would be called with the text
+        self._path = path
+        self._depth = 0
+        self._element: ElementTree.Element | None = None
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Begin an element."""
+        self._depth += 1
+        if self._depth == 1 and tag != "osm":
+            raise DataFileError(f"{self._path}: not an OpenStreetMap file: its content is <{tag}>")
+        if self._depth == 2 and tag in ("node", "way", "relation", "bounds"):
+            self._element = ElementTree.Element(tag, attributes)
+        elif self._element is not None:
+            ElementTree.SubElement(self._element, tag, attributes)
+
+    def end(self, tag: str) -> None:
+        """End an element."""
+        self._depth -= 1
+        if self._depth == 1 and self._element is not None:
+            _take(self._element, self.gathered)
+            self._element = None
 
 
 def _take(element: ElementTree.Element, data: OsmData) -> None:
     """Add what an element tells to the data; deleted objects have no place or `visible="false"`."""
     if element.tag == "bounds":
-        limits = [float(element.attrib[f"{low}"]) for low in _LIMITS]
+        limits = [float(element.attrib[low]) for low in _LIMITS]
+        if not _on_earth(*limits[:2]) or not _on_earth(*limits[2:]):
+            raise ValueError(f"bounds {limits} are not on the earth")
         data.bounds = (limits[0], limits[1], limits[2], limits[3])
         return
     if element.get("visible") == "false" or element.get("action") == "delete":
@@ -120,8 +142,8 @@ def _take(element: ElementTree.Element, data: OsmData) -> None:
     tags: Tags = {tag.attrib["k"]: tag.attrib["v"] for tag in element.iter("tag")}
     if element.tag == "node":
         place = float(element.attrib["lon"]), float(element.attrib["lat"])
-        if not all(map(math.isfinite, place)):
-            raise ValueError(f"node {number} lies nowhere")
+        if not _on_earth(*place):
+            raise ValueError(f"node {number} lies at {place}, not on the earth")
         data.places[number] = place
         if tags:
             data.nodes[number] = tags
@@ -134,6 +156,10 @@ def _take(element: ElementTree.Element, data: OsmData) -> None:
             for one in element.iter("member")
         )
         data.relations.append(Relation(number, members, tags))
+
+
+def _on_earth(longitude: float, latitude: float) -> bool:
+    return abs(longitude) <= 180.0 and abs(latitude) <= 90.0  # also not a number: it is not
 
 
 _LIMITS = ("minlon", "minlat", "maxlon", "maxlat")

@@ -3,8 +3,7 @@
 import gzip
 import json
 import re
-import zlib
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import IntEnum
 from functools import cache
@@ -18,8 +17,10 @@ from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, SchemaValidator
 
 from eyas.core.config import shown
+from eyas.core.decoding import decoded_json, gunzipped
 from eyas.core.errors import DataFileError, nearest
 from eyas.core.files import read_limited, write_atomic
+from eyas.world.build.values import LARGEST_NUMBER
 from eyas.world.plan.plan import Backdrop, Far, GroundCover, Hills, MapPlan, Things
 from eyas.world.things.kinds import THINGS
 
@@ -37,8 +38,8 @@ __all__ = [
 FORMAT = "eyas-plan-1"
 """Value of `format` in the files of this version."""
 
-_LARGEST = 1 << 30
-"""Largest file that is read [bytes]."""
+_LARGEST = 256 << 20
+"""Largest file that is read, unpacked [bytes]."""
 TAGS = ("layer", "form")
 """Fields that tell which record it is."""
 _MOST = 20
@@ -80,15 +81,22 @@ def read_plan(path: Path) -> MapPlan:
     raise DataFileError(plan[0])
 
 
-def problems(path: Path) -> list[str]:
+def problems(
+    path: Path, opened: Callable[[MapPlan, Path], Iterable[str]] = lambda plan, folder: ()
+) -> list[str]:
     """Return what is wrong with a plan in a file, a line each; none if it is a plan.
+
+    Args:
+        path: The file.
+        opened: Yields what is wrong with the files that a plan names, which lie in a folder.
 
     Raises:
         DataFileError: It cannot be read.
     """
     plan = _read(path)
     if isinstance(plan, MapPlan):
-        return [f"{path}: {line}" for line in road_faults(plan, path.parent)]
+        wrong = list(road_faults(plan, path.parent)) or opened(plan, path.parent)
+        return [f"{path}: {line}" for line in wrong]
     return plan
 
 
@@ -101,9 +109,9 @@ def content_of(path: Path) -> dict[str, Any]:
     data = read_limited(path, _LARGEST)
     try:
         if data[:2] == b"\x1f\x8b":
-            data = gzip.decompress(data)
-        content = json.loads(data)
-    except (OSError, EOFError, zlib.error, ValueError, RecursionError) as error:
+            data = gunzipped(data, _LARGEST)
+        content = decoded_json(data)
+    except ValueError as error:
         raise DataFileError(f"{path}: cannot read: {error}") from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         found = content.get("format") if isinstance(content, dict) else None
@@ -264,6 +272,8 @@ def _made_strict(schema: Any) -> Any:  # noqa: ANN401  # a schema, or any part o
         made["strict"] = True
     if made.get("type") == "float":
         made["allow_inf_nan"] = False
+        made.setdefault("le", LARGEST_NUMBER)
+        made.setdefault("ge", -LARGEST_NUMBER)
     if made.get("type") == "dataclass-args":
         made["extra_behavior"] = "forbid"
     return made

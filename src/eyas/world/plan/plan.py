@@ -512,7 +512,8 @@ class Roads:
     nodes: tuple[RoadNode, ...] = ()
     edges: tuple[RoadEdge, ...] = ()
     file: str = ""
-    """A network file of SUMO beside the plan (`.net.xml.gz`), in place of nodes and edges."""
+    """A network file of SUMO beside the plan (`.net.xml`, `.net.xml.gz`), in place of nodes and
+    edges."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

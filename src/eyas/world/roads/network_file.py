@@ -2,15 +2,16 @@
 
 import io
 import zipfile
-import zlib
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from eyas.core.decoding import decoded_arrays
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
-from eyas.state.roads import RoadNetwork
+from eyas.state.roads import RoadNetwork, network_problems
 
 __all__ = ["load_network", "save_network"]
 
@@ -38,18 +39,31 @@ def save_network(path: Path, network: RoadNetwork) -> None:
 
 
 def load_network(path: Path) -> RoadNetwork:
-    """Read a network.
+    """Read a network that may come from anyone: indices are in range, numbers of a city's size.
 
     Raises:
-        DataFileError: The file is missing, truncated or of another kind.
+        DataFileError: The file is missing, damaged, or holds something else.
     """
-    try:
-        with path.open("rb") as file, np.load(file) as archive:
-            values = {field.name: archive[field.name] for field in fields(RoadNetwork)}
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
-        raise DataFileError(f"{path}: not a readable road network: {error}") from error
+    arrays = decoded_arrays(path, _LARGEST, "a readable road network", _ARRAYS)
+    values: dict[str, Any] = dict(arrays)
     for name in ("graph_hash", "builder"):
         values[name] = str(values[name])
     for name in ("edges", "edge_start", "edge_end", "junctions"):
-        values[name] = tuple(str(entry) for entry in values[name])
-    return RoadNetwork(**values)
+        values[name] = tuple(values[name].tolist())
+    network = RoadNetwork(**values)
+    for problem in network_problems(network):
+        raise DataFileError(f"{path}: not a readable road network: {problem}")
+    return network
+
+
+_LARGEST = 256 << 20
+"""Largest size of the arrays [bytes]."""
+
+_ARRAYS = {
+    "graph_hash": ("U", 0), "builder": ("U", 0),
+    "lane_points": ("f", 2), "lane_first": ("i", 1), "lane_width": ("f", 1),
+    "lane_speed": ("f", 1), "lane_edge": ("i", 1), "lane_index": ("i", 1),
+    "edges": ("U", 1), "edge_start": ("U", 1), "edge_end": ("U", 1),
+    "junction_points": ("f", 2), "junction_first": ("i", 1), "junctions": ("U", 1),
+}  # fmt: skip
+"""Kinds of elements and number of axes."""

@@ -1,10 +1,10 @@
 """What stands beside a network in its ONNX file."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from eyas.core.decoding import decoded_json
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.policies.policy import env_config
@@ -32,8 +32,8 @@ def metadata(path: Path, session: Any, key: str) -> Any:  # noqa: ANN401  # what
     """
     described = session.get_modelmeta().custom_metadata_map.get(key, "{}")
     try:
-        return json.loads(described)
-    except (ValueError, RecursionError) as error:
+        return decoded_json(described.encode("utf-8", "surrogateescape"))
+    except ValueError as error:
         raise DataFileError(f"{path}: metadata '{key}': not valid JSON") from error
 
 
