@@ -90,3 +90,10 @@ def test_what_is_behind_does_not_hide(seen_in):
     wall = box((0.2, 40.0, 5.0), (22.0, 0.0, 2.5), PLAIN, 1.0)
     _, (car,) = seen_in(scene_with(wall))
     assert car.seen_pixels == car.covered_pixels == free.seen_pixels
+
+
+def test_a_map_without_anything_parked_has_none():
+    nothing = ParkedObjects(Scene.empty())
+    shown, depth = np.zeros((4, 4), np.int32), np.ones((4, 4), np.float32)
+    assert nothing.objects == ()
+    assert nothing.seen(shown, depth, CameraState.create(1), 0) == []

@@ -83,7 +83,7 @@ class Starts:
                 solids=self._solids(),
                 margin=AROUND_BODY,
                 apart=self._apart,
-                count=self._count,
+                starts=self._count,
                 chosen=self._chosen,
                 lift=self._lift,
             )
@@ -110,7 +110,7 @@ class _Work(NamedTuple):
     margin: Margin
     apart: float
     """Least distance of two trackers of a world [m]."""
-    count: NDArray[np.int64]
+    starts: NDArray[np.int64]
     """Number of trackers that begin, K, shape (1,)."""
     chosen: NDArray[np.int64]
     """Those trackers, in the first K of N elements."""
@@ -122,7 +122,7 @@ class _Work(NamedTuple):
 def _find_lifts(work: _Work) -> None:
     """Write how much higher each tracker must start, and set the positions of those that may."""
     trackers, _, targets, episodes, _ = work.snapshot
-    for k in range(work.count[0]):
+    for k in range(work.starts[0]):
         n = work.chosen[k]
         actor, time = targets.actor[n], episodes.tick[n] * PHYSICS_STEP
         pose, at = interpolate_actor(work.motion, actor, time), trackers.position[n]

@@ -165,6 +165,8 @@ class ParkedObjects:
             tracker: Whose picture it is.
             lens: Its lens; None: a pinhole.
         """
+        if not self.objects:
+            return []
         height, width = shown.shape
         count = len(self.objects)
         nothing = np.array([_FAR, _FAR, -_FAR, -_FAR])
