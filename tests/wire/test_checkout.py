@@ -35,7 +35,9 @@ def checkout(tmp_path):
     (algorithms / "config.json").write_text(json.dumps(own))
     simulator = tmp_path / "DAT" / "Webots_Simulation" / "traffic_project"
     (simulator / "config").mkdir(parents=True)
-    shutil.copy(preset_file("dat-train"), simulator / "config" / "env_config.json")
+    settings = json.loads(preset_file("dat-train").read_text())
+    settings["Sumo_Params"]["fixed_seed"] = True  # nothing to record
+    (simulator / "config" / "env_config.json").write_text(json.dumps(settings))
     (simulator / "Files2Alg").mkdir()
     return tmp_path
 
