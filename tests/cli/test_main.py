@@ -283,7 +283,7 @@ def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch,
     served = []
 
     def run_server(config, root, load, until_idle):
-        served.append(config.model_copy(update={"mode": "train", "original": None}))
+        served.append(config.model_copy(update={"mode": "train", "original": None, "seed": 0}))
         file = root / SETTINGS_FILE
         file.parent.mkdir(parents=True, exist_ok=True)
         save_legacy(config, file)

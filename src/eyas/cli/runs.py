@@ -3,6 +3,7 @@
 import json
 import logging
 import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -72,6 +73,10 @@ def demo(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--seconds: only with --headless")
     overrides = gathered(set_, map_name, weather, seed)
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if config is not None:
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings)
     from eyas.modes.demo import run as demo  # after all checks
 
     listening = None if headless else demo.listen(host, port)
@@ -129,6 +134,11 @@ def video(  # noqa: PLR0913  # one parameter for each option
         # The flight of a file gives way to a policy; one that is asked for beside it does not.
         overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if config is not None:
+        from eyas.modes.video.folder import recorded_seed
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings, recorded_seed(out) if resume else None)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         say(f"note: {said}")
@@ -292,6 +302,11 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     # The first start writes a file, which cannot tell all, and serves what the next will read.
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
+    if preset is None:
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings)
+        load = partial(_again, load, settings.seed)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
         say(f"note: {said}")
@@ -299,6 +314,13 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 
     again = load if file == root / SETTINGS_FILE else None
     serve_clients(settings, root, again, until_idle=until_idle or math.inf)
+
+
+def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
+    """Return the settings of a server as they are now, for the same run."""
+    from eyas.settings.legacy.of_a_run import of_a_run
+
+    return of_a_run(load(), seed)
 
 
 def run(  # noqa: PLR0913  # one parameter for each option

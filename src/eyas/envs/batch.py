@@ -21,6 +21,7 @@ from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
+from eyas.envs.trained_with import describe
 from eyas.lanes import BoundCall, CompiledCall, Held, Kernel
 from eyas.render.renderer import CpuRenderer
 from eyas.settings.config import EyasConfig
@@ -123,6 +124,7 @@ class Batch:
         with originals_named(config):
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
         self.actions = make_actions(config.env)
+        describe(self.actions.space, config)
         self.observer = Observer(config.env.observation, self._simulation, measures=measures)
         self._steps = physics_steps(config.control.frequency)
         self._all = np.arange(count, dtype=np.int32)

@@ -13,6 +13,7 @@ from eyas.modes.serve.source import SettingsSource
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy
 from eyas.settings.legacy.messages import originals_named
+from eyas.settings.legacy.start_time import AGENT_STEPS, started_later
 from eyas.wire.exchange import SETTINGS_FILE, Exchange
 from eyas.wire.server import Server, Service
 from eyas.world.maps import MAPS
@@ -97,6 +98,7 @@ def _crew(config: EyasConfig, count: int) -> "TrackerGroup":
     from eyas.sim.worlds import together
     from eyas.wire.tracker_group import TrackerGroup
 
+    config = started_later(config, AGENT_STEPS * count)
     steps = physics_steps(config.control.frequency)
     with originals_named(config):
         return TrackerGroup(build_simulation(config, together(count)), steps)

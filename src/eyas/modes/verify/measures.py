@@ -108,6 +108,7 @@ def recording_of(config: EyasConfig) -> dict[str, str]:
     writers = ["jpeg", "labels", "mark"] + ["lidar"] * config.lidar.enabled
     settings = updated(config, {"video": _SHORT | {"writers": writers}, "camera": _SIZE})
     settings = updated(settings, {"seed": _SEED, "start": {"warm_up_steps": 0}})
+    settings = settings.model_copy(update={"original": None})  # which would begin later
     hashes = _Hashes()
     with scratch() as folder:
         run(settings, folder / "run", quiet=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from eyas.core.config import Problem, updated, validated
+from eyas.core.config import Problem, updated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
@@ -40,7 +40,10 @@ LIKE_THE_ORIGINAL = updated(
     {
         "video": {"jpeg_quality": 100, "flight": "exact"},
         "tracker": {"flight": Flight.ORIGINAL.value, "off_centre": True},
-        "traffic": {"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
+        "traffic": {
+            **{"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
+            "update_routes": False,  # so that a file that is written of it means the same traffic
+        },
     },
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""
@@ -168,7 +171,7 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[LegacyEntry]) ->
     defaults = every_key()
     kept = {key: value for key, value in kept.items() if value != defaults[key]}
     original = kept if kept or new.original is not None else None
-    return validated(EyasConfig, {**dict(new), "original": original})
+    return updated(new, {"original": original})
 
 
 def _is_idle(entry: LegacyEntry, target: object) -> bool:
