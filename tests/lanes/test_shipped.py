@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eyas.lanes import CompiledCall, ParallelCall, entry, shipped
+from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
 from eyas.lanes.cuda import code
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -168,3 +168,11 @@ def test_what_a_card_draws_with_ships():
     stages = [one for one in vars(stages_of_cards).values() if isinstance(one, ParallelCall)]
     assert sum(name.startswith("each_view") for name in ships) == len(stages) == 7
     assert {"list_actors", "stack_pictures", "command_numbers"} <= set(ships)
+
+
+@pytest.mark.parametrize("named", ["x", "+avx2,sse", ",", "+", "+" * 3000])
+def test_features_of_which_llvm_would_end_the_process_are_refused(monkeypatch, named):
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", named)
+    shipped._shipped.cache_clear()
+    with pytest.raises(VariableError, match=r"^NUMBA_CPU_FEATURES: '"):
+        shipped._shipped()
