@@ -8,7 +8,7 @@ import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
-from eyas.lanes import CompiledCall, ParallelCall, entry, shipped
+from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
 from eyas.lanes.cuda import code
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -185,3 +185,11 @@ def test_machine_code_names_no_file_of_the_machine_that_made_it():
         ]
     assert len(codes) > 100
     assert not {name for code in codes for name in re.findall(rb"[\w./-]*/[\w.-]+\.py\b", code)}
+
+
+@pytest.mark.parametrize("named", ["x", "+avx2,sse", ",", "+", "+" * 3000])
+def test_features_of_which_llvm_would_end_the_process_are_refused(monkeypatch, named):
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", named)
+    shipped._shipped.cache_clear()
+    with pytest.raises(VariableError, match=r"^NUMBA_CPU_FEATURES: '"):
+        shipped._shipped()

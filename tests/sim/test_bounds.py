@@ -1,6 +1,10 @@
 """Absurd numbers at the doors of a simulation and of the renderer."""
 
 import itertools
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,13 +23,23 @@ NOT_FINITE = (np.inf, -np.inf, np.nan)
 ONE = np.zeros(1, np.int32)
 
 
-@pytest.fixture(scope="module", params=["supervised", "flown", "car"])
+FLOWN = {"supervised": False, "drag_area": 0.1, "wind": {"speed": 5.0, "buildings": True}}
+KINDS = {
+    "supervised": {},
+    "flown": {"tracker": {"supervised": False}},
+    "car": {"tracker": {"kind": "car"}},
+    "contact": {
+        **{"world": {"map": "lake"}, "tracker": FLOWN},
+        **{"lidar": {"enabled": True}, "done": {"crash": "contact"}},
+    },
+}
+
+
+@pytest.fixture(scope="module", params=KINDS)
 def simulation(request):
-    tracker = {"supervised": request.param != "flown", "kind": "drone"}
-    tracker["kind"] = "car" if request.param == "car" else "drone"
-    small = {"width": 64, "height": 48}
-    changes = {"world": {"map": "desert-bare"}, "camera": small, "tracker": tracker}
-    return build_simulation(updated(EyasConfig(), changes), together(1))
+    small = {"world": {"map": "desert-bare"}, "camera": {"width": 64, "height": 48}}
+    config = updated(updated(EyasConfig(), small), KINDS[request.param])
+    return build_simulation(config, together(1))
 
 
 @pytest.fixture
@@ -89,3 +103,18 @@ def test_usual_numbers_are_not_touched():
     many = np.full((4096, 4), 100.0)
     assert (limited(many, LARGEST) == many).all()
     assert limited(np.array([np.nan, np.inf, -1e300]), 5.0).tolist() == [0.0, 5.0, -5.0]
+
+
+@pytest.mark.thorough  # all kernels are compiled for it
+def test_no_kernel_leaves_its_arrays(tmp_path):
+    """The tests above with kernels that report each index outside of its array."""
+    checked_kernels = {
+        **{"NUMBA_BOUNDSCHECK": "1", "EYAS_SHIPPED_CODE": "0", "EYAS_CACHE_DIR": str(tmp_path)},
+        "PYTHONPATH": str(Path(__file__).with_name("checked_indices")),
+    }
+    command = [sys.executable, "-m", "pytest", "-s", "-x", __file__, "-p", "no:cacheprovider"]
+    told = subprocess.run(
+        command, env=os.environ | checked_kernels, capture_output=True, text=True, check=False
+    )
+    assert "OUTSIDE" not in told.stdout
+    assert told.returncode == 0, told.stdout + told.stderr

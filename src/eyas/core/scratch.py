@@ -73,8 +73,6 @@ def _is_dead(name: str) -> bool:
         return False
     try:
         os.kill(int(number), 0)
-    except ProcessLookupError:
-        return True
-    except OSError:
-        return False
+    except OSError as error:  # it may be another user's
+        return isinstance(error, ProcessLookupError)
     return False

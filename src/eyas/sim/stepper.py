@@ -26,6 +26,7 @@ from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
+from eyas.trackers.config import TrackerKind
 from eyas.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.trackers.tracker import Tracker
 
@@ -95,7 +96,8 @@ class Stepper:
     ) -> None:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
-        self._calls = 0
+        own = not isinstance(config.tracker.kind, TrackerKind)  # whose kernels may do anything
+        self._calls, self._seldom = 0, 1 if own else _SELDOM
         self._memory = tracker.memory(count, terrain)
         around = StepSurroundings(assets.traffic.motion, terrain)
         self._state_by = partial(step_state, config, tracker, snapshot, self._memory, around)
@@ -206,7 +208,7 @@ class Stepper:
             EyasError: A tracker of a user's own is nowhere.
         """
         self._calls += 1
-        if self._calls % _SELDOM == 0:
+        if self._calls % self._seldom == 0:
             trackers = self._snapshot.trackers
             for places in (trackers.position, trackers.commanded_position):
                 near = checked(places, FARTHEST, "place of a tracker")

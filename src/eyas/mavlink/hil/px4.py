@@ -50,7 +50,10 @@ class Px4:
     def serve(self, server: socket.socket) -> None:
         """Fly until the user stops it."""
         while True:
-            connection, peer = server.accept()
+            try:
+                connection, peer = server.accept()
+            except ConnectionError:  # it had gone before it was let in
+                continue
             _LOG.info("PX4 has connected from %s port %d", *peer[:2])
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self._drone.begin()
