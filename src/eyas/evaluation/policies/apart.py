@@ -74,7 +74,7 @@ def receive(stream: IO[bytes]) -> tuple[dict[str, Any], list[Array]]:
                 raise ValueError(f"an array of {name!r} with shape {shape}")
             data = _exactly(stream, kind.itemsize * math.prod(shape))
             arrays.append(np.frombuffer(bytearray(data), kind).reshape(shape))
-    except (TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (TypeError, KeyError, AttributeError, SyntaxError, RecursionError) as error:
         raise ValueError(f"not a message: {error}") from None
     return head, arrays
 
