@@ -279,7 +279,8 @@ OSM = """<osm version="0.6"><bounds minlat="48.1" minlon="11.5" maxlat="48.102" 
 <node id="1" lat="48.1005" lon="11.501"/><node id="2" lat="48.1015" lon="11.502"/>
 <node id="3" lat="48.1012" lon="11.5012"><tag k="natural" v="tree"/><tag k="height" v="12"/></node>
 <way id="21"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/>
-<tag k="lanes" v="2"/></way><way id="22"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="1"/><tag k="building" v="yes"/>
+<tag k="lanes" v="2"/></way><way id="22"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="1"/>
+<tag k="building" v="yes"/>
 <tag k="height" v="9"/><tag k="building:levels" v="3"/></way></osm>"""
 
 
