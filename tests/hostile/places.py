@@ -30,21 +30,23 @@ class _Finder(ast.NodeVisitor):
     def __init__(self, module: str) -> None:
         self.module, self.within, self.found = module, list[str](), set[str]()
 
-    def _enter(self, node):
-        self.within.append(node.name)
+    def visit(self, node: ast.AST) -> None:
+        named = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+        if named:
+            self.within.append(node.name)
+        if isinstance(node, ast.Call):
+            self._note(node)
         self.generic_visit(node)
-        self.within.pop()
+        if named:
+            self.within.pop()
 
-    visit_FunctionDef = visit_AsyncFunctionDef = visit_ClassDef = _enter
-
-    def visit_Call(self, node):
+    def _note(self, node: ast.Call) -> None:
         called = node.func
         name = getattr(called, "attr", getattr(called, "id", ""))
         owner = getattr(called, "value", None)
         of = getattr(owner, "attr", getattr(owner, "id", ""))
         if name in _ANY or of in _OF.get(name, ()):
             self.found.add(f"{self.module}:{'.'.join(self.within)}")
-        self.generic_visit(node)
 
 
 def places() -> Iterator[str]:

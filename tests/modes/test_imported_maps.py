@@ -5,6 +5,7 @@ import importlib
 import json
 import re
 import shlex
+import shutil
 import struct
 from dataclasses import replace
 from itertools import pairwise
@@ -41,6 +42,7 @@ from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import read_osm
 from eyas.world.osm.rings import Shapes
 from eyas.world.plan.build import build_scene
+from eyas.world.roads.network_file import load_network, save_network
 
 pytestmark = pytest.mark.sumo
 NAME = "test-town"
@@ -343,6 +345,37 @@ def test_damaged_maps_are_told_in_one_line_and_hide_no_others(town, tmp_path, mo
     assert "an imported map is left out" in caplog.text
     with pytest.raises(DataFileError, match="not the file of an imported map"):
         MAPS.get("bad")
+
+
+@pytest.mark.parametrize("file", ["network.npz", "roads.net.xml.gz", "map.plan.json"])
+def test_a_changed_file_of_an_imported_map_is_one_line(town, tmp_path, file):
+    folder = shutil.copytree(town.folder, tmp_path / NAME)
+    content = bytearray((folder / file).read_bytes())
+    content[len(content) // 2] ^= 1
+    (folder / file).write_bytes(content)
+    with pytest.raises(DataFileError, match=rf"{file}: damaged: its SHA-256"):
+        (MAPS.get(str(folder)).roads(0), load_scene(str(folder), 0))
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("lane_points", 1e300), ("lane_points", np.nan), ("lane_first", 2**30),
+        ("lane_edge", 2**30), ("lane_index", 2**30), ("lane_width", -1.7e308),
+        ("junction_first", -5),
+    ],
+)  # fmt: skip
+def test_absurd_numbers_of_an_imported_network_are_one_line(town, tmp_path, field, value):
+    folder = shutil.copytree(town.folder, tmp_path / NAME)
+    (folder / MAP_FILE).write_text(
+        json.dumps(json.loads((folder / MAP_FILE).read_text()) | {"checksums": {}})
+    )
+    network = load_network(folder / "network.npz")
+    array = getattr(network, field).copy()
+    array.flat[3] = value
+    save_network(folder / "network.npz", replace(network, **{field: array}))
+    with pytest.raises(DataFileError, match=rf"network\.npz: not a readable .*'{field}"):
+        info.figures_of(load_scene(str(folder), 0))
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ class UnknownNameError(ConfigError):
         self, path: str, name: str, known: Iterable[str], where: str = "", others: str = ""
     ) -> None:
         names = sorted(known)
-        refused = f"{path}: {name!r} is not allowed {where}".rstrip()
+        refused = f"{path}: {name!r:.200} is not allowed {where}".rstrip()
         more = f", or {others}" if others else ""
         super().__init__(f"{refused}{nearest(name, names)}; known: {', '.join(names)}{more}")
 

@@ -307,9 +307,13 @@ def load(folder: Path | str) -> Recording:
         ConfigError: Its settings are not those of this Eyas; one line.
     """
     root = Path(folder)
-    if (root / DATASET_FILE).is_file():
-        return Recording(root, [each for part in _parts(root) for each in part])
-    return Recording(root, _episodes(root, "", ""))
+    try:
+        if (root / DATASET_FILE).is_file():
+            return Recording(root, [each for part in _parts(root) for each in part])
+        return Recording(root, _episodes(root, "", ""))
+    except (OSError, ValueError) as error:  # a name that no file can have
+        told = getattr(error, "strerror", None) or error
+        raise DataFileError(f"{root!s:.300}: cannot read: {told}") from error
 
 
 def _parts(root: Path) -> Iterator[list[RecordedEpisode]]:

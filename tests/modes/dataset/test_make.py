@@ -47,7 +47,7 @@ def test_one_that_was_damaged_is_mended(plan, made, contents, tmp_path, caplog):
     out = shutil.copytree(made, tmp_path / "damaged")
     before = contents(out)
     label = sorted(out.glob("parts/*/*/*/episode0/labels.jsonl"))[0]
-    exported = [path for path in sorted(out.glob("exports/*/**/*.*")) if path.is_file()][0]
+    exported = next(path for path in sorted(out.glob("exports/*/**/*.*")) if path.is_file())
     for path in (out / "README.md", label, exported):
         content = path.read_bytes()[:100]
         path.unlink()  # it may be a link

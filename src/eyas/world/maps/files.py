@@ -100,7 +100,7 @@ def origin_of(folder: Path) -> Origin:
         if not all(isinstance(text, str) for pair in origin.checksums.items() for text in pair):
             raise TypeError("checksums must be texts")
     except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise DataFileError(f"{path}: not the file of an imported map: {error}") from error
+        raise DataFileError(f"{path}: not the file of an imported map: {error!s:.300}") from error
     if origin.format != FORMAT or not (0 < width < 1e5 and 0 < height < 1e5):
         raise DataFileError(f"{path}: not the file of an imported map of this version; import it")
     return origin

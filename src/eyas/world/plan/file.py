@@ -224,7 +224,8 @@ def _each_once(where: str, names: Sequence[str]) -> Iterator[str]:
 
 def _one_of(where: str, name: str, names: Collection[str]) -> Iterator[str]:
     if name not in names:
-        yield f"{where}: {name!r} is not allowed: one of {', '.join(names)}{nearest(name, names)}"
+        known = f"{', '.join(names):.1000}"
+        yield f"{where}: {shown(name)} is not allowed: one of {known}{nearest(name, names)}"
 
 
 def _as_many(where: str, rows: Sized, count: int, what: str) -> Iterator[str]:
