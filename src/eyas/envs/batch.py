@@ -30,6 +30,8 @@ from eyas.sim.assets import Assets
 from eyas.sim.build import build_simulation
 from eyas.sim.episode_sampling import ModelTable, SamplingRules
 from eyas.sim.light import LightRules
+from eyas.sim.starts import Starts
+from eyas.sim.views.parked import ParkedObjects
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
@@ -46,12 +48,12 @@ __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)
 """To the addresses of arrays, which stay."""
-_SCRATCH = (VisibleActors, Picture)
+_SCRATCH = (VisibleActors, Picture, Starts)
 """Worked out at each use."""
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)

@@ -82,7 +82,7 @@ class View:
         self._sensors = sensors
         self._worlds = worlds
         self._kind, self._camera = assets.traffic.motion.kind, config.camera
-        self._scene = assets.scene
+        self._assets = assets
 
     def draw(
         self,
@@ -165,7 +165,7 @@ class View:
 
     @cached_property
     def _parked(self) -> ParkedObjects:
-        return ParkedObjects(self._scene)
+        return ParkedObjects(self._assets.scene)
 
     def parked(
         self, tracker: int, shown: NDArray[np.int32], depth: NDArray[np.float32]
