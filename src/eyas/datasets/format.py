@@ -201,13 +201,17 @@ class Job:
 
 
 class Format(Protocol):
-    """One layout of files."""
+    """One layout of files. A subclass may omit `__init__` and `finish`.
+
+    Attributes:
+        job: What is exported, and how.
+    """
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
 
-    @abstractmethod
-    def __init__(self, job: Job) -> None: ...
+    def __init__(self, job: Job) -> None:
+        self.job = job
 
     @abstractmethod
     def add(self, episode: RecordedEpisode) -> None:
