@@ -19,6 +19,7 @@ from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
+from eyas.core.own_code import left_out
 from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
@@ -181,8 +182,7 @@ def require_outputs(recording: Recording, name: str, make: type[Format]) -> None
 
 def _format_of(name: str) -> type[Format]:
     found: type[Format] = FORMATS.get(name)
-    missing = [each for each in ("needs", "add", "finish") if not hasattr(found, each)]
-    if missing:
+    if missing := left_out(found, ("needs", "add", "finish")):
         raise ConfigError(f"{SETTING}: {name!r} is not a format: it has no '{missing[0]}'")
     return found
 

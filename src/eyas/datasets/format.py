@@ -208,7 +208,11 @@ class Job:
 
 
 class Format(Protocol):
-    """One layout of files."""
+    """One layout of files. A subclass may omit `__init__` and `finish`.
+
+    Attributes:
+        job: What is exported, and how.
+    """
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
@@ -216,8 +220,8 @@ class Format(Protocol):
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
 
-    @abstractmethod
-    def __init__(self, job: Job) -> None: ...
+    def __init__(self, job: Job) -> None:
+        self.job = job
 
     @abstractmethod
     def add(self, episode: RecordedEpisode) -> None:

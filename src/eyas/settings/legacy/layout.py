@@ -56,7 +56,9 @@ def flat(values: Nested) -> dict[str, object]:
 def _unknown(values: Nested) -> list[Problem]:
     """Return a problem for each key that the original does not have."""
     defaults = legacy_defaults()
-    unknown = [((key,), defaults) for key in values if key not in defaults]
+    unknown: list[tuple[tuple[str, ...], Nested]] = [
+        ((key,), defaults) for key in values if key not in defaults
+    ]
     for group, known in defaults.items():
         inside = values.get(group)
         if isinstance(known, Mapping) and isinstance(inside, Mapping):
