@@ -35,7 +35,8 @@ def label_table() -> str:
 
 def _row(field: LabelField) -> str:
     others = f"`{field.others}`" if field.others else ""
-    cells = (f"`{field.key}`", others, field.type.name, field.unit, field.frame, field.meaning)
+    key = f"`{field.key}`" if field.key else ""
+    cells = (key, others, field.type.name, field.unit, field.frame, field.meaning)
     return f"| {' | '.join(cells)} |"
 
 

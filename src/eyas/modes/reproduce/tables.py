@@ -98,7 +98,10 @@ def expected(name: str) -> Expected | None:
 def flown_with(table: Table) -> dict[str, str]:
     """Return the hashes, as they are now, of a table's protocols and shipped policies by name."""
     plans = [row.plan for row in table.rows]
-    protocols = {f"protocol {plan.protocol}": plan.rules.hash for plan in plans}
+    hashes: dict[str, set[str]] = {}  # settings of a plan make another hash
+    for plan in plans:
+        hashes.setdefault(f"protocol {plan.protocol}", set()).add(plan.rules.hash)
+    protocols = {name: " ".join(sorted(found)) for name, found in hashes.items()}
     policies = {plan.policy for plan in plans} & set(shipped_names())
     return protocols | {f"policy {name}": str(fingerprint(name)) for name in sorted(policies)}
 
