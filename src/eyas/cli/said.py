@@ -15,7 +15,7 @@ def say(line: str) -> None:
         print(f"eyas: {one_line(line)}", file=sys.stderr, flush=True)
 
 
-_SIGNS = ("annot allocate memory", "failed to map segment", "can't start new thread")
+_SIGNS = ("cannot allocate memory", "failed to map segment", "can't start new thread")
 """What libraries and Python say where memory is too little for a library or a thread."""
 
 
@@ -24,7 +24,7 @@ def lacks_memory(error: BaseException | None) -> bool:
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
-        if any(sign in str(error) for sign in _SIGNS):
+        if any(sign in str(error).lower() for sign in _SIGNS):
             return True
         error = error.__cause__ or error.__context__
     return False

@@ -25,6 +25,7 @@ from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import StartVelocity
+from eyas.task.done import DoneReason
 from eyas.task.rules import Rules
 from eyas.trackers.config import TrackerKind
 from eyas.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
@@ -154,10 +155,14 @@ class Stepper:
             turns = piece.shape[1] == WITH_GIMBAL
             commands = (self._turning_orders if turns else self._orders).commands
             commands[:] = piece
-            if not np.vdot(commands, commands) <= _FAST * _FAST:
+            fast = not np.vdot(commands, commands) <= _FAST * _FAST
+            if fast:
+                unknown = np.isnan(commands).any(axis=1)
                 commands[:] = limited(commands, LARGEST)
                 self._calls = -1
             self._take(self._fly_and_turn() if turns else self._step.fly, some)
+            if fast:
+                self._snapshot.episodes.reason[unknown] = DoneReason.NOT_A_NUMBER
 
     def _fly_and_turn(self) -> BoundCall:
         """Return the step that also turns cameras; it is compiled when it is first needed."""
