@@ -156,6 +156,8 @@ def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
     """Yield the files of a finished data set that have changed since; parts that have some are no
     longer known as complete.
     """
+    if not (root / "parts").exists():  # of one behind a URL, only dataset.json is on this machine
+        return
     yield from damaged_files(root, read_json(root / DATASET_FILE, 1 << 28).get(SEALED))
     for name in plan.recipe.formats if plan.shard is None else ():
         found = damaged_export(exports_folder(root, name, None))
