@@ -17,7 +17,7 @@ from eyas import EyasVectorEnv
 
 SIZE = 48
 HEIGHT, VELOCITY = 2, slice(3, 6)
-"""Columns of `sensors`: position, velocity, ... as in `eyas.envs.information`."""
+"""Columns of `sensors`: position, velocity, ... as in `info`."""
 
 
 class EdgesAndMotion(gymnasium.vector.VectorObservationWrapper):

@@ -15,6 +15,11 @@ from hypothesis import settings
 # The maps that a developer has imported are not there for tests.
 os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
 
+# Programs that tests start print for a terminal of this width, whoever runs the tests where.
+os.environ["COLUMNS"] = "80"
+for name in ("FORCE_COLOR", "CLICOLOR_FORCE", "NO_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"):
+    os.environ.pop(name, None)
+
 # All maps in all weathers take more room than the usual limit: what a test has made would be gone
 # when the next one needs it, and be made again and again.
 os.environ.setdefault("EYAS_CACHE_LIMIT", "32G")

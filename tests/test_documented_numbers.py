@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eyas import ATTRIBUTES
 from eyas.modes.maps.info import figures_of
 from eyas.sim.scenes import load_scene
 from eyas.targets.catalogue import KINDS, habit_of, kind_index
@@ -77,3 +78,13 @@ def test_the_machine_code_that_ships_is_as_large_as_told():
     for archive in archives:
         told = re.search(rf"{archive.name}`,\s+(\d+)\s+kB", text("docs/lanes.md"))
         assert float(told[1]) == pytest.approx(archive.stat().st_size / 1000.0, rel=0.1)
+
+
+def test_the_attributes_of_words_are_as_many_as_told():
+    bodies = sum(name.startswith("body_") for name in ATTRIBUTES)
+    words = text("docs/words.md")
+    assert f"`eyas.ATTRIBUTES` names {len(ATTRIBUTES)} numbers" in words
+    assert f"`body_robot` ({bodies})" in words
+    assert f"`other_body_...` ({bodies})" in words
+    for page in ("docs/words.md", "docs/evaluation.md"):
+        assert set(re.findall(r"N x (\d\d)\b", text(page))) == {str(len(ATTRIBUTES))}

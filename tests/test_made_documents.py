@@ -49,6 +49,24 @@ def test_names_of_eyas_that_texts_mention_exist():
     assert not lost
 
 
+INSIDE = {"architecture.md", "lanes.md", "stability.md", "reproducibility.md", "CONTRIBUTING.md"}
+"""Pages for developers of Eyas, beside those of `docs/decisions` and of `docs/maps/plan.md`."""
+
+
+def test_pages_for_users_name_public_things_only():
+    rooms = "|".join(path.name for path in (ROOT / "src/eyas").iterdir() if path.is_dir())
+    private = re.compile(rf"\beyas\.(?:{rooms})\b")
+    pages = [*PAGES, *ROOT.glob("docs/**/*.ipynb"), *ROOT.glob("examples/*.py")]
+    found = {
+        f"{page.relative_to(ROOT)}: {line.strip()}"
+        for page in pages
+        if page.name not in INSIDE and not {"decisions", "reference"} & set(page.parts)
+        for line in page.read_text().splitlines()
+        if private.search(line)
+    }
+    assert not {each for each in found if not each.startswith("docs/maps/plan.md")}
+
+
 def _is_there(path):
     """Return whether a file or folder lies where its path says, or somewhere in the package."""
     roots = (ROOT, ROOT / "src", ROOT / "src/eyas", ROOT / "docs", ROOT / "tests")

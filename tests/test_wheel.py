@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import venv
@@ -85,6 +86,24 @@ def test_the_wheel_has_every_file_of_the_package_and_no_other(wheel):
         packed = {name for name in archive.namelist() if not name.endswith("/")}
     assert {name for name in packed if ".dist-info/" not in name} == sources
     assert any(name.endswith("/LICENSE") for name in packed - sources)
+
+
+def test_the_wheel_is_no_larger_than_a_release_may_be(wheel):
+    limit = re.search(r"^LARGEST_WHEEL = (.+)$", (ROOT / "tools/release.py").read_text(), re.M)
+    assert wheel.stat().st_size <= float(limit[1])
+
+
+def test_pypi_gets_addresses_and_a_readme_without_relative_links(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith("/METADATA"))
+        metadata = archive.read(name).decode()
+    repository = re.search(r"^Project-URL: Repository, (.+)$", metadata, re.M)[1]
+    links = re.findall(r"\]\(([^)\s]+)\)", metadata)
+    assert len(links) == len(re.findall(r"\]\(", (ROOT / "README.md").read_text()))
+    assert all(link.startswith("https://") for link in links), links
+    assert f"![A drone follows a car through traffic]({repository}/raw/" in metadata
+    for path in ("CITATION.cff", ".github/ISSUE_TEMPLATE/config.yml"):
+        assert repository in (ROOT / path).read_text(), path
 
 
 def test_every_module_and_the_data_of_every_map_load_from_the_wheel_alone(programs, tmp_path):

@@ -17,12 +17,12 @@ import tempfile
 import venv
 from pathlib import Path
 
-from version import version
+from version import REPOSITORY, version
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
-LARGEST_WHEEL = 25e6
-"""[bytes]"""
+LARGEST_WHEEL = 32e6
+"""Largest size of the wheel [bytes]; `tests/test_wheel.py` checks it too."""
 FIRST = ("video", "--set", "video.channels=1", "--set", "video.total_time=1", "--out", "first")
 """The README's first command, shortened."""
 CHECKS: tuple[tuple[str, ...], ...] = (
@@ -64,10 +64,16 @@ def texts_of(release: str) -> list[str]:
     """Return what is not ready for a version in the texts that name it."""
     log, citation = (ROOT / "CHANGELOG.md").read_text(), (ROOT / "CITATION.cff").read_text()
     missing = []
-    if not re.search(rf"^## {re.escape(release)}\b", log, re.MULTILINE):
-        missing.append(f"CHANGELOG.md: has no section {release}")
+    if not re.search(rf"^## {re.escape(release)} - \d{{4}}-\d\d-\d\d$", log, re.MULTILINE):
+        missing.append(f"CHANGELOG.md: has no section '## {release} - YEAR-MONTH-DAY'")
+    if re.search(r"^## Unreleased\n+-", log, re.MULTILINE):
+        missing.append("CHANGELOG.md: has entries under Unreleased")
     if f"\nversion: {release}\n" not in citation:
         missing.append(f"CITATION.cff: is not of version {release}")
+    if f"\nrepository-code: {REPOSITORY}\n" not in citation:
+        missing.append(f"CITATION.cff: repository-code is not {REPOSITORY}")
+    if "OWNER" in REPOSITORY:
+        missing.append("tools/version.py: REPOSITORY still has OWNER in the place of an account")
     return missing
 
 
@@ -96,7 +102,7 @@ def install(package: Path, work: Path) -> Path:
     python = place / "bin/python"
     run(python, "-m", "pip", "install", "-q", package, folder=work)
     said = run(place / "bin/eyas", "--version", folder=work)
-    if said.split()[1] != version().partition(".dev")[0]:
+    if said.split()[1] != version():
         raise SystemExit(f"{package}: says that it is {said}")
     run(place / "bin/eyas", *FIRST, "--overwrite", "--quiet", folder=work)
     if not (work / "first/DRONE0/episode0/labels.jsonl").exists():

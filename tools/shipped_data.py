@@ -6,18 +6,21 @@
     python tools/shipped_data.py --note     # notes it for what has just been made anew
 
 The notes, `shipped_data.json` beside this file, hold the code (`eyas.core.program`) that made each
-file. What comes out otherwise is made anew with `eyas traffic record --map NAME --canonical`.
+file: all that it refers to, but for `core` and `lanes`, whose own tests hold what they compute to
+the bit. What comes out otherwise is made anew with `eyas traffic record --map NAME --canonical`.
+`tests/traffic/test_shipped_data.py` fails where something is stale.
 """
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 
-from eyas.core.program import code_of
+from eyas.core.program import closure_of, definitions_of
 from eyas.sim.cover import cover_of
 from eyas.traffic.library import _recorded
 from eyas.traffic.network import build_network
@@ -29,6 +32,8 @@ from eyas.world.roads.network_file import load_network
 
 NOTES = Path(__file__).with_suffix(".json")
 
+ELSEWHERE = ("eyas.core.", "eyas.lanes.")
+
 
 def main() -> None:
     """Print what is stale, or make it again."""
@@ -36,10 +41,10 @@ def main() -> None:
     parser.add_argument("--confirm", action="store_true", help="make again what is stale")
     parser.add_argument("--note", action="store_true", help="note that today's code made all")
     options = parser.parse_args()
-    notes = json.loads(NOTES.read_text()) if NOTES.exists() else {}
+    notes = read_notes()
     stale = []
     for recipe, path in files():
-        name = f"{path.parent.name}/{path.name}"
+        name = name_of(path)
         known, now = notes.get(name), noted(recipe, path)
         if known != now and not options.note:
             same = options.confirm and is_the_same(recipe, path)
@@ -48,9 +53,20 @@ def main() -> None:
                 stale.append(name)
                 continue
         notes[name] = now
-    NOTES.write_text(json.dumps(notes, indent=1, sort_keys=True) + "\n")
+        NOTES.write_text(json.dumps(notes, indent=1, sort_keys=True) + "\n")
     if stale:
         raise SystemExit(f"{len(stale)} files are stale")
+
+
+def read_notes() -> dict[str, list[str]]:
+    """Return what made each file when it was last compared."""
+    notes: dict[str, list[str]] = json.loads(NOTES.read_text()) if NOTES.exists() else {}
+    return notes
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a file in the notes."""
+    return f"{path.parent.name}/{path.name}"
 
 
 def files() -> Iterator[tuple[MapRecipe, Path]]:
@@ -69,6 +85,18 @@ def noted(recipe: MapRecipe, path: Path) -> list[str]:
     """Return what identifies the code that makes a file, and its content."""
     maker = build_network if path.name.startswith("network") else _recorded
     return [code_of(maker), code_of(recipe.roads), sha256(path.read_bytes()).hexdigest()[:32]]
+
+
+def code_of(what: Callable[..., object]) -> str:
+    """Return what identifies the code of a function, whatever the versions of libraries."""
+    while isinstance(what, partial) or hasattr(what, "__wrapped__"):
+        what = what.func if isinstance(what, partial) else what.__wrapped__
+    code = sorted(
+        f"{module}:{name} {definitions_of(module)[name].digest}"
+        for module, name in closure_of(what.__module__, what.__qualname__)
+        if module.startswith("eyas.") and not module.startswith(ELSEWHERE) and name
+    )
+    return sha256("\n".join(code).encode()).hexdigest()[:32]
 
 
 def is_the_same(recipe: MapRecipe, path: Path) -> bool:

@@ -10,6 +10,9 @@ from pathlib import Path
 
 NEXT = "1.0.0"
 """The version that is being made, until it has a tag."""
+REPOSITORY = "https://github.com/OWNER/eyas"
+"""Address of the repository. `OWNER` is filled in before the first release: `tools/release.py`
+refuses it. `CITATION.cff` and `.github/ISSUE_TEMPLATE/config.yml` repeat it."""
 ROOT = Path(__file__).resolve().parents[1]
 
 

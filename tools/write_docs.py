@@ -13,9 +13,9 @@ from pathlib import Path
 from plan_page import page_of_records, schema_text
 from standings import standings
 
-from eyas.evaluation.policies.model_card import model_card
 from eyas.evaluation.policies.shipped import shipped_names
 from eyas.exports.label import FIELDS, LabelField, label_schema
+from eyas.modes.reproduce.model_card import model_card
 from eyas.modes.reproduce.run import markdown
 from eyas.modes.reproduce.tables import TABLES, expected
 

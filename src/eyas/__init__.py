@@ -37,6 +37,9 @@ if TYPE_CHECKING:
     from eyas.datasets.recording import RecordedFrame as RecordedFrame
     from eyas.datasets.recording import Recording as Recording
     from eyas.datasets.recording import load as load
+    from eyas.envs.keys import hover_action as hover_action
+    from eyas.envs.legacy_observation import LegacyObservation as LegacyObservation
+    from eyas.envs.lerobot import make_lerobot_env as make_lerobot_env
     from eyas.envs.observation import Observation as Observation
     from eyas.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
     from eyas.envs.registration import register_map as register_map
@@ -48,6 +51,7 @@ if TYPE_CHECKING:
     from eyas.evaluation.policies.policy import Policy as Policy
     from eyas.evaluation.policies.policy import PolicyInput as PolicyInput
     from eyas.evaluation.policies.policy import Start as Start
+    from eyas.evaluation.steering import towards as towards
     from eyas.exports.frame import Frame as Frame
     from eyas.exports.label import label_schema as label_schema
     from eyas.exports.label import read_labels as read_labels
@@ -98,8 +102,15 @@ if TYPE_CHECKING:
     from eyas.state.snapshot import Snapshot as Snapshot
     from eyas.state.snapshot import TrackerState as TrackerState
     from eyas.state.terrain import Terrain as Terrain
+    from eyas.targets.grammar.attributes import ATTRIBUTES as ATTRIBUTES
+    from eyas.task.packets import BasicPacket as BasicPacket
+    from eyas.task.packets import InputPacket as InputPacket
+    from eyas.task.packets import RewardPacket as RewardPacket
+    from eyas.task.radar_packet import RadarPacket as RadarPacket
+    from eyas.task.step_line import StepLine as StepLine
     from eyas.task.terms import RewardTerm as RewardTerm
     from eyas.trackers.config import TrackerConfig as TrackerConfig
+    from eyas.trackers.flown import flown_drone as flown_drone
     from eyas.trackers.tracker import Tracker as Tracker
     from eyas.world.land.mounds import Mound as Mound
     from eyas.world.maps import MapRecipe as MapRecipe
@@ -114,8 +125,8 @@ if TYPE_CHECKING:
     from eyas.world.weather import Weather as Weather
 
 __version__: str
-"""Version of this Eyas, by the tags of git (`tools/version.py`), without what marks one in
-development: `build_id` tells exactly which it is."""
+"""Version of this Eyas, by the tags of git (`tools/version.py`); "0" in a folder that is not
+installed. `build_id` identifies the code exactly."""
 
 build_id: str
 """Identifies code and data of this Eyas, see `eyas.core.build`: results of the same build, settings
@@ -133,6 +144,9 @@ _PLACES = {
     "custom.own": ("Ride",),
     "datasets.format": ("Format",),
     "datasets.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
+    "envs.keys": ("hover_action",),
+    "envs.legacy_observation": ("LegacyObservation",),
+    "envs.lerobot": ("make_lerobot_env",),
     "envs.observation": ("Observation",),
     "envs.pettingzoo": ("EyasParallelEnv",),
     "envs.registration": ("register_map",),
@@ -141,6 +155,7 @@ _PLACES = {
     "envs.vector_env": ("EyasVectorEnv",),
     "evaluation.box_trackers": ("BoxTracker",),
     "evaluation.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
+    "evaluation.steering": ("towards",),
     "exports.frame": ("Frame",),
     "exports.label": ("label_schema", "read_labels"),
     "exports.writer": (
@@ -169,8 +184,13 @@ _PLACES = {
     "state.scene": ("ObjectClass", "Scene"),
     "state.snapshot": ("CameraState", "Snapshot", "TrackerState"),
     "state.terrain": ("Terrain",),
+    "targets.grammar.attributes": ("ATTRIBUTES",),
+    "task.packets": ("BasicPacket", "InputPacket", "RewardPacket"),
+    "task.radar_packet": ("RadarPacket",),
+    "task.step_line": ("StepLine",),
     "task.terms": ("RewardTerm",),
     "trackers.config": ("TrackerConfig",),
+    "trackers.flown": ("flown_drone",),
     "trackers.tracker": ("Tracker",),
     "world.land.mounds": ("Mound",),
     "world.maps": ("MapRecipe",),
@@ -198,11 +218,11 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
         from importlib.metadata import PackageNotFoundError, version
 
         try:
-            told = version("eyas")
-        except PackageNotFoundError:  # run from a folder that is not installed
-            told = "0"
-        globals()[name] = told.partition(".dev")[0]
-        return globals()[name]
+            found = version("eyas")
+        except PackageNotFoundError:
+            found = "0"
+        globals()[name] = found
+        return found
     if name in _MODULE_OF:
         from importlib import import_module
 

@@ -9,9 +9,10 @@ import pytest
 import typer
 
 import eyas
-from eyas import __version__
+from eyas import __version__, build_id
 from eyas.cli.app import app
 from eyas.cli.main import main
+from eyas.lanes import thread_count
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy, to_legacy
 from eyas.settings.preset import PRESETS
@@ -90,6 +91,52 @@ def test_what_a_user_gets_wrong_is_one_line_and_exit_code_2(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    "value",
+    [
+        "x" * 3000,
+        "a b " * 900,
+        "9" * 3000,
+        "\ud800" * 3000,
+        "[" * 3000,
+        "{'a': " * 900,
+        "1e" * 1500,
+    ],
+)
+@pytest.mark.parametrize("key", ["world.map", "seed", "camera", "video.writers", "{}"])
+def test_long_values_are_shortened(monkeypatch, capsys, key, value):
+    said = f"{key}={value}" if key != "{}" else f"{value}=1"
+    _, _, (line, *_) = run(monkeypatch, capsys, "config", "show", "--set", said)
+    assert len(line) < 1300
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "x", " ", "1e9", "9" * 3000, "\uff13"])
+def test_a_number_of_threads_that_is_none_is_one_line(monkeypatch, capsys, count):
+    monkeypatch.setenv("NUMBA_NUM_THREADS", count)
+    monkeypatch.setattr("eyas.settings.file.load_settings", lambda *_, **__: thread_count())
+    code, _, lines = run(monkeypatch, capsys, "train")
+    assert (code, len(lines)) == (2, 1)
+    assert lines[0].startswith("eyas: error: NUMBA_NUM_THREADS: ")
+
+
+@pytest.mark.parametrize("limit", [60, 130, 250])
+@pytest.mark.slow
+def test_too_little_memory_is_one_line(limit):
+    resource = pytest.importorskip("resource")
+    most = limit << 20
+    told = subprocess.run(
+        [*COMMAND, "video", "--map", "desert-bare"],
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)),
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert told.returncode == 2
+    assert told.stderr.splitlines()[-1].startswith("eyas: error: out of memory: ")
+    assert "Traceback" not in told.stderr
+
+
 def test_a_line_break_in_a_name_stays_on_one_line(monkeypatch, capsys):
     code, _, err = run(monkeypatch, capsys, "config", "show", "--set", "vi\ndeo.fps=3")
     assert (code, len(err)) == (2, 1)
@@ -146,7 +193,10 @@ def test_help_keeps_its_units(monkeypatch, capsys):
 
 
 def test_version_and_maps(monkeypatch, capsys):
-    assert run(monkeypatch, capsys, "--version")[:2] == (0, f"eyas {__version__}\n")
+    assert run(monkeypatch, capsys, "--version")[:2] == (
+        0,
+        f"eyas {__version__} (build {build_id})\n",
+    )
     listed = run(monkeypatch, capsys, "maps", "list")[1].splitlines()
     assert listed[0].startswith("citystreet: ")
     assert listed[0].endswith("(day, foggy, night, snow, rain, dusk, overcast, dust, autumn)")
@@ -232,8 +282,8 @@ def test_a_reader_that_goes_away_is_no_error():
 def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch, capsys, tmp_path):
     served = []
 
-    def run_server(config, root, load):
-        served.append(config.model_copy(update={"mode": "train", "original": None}))
+    def run_server(config, root, load, until_idle):
+        served.append(config.model_copy(update={"mode": "train", "original": None, "seed": 0}))
         file = root / SETTINGS_FILE
         file.parent.mkdir(parents=True, exist_ok=True)
         save_legacy(config, file)
@@ -257,7 +307,7 @@ def test_the_package_is_the_command():
     done = subprocess.run(
         [sys.executable, "-m", "eyas", "--version"], capture_output=True, text=True, check=True
     )
-    assert done.stdout == f"eyas {__version__}\n"
+    assert done.stdout == f"eyas {__version__} (build {build_id})\n"
 
 
 def commands(group, *names):

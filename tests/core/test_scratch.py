@@ -7,7 +7,7 @@ import tempfile
 
 import pytest
 
-from eyas.core.scratch import scratch
+from eyas.core.scratch import remove_left_scratch, scratch
 
 HOLDS = """
 import sys, time
@@ -63,9 +63,16 @@ def test_what_a_killed_process_has_left_is_removed_and_nothing_else(place, holde
     holder.kill()
     holder.wait()
     os.utime(holder.folder)
-    with scratch():
-        assert holder.folder.exists()  # it is young
-    os.utime(holder.folder, (0, 0))
-    with scratch():
-        assert not holder.folder.exists()
+    remove_left_scratch()
     assert set(place.iterdir()) == kept
+
+
+def test_a_folder_that_was_never_locked_goes_with_its_process(place, holder):
+    never = place / f"eyas-scratch-{holder.pid}-x"
+    never.mkdir()
+    remove_left_scratch()
+    assert never.exists()
+    holder.kill()
+    holder.wait()
+    remove_left_scratch()
+    assert not list(place.iterdir())

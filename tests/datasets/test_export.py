@@ -24,7 +24,7 @@ from eyas.datasets.recording import load
 from eyas.datasets.registry import FORMATS
 from eyas.exports.checksums import CHECKSUMS
 from eyas.modes.export import run
-from eyas.state.scene import ObjectClass
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 
 OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
 FORMATS_OF_PICTURES = tuple(name for name in FORMATS.built_in if name not in OF_MOTION)
@@ -251,6 +251,52 @@ def test_what_is_ignored_is_marked_or_left_out(exported):
     mot = boxes("mot", "*/*/gt/gt.txt", least_side=9)
     assert len(mot) == len(boxes("mot", "*/*/gt/gt.txt"))
     assert all((min(map(int, r[4:6])) < 9) == (r[6] == "0") for r in (x.split(",") for x in mot))
+
+
+def test_what_is_parked_counts_or_is_ignored(exported, data):
+    parked = [
+        other for episode in data for frame in episode for other in frame.label["others"]
+        if "parked" in other
+    ]  # fmt: skip
+    assert parked
+
+    def rows(name, pattern, **options):
+        folder = exported(name, **options)
+        texts = [path.read_text() for path in sorted(folder.glob(pattern))]
+        shutil.rmtree(folder)
+        return [row for text in texts for row in text.splitlines()]
+
+    for name, pattern, marked in (
+        ("mot", "*/*/gt/gt.txt", lambda row: row.split(",")[6] == "0"),
+        ("kitti", "*/label_02/*.txt", lambda row: "DontCare" in row),
+        ("visdrone-det", "*/annotations/*.txt", lambda row: row.split(",")[4] == "0"),
+        ("yolo", "labels/*/*.txt", None),
+    ):
+        counted, ignored = rows(name, pattern), rows(name, pattern, ignore_parked=True)
+        if marked is None:
+            assert len(ignored) == len(counted) - len(parked), name
+        else:
+            assert len(ignored) == len(counted), name
+            assert sum(map(marked, ignored)) > sum(map(marked, counted)), name
+    coco = json.loads((exported("coco", ignore_parked=True) / "annotations/train.json").read_text())
+    assert {each["iscrowd"] for each in coco["annotations"]} == {0, 1}
+    scenes = exported("nuscenes") / "v1.0-train"
+    attributes = {each["name"]: each["token"]
+                  for each in json.loads((scenes / "attribute.json").read_text())}  # fmt: skip
+    annotations = json.loads((scenes / "sample_annotation.json").read_text())
+    assert any(each["attribute_tokens"] == [attributes["vehicle.parked"]] for each in annotations)
+
+
+def test_masks_show_what_is_parked_under_its_id(data):
+    for episode in data:
+        for frame in episode:
+            masks = frame.masks()
+            for other in frame.label["others"]:
+                if "parked" in other:
+                    assert other["id"] < ACTOR_OBJECT
+                    rows, columns = np.nonzero(masks == other["id"])
+                    ends = [columns.min(), rows.min(), columns.max() + 1, rows.max() + 1]
+                    assert ends == other["visible_box"]
 
 
 def test_export_json_tells_what_it_is_of(exported, dataset):

@@ -9,7 +9,8 @@ from globox import Annotation, BoxFormat
 from eyas.datasets.format import objects_of
 from eyas.datasets.formats import uavdt
 
-VISDRONE = {"person": 1, "car": 4, "truck": 6, "bus": 9, "motorcycle": 10, "robot": 11}
+VISDRONE = {"person": 1, "car": 4, "truck": 6, "bus": 9, "motorcycle": 10, "robot": 11,
+            "bicycle": 3, "boat": 11, "train": 11}  # fmt: skip
 UAVDT = {"car": 1, "truck": 2, "bus": 3}
 
 

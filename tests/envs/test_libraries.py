@@ -6,7 +6,7 @@ import pytest
 
 from eyas.core.errors import EyasError
 from eyas.envs.legacy_observation import LegacyObservation, scrambled
-from eyas.envs.lerobot import make_env
+from eyas.envs.lerobot import make_lerobot_env
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.envs.vector_env import EyasVectorEnv
 
@@ -74,7 +74,7 @@ def test_torchrl_refuses_the_mode_that_it_cannot_use():
 
 
 def test_lerobot_finds_what_its_evaluation_asks_for():
-    env = make_env(3, cfg=SHORT)
+    env = make_lerobot_env(3, cfg=SHORT)
     seen, _ = env.reset(seed=[1, 2, 3])
     assert env.observation_space.contains(seen)
     assert seen["pixels"].shape == (3, 84, 84, 3)

@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.envs.keys import hover
+from eyas.envs.keys import hover_action
 from eyas.envs.tracking_env import TrackingEnv
 
 
@@ -40,8 +40,8 @@ def test_keys_fly_the_drone(pygame, actions):
         if len(told) == 4:
             pygame.event.post(pygame.event.Event(pygame.QUIT))
 
-    play.play(env, callback=after, noop=hover(env.action_space), fps=1000, seed=0)
+    play.play(env, callback=after, noop=hover_action(env.action_space), fps=1000, seed=0)
     forward = {"discrete": 0, "shares": [1, 0, 0, 0], "velocity": [40, 0, 0, 0]}[actions]
-    assert np.array_equal(told[0], hover(env.action_space))
+    assert np.array_equal(told[0], hover_action(env.action_space))
     assert np.array_equal(told[-1], forward)
     assert TrackingEnv(actions=actions).action_space.contains(told[-1])

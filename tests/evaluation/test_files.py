@@ -2,6 +2,7 @@
 
 import json
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -137,6 +138,61 @@ def test_a_model_of_stable_baselines3_flies(fly, tmp_path):
     records = fly(str(path), env={"action_repeat": 25})
     assert [record.error for record in records] == [None] * 4
     assert fly(str(path), env={"action_repeat": 25}) == records
+
+
+@pytest.mark.slow
+def test_what_a_model_was_trained_with_travels_with_it(tmp_path, caplog):
+    library = pytest.importorskip("stable_baselines3")
+    from stable_baselines3.common.vec_env import DummyVecEnv, VecFrameStack
+
+    from eyas.envs.sb3 import EyasVecEnv
+    from eyas.envs.tracking_env import TrackingEnv
+    from eyas.evaluation.policies.sb3 import load_sb3
+
+    seen = {"width": 40, "height": 36, "colours": "grey", "frames": 3, "layout": "chw"}
+    config = {
+        "env": {"action_repeat": 4, "observation": seen, "speeds": {"forward_speed": 9.0}},
+        "start": {"height": 30.0},
+        "control": {"frequency": 62.5},
+    }
+    plain = {**config, "env": {"action_repeat": 5, "actions": "velocity"}}
+    for env, repeat, actions in (
+        (EyasVecEnv(2, config), 4, "discrete"),
+        (DummyVecEnv([lambda: TrackingEnv(config)]), 4, "discrete"),
+        (VecFrameStack(EyasVecEnv(2, plain), 2), 5, "velocity"),
+    ):
+        model = library.PPO("CnnPolicy", env, n_steps=8, batch_size=8, device="cpu", seed=1)
+        model.save(tmp_path / "model.zip")
+        policy = load_sb3(tmp_path / "model.zip", {}, sampled=False)
+        assert (policy.env.action_repeat, policy.env.actions) == (repeat, actions)
+        if repeat == 4:
+            assert policy.env == TrackingEnv(config).config.env
+        else:
+            assert policy.env.observation.frames == 2
+        assert "start.height=30.0" in caplog.text
+        assert "control.frequency=62.5" in caplog.text
+        changed = load_sb3(tmp_path / "model.zip", {"action_repeat": 2}, sampled=False)
+        assert changed.env.action_repeat == 2
+
+
+@pytest.mark.slow
+def test_a_model_that_does_not_say_how_it_was_trained_is_said(tmp_path, caplog):
+    library = pytest.importorskip("stable_baselines3")
+    from eyas.evaluation.policies.sb3 import load_sb3
+
+    class Other(gymnasium.Env):
+        observation_space = gymnasium.spaces.Box(0, 255, (3, 36, 36), np.uint8)
+        action_space = gymnasium.spaces.Discrete(7)
+
+        def reset(self, *, seed=None, options=None):
+            return self.observation_space.sample(), {}
+
+    model = library.PPO("CnnPolicy", Other(), n_steps=8, batch_size=8, device="cpu")
+    model.save(tmp_path / "model.zip")
+    load_sb3(tmp_path / "model.zip", {"action_repeat": 1}, sampled=False)
+    assert not caplog.records
+    load_sb3(tmp_path / "model.zip", {}, sampled=False)
+    assert "--set env.action_repeat=4 changes it" in caplog.text
 
 
 def test_a_network_as_training_writes_it_flies(onnx, fly, tmp_path):

@@ -10,7 +10,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, LABELLED
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
@@ -75,7 +75,7 @@ def test_masks_are_within_the_boxes_that_labels_tell(frames):
 
 def test_labels_list_all_that_masks_show(frames):
     for frame in frames:
-        shown = {i for i in np.unique(frame.object_id).tolist() if i >= ACTOR_OBJECT}
+        shown = set(frame.object_id[np.isin(frame.class_id, [*LABELLED])].tolist())
         told = {other.object_id for other in frame.others}
         target = {frame.target.object_id} if frame.target.seen_pixels else set()
         assert shown == told | target

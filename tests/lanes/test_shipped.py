@@ -1,12 +1,14 @@
 """Machine code that comes with Eyas: used only where it is that of these sources and processors."""
 
 import lzma
+import re
 from types import SimpleNamespace
 
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
-from eyas.lanes import CompiledCall, ParallelCall, entry, shipped
+from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
 from eyas.lanes.cuda import code
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -168,3 +170,26 @@ def test_what_a_card_draws_with_ships():
     stages = [one for one in vars(stages_of_cards).values() if isinstance(one, ParallelCall)]
     assert sum(name.startswith("each_view") for name in ships) == len(stages) == 7
     assert {"list_actors", "stack_pictures", "command_numbers"} <= set(ships)
+
+
+def test_machine_code_names_no_file_of_the_machine_that_made_it():
+    """numba would put the path of a file beside each exception that may be raised in it."""
+    folder = shipped.ARCHIVE.parent
+    codes = [bytes(c.code) for c in read_archive(shipped.ARCHIVE).values()]
+    codes += [bytes(c.code) for c in read_archive(shipped.WIDE_ARCHIVE).values()]
+    for packed in (*folder.glob("*.xz"), *folder.glob("*.eyp")):
+        _, pieces = unpacked(lzma.decompress(packed.read_bytes()))
+        bitcode = packed.suffix == ".xz"
+        codes += [
+            str(llvm.parse_bitcode(bytes(p))).encode() if bitcode else bytes(p) for p in pieces
+        ]
+    assert len(codes) > 100
+    assert not {name for code in codes for name in re.findall(rb"[\w./-]*/[\w.-]+\.py\b", code)}
+
+
+@pytest.mark.parametrize("named", ["x", "+avx2,sse", ",", "+", "+" * 3000])
+def test_features_of_which_llvm_would_end_the_process_are_refused(monkeypatch, named):
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", named)
+    shipped._shipped.cache_clear()
+    with pytest.raises(VariableError, match=r"^NUMBA_CPU_FEATURES: '"):
+        shipped._shipped()

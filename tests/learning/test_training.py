@@ -48,7 +48,8 @@ SMALL = validated(
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    return {name: (folder / name).read_bytes() for name in ("curve.csv", "policy.onnx")}
+    names = ("curve.csv", "policy.onnx", "checkpoint.pt")
+    return {name: (folder / name).read_bytes() for name in names}
 
 
 def quiet(line: str) -> None:

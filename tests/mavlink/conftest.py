@@ -86,8 +86,8 @@ class Bench:
         assert all(ack.command == number for ack in acks)
         return acks[-1].result if acks else None
 
-    def velocity(self, x, y, z, rate=0.0, frame=1, mask=0b0101_1100_0111):
-        self.send("set_position_target_local_ned", time_boot_ms=0, target_system=1,
+    def velocity(self, x, y, z, rate=0.0, frame=1, mask=0b0101_1100_0111, system=1):
+        self.send("set_position_target_local_ned", time_boot_ms=0, target_system=system,
                   target_component=1, coordinate_frame=frame, type_mask=mask, x=0, y=0, z=0,
                   vx=x, vy=y, vz=z, afx=0, afy=0, afz=0, yaw=0, yaw_rate=rate)  # fmt: skip
 

@@ -9,6 +9,7 @@ import pytest
 from pymavlink.dialects.v20 import common
 
 from eyas.core.errors import ConfigError, OutputError
+from eyas.mavlink import loop
 from eyas.mavlink.endpoint import Endpoint
 from eyas.mavlink.loop import fly
 from eyas.mavlink.modes import Mode
@@ -21,6 +22,12 @@ class StopError(Exception):
 def packet(kind, **fields):
     message = getattr(common, f"MAVLink_{kind}_message")(**fields)
     return message.pack(common.MAVLink(None, 255, 190))
+
+
+BEAT = {
+    **{"type": 6, "autopilot": 8, "base_mode": 0, "custom_mode": 0},
+    **{"system_status": 4, "mavlink_version": 3},
+}
 
 
 def velocity(north):
@@ -70,6 +77,40 @@ def test_each_set_point_is_one_step(make_bench):
     endpoint.close()
     assert bench.fleet.now - begun == pytest.approx(0.2)
     assert bench.pilot.mode is Mode.OFFBOARD
+
+
+def test_a_ground_station_does_not_keep_time_still_for_a_program_that_has_died(
+    make_bench, monkeypatch
+):
+    bench = make_bench(vehicles=2, mavlink={"vehicles": 2})
+    bench.fly_up()
+    assert bench.command("COMPONENT_ARM_DISARM", 1, system=2) == 0
+    for system in (1, 2):
+        bench.velocity(1, 0, 0, system=system)
+        bench.command("DO_SET_MODE", 1, 6, 0, system=system)
+    bench.fleet.step()
+    monkeypatch.setattr("eyas.mavlink.loop._PATIENCE", 0.3)
+    endpoint, before = Endpoint(f"udpin:127.0.0.1:{free_port()}"), bench.fleet.now
+    station = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    step = bench.fleet.step
+
+    def others_go_on(fleet, endpoints, wait):
+        station.sendto(packet("heartbeat", **BEAT), endpoint.socket.getsockname())
+        bench.velocity(1, 0, 0, system=2)  # its program lives
+        hear(fleet, endpoints, wait)
+
+    def stopped(**words):
+        step(**words)
+        raise StopError
+
+    hear = loop._hear
+    monkeypatch.setattr(loop, "_hear", others_go_on)
+    bench.fleet.step = stopped
+    with station, pytest.raises(StopError):
+        fly(bench.fleet, [endpoint], lockstep=True)
+    endpoint.close()
+    assert bench.fleet.now > before
+    assert [vehicle.pilot.mode for vehicle in bench.fleet.vehicles] == [Mode.HOLD, Mode.OFFBOARD]
 
 
 def test_the_same_set_points_give_the_same_flight(make_bench):

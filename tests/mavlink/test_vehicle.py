@@ -316,6 +316,39 @@ def test_numbers_that_are_none_change_nothing(bench):
     assert np.isfinite(bench.simulation.snapshot.trackers.position).all()
 
 
+def test_a_message_that_cannot_be_handled_is_a_line(bench, caplog):
+    def fail(message):
+        raise LookupError("at the worst\nmoment")
+
+    bench.fleet.vehicles[0]._components[1].heard["HEARTBEAT"] = fail
+    bench.beat()
+    bench.beat()
+    (record,) = caplog.records
+    assert record.getMessage() == (
+        "HEARTBEAT from 255/190 ignored: LookupError: at the worst\\nmoment"
+    )
+    assert bench.command("COMPONENT_ARM_DISARM", 1) == ACCEPTED
+
+
+def test_what_is_faster_than_a_message_can_hold_is_told_as_its_largest_number(make_bench):
+    bench = make_bench(tracker={"supervised": True, "ground_contact": False})
+    fast = {"MPC_XY_VEL_MAX": 1e6, "MPC_ACC_HOR": 1e6, "MPC_Z_VEL_MAX_UP": 1e6}
+    bench.fly_up()
+    bench.pilot.parameters.values |= fast
+    bench.velocity(-9e4, 9e4, -9e4)
+    assert bench.command("DO_SET_MODE", *OFFBOARD) == ACCEPTED
+    bench.fly(0.5)
+    told = bench.last("GLOBAL_POSITION_INT")
+    assert (told.vx, told.vy) == (-32768, 32767)
+
+
+def test_a_companion_computer_has_its_vehicles_system_id(bench):
+    companion = (1, 191)
+    assert bench.command("COMPONENT_ARM_DISARM", 1, sender=companion) == ACCEPTED
+    assert bench.command("NAV_TAKEOFF", sender=companion) == ACCEPTED
+    assert bench.command("NAV_LAND", sender=(1, 1)) is None  # an echo of its own
+
+
 def test_messages_of_all_kinds_with_any_content_change_nothing(bench):
     from pymavlink.dialects.v20 import common
 

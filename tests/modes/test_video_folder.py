@@ -87,7 +87,7 @@ def test_a_recording_says_which_files_its_writers_write(tmp_path):
     files = {"frame": [], "episode": episode, "run": ["dir_info.json"]}
     build = this_build()
     told = {"eyas": __version__, "build_id": build.id, "build": build.model_dump()}
-    assert origin == {**told, "files": files}
+    assert origin == {**told, "files": files, "seed": 0}
 
 
 @pytest.mark.parametrize("name", ["thesis.txt", "DRONE0/notes.txt", "DRONE0/episode0/best.jpeg"])

@@ -208,3 +208,11 @@ def test_right_ones_come_back_as_they_were(tmp_path, place):
     config = validated(EyasConfig, values)
     save_settings(config, tmp_path / "saved.json")
     assert load_settings(tmp_path / "saved.json") == config
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [("bus", "bus"), ("Car", "passenger"), ("lorry", "truck")]
+)
+def test_a_class_of_vehicles_as_target_names_the_setting_that_chooses_it(name, kind):
+    with pytest.raises(ConfigError, match=rf"SUMO_VEHICLE with traffic\.vehicle_type={kind}$"):
+        load_settings(None, [f"target={name}"])

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, EyasError
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import to_legacy
 from eyas.sim.build import build_simulation
@@ -70,6 +70,35 @@ def test_what_is_no_tracker_is_told_in_one_line(kind, line):
         build_simulation(EyasConfig(tracker={"kind": kind}), each_alone(1))
     assert str(caught.value).startswith(line)
     assert "\n" not in str(caught.value)
+
+
+LOST = """
+from dataclasses import replace
+
+from eyas.lanes import kernel
+from eyas.trackers.drone import DRONE
+
+
+@kernel(inline=True)
+def advance(trackers, memory, n, command):
+    trackers.position[n, 1] = trackers.position[n, 0] / 0.0 * 0.0
+
+
+def Lost(config):
+    return replace(DRONE, name="lost", advance=advance)
+"""
+
+
+@pytest.mark.slow  # its step is compiled
+def test_one_that_flies_to_nowhere_is_told_in_one_line(config, monkeypatch, tmp_path):
+    (tmp_path / "lost_tracker.py").write_text(LOST)
+    monkeypatch.syspath_prepend(tmp_path)
+    own = config.model_copy(update={"tracker": TrackerConfig(kind="lost_tracker:Lost")})
+    simulation = build_simulation(own, each_alone(1))
+    simulation.reset()
+    with pytest.raises(EyasError, match=r"^place of a tracker: \[\[.*nan.*\]\] is not allowed"):
+        simulation.advance(np.zeros((1, 4)), 5)
+    sys.modules.pop("lost_tracker", None)
 
 
 def test_the_original_s_file_cannot_name_it():

@@ -1,4 +1,5 @@
 import logging
+import math
 import socket
 import threading
 import time
@@ -6,7 +7,7 @@ import time
 import pytest
 
 from eyas.core.errors import ConfigError, OutputError
-from eyas.wire.announcements import Announcements
+from eyas.wire.announcements import Announcements, listen_early
 
 
 @pytest.fixture
@@ -45,6 +46,20 @@ def test_looking_does_not_wait(line):
     begin = time.monotonic()
     assert announcements.poll() is None
     assert time.monotonic() - begin < 0.4
+
+
+def test_what_is_announced_before_it_is_made_is_heard():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+        out.bind(("127.0.0.1", 0))
+        port = out.getsockname()[1]
+    listen_early("127.0.0.1", port)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+        out.sendto(b"7", ("127.0.0.1", port))
+    announcements = Announcements("127.0.0.1", port)
+    assert announcements.wait() == 7
+    assert announcements.since < math.inf
+    announcements.close()
+    Announcements("127.0.0.1", port).close()  # it is free
 
 
 def test_a_port_in_use_is_one_line(line):

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -14,7 +15,7 @@ import pytest
 from eyas.core.errors import EyasError, OutputError
 from eyas.modes.serve.stand_in import install, serve_arguments
 
-from .conftest import PATIENCE, free_port
+from .conftest import PATIENCE, client, free_port
 
 TRAINER = Path(__file__).with_name("trainer.py")
 SETTINGS = Path("Webots_Simulation", "traffic_project", "config", "env_config.json")
@@ -64,6 +65,47 @@ def test_a_trainer_that_starts_webots_itself_runs_unchanged(dat, tmp_path):
     assert "Traceback" not in text
 
 
+def test_agents_that_announce_themselves_at_once_are_served_and_it_ends_when_they_have(
+    dat, tmp_path
+):
+    program, port = install(tmp_path / "bin", None, SMALL, until_idle=1.0), free_port()
+    (dat / SETTINGS).write_text(f'{{"Config_Agen_Num_Port": {port}, // drawn\n "Verbose": false}}')
+    (dat / client.FILES).mkdir()
+    world = dat / "Webots_Simulation" / "worlds" / "simpleway-lake.wbt"
+    with subprocess.Popen([program, world], stderr=subprocess.PIPE, text=True) as shim:
+        while not _listened_to(port):
+            assert shim.poll() is None
+        agent = client.Client(dat, 0, patience=PATIENCE)
+        agent.announce(port, 1)
+        agent.reset()
+        _, told = shim.communicate()
+    assert shim.returncode == 0, told
+    assert "--map simpleway-lake --weather day" in told
+    assert told.rstrip().endswith("no client for 1 s: ended")
+
+
+def _listened_to(port):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        try:
+            other.bind(("127.0.0.1", port))
+        except OSError:
+            return True
+    return False
+
+
+def test_it_listens_before_anything_heavy_is_imported(dat):
+    code = (
+        "import sys; from eyas.cli.webots import _listen_early as listen;"
+        "from eyas.wire import announcements; listen(sys.argv[1:]);"
+        "print(len(announcements._early), *{'numpy', 'pydantic', 'typer'} & sys.modules.keys())"
+    )
+    for words in (["--root", dat, "--"], ["--", dat / "Webots_Simulation" / "lake-day.wbt"]):
+        command = [sys.executable, "-c", code, *map(str, words)]
+        (dat / SETTINGS).write_text(json.dumps({"Config_Agen_Num_Port": free_port()}))
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert (done.stdout, done.stderr) == ("1\n", "")
+
+
 @pytest.mark.slow
 def test_a_server_that_was_there_before_follows_the_trainer_s_settings(dat, tmp_path):
     """The documented order, with nothing named `webots` that could start."""
@@ -97,6 +139,7 @@ def test_a_server_that_was_there_before_follows_the_trainer_s_settings(dat, tmp_
         (["--mode=fast", "worlds/lake-foggy.wbt"], "lake foggy"),
         (["/abs/x/village-snow.wbt", "--stdout"], "village snow"),
         (["worlds/simpleway-clinker_foggy.wbt"], "simpleway-clinker foggy"),
+        (["-m", "simpleway-grass.wbt"], "simpleway-grass day"),
         (["a\\b\\desert-day.wbt"], "desert day"),
     ],
 )

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.mesh.assembly import concatenate
 from eyas.world.roads.overpass import (
     DECK_WIDTH,
+    carriageway_mesh,
     deck_area,
-    deck_mesh,
     deck_prisms,
     path,
+    sides_mesh,
 )
 from eyas.world.roads.pillars import pillar_mesh, pillars
 
@@ -36,7 +38,7 @@ def test_a_path_never_dips(middle):
 
 def test_the_deck_is_closed_round_its_section_and_has_walls_two_metres_high(middle):
     flat = middle[:30] * [1, 1, 0] + [0, 0, 30]
-    mesh = deck_mesh(flat, FLOOR)
+    mesh = concatenate([carriageway_mesh(flat), sides_mesh(flat, FLOOR)])
     assert mesh.positions[:, 2].max() == pytest.approx(32.0)
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
@@ -49,7 +51,7 @@ def test_the_deck_is_closed_round_its_section_and_has_walls_two_metres_high(midd
 
 
 def test_a_low_ramp_is_solid_down_to_the_floor(middle):
-    mesh = deck_mesh(middle, FLOOR)
+    mesh = sides_mesh(middle, FLOOR)
     assert mesh.positions[:, 2].min() == pytest.approx(-1.5, abs=0.2)
     near_start = [bottom for outline, bottom, _ in deck_prisms(middle, FLOOR)
                   if outline[:, 0].max() < 60]  # fmt: skip

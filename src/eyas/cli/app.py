@@ -13,10 +13,11 @@ import typer.core
 from eyas.cli import data, drone, evaluate, maps, reproduce, runs, targets, tools, traffic
 from eyas.cli.about import about
 from eyas.cli.completion import completion
-from eyas.cli.said import say
+from eyas.cli.said import lacks_memory, say
 from eyas.cli.switches import as_switches
-from eyas.core.errors import EyasError
+from eyas.core.errors import EyasError, one_line
 from eyas.core.own_code import ended
+from eyas.core.scratch import remove_left_scratch
 
 __all__ = ["app", "run"]
 
@@ -52,6 +53,7 @@ app.command("video")(runs.video)
 app.command("export")(data.export)
 app.command("track")(data.track)
 app.command("train")(runs.train)
+app.command("run")(runs.run)
 app.command("serve")(runs.serve)
 app.command("webots-shim")(tools.webots_shim)
 app.command("bench")(tools.bench)
@@ -75,9 +77,9 @@ app.add_typer(traffic.app, name="traffic")
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
-        from eyas import __version__  # reads the metadata, so only when it is asked for
+        from eyas import __version__, build_id  # read files, so only when they are asked for
 
-        typer.echo(f"eyas {__version__}")
+        typer.echo(f"eyas {__version__} (build {build_id})")
         raise typer.Exit
 
 
@@ -87,7 +89,10 @@ def _options(
     version: Annotated[  # used by its callback
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Print the version and the build.",
         ),
     ] = False,
     verbose: Annotated[
@@ -98,6 +103,7 @@ def _options(
         bool, typer.Option("--quiet", "-q", help="Print nothing but errors, and what is asked for.")
     ] = False,
 ) -> None:
+    remove_left_scratch()
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
         context.default_map = _quiet(context.command)
@@ -117,7 +123,8 @@ class _Line(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         word = "warning: " if record.levelno >= logging.WARNING else ""
-        return f"eyas: {word}{record.getMessage()}"
+        lines = map(one_line, record.getMessage().split("\n"))  # several with a traceback
+        return f"eyas: {word}" + "\n".join(lines)
 
 
 def run() -> int:
@@ -140,13 +147,24 @@ def run() -> int:
         raise carried.interrupt from None
     except typer.Abort:
         raise KeyboardInterrupt from None
-    except OSError as error:
-        return _not_printed(error)
+    except (OSError, ValueError) as error:
+        return _not_ours(error)
     except SystemExit as error:
         if isinstance(error.__context__, BrokenPipeError):  # Typer and rich end so
             return 1  # the reader of our output has seen enough
         return _failed(f"code of a map, a writer or a file {ended(error)}")
     return status if isinstance(status, int) else 0
+
+
+def _not_ours(error: OSError | ValueError) -> int:
+    """Return the exit code of an error that is not an `EyasError`; a fault is raised again."""
+    if isinstance(error, OSError) and error.errno is not None and not lacks_memory(error):
+        return _not_printed(error)
+    from eyas.lanes import VariableError  # half a second to import
+
+    if not isinstance(error, VariableError):
+        raise error
+    return _failed(str(error))
 
 
 def _not_printed(error: OSError) -> int:

@@ -43,6 +43,10 @@ def export(  # noqa: PLR0913  # one parameter for each option
             "--least-visible", min=0.0, max=1.0, help="Ignore objects of which less is visible."
         ),
     ] = 0.0,
+    ignore_parked: Annotated[
+        bool,
+        typer.Option("--ignore-parked", help="Ignore parked cars and whatever else never moves."),
+    ] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue an interrupted export.")
     ] = False,
@@ -61,7 +65,14 @@ def export(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--least-visible: nan is not allowed: 0 to 1")
     from eyas.datasets.export import ExportOptions
 
-    options = ExportOptions(copy, least_side, least_visible, resume, overwrite)
+    options = ExportOptions(
+        copies=copy,
+        least_side=least_side,
+        least_visible=least_visible,
+        ignore_parked=ignore_parked,
+        resume=resume,
+        overwrite=overwrite,
+    )
     run(recording, formats, out, options, quiet=quiet)
 
 

@@ -11,6 +11,9 @@ _WORDS = {2: "interrupted", 15: "terminated", 1: "hung up"}
 """What the signals SIGINT, SIGTERM and SIGHUP have done."""
 
 
+_NO_MEMORY = b"eyas: error: out of memory: free some, or raise the limit (ulimit -v)\n"
+
+
 def main() -> None:
     """Run the command line: errors are one line on stderr and exit code 2, without a traceback.
 
@@ -30,7 +33,12 @@ def main() -> None:
             # After a signal, what is left of its interrupt: pydantic turns one that is raised in a
             # class under way into an error of its own, without a cause.
             if signals.first is None:
-                raise
+                from eyas.cli.said import lacks_memory
+
+                if not lacks_memory(error):
+                    raise
+                os.write(2, _NO_MEMORY)
+                os._exit(2)  # what Python does at its end may need memory again
             interrupt = error
         status = 130
         # Python 3.12 and later add notes of their own, where it was raised in `__set_name__`.

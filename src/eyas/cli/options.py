@@ -62,6 +62,16 @@ Weather = Annotated[
     typer.Option("--weather", help="Name of the weather, or package.module:attribute."),
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
+UntilIdle = Annotated[
+    float | None,
+    typer.Option(
+        "--until-idle",
+        metavar="SECONDS",
+        min=1.0,
+        max=1e9,
+        help="End after this time without a client; by default never.",
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")

@@ -1,7 +1,9 @@
-"""What runs for long: `eyas demo`, `video`, `train` and `serve`."""
+"""What runs for long: `eyas demo`, `video`, `train`, `serve`, and `run`, which is one of them."""
 
 import json
 import logging
+import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,16 +19,18 @@ from eyas.cli.options import (
     Preset,
     Seed,
     Trust,
+    UntilIdle,
     Weather,
     chosen_file,
     gathered,
 )
+from eyas.cli.said import say
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
     from eyas.settings.config import EyasConfig
 
-__all__ = ["demo", "serve", "train", "video"]
+__all__ = ["demo", "run", "serve", "train", "video"]
 
 
 def demo(  # noqa: PLR0913  # one parameter for each option
@@ -69,6 +73,10 @@ def demo(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--seconds: only with --headless")
     overrides = gathered(set_, map_name, weather, seed)
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if config is not None:
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings)
     from eyas.modes.demo import run as demo  # after all checks
 
     listening = None if headless else demo.listen(host, port)
@@ -126,9 +134,14 @@ def video(  # noqa: PLR0913  # one parameter for each option
         # The flight of a file gives way to a policy; one that is asked for beside it does not.
         overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if config is not None:
+        from eyas.modes.video.folder import recorded_seed
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings, recorded_seed(out) if resume else None)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
-        typer.echo(f"eyas: note: {said}", err=True)
+        say(f"note: {said}")
     from eyas.modes.video import (
         run as video,  # compiled kernels: slow to import, so only after all checks
     )
@@ -252,6 +265,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
             help="Fly a drone for nodes of ROS 2 that run in this domain (ROS_DOMAIN_ID), by DDS.",
         ),
     ] = None,
+    until_idle: UntilIdle = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -265,6 +279,8 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     chosen = (root, mavlink or None, px4, ardupilot, ros)
     if sum(each is not None for each in chosen) != 1:
         raise ConfigError("one of --root, --mavlink, --px4, --ardupilot and --ros must be given")
+    if until_idle is not None and root is None:
+        raise ConfigError("--until-idle: only with --root")
     if ros is not None:
         _tell_ros(ros, chosen_file(config, preset), overrides, trust=trust)
         return
@@ -286,12 +302,88 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     # The first start writes a file, which cannot tell all, and serves what the next will read.
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
+    if preset is None:
+        from eyas.settings.legacy.of_a_run import of_a_run
+
+        settings = of_a_run(settings)
+        load = partial(_again, load, settings.seed)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
-        typer.echo(f"eyas: note: {said}", err=True)
-    from eyas.modes.serve.run import run  # after all checks
+        say(f"note: {said}")
+    from eyas.modes.serve.run import run as serve_clients  # after all checks
 
-    run(settings, root, load if file == root / SETTINGS_FILE else None)
+    again = load if file == root / SETTINGS_FILE else None
+    serve_clients(settings, root, again, until_idle=until_idle or math.inf)
+
+
+def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
+    """Return the settings of a server as they are now, for the same run."""
+    from eyas.settings.legacy.of_a_run import of_a_run
+
+    return of_a_run(load(), seed)
+
+
+def run(  # noqa: PLR0913  # one parameter for each option
+    config: Annotated[
+        Path, typer.Option("--config", help="JSON file, native or the original's env_config.json.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder to write to, of a recording or training.")
+    ] = None,
+    root: Annotated[
+        Path | None,
+        typer.Option(
+            "--root",
+            help="Folder of the DAT benchmark, to serve its clients; by default the one that holds "
+            "the file.",
+        ),
+    ] = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Fly a demo without its page, as in eyas demo.")
+    ] = False,
+) -> None:
+    """Do what a file's mode says: demo, video or train, as the DAT benchmark does when it starts.
+
+    In mode train, an env_config.json serves the benchmark's clients (eyas serve), and native
+    settings teach a network (eyas train).
+    """
+    from eyas.modes.serve.source import quietly
+    from eyas.settings.config import Mode
+    from eyas.settings.file import load_settings
+    from eyas.wire.exchange import SETTINGS_FILE
+
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = quietly(partial(load_settings, config, overrides, trust=trust))
+    common = {"config": config, "set_": overrides, "trust": trust}
+    if settings.mode is Mode.DEMO:
+        _announce("demo")
+        demo(**common, headless=headless)
+    elif settings.mode is Mode.VIDEO:
+        _announce("video")
+        video(**common, out=out or Path("runs/video"))
+    elif settings.original is None:
+        _announce("train")
+        train(**common, out=out)
+    else:
+        above = config.absolute().parents[len(SETTINGS_FILE.parts) - 1 :]
+        root = root or (above[0] if above and (above[0] / SETTINGS_FILE).exists() else None)
+        if root is None:
+            raise ConfigError(
+                f"{config}: Simulation_Mode is 'train', and the file is not in a folder of the DAT "
+                f"benchmark (.../{SETTINGS_FILE}); give the folder with --root"
+            )
+        _announce("serve")
+        inside = (root / SETTINGS_FILE).exists() and config.samefile(root / SETTINGS_FILE)
+        serve(root=root, set_=overrides, trust=trust, config=None if inside else config)
+
+
+def _announce(command: str) -> None:
+    say(f"the mode of the settings is that of 'eyas {command}'")
 
 
 def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:

@@ -14,12 +14,13 @@ from eyas.cli.options import (
     MapName,
     Overrides,
     Preset,
+    UntilIdle,
     chosen_file,
     gathered,
 )
+from eyas.cli.said import say
 
 if TYPE_CHECKING:
-    from eyas.evaluation.policies.shipped import Score
     from eyas.settings.config import EyasConfig
 
 
@@ -109,7 +110,7 @@ def show_config(
         with originals_named(settings):
             MAPS.get(settings.world.map).light(settings.world.weather)
     for setting, name in code_of(settings):
-        typer.echo(f"eyas: note: {setting} names code, which a run calls: {name!r}", err=True)
+        say(f"note: {setting} names code, which a run calls: {name!r}")
     typer.echo(_text(settings, legacy=legacy))
 
 
@@ -201,36 +202,29 @@ def _policies_group() -> None: ...
 
 @policies_app.command("list")
 def list_policies(*, as_json: AsJson = False) -> None:
-    """Print the policies for `eyas evaluate --policy`, and what the trained ones reach."""
+    """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
     from eyas.evaluation.policies.shipped import card_of, shipped_names
     from eyas.evaluation.policies.table import BUILT_IN
+    from eyas.modes.reproduce.tables import flown_of
 
     if as_json:
-        told: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
-        told += [
-            {"name": name, **card_of(name).model_dump(mode="json")} for name in shipped_names()
-        ]
-        typer.echo(json.dumps(told, indent=1))
+        listed: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
+        for name in shipped_names():
+            figures = [
+                {"table": table, **one.model_dump(mode="json"), "build_id": build}
+                for table, rows in flown_of(name).items()
+                for _, one, build in rows
+            ]
+            said = card_of(name).model_dump(mode="json")
+            listed.append({"name": name, **said, "figures": figures})
+        typer.echo(json.dumps(listed, indent=1))
         return
     for name in BUILT_IN:
         typer.echo(f"{name} (built in)")
     for name in shipped_names():
         card = card_of(name)
         typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
-        for score in card.scores:
-            typer.echo(
-                f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} {_figures_of(score)}  "
-                f"n {score.n}"
-                f"{'' if score.latency == '0' else f'  {score.latency} ms late'}"
-                f"{'' if score.target == 'SUMO_VEHICLE' else f'  {score.target}'}"
-                f"{'  flown drone' if score.flown else ''}"
-            )
-
-
-def _figures_of(score: "Score") -> str:
-    if score.language_gap is None:
-        return f"TSR {score.tsr:.3f}  CR {score.cr:.1f}"
-    return f"success {score.success:.3f}  language gap {score.language_gap:.3f}"
+    typer.echo("What a trained policy reaches: eyas policies card NAME")
 
 
 @policies_app.command("card")
@@ -239,8 +233,8 @@ def policy_card(
 ) -> None:
     """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
     from eyas.core.errors import UnknownNameError
-    from eyas.evaluation.policies.model_card import model_card
     from eyas.evaluation.policies.shipped import shipped_names
+    from eyas.modes.reproduce.model_card import model_card
 
     if name not in shipped_names():
         raise UnknownNameError("NAME", name, shipped_names())
@@ -260,6 +254,7 @@ def webots_shim(
             "folder where the program is started.",
         ),
     ] = None,
+    until_idle: UntilIdle = None,
     set_: Overrides = None,
 ) -> None:
     """Install a program named webots that starts 'eyas serve', for programs that start Webots."""
@@ -267,6 +262,6 @@ def webots_shim(
     from eyas.settings.file import load_settings
 
     load_settings(None, set_ or ())  # a mistake is told now
-    path = write(install, root, set_ or ())
+    path = write(install, root, set_ or (), until_idle)
     typer.echo(f"{path}: starts Eyas in the place of Webots where its folder comes first in PATH:")
     typer.echo(f'export PATH="{path.parent.resolve()}{os.pathsep}$PATH"')

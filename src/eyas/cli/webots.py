@@ -1,6 +1,7 @@
 """The program `webots` that `eyas webots-shim` installs: it starts `eyas serve`."""
 
 import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,10 +11,34 @@ __all__ = ["main"]
 
 def main() -> None:
     """Serve the world that the arguments name, as `eyas serve` does; all else is ignored."""
+    _listen_early(sys.argv[1:])
     from eyas.cli.main import main as eyas
 
     sys.argv = [sys.argv[0], *_arguments(sys.argv[1:])]
     eyas()
+
+
+def _listen_early(words: Sequence[str]) -> None:
+    """Listen where the settings of the nearest folder say, before anything heavy is imported: the
+    program that starts this one may announce its agents at any time.
+
+    What is wrong in the settings, or here, is found and named later.
+    """
+    from eyas.wire.announcements import listen_early  # light
+
+    worlds = [word for word in words if word.endswith(".wbt")]
+    fixed = words[words.index("--root") + 1 :][:1] if "--root" in words else worlds[-1:]
+    for folder in (*map(Path, fixed), Path()):
+        whole = Path(os.path.abspath(folder))
+        for above in (whole, *whole.parents):
+            settings = above / "Webots_Simulation/traffic_project/config/env_config.json"
+            if settings.is_file():
+                text = settings.read_text(encoding="utf-8", errors="replace")
+                port = re.search(r'"Config_Agen_Num_Port"\s*:\s*([1-9]\d{0,4})\b', text)
+                address = re.search(r'"Socket_Ip"\s*:\s*"([^"]*)"', text)
+                if port and int(port[1]) < 65536:
+                    listen_early(address[1] if address else "127.0.0.1", int(port[1]))
+                return
 
 
 def _arguments(words: Sequence[str]) -> list[str]:

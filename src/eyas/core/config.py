@@ -1,7 +1,7 @@
 """Configuration: frozen pydantic models whose errors are one line with the path of the setting."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import NoneType, UnionType
 from typing import Any, ClassVar, TypeVar, get_args
@@ -13,7 +13,16 @@ from pydantic_core import CoreSchema, ErrorDetails
 from eyas.core.allowed import describe, names_of
 from eyas.core.errors import ConfigError, UnknownNameError, nearest
 
-__all__ = ["Config", "Problem", "entries_of", "group_of", "shown", "updated", "validated"]
+__all__ = [
+    "Config",
+    "Problem",
+    "entries_of",
+    "group_of",
+    "shown",
+    "unknown_keys",
+    "updated",
+    "validated",
+]
 
 Path = tuple[str, ...]
 
@@ -56,8 +65,12 @@ class Config(BaseModel):
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     def kept(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the values of fields that stay when some are changed; others get defaults."""
-        return {name: getattr(self, name) for name in type(self).model_fields}
+        """Return the values of fields that stay when some are changed; others get defaults.
+
+        A value that no one has set is left out, so that `model_fields_set` stays right.
+        """
+        set_ = self.model_fields_set
+        return {name: value for name, value in self if name in set_ or isinstance(value, Config)}
 
     @classmethod
     def __get_pydantic_core_schema__(
@@ -82,16 +95,48 @@ class Problem:
     """Allowed values of a choice of names; for an unknown key, the known keys."""
     unknown_key: bool = False
     """Whether the key is wrong, not its value."""
+    instead: str = ""
+    """What else is allowed instead of this value, in words."""
+    others: tuple["Problem", ...] = ()
+    """Further unknown keys."""
 
     def error(self) -> ConfigError:
         """Return the error to raise, one line."""
         path = ".".join(self.path) or "settings"
         if self.unknown_key:
             hint = nearest(self.path[-1], self.names)
-            return ConfigError(f"{path}: unknown key{hint}; known: {', '.join(self.names)}")
+            known = ", ".join(self.names)
+            return ConfigError(f"{path}: unknown key{hint}; known: {known}{self._further()}")
         if self.names and isinstance(self.value, str):
-            return UnknownNameError(path, self.value, self.names)
+            return UnknownNameError(path, self.value, self.names, others=self.instead)
         return ConfigError(f"{path}: {shown(self.value)} is not allowed: {self.allowed}")
+
+    def below(self, root: str) -> "Problem":
+        """Return the problem with a key before its path; an empty one changes nothing."""
+        if not root:
+            return self
+        others = tuple(other.below(root) for other in self.others)
+        return replace(self, path=(root, *self.path), others=others)
+
+    def _further(self) -> str:
+        """Return the words for further unknown keys."""
+        keys = []
+        for other in self.others[:_MOST_NAMED]:
+            hint = nearest(other.path[-1], other.names).removeprefix("; ")
+            keys.append(".".join(other.path) + (f" ({hint})" if hint else ""))
+        if (left := len(self.others) - len(keys)) > 0:
+            keys.append(f"{left} more")
+        return f"; also unknown: {', '.join(keys)}" if keys else ""
+
+
+_MOST_NAMED = 50
+"""Number of further unknown keys in one message: as many as a file of an older version may have."""
+
+
+def unknown_keys(problems: Sequence[Problem]) -> Problem | None:
+    """Return one problem that names all unknown keys among some problems; None: there is none."""
+    unknown = [problem for problem in problems if problem.unknown_key]
+    return replace(unknown[0], others=tuple(unknown[1:])) if unknown else None
 
 
 Model = TypeVar("Model", bound=Config)
@@ -112,8 +157,7 @@ def validated(model: type[Model], values: Mapping[str, Any], root: str = "") -> 
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        problem = _problem(error, model, values)
-        raise replace(problem, path=(*[root] * bool(root), *problem.path)).error() from None
+        raise _problem(error, model, values).below(root).error() from None
 
 
 def updated(
@@ -193,9 +237,9 @@ def _spelt_out(model: type[Config], key: str, value: object) -> object:
 
 
 def _problem(error: ValidationError, model: type[Config], values: Mapping[str, Any]) -> Problem:
-    """Return the first problem; unknown keys come first, for they may cause the others."""
+    """Return the unknown keys, for they may cause the other problems, or else the first problem."""
     problems = [_one_problem(entry, model, values) for entry in error.errors(include_url=False)]
-    return next((problem for problem in problems if problem.unknown_key), problems[0])
+    return unknown_keys(problems) or problems[0]
 
 
 def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Problem:
@@ -220,7 +264,9 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
         return _group_problem(path, group, values, said)
     assert field is not None
     allowed = said or describe(field.annotation, field.metadata)
-    return Problem(path, values, allowed, names_of(field.annotation))
+    elsewhere = getattr(field.annotation, "elsewhere", None)  # of an enumeration, see `TargetName`
+    instead = elsewhere(values) if elsewhere and isinstance(values, str) else ""
+    return Problem(path, values, allowed, names_of(field.annotation), instead=instead)
 
 
 def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:

@@ -1,6 +1,7 @@
 """Errors that a user can cause. Each is one line: what, where, value, allowed values."""
 
 import difflib
+import re
 from collections.abc import Iterable
 
 __all__ = [
@@ -13,25 +14,40 @@ __all__ = [
     "SpawnError",
     "UnknownNameError",
     "nearest",
+    "one_line",
 ]
 
 
-_LONGEST = 4000
+_LONGEST = 1200
 """Largest number of characters of a message."""
+
+_LONG = re.compile(r"""(?<!\w)(b?(['"]))((?:(?!\2(?!\w)).){201,})\2(?!\w)|\S{401,}""", re.DOTALL)
+"""A quoted text, or anything without spaces, that is too long to be shown whole."""
+
+
+def one_line(text: str) -> str:
+    """Return a message as one line, whatever the values in it: other characters than printable ones
+    are written as in Python, and what is too long is cut out of the middle.
+    """
+    line = _LONG.sub(lambda found: _cut(found[0], 200), text) if len(text) > 200 else text
+    line = _cut(line, _LONGEST)
+    return "".join(char if char.isprintable() else repr(char)[1:-1] for char in line)
+
+
+def _cut(text: str, longest: int) -> str:
+    if len(text) <= longest:
+        return text
+    return f"{text[: longest * 3 // 4]} ... {text[-longest // 4 :]}"
 
 
 class EyasError(Exception):
     """Base of all errors of Eyas; the command line prints the message and exits with code 2.
 
-    Its text is one line, whatever the names in it contain: other characters than printable ones are
-    written as in Python, and what is too long is cut out of the middle.
+    Its text is one line, see `one_line`.
     """
 
     def __str__(self) -> str:
-        line = super().__str__()
-        if len(line) > _LONGEST:
-            line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 4 :]}"
-        return "".join(char if char.isprintable() else repr(char)[1:-1] for char in line)
+        return one_line(super().__str__())
 
 
 class ConfigError(EyasError):

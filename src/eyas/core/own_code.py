@@ -3,7 +3,7 @@
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from importlib import import_module, invalidate_caches
 from importlib.util import find_spec
@@ -11,7 +11,7 @@ from traceback import extract_tb
 
 from eyas.core.errors import ConfigError, nearest
 
-__all__ = ["ended", "imported", "running", "takes"]
+__all__ = ["ended", "imported", "left_out", "running", "takes"]
 
 
 def imported(path: str, setting: str) -> object:
@@ -102,6 +102,12 @@ def ended(error: BaseException) -> str:
     last = extract_tb(error.__traceback__)[-1]
     said = f"{type(error).__name__}({error})"
     return f"tried to end the program: {said} in {last.filename}, line {last.lineno}"
+
+
+def left_out(kind: object, members: Iterable[str]) -> list[str]:
+    """Return the members that a class of a user's does not have, or only as abstract ones."""
+    abstract = getattr(kind, "__abstractmethods__", ())
+    return [name for name in members if not hasattr(kind, name) or name in abstract]
 
 
 def takes(what: Callable[..., object], *arguments: object) -> str | None:

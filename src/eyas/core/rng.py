@@ -1,5 +1,6 @@
 """Random numbers: one seed, and one named stream for each tracker and room."""
 
+import secrets
 import zlib
 from typing import Any, NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from eyas.core.errors import ConfigError
 
-__all__ = ["TEST_SEEDS", "EpisodeKey", "checked_seed", "room_key", "stream"]
+__all__ = ["TEST_SEEDS", "EpisodeKey", "checked_seed", "fresh_seed", "room_key", "stream"]
 
 TEST_SEEDS = 900_000_000
 """Seeds of maps and of traffic from here on are kept for tests: nothing is taught with them."""
@@ -43,6 +44,11 @@ def checked_seed(seed: Any) -> int:  # noqa: ANN401  # whatever a caller gives
     if not whole or not 0 <= int(seed) < 2**63:
         raise ConfigError(f"seed: {seed!r} is not allowed: a whole number from 0 to 2**63 - 1")
     return int(seed)
+
+
+def fresh_seed() -> int:
+    """Return a seed drawn from the system's entropy, below 2**53: exact in JSON and as float64."""
+    return secrets.randbits(53)
 
 
 class EpisodeKey(NamedTuple):

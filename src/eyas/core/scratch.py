@@ -1,4 +1,4 @@
-"""Temporary folders; those that killed processes have left are removed by the next one."""
+"""Temporary folders; those that killed processes have left are removed at the next start."""
 
 import os
 import shutil
@@ -14,13 +14,13 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["scratch"]
+__all__ = ["remove_left_scratch", "scratch"]
 
 _PREFIX, _OWNER = "eyas-scratch-", "in-use"
 """Begin of the names of these folders; the file in each that its process has locked."""
 
 _YOUNG = 60.0
-"""Age up to which a folder is left alone: its process may be about to lock it [s]."""
+"""Age up to which the folder of a process that lives is left alone, as it may lock it next [s]."""
 
 
 @contextmanager
@@ -33,8 +33,9 @@ def scratch() -> Iterator[Path]:
     Raises:
         OSError: The folder cannot be made.
     """
-    _remove_left_ones(Path(tempfile.gettempdir()))
-    with tempfile.TemporaryDirectory(prefix=_PREFIX, ignore_cleanup_errors=True) as name:
+    remove_left_scratch()
+    own = f"{_PREFIX}{os.getpid()}-"
+    with tempfile.TemporaryDirectory(prefix=own, ignore_cleanup_errors=True) as name:
         with open(Path(name, _OWNER), "x") as file:
             if fcntl is not None:
                 with suppress(OSError):  # without locks here, nothing is ever taken for left
@@ -42,15 +43,36 @@ def scratch() -> Iterator[Path]:
             yield Path(name)
 
 
-def _remove_left_ones(place: Path) -> None:
+def remove_left_scratch() -> None:
     """Remove the folders of this user's processes that were killed."""
     if fcntl is None:
         return
-    for folder in place.glob(f"{_PREFIX}*"):
-        with suppress(OSError):  # others may remove it as well
-            status = folder.lstat()
-            young = time.time() - status.st_mtime < _YOUNG
-            if not young and stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid():
-                with open(folder / _OWNER) as file:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    shutil.rmtree(folder)
+    with suppress(OSError):  # there is no folder for temporary files
+        for folder in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
+            with suppress(OSError):  # others may remove it as well
+                _remove_if_left(folder)
+
+
+def _remove_if_left(folder: Path) -> None:
+    status, dead = folder.lstat(), _is_dead(folder.name)
+    young = time.time() - status.st_mtime < _YOUNG
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.geteuid() or (young and not dead):
+        return
+    if dead and not (folder / _OWNER).exists():  # killed before it could lock it
+        shutil.rmtree(folder)
+        return
+    with open(folder / _OWNER) as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        shutil.rmtree(folder)
+
+
+def _is_dead(name: str) -> bool:
+    """Return whether the process that a folder is named after has ended."""
+    number = name.removeprefix(_PREFIX).partition("-")[0]
+    if not number.isdecimal() or len(number) > 9:
+        return False
+    try:
+        os.kill(int(number), 0)
+    except OSError as error:  # it may be another user's
+        return isinstance(error, ProcessLookupError)
+    return False

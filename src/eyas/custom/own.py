@@ -1,5 +1,6 @@
 """The interface of a target that is a Python class, and the two that need none."""
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -35,10 +36,12 @@ class OwnTarget(Protocol):
         """Length, width and height [m]."""
         ...
 
+    @abstractmethod
     def parts(self) -> Sequence[Mesh]:
         """Return the P parts, each in a frame of its own."""
         ...
 
+    @abstractmethod
     def pose(self, ride: Ride) -> NDArray[np.float64]:
         """Return rotation and translation of each part in the model frame, shape (K, P, 3, 4)."""
         ...
@@ -48,6 +51,7 @@ class OwnTarget(Protocol):
 class MovesItself(Protocol):
     """A target that has a motion of its own, in the place of `behaviour`."""
 
+    @abstractmethod
     def tracks(
         self, scene: Scene, time: NDArray[np.float64], count: int, rng: np.random.Generator
     ) -> NDArray[np.float64]:

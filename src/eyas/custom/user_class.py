@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, EyasError
-from eyas.core.own_code import takes
+from eyas.core.own_code import left_out, takes
 from eyas.core.registry import Registry
 from eyas.custom.mesh_file import LARGEST
 from eyas.custom.own import MovesItself, OwnTarget, Ride
@@ -31,7 +31,8 @@ def made(path: str) -> OwnTarget:
         EyasError: It cannot be used: one line.
     """
     kind = _CLASSES.get(path)
-    if not all(callable(getattr(kind, method, None)) for method in ("parts", "pose")):
+    needed = ("parts", "pose")
+    if left_out(kind, needed) or not all(callable(getattr(kind, name)) for name in needed):
         raise _refused(path, "it has not all of: size, parts(), pose(ride)")
     if why := takes(kind):
         raise _refused(path, f"a class that is made without arguments is needed; {why}")

@@ -19,6 +19,7 @@ from eyas.core.decoding import read_json
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
+from eyas.core.own_code import left_out
 from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
@@ -68,6 +69,7 @@ class ExportOptions:
     copies: bool = False
     least_side: int = 1
     least_visible: float = 0.0
+    ignore_parked: bool = False
     resume: bool = False
     """Whether an interrupted export in the folder is continued."""
     overwrite: bool = False
@@ -106,6 +108,7 @@ def export(
         copies=options.copies,
         least_side=options.least_side,
         least_visible=options.least_visible,
+        ignore_parked=options.ignore_parked,
     )
     form = make(job)
     with folder_lock(folder, "exporting into it"):
@@ -195,8 +198,7 @@ def require_outputs(recording: Recording, name: str, make: type[Format]) -> None
 
 def _format_of(name: str) -> type[Format]:
     found: type[Format] = FORMATS.get(name)
-    missing = [each for each in ("needs", "add", "finish") if not hasattr(found, each)]
-    if missing:
+    if missing := left_out(found, ("needs", "add", "finish")):
         raise ConfigError(f"{SETTING}: {name!r} is not a format: it has no '{missing[0]}'")
     return found
 
@@ -222,6 +224,7 @@ def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[s
         "pictures": "copied" if options.copies else "linked",
         "least_side": options.least_side,
         "least_visible": options.least_visible,
+        "ignore_parked": options.ignore_parked,
         "eyas": __version__,
         "build_id": this_build().id,
     }

@@ -49,8 +49,10 @@ CLASS_NAMES = {
     ObjectClass.PERSON: "person",
     ObjectClass.ROBOT: "robot",
     ObjectClass.BICYCLE: "bicycle",
+    ObjectClass.BOAT: "boat",
+    ObjectClass.TRAIN: "train",
 }
-"""Names of the classes of moving objects, in the order of the formats that number classes."""
+"""Names of the classes of labelled objects, in the order of the formats that number classes."""
 
 KEPT = ".kept"
 """Folder of what `add` keeps for `finish`, in the folder of the export."""
@@ -66,7 +68,7 @@ class Exported(NamedTuple):
 
 
 class SeenObject(NamedTuple):
-    """A moving object in a frame: the target, or another one."""
+    """A moving or parked object in a frame: the target, or another one."""
 
     label: Label
     """Its fields by the names of the entries of `others`: `id`, `box`, `words`, ..."""
@@ -79,7 +81,7 @@ class SeenObject(NamedTuple):
 
 
 def objects_of(frame: Label) -> Iterator[SeenObject]:
-    """Yield the moving objects of which a pixel is visible, in the order of their ids."""
+    """Yield the objects of which a pixel is visible, in the order of their ids."""
     target = {name: frame[key] for name, key in _TARGET_KEYS.items() if key in frame}
     seen = [SeenObject(other, is_target=False) for other in frame["others"]]
     if target["visible_fraction"] > 0.0:
@@ -102,6 +104,7 @@ class Job:
         least_side: Objects whose box is narrower or lower are ignored: left out, or marked where
             the format has a mark for it [pixels].
         least_visible: The same for those of which a smaller share is visible.
+        ignore_parked: Whether parked objects are ignored, too.
     """
 
     folder: Path
@@ -109,6 +112,7 @@ class Job:
     copies: bool = False
     least_side: int = 1
     least_visible: float = 0.0
+    ignore_parked: bool = False
 
     def place(self, picture: Path, inside: str) -> None:
         """Put a picture of the recording into the export.
@@ -195,14 +199,20 @@ class Job:
                 source.replace(path)
 
     def ignores(self, seen: SeenObject) -> bool:
-        """Return whether an object is too small or too much hidden to count."""
+        """Return whether an object does not count: it is too small, too much hidden, or parked."""
+        if self.ignore_parked and "parked" in seen.label:
+            return True
         left, top, right, bottom = seen.label["box"]
         small = min(right - left, bottom - top) < self.least_side
         return small or bool(seen.label["visible_fraction"] < self.least_visible)
 
 
 class Format(Protocol):
-    """One layout of files."""
+    """One layout of files. A subclass may omit `__init__` and `finish`.
+
+    Attributes:
+        job: What is exported, and how.
+    """
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
@@ -210,8 +220,8 @@ class Format(Protocol):
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
 
-    @abstractmethod
-    def __init__(self, job: Job) -> None: ...
+    def __init__(self, job: Job) -> None:
+        self.job = job
 
     @abstractmethod
     def add(self, episode: RecordedEpisode) -> None:

@@ -29,7 +29,7 @@ from eyas.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.exports.label import LABELS, Label, read_labels
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, LAST_PARKED
 
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
@@ -43,7 +43,7 @@ DATASET_FILE = "dataset.json"
 SPLITS = ("train", "val", "test")
 
 MASK_OFFSET = ACTOR_OBJECT - 1
-"""A mask's value and this make the `id` of the labels."""
+"""A mask's value and this make the `id` of what moves; this less the value, of what is parked."""
 
 _LARGEST = 1 << 28
 """Of a file of one frame [bytes]."""
@@ -70,12 +70,14 @@ class RecordedFrame:
         return self._image(self.episode.picture_file(self.number), np.uint8, colours=3)
 
     def masks(self) -> NDArray[np.int32]:
-        """Return for each pixel the label's `id` of the moving object that it shows, 0 where it
-        shows none, shape (H, W).
+        """Return for each pixel the label's `id` of the object that it shows, 0 where it shows
+        none, shape (H, W).
         """
         path = self.file("masks")
         masks = self._image(path, np.int32)
-        np.add(masks, MASK_OFFSET, out=masks, where=masks != 0)
+        parked = masks >= MASK_OFFSET - LAST_PARKED
+        np.add(masks, MASK_OFFSET, out=masks, where=(masks != 0) & ~parked)
+        np.subtract(MASK_OFFSET, masks, out=masks, where=parked)
         for number, (left, top, right, bottom) in _visible_boxes(self.label):
             if not (masks[top:bottom, left:right] == number).any():
                 raise DataFileError(f"{path}: shows nothing of {number}, though its label does")

@@ -21,6 +21,7 @@ from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
+from eyas.envs.trained_with import describe
 from eyas.lanes import BoundCall, CompiledCall, Held, Kernel
 from eyas.render.renderer import CpuRenderer
 from eyas.settings.config import EyasConfig
@@ -29,6 +30,8 @@ from eyas.sim.assets import Assets
 from eyas.sim.build import build_simulation
 from eyas.sim.episode_sampling import ModelTable, SamplingRules
 from eyas.sim.light import LightRules
+from eyas.sim.starts import Starts
+from eyas.sim.views.parked import ParkedObjects
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
@@ -45,12 +48,12 @@ __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)
 """To the addresses of arrays, which stay."""
-_SCRATCH = (VisibleActors, Picture)
+_SCRATCH = (VisibleActors, Picture, Starts)
 """Worked out at each use."""
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
@@ -123,6 +126,7 @@ class Batch:
         with originals_named(config):
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
         self.actions = make_actions(config.env)
+        describe(self.actions.space, config)
         self.observer = Observer(config.env.observation, self._simulation, measures=measures)
         self._steps = physics_steps(config.control.frequency)
         self._all = np.arange(count, dtype=np.int32)

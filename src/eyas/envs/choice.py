@@ -10,6 +10,7 @@ import numpy as np
 from eyas.core.clock import physics_steps
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.rng import fresh_seed
 from eyas.envs.config import ActionKind, EnvSpeeds, GimbalConfig, ObservationConfig, ObservationPart
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
@@ -22,6 +23,7 @@ __all__ = [
     "checked_options",
     "chosen_settings",
     "episode_settings",
+    "first_seed",
     "kinds_of",
     "settings_of_kinds",
     "steps_per_action",
@@ -132,6 +134,13 @@ def checked_options(
         if name not in allowed:
             raise ConfigError(f"{UnknownNameError('options', str(name), allowed)}{advice}")
     return options
+
+
+def first_seed(config: EyasConfig) -> int:
+    """Return the seed with which an environment begins that is given none: that of its settings if
+    they set one, otherwise a fresh one, as in Gymnasium, so that none is a copy of another.
+    """
+    return config.seed if "seed" in config.model_fields_set else fresh_seed()
 
 
 def steps_per_action(config: EyasConfig) -> int:

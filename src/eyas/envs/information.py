@@ -44,6 +44,7 @@ def information(simulation: Simulation) -> Info:
       `eyas.targets.catalogue.MODELS`;
     - as numbers of `eyas.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
       that the body violates (`done_state`); the physics steps since the reset (`step`);
+    - the seed of the sequence of episodes (`seed`): `reset(seed=...)` begins it again;
     - the values sampled from the `light` settings (factor on the sky, factor on the sun, one over
       the visibility range [1/m]);
     - where `done.crash` means contacts, the place of the last one since the reset (`contact`, world
@@ -70,6 +71,7 @@ def information(simulation: Simulation) -> Info:
     info["step"] = episodes.step_count.copy()
     info["done_reason"] = episodes.reason.copy()
     info["done_state"] = episodes.breach.copy()
+    info["seed"] = simulation.seeds
     info["light"] = np.stack(light, axis=1)
     if simulation.config.done.crash is not Crash.ORIGINAL:
         info["contact"] = episodes.contact.copy()

@@ -1,7 +1,7 @@
 """Keys of `gymnasium.utils.play`: W, A, S, D move, Q and E turn, R and F climb and sink; K and I
 turn the camera down and up, J and L to the left and right.
 
-Nothing pressed must mean hover: `play(env, noop=hover(env.action_space))`.
+Nothing pressed must mean hover: `play(env, noop=hover_action(env.action_space))`.
 """
 
 from itertools import product
@@ -13,7 +13,7 @@ import numpy as np
 from eyas.envs.actions import make_actions
 from eyas.envs.config import EnvConfig
 
-__all__ = ["hover", "keys_to_action"]
+__all__ = ["hover_action", "keys_to_action"]
 
 Keys = dict[tuple[str, ...], Any]
 
@@ -39,7 +39,7 @@ def keys_to_action(env: EnvConfig) -> Keys:
     return keys
 
 
-def hover(space: gymnasium.Space[Any]) -> Any:  # noqa: ANN401  # an action of the space
+def hover_action(space: gymnasium.Space[Any]) -> Any:  # noqa: ANN401  # an action of the space
     """Return the action that stays in place."""
     if isinstance(space, gymnasium.spaces.Discrete):
         return 6

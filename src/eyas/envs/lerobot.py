@@ -1,6 +1,7 @@
-"""Environments for LeRobot: observations by its names, and the `make_env` that its EnvHub calls.
+"""Environments for LeRobot: observations by its names, and a function that its EnvHub calls.
 
-An `env.py` of one line makes a repository on its hub: `from eyas.envs.lerobot import make_env`.
+An `env.py` of one line makes a repository on its hub: `from eyas import make_lerobot_env as
+make_env`.
 """
 
 from collections.abc import Mapping
@@ -15,7 +16,7 @@ from eyas.envs.choice import EnvChoices, Source
 from eyas.envs.config import ObservationPart
 from eyas.envs.vector_env import EyasVectorEnv, Stepped
 
-__all__ = ["LeRobotVectorEnv", "make_env"]
+__all__ = ["LeRobotVectorEnv", "make_lerobot_env"]
 
 _NAMES = {
     ObservationPart.IMAGE.value: "pixels",
@@ -89,7 +90,7 @@ class LeRobotVectorEnv(gymnasium.vector.VectorWrapper[Any, Any, Any, Any, Any]):
         return info
 
 
-def make_env(
+def make_lerobot_env(
     n_envs: int = 1,
     use_async_envs: bool = False,  # LeRobot's signature
     cfg: Source = None,

@@ -17,10 +17,11 @@ from eyas.envs.choice import (
     EpisodeChoices,
     Source,
     chosen_settings,
+    first_seed,
     settings_of_kinds,
 )
 from eyas.envs.information import Info, by_term, of_one
-from eyas.envs.keys import hover
+from eyas.envs.keys import hover_action
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
 
@@ -112,7 +113,8 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
 
         Args:
             seed: Begin the sequence of episodes of this seed; None continues the current sequence,
-                at first that of the configuration's seed.
+                at first that of the configuration's seed, or of a fresh one if it sets none.
+                `info["seed"]` names it.
             options: Without effect. PettingZoo's checker gives unknown ones, so these are only
                 logged.
 
@@ -122,7 +124,11 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         """
         self._check_open()
         self._check_options(options)
-        self._batch.begin_together(None if seed is None else checked_seed(seed))
+        if seed is not None:
+            seed = checked_seed(seed)
+        elif not self._begun:
+            seed = first_seed(self.config)
+        self._batch.begin_together(seed)
         self._begun = True
         self.agents = self.possible_agents[:]
         observations = self._look(begun=True)
@@ -148,7 +154,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
                 f"{', '.join(self.agents)}"
             )
         active = np.array([agent in actions for agent in self.possible_agents])
-        rest = hover(self._batch.actions.space)
+        rest = hover_action(self._batch.actions.space)
         outcome = self._batch.step(
             [actions.get(agent, rest) for agent in self.possible_agents], active
         )

@@ -84,6 +84,7 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
         """Begin new episodes, of the seeds that `seed` has set."""
         seeds = None if all(seed is None for seed in self._seeds) else list(self._seeds)
         observations, self.info = self._env.reset(seed=seeds)
+        self.reset_infos = [{"seed": int(seed)} for seed in self.info["seed"]]
         self._return[:], self._length[:] = 0.0, 0
         self._reset_seeds()
         self._reset_options()

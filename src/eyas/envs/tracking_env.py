@@ -15,6 +15,7 @@ from eyas.envs.choice import (
     Source,
     chosen_settings,
     episode_settings,
+    first_seed,
     settings_of_kinds,
 )
 from eyas.envs.information import Info, by_term, of_one
@@ -87,7 +88,8 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
         Args:
             seed: Begin the sequence of episodes of this seed; None continues the current sequence,
-                at first that of the configuration's seed.
+                at first that of the configuration's seed, or of a fresh one if it sets none.
+                `info["seed"]` names it.
             options: What is different in this episode only: `map`, `weather`, `target` (names) and
                 `start` (settings of `start`), see `eyas.envs.choice.EpisodeChoices`.
 
@@ -96,7 +98,10 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
             ClosedEnvironmentError: The environment is closed; Gymnasium's, as in `step`.
         """
         self._check_open()
-        seed = None if seed is None else checked_seed(seed)
+        if seed is not None:
+            seed = checked_seed(seed)
+        elif not self._begun:
+            seed = first_seed(self.config)
         self._enter(episode_settings(self.config, options))
         super().reset(seed=seed)
         self._batch.begin(_ONE, [seed])

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError, EyasError
 from eyas.core.rng import checked_seed
 from eyas.envs.batch import Outcome, Truth
-from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings
+from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings, first_seed
 from eyas.envs.device.envs import DeviceEnvs
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.mixed_batch import MixedBatch
@@ -34,8 +34,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     """N environments that are stepped together, and drawn with all threads.
 
     Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
-    seed, the first reset takes that of the configuration for s. Copies are as those of
-    `TrackingEnv`.
+    seed, the first reset takes that of the configuration for s, or a fresh one if it sets none.
+    Copies are as those of `TrackingEnv`.
 
     Args:
         num_envs: N.
@@ -100,7 +100,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         }
         self._overlay = overlay
         self._all = np.ones(num_envs, np.bool_)
-        self._begun, self._ended = False, np.zeros(num_envs, np.bool_)
+        self._begun, self._ended = np.zeros((2, num_envs), np.bool_)
         self._ring = [] if copy else [self._new_observations() for _ in range(2)]
         self._sub_envs = [SubEnv(self, index) for index in range(num_envs)]
 
@@ -127,12 +127,12 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         self._check_open()
         chosen = self._chosen(options)
         envs = self._there or self._batch
-        envs.begin(chosen, self._seeds(seed))
-        self._begun = True
+        envs.begin(chosen, self._seeds(seed, chosen))
+        self._begun |= chosen
         envs.look(chosen, chosen)
         self._ended[chosen] = False
         if self._there is not None:
-            return self._observations(out), {}
+            return self._observations(out), masked({"seed": self._there.seeds}, chosen)
         info = masked(self._batch.info(), chosen)
         # The same names as after a step: TorchRL stacks all information.
         none = {name: np.zeros(self.num_envs) for name in self._batch.terms}
@@ -156,7 +156,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             ResetNeeded: No episode has begun.
         """
         self._check_open()
-        if not self._begun:
+        if not self._begun.any():
             raise ResetNeeded("step: call reset first")
         begin = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED:
@@ -259,7 +259,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def _repr_html_(self) -> str:
         """Return a strip of the first cameras' pictures, for notebooks."""
         name = f"{self.num_envs} environments: {self.config.world.map}, {self.config.world.weather}"
-        if self._here is None or self.closed or not self._begun:
+        if self._here is None or self.closed or not self._begun.any():
             return strip_html([], name)
         shown = range(min(self.num_envs, LONGEST_STRIP))
         return strip_html([self.render_one(index) for index in shown], name)
@@ -313,23 +313,31 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         chosen: Mask = mask.copy()
         return chosen
 
-    def _seeds(self, seed: Seed) -> list[int | None] | None:
-        """Return the seed of each environment.
+    def _seeds(self, seed: Seed, chosen: Mask) -> list[int | None]:
+        """Return the seed of each environment, None where it continues.
 
         Raises:
             ConfigError: One is wrong, or there is not one for each.
         """
+        each: list[int | None] = [None] * self.num_envs
         if seed is None:
-            if self._begun:
-                return None
-            seed = self.config.seed
-        if isinstance(seed, str) or not isinstance(seed, Sequence | np.ndarray):
-            first = checked_seed(seed)
-            checked_seed(first + self.num_envs - 1)
-            return list(range(first, first + self.num_envs))
-        if len(seed) != self.num_envs:
+            pass
+        elif isinstance(seed, str) or not isinstance(seed, Sequence | np.ndarray):
+            each = self._seeds_from(checked_seed(seed))
+        elif len(seed) != self.num_envs:
             raise ConfigError(f"seed: {len(seed)} are given for {self.num_envs} environments")
-        return [None if one is None else checked_seed(one) for one in seed]
+        else:
+            each = [None if one is None else checked_seed(one) for one in seed]
+        if self._begun[chosen].all():
+            return each
+        first = self._seeds_from(first_seed(self.config))
+        pairs = zip(each, first, self._begun.tolist(), strict=True)
+        return [own if begun or own is not None else other for own, other, begun in pairs]
+
+    def _seeds_from(self, first: int) -> list[int | None]:
+        """Return a seed and those that follow, one for each environment."""
+        checked_seed(first + self.num_envs - 1)
+        return list(range(first, first + self.num_envs))
 
     def _check_open(self) -> None:
         if self.closed:

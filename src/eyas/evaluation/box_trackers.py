@@ -4,6 +4,7 @@ One class serves offline (`eyas track`) and in flight (`eyas evaluate --policy`)
 """
 
 import os
+from abc import abstractmethod
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError, UnknownNameError
-from eyas.core.own_code import imported
+from eyas.core.own_code import imported, left_out
 
 __all__ = ["BOX_TRACKERS", "NANO_FOLDER", "Box", "BoxTracker", "box_tracker"]
 
@@ -32,9 +33,11 @@ _LEAST = 8
 class BoxTracker(Protocol):
     """Tracks one target through one sequence of pictures."""
 
+    @abstractmethod
     def begin(self, picture: Picture, box: Box) -> None:
         """Begin with the first picture, and the target's box in it."""
 
+    @abstractmethod
     def update(self, picture: Picture) -> Box | None:
         """Return the target's box in the next picture; None: it is not found."""
 
@@ -144,7 +147,7 @@ def box_tracker(said: str, setting: str = "--tracker") -> Callable[[], BoxTracke
         found: Any = imported(said, setting)
     except ImportError as error:
         raise ConfigError(f"{setting}: '{said}' cannot be imported: {error}") from error
-    if not (callable(found) and hasattr(found, "begin") and hasattr(found, "update")):
+    if not callable(found) or left_out(found, ("begin", "update")):
         raise ConfigError(
             f"{setting}: '{said}' is not allowed: a class with begin(picture, box) and "
             "update(picture)"

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.sim.simulation import Simulation
+from eyas.sim.starts import AROUND_BODY
 from eyas.targets.catalogue import MODELS, kind_index, kind_of, models_of
 from eyas.targets.colour_names import COLOUR_NAMES
 from eyas.targets.grammar.claims import Claim, fits, tells_apart
@@ -186,7 +187,9 @@ def _staged(
 def _crowded_pose(
     simulation: Simulation, tracker: int, count: int, rng: np.random.Generator
 ) -> NDArray[np.float64] | None:
-    """Return a pose of the drone over a place with so many vehicles: east, north, up, heading."""
+    """Return a pose of the drone over a place with so many vehicles: east, north, up, heading;
+    None: there is no such place, or the pose is inside something.
+    """
     actors, _ = simulation.actors_around(tracker)
     here = np.flatnonzero(actors.present[0])
     place = actors.position[0, here, :2]
@@ -201,7 +204,9 @@ def _crowded_pose(
     east, north, up = actors.position[0, middle].tolist()
     (cosine,), (sine,) = (f(np.array([heading])) for f in (exact.cos, exact.sin))
     east, north = east + shift[0] - back * cosine, north + shift[1] - back * sine
-    return np.array([east, north, up + HEIGHT, heading])
+    pose = np.array([east, north, up + HEIGHT, heading])
+    free = simulation.clearance.lifted(pose[None, :3], AROUND_BODY)[0]
+    return pose if free == pose[2] else None
 
 
 def _begin_at(simulation: Simulation, tracker: int, pose: NDArray[np.float64]) -> None:

@@ -69,13 +69,13 @@ def _speeds(
 
 
 def _look_alikes(label: Label) -> int:
-    """Return how many others of the target's class are near it in the picture."""
+    """Return how many moving others of the target's class are near it in the picture."""
     left, top, right, bottom = label["target_box"]
     reach = _NEAR * float(exact.hypot(right - left, bottom - top))
     x, y = 0.5 * (left + right), 0.5 * (top + bottom)
     found = 0
     for other in label["others"]:
-        if other["class_id"] == label["target_class_id"]:
+        if other["class_id"] == label["target_class_id"] and "parked" not in other:
             u, v, w, z = other["box"]
             distance = float(exact.hypot(0.5 * (u + w) - x, 0.5 * (v + z) - y))
             found += distance <= reach

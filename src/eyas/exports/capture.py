@@ -1,6 +1,6 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
 from eyas.render.outputs import picture_size
 from eyas.sim.simulation import Simulation
+from eyas.sim.views.parked import SeenParked
 from eyas.sim.views.view import View
 from eyas.state.draw import MovingParts, Picture
 from eyas.state.episode import EpisodeState
@@ -78,6 +79,8 @@ class Moment(NamedTuple):
     """See `Frame.traffic`; nothing changes it later."""
     words: str = ""
     """The target in words that nothing else in view shares."""
+    parked: Sequence[SeenParked] = ()
+    """The parked objects in its picture, in the order of their ids."""
 
 
 def moment_of(
@@ -92,14 +95,18 @@ def moment_of(
     Args:
         simulation: The simulation.
         tracker: The tracker.
-        picture: The picture; if it measures actors, they are wanted.
+        picture: The picture; if it measures actors, they are wanted, and if it then has objects
+            and depths, so is what is parked.
         view: The tracker's row in `picture`.
         wanted: What is asked for besides: "words", "parts", "clean", "cameras", "events",
             "traffic"; others are in the picture.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
+    parked: Sequence[SeenParked] = ()
     if picture.actor_pixels is not None:
+        if picture.object_id is not None and picture.depth is not None:
+            parked = seen.parked(tracker, picture.object_id[view], picture.depth[view])
         actors = seen.actors(tracker)
         boxed = picture.actor_pixels[view, :, 0] > 0
         boxed[shown.targets.actor[tracker]] = True
@@ -121,7 +128,7 @@ def moment_of(
     rotors = None if asked is None else asked[tracker]
     traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
     words = seen.words(tracker, picture.aspect, actors) if "words" in wanted else ""
-    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, words)
+    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, words, parked)
 
 
 def _kept(actors: ActorView) -> ActorView:
@@ -260,7 +267,7 @@ def _whole_box(moment: Moment, actor: int) -> Floats:
 
 
 def others_of(moment: Moment, tracker: int, picture: Picture, view: int) -> tuple[Subject, ...]:
-    """Return all visible moving objects except the tracker's target, in the order of their ids.
+    """Return all visible objects except the tracker's target, in the order of their ids.
 
     Args:
         moment: What is known, with the actors that the picture shows.
@@ -271,7 +278,42 @@ def others_of(moment: Moment, tracker: int, picture: Picture, view: int) -> tupl
     assert picture.actor_pixels is not None
     visible = picture.actor_pixels[view, :, 0] > 0
     visible[moment.shown.targets.actor[tracker]] = False
-    return tuple(_other(moment, actor, picture, view) for actor in np.flatnonzero(visible).tolist())
+    return (
+        *map(_parked, moment.parked),
+        *(_other(moment, actor, picture, view) for actor in np.flatnonzero(visible).tolist()),
+    )
+
+
+def _parked(seen: SeenParked) -> Subject:
+    """Return a parked object."""
+    what = seen.what
+    x, y, z = what.foot
+    rise = 0.5 * what.size[2]
+    return Subject(
+        object_id=what.object_id,
+        type=what.type,
+        object_class=what.object_class,
+        size=np.array(what.size),
+        position=np.array(what.foot),
+        centre=np.array([x, y, z + rise]),
+        velocity=np.zeros(3),
+        yaw=what.yaw,
+        motion=Movement(
+            acceleration=np.zeros(3),
+            yaw_rate=0.0,
+            slope=0.0,
+            travelled=0.0,
+            direction=TargetDirection.STOP,
+            rise=rise,
+        ),
+        box=seen.box,
+        visible_box=seen.visible_box,
+        whole_box=seen.whole_box,
+        seen_pixels=seen.seen_pixels,
+        covered_pixels=seen.covered_pixels,
+        words=f"a {what.type.rstrip(' 0123456789')}",
+        parked=True,
+    )
 
 
 def _other(moment: Moment, actor: int, picture: Picture, view: int) -> Subject:

@@ -132,7 +132,7 @@ class CameraPicture:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """A moving object and its place in the picture. World frame, east-north-up."""
+    """A moving or parked object and its place in the picture. World frame, east-north-up."""
 
     object_id: int
     """Its value in `Frame.object_id`; the same in all frames of an episode."""
@@ -171,6 +171,8 @@ class Subject:
     """The sections of an articulated vehicle; empty for all others."""
     lamps: int = 0
     """What it signals, a `Lamp`; 0: nothing, or lamps do not work."""
+    parked: bool = False
+    """Whether it is part of the scene and never moves."""
 
     @property
     def visible_fraction(self) -> float:
@@ -223,8 +225,8 @@ class Frame:
     target: Subject
     """The target of the tracker."""
     others: tuple[Subject, ...]
-    """All other moving objects of which a pixel is visible, in the order of their ids; empty if no
-    writer wants them."""
+    """All other moving objects, and parked ones, of which a pixel is visible, in the order of their
+    ids; empty if no writer wants them."""
     action: RecordedAction
     reward: float
     """Present reward."""

@@ -8,7 +8,7 @@ from eyas.core.png import png_bytes
 from eyas.exports.frame import Frame
 from eyas.exports.per_frame import PerFrameWriter
 from eyas.exports.writer import Files, Run
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, LABELLED, LAST_PARKED
 
 __all__ = [
     "ArrayWriter",
@@ -21,6 +21,7 @@ __all__ = [
 ]
 
 _MOST = np.iinfo(np.uint16).max
+_LABELLED = sorted(map(int, LABELLED))
 
 
 class PngWriter(PerFrameWriter):
@@ -52,18 +53,23 @@ class CleanWriter(PerFrameWriter):
 
 
 class MaskWriter(PerFrameWriter):
-    """`masks/NNNNNN.png`: which moving object each pixel shows, 16 bits: 0 for none, else its
-    number among the actors + 1, that is the label's id - 65535.
+    """`masks/NNNNNN.png`: which object of the labels each pixel shows, 16 bits: 0 for none, the
+    number among the actors + 1 of what moves, that is the label's id - 65535, and 65535 less the id
+    of what is parked.
     """
 
     name = "masks/{:06d}.png"
-    wants = frozenset({"object_id"})
+    wants = frozenset({"object_id", "class_id"})
     files = Files(frame=(name,))
 
     def encoded(self, frame: Frame) -> bytes:
         """Return a frame's masks."""
         assert frame.object_id is not None
-        return png_bytes(np.maximum(frame.object_id - (ACTOR_OBJECT - 1), 0).astype(np.uint16))
+        assert frame.class_id is not None
+        shown = frame.object_id
+        masks = np.maximum(shown - (ACTOR_OBJECT - 1), 0)
+        parked = np.isin(frame.class_id, _LABELLED) & (shown > 0) & (shown <= LAST_PARKED)
+        return png_bytes(np.where(parked, _MOST - shown, masks).astype(np.uint16))
 
 
 class ClassWriter(PerFrameWriter):

@@ -23,7 +23,7 @@ from eyas.exports.label_reading import labels_in, reader_of
 from eyas.exports.writer import Episode, Files, Gather, Scores, Summary, Writer
 from eyas.lanes import interpreted
 from eyas.state.motion import Lamp
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import LABELLED
 from eyas.task.done import DoneReason
 
 __all__ = [
@@ -83,8 +83,8 @@ REWARD = Type("number, or null", {**NUMBER.schema, "type": ["number", "null"]})
 SHARE = Type("number", {"type": "number", "minimum": 0.0, "maximum": 1.0})
 TRUTH = Type("true or false", {"type": "boolean"})
 TEXT = Type("text", {"type": "string", "pattern": r"^[^\x00-\x1f\x7f]*$"})
-ID = Type("whole number", {"type": "integer", "minimum": ACTOR_OBJECT, "maximum": 2**31 - 1})
-CLASS = Type("whole number", {"type": "integer", "enum": [9, 11, 12, 13, 14, 15, 16]})
+ID = Type("whole number", {"type": "integer", "minimum": 1, "maximum": 2**31 - 1})
+CLASS = Type("whole number", {"type": "integer", "enum": sorted(map(int, LABELLED))})
 SIDE = Type("whole number", {"type": "integer", "minimum": 1, "maximum": 2**16})
 BOX = _array("4 whole numbers", {"type": "integer", "minimum": 0, "maximum": 2**16}, 4)
 EXTENT = _array("4 numbers", NUMBER.schema, 4)
@@ -235,8 +235,9 @@ FIELDS = (
                lambda f, s: int(s.motion.direction), "direction"),
     LabelField("done", TRUTH, "Whether the episode ends with this frame.",
                lambda f, e: f.reason is not DoneReason.NONE),
-    LabelField("others", Type("list", {}), "All other moving objects of which a pixel is visible, "
-               "in the order of their ids.", lambda f, e: [_other(f, each) for each in f.others]),
+    LabelField("others", Type("list", {}), "All other moving objects, and parked ones, of which a "
+               "pixel is visible, in the order of their ids.",
+               lambda f, e: [_other(f, each) for each in f.others]),
     LabelField("target_acceleration", VECTOR, "Change of its velocity.", None,
                lambda f, s: rounded_list(s.motion.acceleration), "acceleration",
                unit="m/s²", frame="world"),
@@ -264,6 +265,9 @@ FIELDS = (
                lambda f, s: bool(s.lamps & Lamp.BRAKE), "brake", left_out=True),
     LabelField("target_indicator", TEXT, "Side on which its indicators blink, `left` or `right`; "
                "only of vehicles whose do.", None, _indicator, "indicator", left_out=True),
+    LabelField(None, TRUTH, "It is part of the map and never moves: a parked car, a boat, a train, "
+               "a rack of bicycles; only of those.", None, lambda f, s: s.parked, "parked",
+               left_out=True),
     LabelField("width", SIDE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
     LabelField("height", SIDE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
     LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any, cast
 
 from eyas.core.errors import ConfigError
+from eyas.core.own_code import left_out
 from eyas.core.registry import Registry
 from eyas.exports.frame import OUTPUTS
 from eyas.exports.writer import Files, Writer
@@ -66,9 +67,7 @@ def chosen_writers(names: Sequence[str]) -> tuple[type[Writer], ...]:
 def _checked(name: str, found: type[Any]) -> type[Writer]:
     """Return a class after checking that it has everything that a writer needs."""
     needed = ("wants", "files", "begin", "read", "finish")
-    abstract = getattr(found, "__abstractmethods__", ())
-    missing = [name for name in needed if not hasattr(found, name) or name in abstract]
-    if missing:
+    if missing := left_out(found, needed):
         raise ConfigError(f"{SETTING}: {name!r} is not a writer: it has no '{missing[0]}'")
     writer = cast("type[Writer]", found)
     unknown = [repr(output) for output in writer.wants if output not in OUTPUTS]

@@ -9,6 +9,7 @@ from eyas.lanes.held import Held
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
     Kernel,
+    VariableError,
     interpreted,
     kernel,
     limit_threads,
@@ -23,6 +24,7 @@ __all__ = [
     "Intrinsic",
     "Kernel",
     "ParallelCall",
+    "VariableError",
     "address_of",
     "bits_of_float",
     "claim",

@@ -10,12 +10,14 @@ document.
 """
 
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
+from numba.core.callconv import CPUCallConv
 from numba.core.compiler import compile_extra
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.funcdesc import FunctionDescriptor
@@ -99,22 +101,42 @@ def _compile(
 ) -> _Overload:
     target = current_context()
     library = Library(target.codegen(), function.__qualname__, name and name.split("-")[1])
-    made = compile_extra(
-        typing(),
-        target,
-        function,
-        kinds,
-        None,
-        flags(inline=inline is True),
-        {},
-        library=library,
-        pipeline_class=Compiler,
-    )
+    with _exceptions_without_places():
+        made = compile_extra(
+            typing(),
+            target,
+            function,
+            kinds,
+            None,
+            flags(inline=inline is True),
+            {},
+            library=library,
+            pipeline_class=Compiler,
+        )
     symbol = made.fndesc.llvm_func_name
     if inline is False:
         library._final_module.get_function(symbol).add_function_attribute("noinline")
     module = module_of(library, symbol, made.signature.return_type, name)
     return _Overload(made.signature, made.fndesc, module)
+
+
+@contextmanager
+def _exceptions_without_places() -> Iterator[None]:
+    """Compile exceptions without the file and line where they are raised.
+
+    A kernel only says that it has raised one. numba would put the path of each file into machine
+    code, which ships: the folders of the machine that made it. The caller holds the compiler lock.
+    """
+    of_numba = CPUCallConv.build_excinfo_struct
+
+    def without_place(self: Any, kind: Any, values: Any, *_: object) -> Any:  # noqa: ANN401  # numba's
+        return of_numba(self, kind, values, None, None)
+
+    CPUCallConv.build_excinfo_struct = without_place
+    try:
+        yield
+    finally:
+        CPUCallConv.build_excinfo_struct = of_numba
 
 
 class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc]

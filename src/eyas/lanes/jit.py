@@ -3,6 +3,7 @@
 import functools
 import hashlib
 import os
+import re
 import types
 from collections.abc import Callable
 from typing import Any, TypeVar, cast, overload
@@ -12,6 +13,7 @@ from eyas.lanes.interrupts import shielded
 
 __all__ = [
     "Kernel",
+    "VariableError",
     "interpreted",
     "kernel",
     "limit_threads",
@@ -22,10 +24,22 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
+class VariableError(ValueError):
+    """An environment variable has a value that cannot be used."""
+
+
 def thread_count() -> int:
-    """Return the number of threads that draw: all cores, or `NUMBA_NUM_THREADS`."""
+    """Return the number of threads that draw: all cores, or `NUMBA_NUM_THREADS`.
+
+    Raises:
+        VariableError: That is not a number of threads.
+    """
     named = os.environ.get("NUMBA_NUM_THREADS")
     if named:
+        if not re.fullmatch("[0-9]{1,4}", named) or not int(named):
+            raise VariableError(
+                f"NUMBA_NUM_THREADS: {named!r} is not allowed; allowed: 1 to 9999 threads"
+            )
         return int(named)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

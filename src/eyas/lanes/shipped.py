@@ -10,6 +10,7 @@ machine. What draws ships for AVX-512, too: it is faster there; nothing else is.
 import logging
 import os
 import platform
+import re
 import sys
 from collections.abc import Mapping
 from functools import cache
@@ -20,6 +21,7 @@ import llvmlite.binding as llvm
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.folder import OWNER
 from eyas.lanes.identity import language_hash
+from eyas.lanes.jit import VariableError
 from eyas.lanes.machine_code import MachineCode
 
 __all__ = [
@@ -96,7 +98,16 @@ def wanted() -> bool:
 
 @cache
 def _shipped() -> dict[str, MachineCode]:
-    """Return the code for this machine and this language."""
+    """Return the code for this machine and this language.
+
+    Raises:
+        VariableError: Features are named of which LLVM would end the process.
+    """
+    chosen = os.environ.get("NUMBA_CPU_FEATURES", "")
+    if not re.fullmatch(r"([+-][\w.-]+(,[+-][\w.-]+)*)?", chosen):
+        raise VariableError(
+            f"NUMBA_CPU_FEATURES: {chosen!r} is not allowed; allowed: such as +avx2,-avx512f"
+        )
     named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
     other = sys.platform != "linux" or platform.machine() != "x86_64"
     if named or other or not wanted() or not needed <= features():

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
@@ -35,8 +36,6 @@ class TrainingProgress:
     """Of all stages."""
     stage_decisions: int = 0
     """Of the current stage."""
-    seconds: float = 0.0
-    """Time that the run has taken."""
     rows: list[Row] = field(default_factory=list)
     """Of the curve, one for each block."""
 
@@ -109,11 +108,14 @@ class RunFolder:
         with readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, "cpu", weights_only=True)
             build = Build(**saved["build"])
+        self.refuse_other(build)
+        with readable(self._checkpoint):
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
-            progress = TrainingProgress(**saved["progress"])
-        self.refuse_other(build)
-        return progress
+            kept = saved["progress"]
+            # The same objects as in a run that was not resumed: so pickle writes the same bytes.
+            kept["rows"] = [{sys.intern(name): row[name] for name in row} for row in kept["rows"]]
+            return TrainingProgress(**kept)
 
     def refuse_other(self, build: Build) -> None:
         """Refuse to go on with what another build has begun: it may compute other numbers.

@@ -1,5 +1,6 @@
 """Settings of learning."""
 
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Any, Self
 
@@ -8,6 +9,8 @@ from pydantic import Field, model_validator
 from eyas.core.allowed import Said
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
+from eyas.world.config import WorldConfig
+from eyas.world.simple_maps import simple_world
 
 __all__ = [
     "LESSON",
@@ -68,6 +71,19 @@ class Stage(Config):
     """The stage ends as soon as an evaluation has at least this TSR."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Settings that differ from the common ones, for example `{"world": {"weather": "night"}}`."""
+    simple_map: bool = False
+    """Whether it is flown on the simple map that stands for the map, see
+    `docs/maps/simpleway.md`."""
+
+    def changes(self, world: WorldConfig) -> dict[str, Any]:
+        """Return what differs from common settings that have this world."""
+        if not self.simple_map:
+            return self.settings
+        inside = self.settings.get("world", {})
+        if not isinstance(inside, Mapping):
+            return self.settings  # refused as such
+        name, weather = simple_world(world.map, world.weather)
+        return {**self.settings, "world": {**inside, "map": name, "weather": weather}}
 
 
 class Evaluation(Config):

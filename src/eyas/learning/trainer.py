@@ -117,7 +117,7 @@ class _Run:
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
         stage = self.config.train.stages[self.progress.stage]
-        settings = updated(self.config, stage.settings)
+        settings = updated(self.config, stage.changes(self.config.world))
         shards = self._make_shards(settings, self.network)
         done = self.progress.stage_decisions >= stage.total_timesteps
         while not done:
@@ -147,7 +147,6 @@ class _Run:
         rate = updates * config.update_decisions / seconds
         progress.block += 1
         scores = self._evaluated(stage)
-        progress.seconds += time.monotonic() - start
         row = self._row(shards.finished(), columns) | scores._asdict()
         progress.rows.append(row)
         self._tell(row, rate)
@@ -227,7 +226,7 @@ class _Run:
     def _tell(self, row: dict[str, float], rate: float) -> None:
         """Tell how it goes."""
         progress, self._told = self.progress, time.monotonic()
-        left = max(self._total - progress.decisions, 0) * progress.seconds / progress.decisions
+        left = max(self._total - progress.decisions, 0) / rate
         physics = rate * steps_per_action(self.config)
         tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
         self._say(
@@ -248,7 +247,7 @@ def _refuse_later_errors(config: EyasConfig) -> None:
     evaluation_episodes(config)
     _refuse_test_seeds(config, "")
     for number, stage in enumerate(config.train.stages):
-        changed = updated(config, stage.settings)
+        changed = updated(config, stage.changes(config.world))
         if changed.train != config.train:
             raise ConfigError(
                 f"train.stages.{number}.settings.train: not allowed: all stages learn alike"

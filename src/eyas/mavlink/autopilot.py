@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from eyas.mavlink.component import Command, Component, Result
-from eyas.mavlink.frames import Vector, compass, on_earth, swapped
+from eyas.mavlink.frames import Vector, compass, on_earth, swapped, usable
 from eyas.mavlink.missions import refuse_missions
 from eyas.mavlink.modes import Landed, Mode
 from eyas.mavlink.pilot import Pilot
@@ -23,8 +23,6 @@ _LOCAL, _OFFSET, _BODY, _BODY_OFFSET, _BODY_FRD = 1, 7, 8, 9, 12
 _RELATIVE = (3, 6, 10, 11)
 """`MAV_FRAME`s whose heights are those over the origin; in others they are above the sea."""
 _CUSTOM = 1
-_FARTHEST = 1e5
-"""Largest number of a set point that is believed [m, m/s, rad, rad/s]."""
 
 
 class Autopilot:
@@ -129,7 +127,7 @@ class Autopilot:
             place = (*place[:2], at.place_of(0.0, 0.0, altitude, relative=relative)[2])
         if speed > 0.0:
             pilot.cruise = speed
-        pilot.go(place, compass(yaw) if math.isfinite(yaw) else None)
+        pilot.go(place, compass(yaw) if usable(yaw) else None)
         return Result.ACCEPTED
 
     def _change_speed(self, command: Command) -> Result:
@@ -203,10 +201,11 @@ class Autopilot:
         if position is None and velocity is None:
             return
         mask = message.type_mask
-        yaw = None if mask & _NO_YAW or math.isnan(message.yaw) else compass(message.yaw)
-        rate = None if mask & _NO_YAW_RATE or math.isnan(message.yaw_rate) else -message.yaw_rate
-        values = (*(position or ()), *(velocity or ()), yaw or 0.0, rate or 0.0)
-        if any(abs(part) > _FARTHEST for part in values):
+        yaw = compass(message.yaw) if not mask & _NO_YAW and usable(message.yaw) else None
+        turns = not mask & _NO_YAW_RATE and usable(message.yaw_rate)
+        rate = -message.yaw_rate if turns else None
+        given = (*(position or ()), *(velocity or ()))
+        if not all(math.isnan(part) or usable(part) for part in given):
             return
         self._pilot.set_point(Goal(position, velocity, yaw, rate, body), self._now().seconds)
 
@@ -218,7 +217,7 @@ class Autopilot:
             return
         knows = bool(message.est_capabilities & 2)
         velocity = swapped(message.vel) if knows else (0.0, 0.0, 0.0)
-        if all(abs(part) < _FARTHEST for part in velocity):
+        if all(usable(part) for part in velocity):
             self._pilot.lead(place, velocity, at.seconds)
 
     def _hear_stick(self, message: Any) -> None:  # noqa: ANN401

@@ -1,8 +1,12 @@
 """The messages of MAVLink 2, by pymavlink, which is imported here only."""
 
+import re
+import struct
 from importlib import import_module
 from types import ModuleType
 from typing import Any
+
+import numpy as np
 
 from eyas.core.errors import MissingExtraError
 
@@ -34,11 +38,32 @@ class Packer:
         self._maker = self._dialect.MAVLink(None, system, component)
 
     def pack(self, name: str, /, **fields: Any) -> bytes:  # noqa: ANN401  # numbers, texts and lists
-        """Return the packet of a message, such as `heartbeat`, with these fields."""
-        message = getattr(self._dialect, f"MAVLink_{name}_message")(**fields)
-        packet: bytes = message.pack(self._maker)
+        """Return the packet of a message, such as `heartbeat`, with these fields.
+
+        Numbers that its types cannot hold are the nearest that they can.
+        """
+        make = getattr(self._dialect, f"MAVLink_{name}_message")
+        try:
+            packet: bytes = make(**fields).pack(self._maker)
+        except (struct.error, OverflowError):
+            kinds = dict(zip(make.fieldnames, make.fieldtypes, strict=True))
+            held = {field: _nearest(value, kinds[field]) for field, value in fields.items()}
+            packet = make(**held).pack(self._maker)
         self._maker.seq = (self._maker.seq + 1) % 256
         return packet
+
+
+def _nearest(value: Any, kind: str) -> Any:  # noqa: ANN401  # of a field
+    """Return the nearest value that a field of a type can hold; lists item by item."""
+    if isinstance(value, list | tuple):
+        return [_nearest(item, kind) for item in value]
+    whole = re.match(r"(u?)int(\d+)_t", kind)
+    if whole:
+        span = 1 << int(whole[2])
+        least = 0 if whole[1] else -span // 2
+        return min(max(value, least), least + span - 1)
+    most = np.finfo(np.float32).max.item()
+    return min(max(value, -most), most) if kind == "float" else value
 
 
 class Parser:

@@ -1,13 +1,14 @@
 """All vehicles in one world: their steps, their packets and their pictures."""
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from eyas.core.clock import PHYSICS_RATE, physics_steps
+from eyas.core.faults import FaultLog
 from eyas.mavlink.camera import Lens
 from eyas.mavlink.config import MavlinkConfig
 from eyas.mavlink.endpoint import parsed_address
@@ -59,6 +60,7 @@ class Fleet:
         self.now, self._taken = 0.0, 0
         self._gathered: list[bytes] = []
         self._length = 0
+        self._faults = FaultLog()
         geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
         self._readings, self._sights = Readings(simulation, geodesy), Sights(simulation)
         count = simulation.count
@@ -114,22 +116,31 @@ class Fleet:
             sender.close()
 
     def take(self, messages: Iterable[Any]) -> None:
-        """Give messages to those they are for, and send the answers."""
-        own = {vehicle.system for vehicle in self.vehicles}
+        """Give messages to those they are for, and send the answers.
+
+        One that cannot be handled is a line in the log. A companion computer has the system id of
+        its vehicle, so only what a vehicle's own component seems to have sent is an echo.
+        """
+        own = {sender for vehicle in self.vehicles for sender in vehicle.senders}
         for message in messages:
-            if message.get_srcSystem() in own:  # an echo, or another vehicle of the same number
+            sender = message.get_srcSystem(), message.get_srcComponent()
+            if sender in own:  # an echo, or another vehicle of the same number
                 continue
-            for vehicle in self.vehicles:
-                vehicle.take(message)
+            with self._faults.guard(f"{message.get_type()} from {sender[0]}/{sender[1]}"):
+                for vehicle in self.vehicles:
+                    vehicle.take(message)
         self._flush()
 
     @property
     def waits(self) -> bool:
         """Whether a vehicle in offboard mode has got no set point since the last step."""
-        return any(
-            vehicle.pilot.mode is Mode.OFFBOARD and vehicle.pilot.set_points == before
-            for vehicle, before in zip(self.vehicles, self._set_points, strict=True)
-        )
+        return any(self._waiting())
+
+    def _waiting(self) -> Iterator[Vehicle]:
+        """Yield the vehicles in offboard mode that have got no set point since the last step."""
+        for vehicle, before in zip(self.vehicles, self._set_points, strict=True):
+            if vehicle.pilot.mode is Mode.OFFBOARD and vehicle.pilot.set_points == before:
+                yield vehicle
 
     @property
     def offboard(self) -> bool:
@@ -166,10 +177,9 @@ class Fleet:
         self._flush()
 
     def hold(self, why: str) -> None:
-        """Let all in offboard mode hold."""
-        for vehicle in self.vehicles:
-            if vehicle.pilot.mode is Mode.OFFBOARD:
-                vehicle.pilot.hold(why)
+        """Let those that wait for a set point hold."""
+        for vehicle in list(self._waiting()):
+            vehicle.pilot.hold(why)
 
     def _zoom(self) -> None:
         fields = np.array([vehicle.camera.field_of_view for vehicle in self.vehicles])

@@ -30,6 +30,7 @@ __all__ = [
     "on_earth",
     "swapped",
     "to_frd",
+    "usable",
     "wrapped",
 ]
 
@@ -95,6 +96,11 @@ def camera_angles(rotation: NDArray[np.float64]) -> Vector:
     pitch = float(exact.asin(min(max(up, -1.0), 1.0)))
     roll = float(exact.atan2(rotation[2, 1], rotation[2, 2]))
     return roll, pitch, float(exact.atan2(east, north))
+
+
+def usable(number: float) -> bool:
+    """Return whether a number of a set point is believed [m, m/s, rad, rad/s]."""
+    return abs(number) <= 1e5  # not NaN, nor what is finite but absurd
 
 
 def on_earth(latitude: float, longitude: float, altitude: float) -> bool:

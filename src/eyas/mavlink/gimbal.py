@@ -9,7 +9,7 @@ from typing import Any
 
 from eyas.core import exact
 from eyas.mavlink.component import Command, Component, Fields, Result
-from eyas.mavlink.frames import Vector, camera_angles, of_angles, on_earth, wrapped
+from eyas.mavlink.frames import Vector, camera_angles, of_angles, on_earth, usable, wrapped
 from eyas.mavlink.readings import Instant
 
 __all__ = ["DEVICE", "Gimbal"]
@@ -111,14 +111,14 @@ class Gimbal:
         self._locked = locked
         if flags & (_NEUTRAL | _RETRACT):
             angles, rates, self._locked = (0.0, 0.0), (0.0, 0.0), False
-        if math.isfinite(angles[0]):
+        if usable(angles[0]):
             self.pitch = angles[0]
-        if math.isfinite(angles[1]):
+        if usable(angles[1]):
             self._yaw = angles[1]
-        finite = [rate if math.isfinite(rate) else 0.0 for rate in rates]
+        finite = [rate if usable(rate) else 0.0 for rate in rates]
         self._rates = (
-            0.0 if math.isfinite(angles[0]) else finite[0],
-            0.0 if math.isfinite(angles[1]) else finite[1],
+            0.0 if usable(angles[0]) else finite[0],
+            0.0 if usable(angles[1]) else finite[1],
         )
 
     def _in_control(self, sender: tuple[int, int]) -> bool:

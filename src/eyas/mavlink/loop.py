@@ -18,7 +18,7 @@ _LATEST = 0.1
 _BEAT = 1.0
 """Between heartbeats while time stands still, or is slow [s]."""
 _PATIENCE = 10.0
-"""How long time stands still for one who is silent [s]."""
+"""How long time stands still for a vehicle without a set point [s]."""
 _REPORT = 5.0
 """Over what time it is judged whether the machine is fast enough [s]."""
 
@@ -36,9 +36,9 @@ def fly(fleet: Fleet, endpoints: Sequence[Endpoint], *, lockstep: bool) -> None:
         wait = pace.left()
         if lockstep and fleet.offboard:
             wait = 0.0 if not fleet.waits else 0.05
-        heard = _hear(fleet, endpoints, wait)
+        _hear(fleet, endpoints, wait)
         if lockstep and fleet.offboard:
-            pace.stand_still(heard=heard)
+            pace.stand_still()
             if not fleet.waits:
                 fleet.step()
             continue
@@ -47,14 +47,11 @@ def fly(fleet: Fleet, endpoints: Sequence[Endpoint], *, lockstep: bool) -> None:
             fleet.step(look=left == 0)
 
 
-def _hear(fleet: Fleet, endpoints: Sequence[Endpoint], wait: float) -> bool:
-    """Take what comes within a time [s]; return whether anything has."""
+def _hear(fleet: Fleet, endpoints: Sequence[Endpoint], wait: float) -> None:
+    """Take what comes within a time [s]."""
     ready, _, _ = select.select([end.socket for end in endpoints], [], [], wait)
-    if not ready:
-        return False
-    messages = [message for end in endpoints for message in end.received()]
-    fleet.take(messages)
-    return bool(messages)
+    if ready:
+        fleet.take([message for end in endpoints for message in end.received()])
 
 
 class _Pace:
@@ -66,7 +63,7 @@ class _Pace:
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
-        self._next = self._heard = self._beaten = time.monotonic()
+        self._next = self._moved = self._beaten = time.monotonic()
         self._since, self._lost, self._told = self._next, 0.0, False
 
     def left(self) -> float:
@@ -78,6 +75,7 @@ class _Pace:
         then flies slower.
         """
         now, period = time.monotonic(), self._fleet.period
+        self._moved = now
         behind = now - self._next - _LATEST
         if behind > 0.0:
             self._next += behind
@@ -101,14 +99,16 @@ class _Pace:
                 "pictures help (camera.width, camera.height, mavlink.picture_rate)"
             )
 
-    def stand_still(self, *, heard: bool) -> None:
-        """Let no time pass: only heartbeats are sent, and who is silent for long is given up."""
+    def stand_still(self) -> None:
+        """Let no time pass: only heartbeats are sent, and who sends no set point for long is given
+        up, whatever else comes: a ground station's heartbeats go on when the program has died.
+        """
         now = self._next = time.monotonic()
-        if heard:
-            self._heard = now
+        if not self._fleet.waits:
+            self._moved = now
         if now - self._beaten > _BEAT:
             self._beaten = now
             self._fleet.beat()
-        if now - self._heard > _PATIENCE:
-            self._fleet.hold("Nothing heard")
-            self._heard = now
+        if now - self._moved > _PATIENCE:
+            self._fleet.hold("No set points")
+            self._moved = now

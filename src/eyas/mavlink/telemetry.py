@@ -263,7 +263,7 @@ class Telemetry:
             ("mag", at.magnetic(), 1e3),
         ):
             for axis, value in zip("xyz", vector, strict=True):
-                found[axis + what] = max(min(round(value * scale), 32_767), -32_768)
+                found[axis + what] = round(value * scale)
         return found
 
     def autopilot_version(self) -> Fields:

@@ -26,6 +26,7 @@ class Vehicle:
 
     Attributes:
         system: System id.
+        senders: System and component id of each of its components.
         pilot: Who flies it.
         camera: Its camera.
 
@@ -58,6 +59,7 @@ class Vehicle:
         }
         first = parts[autopilot.COMPONENT]
         self._components = parts
+        self.senders = [(system, id_) for id_ in parts]
         self.pilot = Pilot(home, Parameters())
         self._autopilot = autopilot.Autopilot(first, self.pilot, self._now)
         self._telemetry = Telemetry(first, self.pilot, self._now)

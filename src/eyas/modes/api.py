@@ -123,8 +123,8 @@ def export(
         recording: Its folder.
         formats: A name of `list_formats()`, or `package.module:Class`, or several.
         out: Folder of the exports; by default `exports` in that of the recording.
-        choices: `copies`, `least_side`, `least_visible`, `resume`, `overwrite`, see
-            `eyas.datasets.export.ExportOptions`.
+        choices: `copies`, `least_side`, `least_visible`, `ignore_parked`, `resume`, `overwrite`,
+            see `eyas.datasets.export.ExportOptions`.
 
     Raises:
         EyasError: A name is wrong, or the recording, or the folder; one line.

@@ -1,12 +1,14 @@
 """The renderer: pictures, depths, object ids and subject measurements of many views at once."""
 
 from collections.abc import Callable, Hashable
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.bounds import FARTHEST, checked
 from eyas.core.errors import ConfigError
 from eyas.lanes import Held, interpreted, thread_count
 from eyas.lanes.vector import WIDTH
@@ -95,6 +97,10 @@ class CpuRenderer:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
         if self._ready is not None:
             self._ready()
+        position = checked(views.position, FARTHEST, "position of a camera")
+        rotation = checked(views.rotation, 1e3, "rotation of a camera")
+        if position is not views.position or rotation is not views.rotation:
+            views = replace(views, position=position, rotation=rotation)
         movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
         grid, several = GRIDS[samples], samples > 1

@@ -77,7 +77,10 @@ def variants(config: EyasConfig) -> Iterator[tuple[str, EyasConfig]]:
     """
     parts: list[tuple[str, Mapping[str, Any]]] = [
         *((f"env.mixture.{at}", part.settings) for at, part in enumerate(config.env.mixture)),
-        *((f"train.stages.{at}", part.settings) for at, part in enumerate(config.train.stages)),
+        *(
+            (f"train.stages.{at}", stage.changes(config.world))
+            for at, stage in enumerate(config.train.stages)
+        ),
     ]
     if not any(settings for _, settings in parts):
         return

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -111,12 +112,15 @@ def save_settings(config: EyasConfig, path: Path) -> None:
 def read_settings(path: Path) -> Nested:
     """Return the JSON object that a file holds.
 
+    Comments, commas after a last value, and UTF-16 are read, too, with a warning.
+
     Raises:
         DataFileError: The file is missing, unreadable, cut off, or not a JSON object.
     """
     try:
-        text = read_limited(path, _LARGEST).decode("utf-8-sig")
-        values = json.loads(text, object_pairs_hook=_without_doubles)
+        content = read_limited(path, _LARGEST)
+        encoding = json.detect_encoding(content)
+        values = _parsed(content.decode(encoding), path)
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:
@@ -127,9 +131,36 @@ def read_settings(path: Path) -> Nested:
         raise DataFileError(f"{path}: not valid settings: {error}") from error
     if not isinstance(values, dict):
         raise DataFileError(f"{path}: line 1: not a JSON object")
+    if encoding not in ("utf-8", "utf-8-sig"):
+        _LOG.warning("%s: read as %s; JSON is UTF-8", path, encoding.upper())
     if isinstance(values.get(SCHEMA_KEY), str):
         del values[SCHEMA_KEY]
     return values
+
+
+_STRING = r'"(?:\\.|[^"\\])*(?:"|\Z)'
+_COMMENT = re.compile(rf"({_STRING})|//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_LAST_COMMA = re.compile(rf"((?:{_STRING}|[^\s\[{{,:\"])\s*),(?=\s*[}}\]])|({_STRING})", re.DOTALL)
+"""What is left out; groups stay."""
+
+
+def _parsed(text: str, path: Path) -> Any:  # noqa: ANN401  # JSON
+    """Return what JSON says, without comments and commas after a last value."""
+    try:
+        return json.loads(text, object_pairs_hook=_without_doubles)
+    except json.JSONDecodeError:
+        plain = _LAST_COMMA.sub(_blank, _COMMENT.sub(_blank, text))
+        if plain == text:
+            raise
+        values = json.loads(plain, object_pairs_hook=_without_doubles)
+    _LOG.warning("%s: not strictly JSON: comments and commas after a last value are left out", path)
+    return values
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return what stays and spaces for the rest, so that messages name the right place."""
+    kept = "".join(part or "" for part in found.groups())
+    return kept + re.sub(r"[^\n]", " ", found[0][len(kept) :])
 
 
 def _tell_surprises(config: EyasConfig) -> None:

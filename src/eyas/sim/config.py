@@ -39,7 +39,7 @@ class SimConfig(Config):
     """All settings of a simulation, for any use of it."""
 
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
-    """The one seed of the run."""
+    """The one seed of the run; environments whose settings leave it out begin with a fresh one."""
     target: TargetName = TargetName.SUMO_VEHICLE
     """Kind of target to follow."""
     same_target: bool = False

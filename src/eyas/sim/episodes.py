@@ -23,6 +23,7 @@ from eyas.sim.episode_sampling import (
     sample_episodes,
 )
 from eyas.sim.light import LightChanges
+from eyas.sim.starts import Starts
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS, kind_of
@@ -35,6 +36,12 @@ Sampler = Callable[[int, EpisodeKey], None]
 """Draws something for the episode of a tracker."""
 
 _follow = interpreted(follow)
+
+_ATTEMPTS = 100
+"""Starts that are tried for an episode."""
+
+_ATTEMPT = 1 << 24
+"""More than the episodes of a tracker: added to their number, it gives another stream."""
 
 
 class Episodes:
@@ -55,6 +62,7 @@ class Episodes:
         snapshot: State of N trackers; this class sets its episodes and targets, and the
             fields of view of its cameras.
         samplers: Sample what else is random in an episode.
+        starts: Tells which starts are inside something, and are drawn again; None: none.
     """
 
     def __init__(
@@ -65,8 +73,9 @@ class Episodes:
         light: LightChanges,
         snapshot: Snapshot,
         samplers: Sequence[Sampler] = (),
+        starts: Starts | None = None,
     ) -> None:
-        self._samplers = tuple(samplers)
+        self._samplers, self._starts = tuple(samplers), starts
         count = len(snapshot.episodes.number)
         self._streams = Streams(np.full(count, config.seed, np.int64), np.arange(count))
         self._traffic, self._worlds = traffic, worlds
@@ -133,14 +142,52 @@ class Episodes:
     def begin(self, trackers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Set target, time and offset of trackers; return their camera pitches [rad].
 
+        A start that is inside something is drawn again. Where time and target are given, in a
+        world that trackers share, it may have to be higher instead.
+
         Raises:
-            SpawnError: No target is free.
+            SpawnError: No target is free, or no start.
             ConfigError: The traffic of a shared world has ended.
         """
         lasting = self._worlds.lasting[self._worlds.of[trackers]]
         if lasting.any():
             time = int(self._episodes.tick[trackers[lasting]].max()) * PHYSICS_STEP
             check_time(time, self._traffic.duration)
+        pitch = self._sample(trackers)
+        if self._starts is not None:
+            self._sample_again(trackers, pitch, self._starts)
+        for sampler in self._samplers:
+            for tracker in trackers.tolist():
+                sampler(tracker, self.key(tracker))
+        return pitch
+
+    def _sample_again(
+        self, trackers: NDArray[np.int64], pitch: NDArray[np.float64], starts: Starts
+    ) -> None:
+        """Draw those starts again that are inside something."""
+        number, lifts = self._episodes.number, starts.lifts(trackers)
+        for attempt in range(1, _ATTEMPTS):
+            inside = np.flatnonzero(lifts)
+            if not len(inside):
+                return
+            again = trackers[inside]
+            episode = number[again]
+            number[again] += attempt * _ATTEMPT - 1  # which sampling counts up
+            try:
+                pitch[inside] = self._sample(again)
+            finally:
+                number[again] = episode
+            lifts[inside] = starts.lifts(again)
+        shared = self._worlds.lasting[self._worlds.of[trackers]]
+        if (lifts[~shared] != 0.0).any():
+            raise SpawnError(
+                f"start: {_ATTEMPTS} starts were drawn, and all are inside a tree, a building or "
+                "the ground; allowed: a height, pitch, direction and biases that leave some free"
+            )
+        self._episodes.start_offset[trackers, 2] += lifts
+
+    def _sample(self, trackers: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Draw target, time and offset of trackers; return their camera pitches [rad]."""
         call, pitch, begun = self._call.bundle, np.empty(len(trackers)), 0
         while begun < len(trackers):
             left = len(trackers) - begun
@@ -156,9 +203,6 @@ class Episodes:
             if stopped >= 0:
                 self._traffic.prepare(more * PHYSICS_STEP)
                 self._bind()
-        for sampler in self._samplers:
-            for tracker in trackers.tolist():
-                sampler(tracker, self.key(tracker))
         return pitch
 
     def follow(self, tracker: int, actor: int) -> None:
@@ -177,6 +221,11 @@ class Episodes:
     def restart_count(self, tracker: int) -> None:
         """Count a tracker's steps, and those without reward, from 0 again."""
         self._episodes.step_count[tracker] = self._episodes.no_reward_count[tracker] = 0
+
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each tracker, shape (N,)."""
+        return self._streams.seed.copy()
 
     def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""

@@ -7,12 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact as elementary
+from eyas.core.bounds import FARTHEST, LARGEST, checked
 from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
+from eyas.sim.starts import starts_in
 from eyas.sim.stepper import Stepper
 from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
@@ -91,7 +93,10 @@ class Simulation:
         sensors, seen, samplers = self._stepper.sensors, self._stepper.seen, self._stepper.samplers
         if wind is not None:
             samplers = [*samplers, light.blow]
-        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, samplers)
+        starts = starts_in(assets, self.snapshot, worlds, shared_target=config.same_target)
+        self._episodes = Episodes(
+            config, assets.traffic, worlds, light, self.snapshot, samplers, starts
+        )
         view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
         self._present = self.view = view(seen)
         if seen.is_late:
@@ -128,13 +133,18 @@ class Simulation:
         """Add angles to the start directions of all trackers [rad], shape (N,), from the next reset
         on.
         """
-        self._episodes.turn_starts(angles)
+        self._episodes.turn_starts(checked(angles, LARGEST, "direction of a start"))
 
     def continue_from(self, other: "Simulation") -> None:
         """Continue the sequences of episodes of another simulation with as many trackers, whose
         worlds are their own.
         """
         self._episodes.continue_from(other._episodes)
+
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each tracker, shape (N,)."""
+        return self._episodes.seeds
 
     def episode_key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
@@ -178,7 +188,8 @@ class Simulation:
         Args:
             commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4); or
                 with four more that turn the cameras, shape (N, 8), see
-                `eyas.trackers.gimbal_command`.
+                `eyas.trackers.gimbal_command`. Larger numbers than `LARGEST` are limited to it, and
+                NaN is 0; nor does any tracker get farther than `FARTHEST`.
             physics_steps: Number of steps.
             active: The trackers that fly, shape (N,); for the others time stands still, so that
                 these must have worlds of their own. None: all.
@@ -198,8 +209,11 @@ class Simulation:
 
         Args:
             poses: East, north, up [m], heading [rad], shape (N, 4).
+
+        Raises:
+            EyasError: A number is not finite.
         """
-        self._stepper.place(poses)
+        self._stepper.place(checked(poses, FARTHEST, "place of a tracker"))
 
     def start_at(self, trackers: NDArray[np.integer], poses: Floats, pitch: Floats) -> None:
         """Begin the episodes of trackers that have just been reset at other poses.
@@ -208,7 +222,12 @@ class Simulation:
             trackers: The trackers, shape (K,).
             poses: East, north, up [m], heading [rad], shape (K, 4).
             pitch: Pitch of their cameras, positive down [rad], shape (K,).
+
+        Raises:
+            EyasError: A number is not finite.
         """
+        poses = checked(poses, FARTHEST, "start of a tracker")
+        pitch = checked(pitch, LARGEST, "pitch of a camera")
         targets, chosen = self.snapshot.targets, np.asarray(trackers, np.int64)
         yaw = poses[:, 3]
         east, north, up = (poses[:, :3] - targets.position[chosen]).T
@@ -227,8 +246,12 @@ class Simulation:
         self.snapshot.episodes.tick[tracker] = rng.integers(first, last + 1)
 
     def set_fields_of_view(self, fields: Floats) -> None:
-        """Zoom the cameras, until the next reset: horizontal fields of view [rad], shape (N,)."""
-        self.snapshot.cameras.field_of_view[:] = fields
+        """Zoom the cameras, until the next reset: horizontal fields of view [rad], shape (N,).
+
+        Raises:
+            EyasError: One is not finite.
+        """
+        self.snapshot.cameras.field_of_view[:] = _checked_fields(fields)
 
     @cached_property
     def clearance(self) -> Clearance:
@@ -245,7 +268,11 @@ class Simulation:
 
         Args:
             angles: Pitch, positive down, and yaw relative to the body [rad], shape (N, 2).
+
+        Raises:
+            EyasError: One is not finite.
         """
+        angles = checked(angles, LARGEST, "angles of a gimbal")
         self.snapshot.trackers.commanded_gimbal[:] = angles
 
     def restart_count(self, tracker: int) -> None:
@@ -355,7 +382,15 @@ class Simulation:
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
             overlay: Whether to draw all trackers of that world and their overlays over the colours.
+
+        Raises:
+            EyasError: A number of a camera is not finite.
         """
+        cameras = cameras._replace(
+            position=checked(cameras.position, FARTHEST, "position of a camera"),
+            rotation=checked(cameras.rotation, 1e3, "rotation of a camera"),
+            field_of_view=_checked_fields(cameras.field_of_view),
+        )
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._present.pictures.draw_from(chosen, cameras, picture, rules)
 
@@ -367,3 +402,12 @@ class Simulation:
         episodes = self.snapshot.episodes
         reward, terms = self._terms.of(self.snapshot)
         return StepResult(reward, terms, episodes.reason.copy(), episodes.done)
+
+
+def _checked_fields(fields: Floats) -> Floats:
+    """Return horizontal fields of view from a thousandth to 3.1 [rad].
+
+    Raises:
+        EyasError: One is not finite.
+    """
+    return np.maximum(checked(fields, 3.1, "field of view of a camera"), 1e-3)

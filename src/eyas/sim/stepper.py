@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.bounds import FARTHEST, LARGEST, checked, limited
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
 from eyas.lanes import BoundCall, Held
@@ -25,12 +26,24 @@ from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
+from eyas.trackers.config import TrackerKind
 from eyas.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["Stepper", "step_kernels", "step_state"]
 
 Floats = NDArray[np.float64]
+
+_FAST = 1e3
+"""Length of all commands together beyond which each is looked at [m/s]."""
+
+_JUMP, _SPIN = 1e3, 1e2
+"""Most speed [m/s] and turn rate [rad/s] that a place far away gives: a flown body could not be
+integrated with more."""
+
+_SELDOM = 16
+"""Calls of the step between two looks at where trackers are, unless commands are fast: a look takes
+a fifth of the time of one tracker's step."""
 
 
 def step_kernels(config: SimConfig, tracker: Tracker) -> StepKernels:
@@ -83,6 +96,8 @@ class Stepper:
     ) -> None:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
+        own = not isinstance(config.tracker.kind, TrackerKind)  # whose kernels may do anything
+        self._calls, self._seldom = 0, 1 if own else _SELDOM
         self._memory = tracker.memory(count, terrain)
         around = StepSurroundings(assets.traffic.motion, terrain)
         self._state_by = partial(step_state, config, tracker, snapshot, self._memory, around)
@@ -136,12 +151,13 @@ class Stepper:
             clock = self._snapshot.episodes.step_count
             pieces = list(self._late.pieces(commands, steps, clock))
         for piece, some in pieces:
-            if piece.shape[1] == WITH_GIMBAL:
-                self._turning_orders.commands[:] = piece
-                self._take(self._fly_and_turn(), some)
-            else:
-                self._orders.commands[:] = piece
-                self._take(self._step.fly, some)
+            turns = piece.shape[1] == WITH_GIMBAL
+            commands = (self._turning_orders if turns else self._orders).commands
+            commands[:] = piece
+            if not np.vdot(commands, commands) <= _FAST * _FAST:
+                commands[:] = limited(commands, LARGEST)
+                self._calls = -1
+            self._take(self._fly_and_turn() if turns else self._step.fly, some)
 
     def _fly_and_turn(self) -> BoundCall:
         """Return the step that also turns cameras; it is compiled when it is first needed."""
@@ -162,6 +178,9 @@ class Stepper:
         self._orders.placed[0] = 1
         self.carry(1)
         self._orders.placed[0] = 0
+        state = self._snapshot.trackers
+        state.velocity[:] = limited(state.velocity, _JUMP)
+        state.angular_velocity[:] = limited(state.angular_velocity, _SPIN)
 
     def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
@@ -170,12 +189,29 @@ class Stepper:
         if not self.sensors.follow and not self.seen.is_late:
             self._orders.steps[0] = steps
             step()
+            self._stay_near()
             if self.seen.vibration is not None:
                 self.seen.see()
             return
         self._orders.steps[0] = 1
         for _ in range(steps):
             step()
+            self._stay_near()
             self.sensors.advance()
             self.seen.record()
         self.seen.see()
+
+    def _stay_near(self) -> None:
+        """Stop trackers that have come farther than `FARTHEST` there.
+
+        Raises:
+            EyasError: A tracker of a user's own is nowhere.
+        """
+        self._calls += 1
+        if self._calls % self._seldom == 0:
+            trackers = self._snapshot.trackers
+            for places in (trackers.position, trackers.commanded_position):
+                near = checked(places, FARTHEST, "place of a tracker")
+                if near is not places:
+                    trackers.velocity[(near != places).any(axis=1)] = 0.0
+                    places[:] = near

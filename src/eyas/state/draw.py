@@ -313,5 +313,6 @@ class Renderer(Protocol):
 
         Raises:
             ConfigError: `samples` is neither 1 nor 4.
+            EyasError: The pose of a camera is not finite.
         """
         ...

@@ -14,6 +14,8 @@ from eyas.state.terrain import Terrain
 __all__ = [
     "ACTOR_OBJECT",
     "DRONE_CLASS",
+    "LABELLED",
+    "LAST_PARKED",
     "SKY_OBJECT",
     "Colliders",
     "Fixtures",
@@ -29,6 +31,10 @@ SKY_OBJECT = -1
 ACTOR_OBJECT = 1 << 16
 """Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are objects of the scene."""
 
+LAST_PARKED = ACTOR_OBJECT - (1 << 14) - 1
+"""Largest id of an object of the scene that labels list: masks, of 16 bits, have room for 16,384
+actors besides."""
+
 
 class ObjectClass(IntEnum):
     """Class of an object; the values of `Picture.class_id`."""
@@ -43,7 +49,7 @@ class ObjectClass(IntEnum):
     POLE = 7
     WATER = 8
     CAR = 9
-    """Only actors have this class and the other classes of movers."""
+    """This and the other classes of `LABELLED` are those of actors, and of what is parked."""
     SKY = 10
     """No object."""
     TRUCK = 11
@@ -54,8 +60,20 @@ class ObjectClass(IntEnum):
     PERSON = 14
     ROBOT = 15
     BICYCLE = 16
-    """A bicycle, including its rider."""
+    """A bicycle, including its rider; a rack with bicycles."""
+    BOAT = 17
+    TRAIN = 18
+    """A whole train."""
 
+
+LABELLED = frozenset(
+    {
+        *(ObjectClass.CAR, ObjectClass.TRUCK, ObjectClass.BUS, ObjectClass.MOTORCYCLE),
+        *(ObjectClass.PERSON, ObjectClass.ROBOT, ObjectClass.BICYCLE),
+        *(ObjectClass.BOAT, ObjectClass.TRAIN),
+    }
+)
+"""Classes of what labels list: whatever moves, and what of the same looks stands still."""
 
 DRONE_CLASS = max(ObjectClass) + 1
 """Stands for the body of a tracker where contacts are told; pictures show it as a robot."""

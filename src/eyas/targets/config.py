@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
+from eyas.traffic.config import VehicleType
 
 __all__ = ["ObjectsConfig", "TargetName"]
 
@@ -27,6 +28,25 @@ class TargetName(StrEnum):
     SCOUT = "Scout"
     GHOST_DOG = "GhostDog"
     HOAP_2 = "Hoap2"
+
+    @classmethod
+    def elsewhere(cls, name: str) -> str:
+        """Return how vehicles of a class become targets; empty if the name is of no such class."""
+        kind = _COMMON.get(name.lower(), name.lower())
+        return f"SUMO_VEHICLE with traffic.vehicle_type={kind}" if kind in _CLASSES else ""
+
+
+_CLASSES = {str(kind) for kind in VehicleType}
+_COMMON = {
+    "buses": "bus",
+    "car": "passenger",
+    "cars": "passenger",
+    "lorry": "truck",
+    "motorbike": "motorcycle",
+    "trucks": "truck",
+    "van": "passenger",
+}
+"""Classes of vehicles by common names."""
 
 
 Offset = Annotated[Variation, AfterValidator(within(-1e4, 1e4))]

@@ -17,7 +17,7 @@ from eyas.sensors.rays import Ray, cast_ray
 from eyas.state.motion import Motion
 from eyas.state.terrain import Terrain, ground_at
 
-__all__ = ["Clearance", "Margin"]
+__all__ = ["Clearance", "Margin", "lifted_over"]
 
 Floats = NDArray[np.float64]
 
@@ -100,14 +100,24 @@ class _Looking(NamedTuple):
 @compiled
 def _lift_all(work: _Lifting) -> None:
     for place in range(work.places.shape[0]):
-        x, y = work.places[place, 0], work.places[place, 1]
-        z = max(work.places[place, 2], _lowest(work.obstacles.terrain, work.margin, x, y))
-        for _ in range(_LIFTS):
-            free = _over_solids(work.obstacles.solids, work.margin, x, y, z)
-            if free == z:
-                break
-            z = free
-        work.height[place] = z
+        obstacles, at = work.obstacles, work.places[place]
+        work.height[place] = lifted_over(
+            obstacles.solids, obstacles.terrain, work.margin, at[0], at[1], at[2]
+        )
+
+
+@kernel(inline=True)
+def lifted_over(
+    solids: Solids, terrain: Terrain, margin: Margin, x: float, y: float, z: float
+) -> float:
+    """Return the least height, from `z` up, that is free of things [m]."""
+    height = max(z, _lowest(terrain, margin, x, y))
+    for _ in range(_LIFTS):
+        free = _over_solids(solids, margin, x, y, height)
+        if free == height:
+            break
+        height = free
+    return height
 
 
 @kernel(inline=True)

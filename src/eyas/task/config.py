@@ -49,7 +49,8 @@ class Crash(StrEnum):
     """As in the original, which knows no contacts: too far from the commanded position, or turning
     too fast. Costs nothing."""
     CONTACT = "contact"
-    """The body touches a building, a tree, the ground or a vehicle; the episode goes on."""
+    """The body touches a building, a tree with its crown, the ground, a vehicle or another tracker;
+    the episode goes on."""
     END = "end"
     """The same, and the episode ends."""
 
@@ -64,7 +65,10 @@ class StartVelocity(StrEnum):
 
 
 class StartConfig(Config):
-    """Start of the tracker, relative to its target. Variations are sampled anew at each reset."""
+    """Start of the tracker, relative to its target. Variations are sampled anew at each reset. A
+    start inside a tree, a building, the ground or another tracker is drawn again, with another
+    target and time; in a world that trackers share, it may be above the thing instead.
+    """
 
     pitch: Annotated[Variation, AfterValidator(within(0.1, 3.0))] = 1.0
     """Camera pitch, positive down [rad]; the gimbal limits it to 0.5 to 1.5, but the start position

@@ -1,6 +1,7 @@
 """UDP messages by which clients announce how many agents there will be."""
 
 import logging
+import math
 import socket
 import time
 from collections.abc import Callable
@@ -8,7 +9,7 @@ from contextlib import suppress
 
 from eyas.core.errors import ConfigError, EyasError, OutputError
 
-__all__ = ["MOST_AGENTS", "Announcements"]
+__all__ = ["MOST_AGENTS", "Announcements", "listen_early"]
 
 MOST_AGENTS = 1024
 """Largest number of agents, as of the channels of a recording."""
@@ -19,8 +20,24 @@ _LONGEST = 256
 _LOG = logging.getLogger("eyas")
 
 
+_early: dict[tuple[str, int], tuple[socket.socket, float]] = {}
+"""The socket that listens already, and since when."""
+
+
+def listen_early(address: str, port: int) -> None:
+    """Listen before all else is imported, so that no announcement is lost meanwhile.
+
+    `Announcements` of the same place take over; where it is not possible, they give the reason.
+    """
+    with suppress(EyasError):
+        _early[address, port] = _listening(address, port), time.time()
+
+
 class Announcements:
     """A UDP socket on which each client sends the number of all clients, in digits.
+
+    Attributes:
+        since: When it began to listen, if that was early [s, as `time.time`]; else infinity.
 
     Args:
         address: Address to listen on.
@@ -32,7 +49,11 @@ class Announcements:
     """
 
     def __init__(self, address: str, port: int) -> None:
-        self._socket = _listening(address, port)
+        early = _early.pop((address, port), None)
+        for unused, _ in _early.values():
+            unused.close()
+        _early.clear()
+        self._socket, self.since = early or (_listening(address, port), math.inf)
         self._place = address, port
         self._told = -1.0
 

@@ -1,5 +1,6 @@
 """The folder of the original in which simulator and clients exchange files, and the waiting."""
 
+import math
 import os
 import re
 import time
@@ -49,6 +50,9 @@ _SIMULATOR = Path("Webots_Simulation", "traffic_project")
 
 SETTINGS_FILE = _SIMULATOR / "config" / "env_config.json"
 """The settings of the original's simulator, below its root; its clients read them too."""
+
+_COARSE = 0.02
+"""How far times of files lie behind the clock at most, some ticks of the kernel [s]."""
 
 _START = "start.txt"
 _OURS = re.compile(
@@ -119,8 +123,12 @@ class Exchange:
         return Names(self.files, tracker)
 
     @contextmanager
-    def opened(self) -> Iterator[int]:
+    def opened(self, since: float = math.inf) -> Iterator[int]:
         """Keep the folder for this process, without files of an earlier run; yield their number.
+
+        Args:
+            since: When clients could first announce themselves [s, as `time.time`]: files that are
+                newer are theirs.
 
         The file by which the original says that it has started exists until the block is left.
 
@@ -129,20 +137,22 @@ class Exchange:
         """
         with folder_lock(self.files, "serving in it"):
             try:
-                removed = self._clear()
+                removed = self._clear(since - _COARSE)
                 write_atomic(self.files / _START, b"b'1\\n'\n")
                 yield removed
             finally:
                 with suppress(OutputError):  # why the server ends is told, not this
                     self._clear()
 
-    def _clear(self) -> int:
-        """Delete all files of the protocol; return how many there were."""
+    def _clear(self, before: float = math.inf) -> int:
+        """Delete the files of the protocol that are older than a time; return how many."""
         removed = 0
         with refusals(self.files):
             for found in list(os.scandir(self.files)):
                 name = found.name.removeprefix(".").removesuffix(PART_SUFFIX)
-                if _OURS.fullmatch(name) and not found.is_dir(follow_symlinks=False):
+                if not _OURS.fullmatch(name) or found.is_dir(follow_symlinks=False):
+                    continue
+                if found.stat(follow_symlinks=False).st_mtime < before:
                     Path(found.path).unlink(missing_ok=True)
                     removed += 1
         return removed

@@ -1,6 +1,7 @@
 """The server: gathers an action of each client, lets the trackers act, gives the answers."""
 
 import logging
+import math
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
@@ -36,6 +37,10 @@ class Service(NamedTuple):
     """Whether all that is said and done is logged as by the original."""
 
 
+class _Idle(Exception):  # noqa: N818  # an end, no error
+    """There was no client for long."""
+
+
 class Server:
     """Serves clients of the original's protocol, until it is interrupted.
 
@@ -44,6 +49,7 @@ class Server:
         ask: Returns what to serve, whenever agents announce themselves; the same object as long as
             nothing has changed.
         place: Returns the address and the port on which to listen, which may change.
+        until_idle: Time without a client after which `run` ends [s].
     """
 
     def __init__(
@@ -51,15 +57,17 @@ class Server:
         exchange: Exchange,
         ask: Callable[[], Service],
         place: Callable[[], tuple[str, int]],
+        until_idle: float = math.inf,
     ) -> None:
         self._exchange = exchange
+        self._until_idle, self._active = until_idle, time.monotonic()
         self._ask = ask
         self._place = place
         self._looked = time.monotonic()
         self._late: set[str] = set()
 
     def run(self) -> None:
-        """Serve; each change of the number of agents begins with a new world.
+        """Serve until there is no client for long; each change of their number begins a new world.
 
         Raises:
             EyasError: The folder or the port cannot be used.
@@ -67,7 +75,7 @@ class Server:
         address, port = self._place()
         announcements = Announcements(address, port)
         try:
-            with self._exchange.opened() as removed:
+            with self._exchange.opened(announcements.since) as removed:
                 if removed:
                     _LOG.info(
                         "%s: deleted %d files of an earlier run; clients that were started "
@@ -78,11 +86,28 @@ class Server:
                 count, begun = self._wait(announcements), frozenset[int]()
                 while True:
                     count, begun = self._served(count, begun, announcements)
+        except _Idle:
+            _LOG.info("no client for %g s: ended", self._until_idle)
         finally:
             announcements.close()
 
     def _wait(self, announcements: Announcements) -> int:
-        return announcements.wait(lambda: announcements.move(*self._place()))
+        def meanwhile() -> None:
+            announcements.move(*self._place())
+            self._end_idle()
+
+        count = announcements.wait(meanwhile)
+        self._active = time.monotonic()
+        return count
+
+    def _end_idle(self) -> None:
+        """End if there was no client for long.
+
+        Raises:
+            _Idle: There was none.
+        """
+        if time.monotonic() - self._active > self._until_idle:
+            raise _Idle
 
     def _served(
         self, count: int, begun: frozenset[int], announcements: Announcements
@@ -158,6 +183,7 @@ class Server:
             happened = [session for session in sessions if session.poll()]
             if happened:
                 self._welcome(happened)
+                self._active = time.monotonic()
                 pause.restart()
                 continue
             if pause.long:
@@ -166,6 +192,7 @@ class Server:
                 if other is not None and self._is_new(service, other, len(sessions)):
                     return other
                 self._tell_late(sessions, service.config.patience)
+                self._end_idle()
             pause.sleep()
         other = announcements.poll()
         return other if other is not None and self._is_new(service, other, len(sessions)) else None

@@ -1,14 +1,15 @@
 """Settings of the world."""
 
-from typing import Annotated
+import re
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 
-__all__ = ["LightConfig", "WorldConfig", "WorldWindConfig"]
+__all__ = ["LightConfig", "WorldConfig", "WorldWindConfig", "world_of"]
 
 Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
 Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
@@ -23,12 +24,33 @@ class WorldWindConfig(Config):
     """Direction towards which it blows, counter-clockwise from east [rad]; drawn likewise."""
 
 
+_SIMPLE = "simpleway"
+"""First part of the names of the simple maps."""
+
+
+def world_of(path: str) -> tuple[str, str] | None:
+    """Return map and weather that the path of the original's world file names; None: it names none.
+
+    They are `<map>-<weather>.wbt`, `simpleway-<skin>_<weather>.wbt`, and `simpleway-<skin>.wbt`,
+    which is one by day.
+    """
+    found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
+    if not found:
+        return None
+    name, weather = found[1], found[2]
+    if name != _SIMPLE:
+        return name, weather
+    skin, joint, rest = weather.rpartition("_")
+    return (f"{_SIMPLE}-{skin}", rest) if joint else (f"{_SIMPLE}-{weather}", "day")
+
+
 class WorldConfig(Config):
     """The map and its weather."""
 
     map: Annotated[str, Field(min_length=1), NAMES_CODE] = "citystreet"
     """Name of the map, or the path of a plan (`my.plan.json`) or of a user's own,
-    `package.module:attribute`."""
+    `package.module:attribute`. The name of a world file of the original (`lake-night.wbt`) names
+    the weather, too, where no other is given."""
     weather: Annotated[str, Field(min_length=1), NAMES_CODE] = "day"
     """Name of the weather, or the path of a user's own, `package.module:attribute`."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
@@ -47,6 +69,14 @@ class WorldConfig(Config):
     moon: Annotated[float, Field(ge=0.0, le=1.0)] | None = None
     """Age of the moon as a share of a month, 0 new, 0.25 half, 0.5 full: then moon and stars stand
     where the hour has them, and a night is as dark as its moon. None: always full and high."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_world_file(cls, values: Any) -> Any:  # noqa: ANN401  # as in pydantic
+        named = values.get("map") if isinstance(values, dict) else None
+        if not isinstance(named, str) or (found := world_of(named)) is None:
+            return values
+        return {"weather": found[1], **values, "map": found[0]}
 
 
 class LightConfig(Config):

@@ -221,6 +221,12 @@ def test_what_is_no_size_is_refused(monkeypatch, text):
         cache_limit()
 
 
+def test_a_size_of_hundreds_of_digits_is_refused(monkeypatch):
+    monkeypatch.setenv("EYAS_CACHE_LIMIT", "9" * 400)
+    with pytest.raises(ConfigError, match=r"^EYAS_CACHE_LIMIT: '9+ \.\.\. 9+' is not allowed"):
+        cache_limit()
+
+
 def test_the_cache_is_the_users_unless_it_is_moved(monkeypatch, tmp_path):
     monkeypatch.delenv("EYAS_CACHE_DIR", raising=False)
     assert cache_folder() == Path(platformdirs.user_cache_dir("eyas"))

@@ -83,6 +83,11 @@ def test_a_foreign_name_for_our_address_is_refused(served):
         "GET / HTTP/1.1|Host: [::1",
         "GET / HTTP/1.1|Host: HERE|Host: evil.example",
         "GET / HTTP/1.1",
+        "GET / HTTP/1.1|Host: user@localhost",
+        "GET / HTTP/1.1|Host: user:secret@HERE",
+        "GET / HTTP/1.1|Host: localhost:99999999",
+        "GET / HTTP/1.1|Host: localhost/evil",
+        "GET / HTTP/1.1|Host: localhost#@evil.example",
         "GET / HTTP/1.1|Host: HERE|Origin: http://[",
         "GET / HTTP/1.1|Host: HERE|Origin: http://HERE|Origin: http://evil.example",
         "GET //[::1 HTTP/1.1|Host: HERE",
@@ -96,6 +101,18 @@ def test_what_is_malformed_is_refused_and_no_failure_of_ours(served, lines):
         connection.sendall(text.encode("latin-1"))
         answer = connection.makefile("rb").readline()
     assert answer.split()[1:2] in ([b"403"], [b"404"], [b"400"])
+
+
+@pytest.mark.parametrize(
+    "method", ["POST", "PUT", "DELETE", "TRACE", "OPTIONS", "HEAD", "get", "X"]
+)
+def test_only_get_is_answered(served, method):
+    text = f"{method} / HTTP/1.1\r\nHost: localhost:{served.port}\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", served.port), 20) as connection:
+        connection.sendall(text.encode())
+        answer = connection.makefile("rb").read()
+    assert answer.startswith(b"HTTP/1.1 405 ")
+    assert b"\r\nAllow: GET\r\n" in answer
 
 
 def test_a_page_cannot_name_code_or_files(served, viewer):

@@ -57,7 +57,7 @@ def cache_limit() -> int:
     text = os.environ.get(LIMIT_VARIABLE)
     if not text:
         return _DEFAULT_LIMIT
-    size = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?\s*", text, re.IGNORECASE)
+    size = re.fullmatch(r"\s*(\d{1,18}(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?\s*", text, re.IGNORECASE)
     if size is None:
         raise ConfigError(
             f"{LIMIT_VARIABLE}: {text!r} is not allowed; allowed: bytes, or a number with "

@@ -44,8 +44,11 @@ TYPES = {
     ObjectClass.PERSON: "Pedestrian",
     ObjectClass.ROBOT: "Misc",
     ObjectClass.BICYCLE: "Cyclist",
+    ObjectClass.BOAT: "Misc",
+    ObjectClass.TRAIN: "Tram",
 }
-"""KITTI's types; it has none for buses, motorcycles and robots."""
+"""KITTI's types; it has none for buses, motorcycles, robots and boats, nor for bicycles without a
+rider."""
 
 Floats = NDArray[np.float64]
 
@@ -103,12 +106,18 @@ def _row(seen: SeenObject, camera: Floats, position: Floats) -> str:
     bearing = heading - _heading_of(away)  # clockwise from straight ahead
     length, width, height = box.size
     return " ".join([
-        f"{label['id']} {TYPES[ObjectClass(label['class_id'])]}",
+        f"{label['id']} {_type(label)}",
         f"{_truncation(label['truncated'])} {occlusion_level(label['visible_fraction'])}",
         _text([_wrapped(turn - bearing)]),
         _text(label["box"]),
         _text([height, width, length, *location, turn]),
     ])  # fmt: skip
+
+
+def _type(label: Label) -> str:
+    kind = ObjectClass(label["class_id"])
+    # A cyclist rides.
+    return "Misc" if kind is ObjectClass.BICYCLE and "parked" in label else TYPES[kind]
 
 
 def _heading(camera: Floats) -> float:

@@ -45,9 +45,14 @@ CATEGORIES = {
     ObjectClass.PERSON: "human.pedestrian.adult",
     ObjectClass.ROBOT: "robot",
     ObjectClass.BICYCLE: "vehicle.bicycle",
+    ObjectClass.BOAT: "boat",
+    ObjectClass.TRAIN: "train",
 }
 VISIBILITIES = {"1": "0-40", "2": "40-60", "3": "60-80", "4": "80-100"}
-ATTRIBUTES = ("vehicle.moving", "vehicle.stopped", "pedestrian.moving", "pedestrian.standing")
+ATTRIBUTES = (
+    *("vehicle.moving", "vehicle.stopped", "vehicle.parked"),
+    *("pedestrian.moving", "pedestrian.standing"),
+)
 
 MOVES = 0.2
 """Speed from which something moves [m/s]."""
@@ -195,6 +200,8 @@ def _attributes(label: Label) -> list[str]:
     moves = exact.length(label["velocity"]) >= MOVES
     kind = CATEGORIES[ObjectClass(label["class_id"])].partition(".")[0]
     if kind == "vehicle":
+        if "parked" in label:
+            return ["vehicle.parked"]
         return ["vehicle.moving" if moves else "vehicle.stopped"]
     if kind == "human":
         return ["pedestrian.moving" if moves else "pedestrian.standing"]

@@ -35,6 +35,8 @@ CATEGORIES = {
     ObjectClass.PERSON: 1,
     ObjectClass.ROBOT: OTHERS,
     ObjectClass.BICYCLE: 3,
+    ObjectClass.BOAT: OTHERS,
+    ObjectClass.TRAIN: OTHERS,
 }
 """VisDrone's own numbers: 1 pedestrian, 3 bicycle, 4 car, 6 truck, 9 bus, 10 motor, 11 others."""
 

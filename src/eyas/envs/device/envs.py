@@ -14,6 +14,7 @@ from eyas.envs.device.actions import DeviceActions
 from eyas.envs.device.devices import device_of, drawer_of
 from eyas.envs.device.observation import DeviceObserver
 from eyas.envs.device.tensors import as_bool, copied, tensor_of
+from eyas.envs.trained_with import describe
 from eyas.lanes.device import Device
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
@@ -69,6 +70,7 @@ class DeviceEnvs:
         view = DeviceView(simulation, drawer)
         self._observer = DeviceObserver(seen, simulation, view, measures=measures)
         actions = make_actions(config.env)
+        describe(actions.space, config)
         self._actions = DeviceActions(actions, where, simulation.commands)
         self.action_space, self.observation_space = actions.space, self._observer.space
         flown = simulation.flown
@@ -87,6 +89,11 @@ class DeviceEnvs:
             if seed is not None:
                 self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
         self._simulation.reset(trackers)
+
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """Seed of the sequence of episodes of each, shape (N,)."""
+        return self._simulation.seeds
 
     def step(self, actions: Any, active: Mask) -> tuple[Any, Any, Any]:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent, see `eyas.envs.batch.Batch.step`.

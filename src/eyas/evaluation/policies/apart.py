@@ -12,8 +12,9 @@ import math
 import os
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
-from typing import IO, Any
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import IO, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,9 +34,16 @@ from eyas.evaluation.policies.policy import (
 __all__ = ["ApartPolicy", "open_apart", "receive", "runs_code", "send"]
 
 Array = NDArray[Any]
+Read = TypeVar("Read")
 
 _PLAIN = "biuf"
 """Kinds of numbers that arrays of a message may hold."""
+
+_WRONG = (
+    *(ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError),
+    *(MemoryError, SyntaxError),  # numpy compiles the names of some types
+)
+"""What reading raises where a message is of another form."""
 
 _LARGEST = 1 << 30
 """Largest part of a message [bytes]."""
@@ -65,17 +73,17 @@ def receive(stream: IO[bytes]) -> tuple[dict[str, Any], list[Array]]:
         ValueError: It is not one.
     """
     size = int.from_bytes(_exactly(stream, 4), "little")
-    content, arrays = _exactly(stream, size), []
     try:
-        head = json.loads(content)
+        head = json.loads(_exactly(stream, size))
+        arrays = []
         for name, shape in head.pop("arrays"):
             kind = np.dtype(name)
             if kind.kind not in _PLAIN or any(not 0 <= side < _LARGEST for side in shape):
                 raise ValueError(f"an array of {name!r} with shape {shape}")
             data = _exactly(stream, kind.itemsize * math.prod(shape))
             arrays.append(np.frombuffer(bytearray(data), kind).reshape(shape))
-    except (TypeError, KeyError, AttributeError, SyntaxError, RecursionError) as error:
-        raise ValueError(f"not a message: {error}") from None
+    except _WRONG as error:
+        raise ValueError(f"{type(error).__name__}: {error}") from None
     return head, arrays
 
 
@@ -110,7 +118,7 @@ class _Child:
         )
         opened = {"said": said, "changes": changes, "sampled": sampled, "paths": sys.path}
         try:
-            self.answer, _ = self.ask(opened)
+            self.answer = self.ask(opened, (), lambda answer, _: answer)
         except PolicyFailedError as error:
             raise ConfigError(f"--policy: '{said}': {error.failure.line}") from None
         if "refused" in self.answer:
@@ -123,9 +131,9 @@ class _Child:
         return self._process.poll() is None
 
     def ask(
-        self, head: Mapping[str, Any], arrays: Sequence[Array] = ()
-    ) -> tuple[dict[str, Any], list[Array]]:
-        """Send a message and return the answer.
+        self, head: Mapping[str, Any], arrays: Sequence[Array], read: Callable[..., Read]
+    ) -> Read:
+        """Send a message and return what `read` makes of the answer: its head and its arrays.
 
         Raises:
             PolicyFailedError: The policy has failed as a whole, or its process has ended.
@@ -135,16 +143,16 @@ class _Child:
         try:
             send(self._process.stdin, head, arrays)
             answer, parts = receive(self._process.stdout)
+            if "failure" in answer:
+                raise PolicyFailedError(Failure(*answer["failure"]))
+            return read(answer, parts)
         except (OSError, EOFError):
             self.close()
             raise PolicyFailedError(Failure(self._how_ended(), None)) from None
-        except (ValueError, KeyError, TypeError) as error:
+        except _WRONG as error:
             self.close()
             line = f"the policy's process has answered what is no answer: {error}"
             raise PolicyFailedError(Failure(line, None)) from None
-        if "failure" in answer:
-            raise PolicyFailedError(Failure(*answer["failure"]))
-        return answer, parts
 
     def close(self) -> None:
         """End the process."""
@@ -216,7 +224,7 @@ class ApartPolicy:
         if start.told is not None:
             head["words"] = list(start.told.words)
             arrays.append(start.told.attributes)
-        self._child.ask(head, arrays)
+        self._child.ask(head, arrays, lambda *_: None)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Send the observations of those who decide, and return their actions."""
@@ -226,6 +234,13 @@ class ApartPolicy:
         arrays: list[Array] = [sight.deciding, *(part[sight.deciding] for part in parts.values())]
         if sight.heard is not None:
             arrays.append(sight.heard)
-        answer, (actions, *messages) = self._child.ask(head, arrays)
-        failed = {int(row): Failure(*told) for row, told in answer["failed"].items()}
-        return Decision(actions, failed, messages[0] if messages else None)
+        return self._child.ask(head, arrays, partial(_decision, len(sight.deciding)))
+
+
+def _decision(count: int, answer: Mapping[str, Any], parts: Sequence[Array]) -> Decision:
+    """Return the decision in an answer, for N drones."""
+    if any(len(part) != count for part in parts):
+        raise ValueError(f"{[len(part) for part in parts]} rows for {count} drones")
+    failed = {int(row): Failure(*told) for row, told in answer["failed"].items()}
+    actions, *messages = parts
+    return Decision(actions, failed, messages[0] if messages else None)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from eyas.core.errors import ConfigError
-from eyas.core.own_code import imported, running, takes
+from eyas.core.own_code import imported, left_out, running, takes
 from eyas.envs.config import EnvConfig
 from eyas.envs.observation import Observation
 from eyas.evaluation.messages import MESSAGE
@@ -161,7 +161,7 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
 
         return pilot(path, changes)
     made = inspect.isclass(found)
-    fits = callable(getattr(found, "act", None)) if made else callable(found)
+    fits = callable(found) and not (made and left_out(found, ["act"]))
     if not fits or takes(found, *() if made else (None,)):
         raise ConfigError(
             f"--policy: '{path}' is not allowed: a function of an observation, or a class with "

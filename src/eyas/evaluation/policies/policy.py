@@ -1,5 +1,6 @@
 """The interface of a policy that flies N drones at once."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from traceback import format_exception
@@ -132,6 +133,7 @@ class Policy(Protocol):
         """Forget everything: N episodes begin."""
         ...
 
+    @abstractmethod
     def act(self, sight: PolicyInput) -> Decision:
         """Choose actions."""
         ...

@@ -1,15 +1,20 @@
 """Policies that stable-baselines3 has saved."""
 
 import json
+import logging
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from eyas.core.config import shown
 from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.envs.trained_with import ELSEWHERE, trained_with
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 
 __all__ = ["Sb3Policy", "load_sb3"]
+
+_LOG = logging.getLogger("eyas")
 
 _SIGNS = {
     "clip_range": "PPO",
@@ -25,7 +30,7 @@ class Sb3Policy:
     """A model of stable-baselines3: PPO, A2C, DQN, SAC or TD3.
 
     Size, colours and layout of its pictures follow from its observation space, and the kind of its
-    actions from its action space; `env.action_repeat` is not saved with it.
+    actions from its action space, on which environments of Eyas write all other settings of `env`.
 
     Args:
         path: The `.zip`. It holds pickles, which run code: load only files that you trust.
@@ -59,7 +64,23 @@ class Sb3Policy:
         actions = "discrete" if discrete else "shares"
         if space.n == 11 if discrete else space.shape == (6,):
             actions += "+gimbal"
-        self.env = env_config({"observation": image, "actions": actions}, changes)
+        trained = trained_with(space)
+        own = _part(trained, "env")
+        if own:
+            actions = own.get("actions", actions)
+            seen = _part(own, "observation")
+            colours, frames = seen.get("colours"), seen.get("frames")
+            # No wrapper has changed them.
+            if isinstance(frames, int) and planes == (1 if colours == "grey" else 3) * frames:
+                image |= {"colours": colours, "frames": frames}
+        elif "action_repeat" not in changes:
+            _LOG.warning(
+                "%s: does not say with which env.action_repeat it was trained; 1 is taken: "
+                "--set env.action_repeat=4 changes it",
+                path,
+            )
+        self.env = env_config({**own, "observation": image, "actions": actions}, changes)
+        _tell_others(path, trained)
         self.sampled = sampled
 
     def begin(self, start: Start) -> None:
@@ -70,6 +91,26 @@ class Sb3Policy:
         """Predict."""
         actions, _ = self._model.predict(sight.observation, deterministic=not self.sampled)
         return Decision(actions)
+
+
+def _part(values: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """Return a group of a description; none if it is not there."""
+    part = values.get(name)
+    return part if isinstance(part, Mapping) else {}
+
+
+def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
+    """Name the settings that a model was trained with and that the protocol decides."""
+    others = [
+        f"{group}.{name}={shown(value)}"
+        for group in ELSEWHERE
+        for name, value in _part(trained, group).items()
+    ]
+    if others:
+        _LOG.warning(
+            "%s: was trained with %s; flown with those of the protocol, unless --set changes them",
+            *(path, ", ".join(others)),
+        )
 
 
 def load_sb3(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> Sb3Policy:

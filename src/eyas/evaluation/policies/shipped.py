@@ -10,34 +10,16 @@ from pathlib import Path
 
 from eyas.core.config import Config, validated
 
-__all__ = ["TRAINED", "Card", "Score", "card_of", "file_of", "shipped_names"]
+__all__ = ["TRAINED", "Card", "card_of", "file_of", "shipped_names"]
 
 TRAINED = Path(str(files("eyas.evaluation.policies"))) / "trained"
 """Their folder: for each name a network (`.onnx`), a card (`.json`) and a curve (`.csv`)."""
 
 
-class Score(Config):
-    """What a policy reaches in a protocol."""
-
-    protocol: str
-    map: str = "citystreet"
-    weather: str
-    target: str = "SUMO_VEHICLE"
-    latency: str = "0"
-    """[ms]"""
-    flown: bool = False
-    """Whether its flight controller flies the drone, which begins at its target's velocity."""
-    n: int
-    """Number of episodes."""
-    cr: float
-    tsr: float
-    language_gap: float | None = None
-    success: float | None = None
-    """With the right words; both of `referring` only."""
-
-
 class Card(Config):
-    """Where a policy is from, and what it can do."""
+    """Where a policy is from, and what it cannot do; what it reaches stands in the tables of
+    `eyas reproduce`.
+    """
 
     title: str
     """What it has learned, in a few words."""
@@ -53,7 +35,6 @@ class Card(Config):
     """Places, conditions, targets and episodes of its training, in a few sentences."""
     limits: tuple[str, ...]
     """What it cannot do, as far as is known."""
-    scores: tuple[Score, ...]
 
 
 def shipped_names() -> tuple[str, ...]:

@@ -108,7 +108,8 @@ class SceneWriter(Writer):
 def _moment(frame: Frame) -> _Moment:
     w, x, y, z = frame.tracker.orientation.tolist()
     body = _Pose(tuple(frame.tracker.position.tolist()), (x, y, z, w))
-    movers = {each.object_id: _mover(each, frame) for each in (frame.target, *frame.others)}
+    moving = (each for each in (frame.target, *frame.others) if not each.parked)
+    movers = {each.object_id: _mover(each, frame) for each in moving}
     target = frame.target.object_id
     return _Moment(frame.episode_time, frame.camera, body, target, movers)
 

@@ -13,6 +13,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 from eyas.core.clock import PHYSICS_RATE
+from eyas.core.faults import FaultLog
 from eyas.mavlink.hil.drone import DrivenDrone
 from eyas.mavlink.hil.pace import Pace
 
@@ -64,17 +65,19 @@ class ArduPilot:
 
     def serve(self, heard: socket.socket) -> None:
         """Fly until the user stops it."""
+        faults = FaultLog()
         while True:
             try:
                 packet, peer = heard.recvfrom(65_535)
             except ConnectionError:  # some systems tell so that nobody hears what was sent
                 continue
-            servos = servos_of(packet)
-            if servos is None:
-                continue
-            answer = self.answer(servos)
-            with suppress(OSError):  # it came from where nobody can be answered, such as port 0
-                heard.sendto(answer, peer)
+            with faults.guard(f"packet from {peer[0]}"):
+                servos = servos_of(packet)
+                if servos is None:
+                    continue
+                answer = self.answer(servos)
+                with suppress(OSError):  # it came from where nobody can be answered: port 0
+                    heard.sendto(answer, peer)
 
     def answer(self, servos: Servos) -> bytes:
         """Fly for a frame, and return what is sensed then; for a packet that comes again, time

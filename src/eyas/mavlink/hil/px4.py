@@ -50,14 +50,17 @@ class Px4:
     def serve(self, server: socket.socket) -> None:
         """Fly until the user stops it."""
         while True:
-            connection, peer = server.accept()
+            try:
+                connection, peer = server.accept()
+            except ConnectionError:  # it had gone before it was let in
+                continue
             _LOG.info("PX4 has connected from %s port %d", *peer[:2])
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self._drone.begin()
             with connection:
                 try:
                     self._fly(connection)
-                except (ConnectionError, TimeoutError, EOFError):
+                except (OSError, EOFError):  # whatever has ended the connection
                     _LOG.info("PX4 has gone; waiting for another")
 
     def _fly(self, connection: socket.socket) -> None:
@@ -136,8 +139,7 @@ class Px4:
         at = self._drone.instant
         latitude, longitude, altitude = at.global_place
         vx, vy, vz = (round(100.0 * part) for part in at.velocity)
-        felt = (round(part * 1e3 / _STANDARD_GRAVITY) for part in at.imu()[0])
-        xacc, yacc, zacc = (min(max(part, -32_767), 32_767) for part in felt)
+        xacc, yacc, zacc = (round(part * 1e3 / _STANDARD_GRAVITY) for part in at.imu()[0])
         roll, pitch, yaw = at.rates
         return {
             **{"time_usec": self._microseconds, "attitude_quaternion": at.attitude},

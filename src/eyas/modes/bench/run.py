@@ -5,7 +5,6 @@ import os
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -16,6 +15,7 @@ from rich.console import Console
 
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
+from eyas.core.scratch import scratch
 from eyas.envs.device.devices import device_of
 from eyas.modes.bench.camera import camera_table, measure_camera
 from eyas.modes.bench.device import measure_device
@@ -113,11 +113,11 @@ def run(
 
 
 def _measurements(seconds: float, *, cold: bool) -> Iterator[Measurement]:
-    with tempfile.TemporaryDirectory() as bytecode:
-        yield _first_picture("first picture, kernels cached", None, bytecode)
+    with scratch() as bytecode:
+        yield _first_picture("first picture, kernels cached", None, str(bytecode))
     if cold:
-        with tempfile.TemporaryDirectory() as folder:
-            yield _first_picture("first picture, nothing compiled", folder, "")
+        with scratch() as folder:
+            yield _first_picture("first picture, nothing compiled", str(folder), "")
     for pictures in BY_DAY:
         yield measure_pictures(pictures, seconds)
     yield measure_horizon(seconds)

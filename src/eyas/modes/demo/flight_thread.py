@@ -7,6 +7,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from eyas.core.errors import EyasError
+from eyas.core.faults import FaultLog
 from eyas.modes.demo.frame import DemoFrame
 from eyas.modes.demo.messages import Message, WorldMessage
 from eyas.modes.demo.orders import (
@@ -48,7 +49,7 @@ class FlightThread:
 
     def __init__(self, session: Session, audience: Audience) -> None:
         self.session = session
-        self._audience = audience
+        self._audience, self._faults = audience, FaultLog()
         self._inbox: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
 
     def put(self, message: Message) -> None:
@@ -94,7 +95,8 @@ class FlightThread:
 
     def _carry_out(self, message: Message) -> None:
         stay = self._stay if isinstance(message, WorldMessage) else None
-        self._try(lambda: carry_out(self.session, message), stay)
+        with self._faults.guard(f"message {type(message).__name__}"):
+            self._try(lambda: carry_out(self.session, message), stay)
 
     def _try(
         self, act: Callable[[], dict[str, Any] | None], otherwise: Callable[[], None] | None = None

@@ -2,6 +2,7 @@
 
 import hmac
 import json
+import re
 import secrets
 from functools import cache
 from importlib.resources import files
@@ -66,6 +67,8 @@ def _streets(session: Session) -> dict[str, Any]:
 
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
+_OWN_HOST = re.compile(r"(localhost|127\.0\.0\.1|\[::1\])(:[0-9]{1,5})?", re.IGNORECASE)
+"""What the header `Host` may be where no token is needed."""
 
 
 def is_loopback(host: str) -> bool:
@@ -98,7 +101,7 @@ class Gate:
         """
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
         host = hosts[0] if len(hosts) == 1 else ""
-        if self.token is None and _name_of(f"//{host}").hostname not in _LOOPBACK:
+        if self.token is None and not _OWN_HOST.fullmatch(host):
             return "this demo answers only to localhost"
         if origins and (len(origins) > 1 or _name_of(origins[0]).netloc != host):
             return "the page is of another origin"

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from typing import Any
 
@@ -15,6 +15,7 @@ from websockets.http11 import Request, Response
 
 from eyas import __version__
 from eyas.core.errors import ConfigError, EyasError
+from eyas.core.faults import FaultLog
 from eyas.modes.demo import messages as said
 from eyas.modes.demo.flight_thread import FlightThread
 from eyas.modes.demo.frame import DemoFrame
@@ -55,7 +56,7 @@ class DemoServer:
 
     def __init__(self, session: Session, host: str, listening: socket.socket) -> None:
         self._session, self._host, self._listening = session, host, listening
-        self._gate = Gate(host)
+        self._gate, self._faults = Gate(host), FaultLog()
 
     async def run(self, begun: Callable[[str], None]) -> None:
         """Serve until this task is cancelled.
@@ -89,6 +90,8 @@ class DemoServer:
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request, or let a WebSocket begin."""
+        if getattr(request, "method", "GET") != "GET":  # old websockets let nothing else in
+            return _text(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered", Allow="GET")
         path = path_of(request)
         page = page_file(path)
         public = page is not None and path not in ("/", "/index.html")
@@ -127,11 +130,12 @@ class DemoServer:
     async def _listen(self, connection: ServerConnection, viewer: Viewer) -> None:
         errors = 0
         async for text in connection:
-            try:
-                self._hear(viewer, said.parsed(text))
-            except ConfigError as error:
-                errors += 1
-                viewer.tell({"error": str(error)})
+            with self._faults.guard("message of a page"):
+                try:
+                    self._hear(viewer, said.parsed(text))
+                except ConfigError as error:
+                    errors += 1
+                    viewer.tell({"error": str(error)})
             if errors >= ERRORS:
                 await connection.close(1008, "too many messages were refused")
 
@@ -191,10 +195,13 @@ async def _send(connection: ServerConnection, viewer: Viewer) -> None:
         return
 
 
-def _text(status: HTTPStatus, text: str) -> Response:
-    return _response(status, "text/plain; charset=utf-8", f"{text}\n".encode())
+def _text(status: HTTPStatus, text: str, **more: str) -> Response:
+    return _response(status, "text/plain; charset=utf-8", f"{text}\n".encode(), more)
 
 
-def _response(status: HTTPStatus, kind: str, body: bytes) -> Response:
-    headers = Headers({"Content-Type": kind, "Content-Length": str(len(body)), **_SAFE})
+def _response(
+    status: HTTPStatus, kind: str, body: bytes, more: Mapping[str, str] = _SAFE
+) -> Response:
+    length = str(len(body))
+    headers = Headers({"Content-Type": kind, "Content-Length": length, **_SAFE, **more})
     return Response(status.value, status.phrase, headers, body)

@@ -17,6 +17,7 @@ from eyas.modes.reproduce.tables import (
     Row,
     Table,
     expected,
+    flown_with,
     table_named,
 )
 
@@ -79,7 +80,9 @@ def made(table: Table, out: Path, *, quiet: bool = False, keep: bool = False) ->
                 print(f"{table.name}: {row.plan.command}", flush=True)
             evaluate(row.plan, folder, resume=True, quiet=True)
         rows.append(_row(row, table, load_run(folder)[1]))
-    return Expected(build_id=build.id, world=build.world, rows=tuple(rows))
+    return Expected(
+        build_id=build.id, world=build.world, flown_with=flown_with(table), rows=tuple(rows)
+    )
 
 
 def _is_flown(folder: Path, row: Row) -> bool:

@@ -3,14 +3,26 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from eyas.core.config import Config, validated
 from eyas.core.errors import UnknownNameError
 from eyas.evaluation.plan import EvaluationPlan
+from eyas.evaluation.policies.shipped import shipped_names
+from eyas.evaluation.policies.table import fingerprint
 from eyas.evaluation.setting_out import AT_REST, AT_SPEED
 
-__all__ = ["TABLES", "Expected", "ExpectedRow", "Row", "Table", "expected", "table_named"]
+__all__ = [
+    "TABLES",
+    "Expected",
+    "ExpectedRow",
+    "Row",
+    "Table",
+    "expected",
+    "flown_of",
+    "flown_with",
+    "table_named",
+]
 
 THREE_SETS = (1_000_000, 11_000_000, 21_000_000)
 """First seeds of three sets of episodes: one lucky set is then seen as one."""
@@ -70,6 +82,8 @@ class Expected(Config):
     """The build of Eyas that has made it."""
     world: str
     """The digest of its world, see `eyas.core.build.Build.world`."""
+    flown_with: dict[str, str]
+    """Hashes of the protocols and of the shipped policies that have flown it, by name."""
     rows: tuple[ExpectedRow, ...]
 
 
@@ -79,6 +93,27 @@ def expected(name: str) -> Expected | None:
     if not path.is_file():
         return None
     return validated(Expected, json.loads(path.read_text()), str(path))
+
+
+def flown_with(table: Table) -> dict[str, str]:
+    """Return the hashes, as they are now, of a table's protocols and shipped policies by name."""
+    plans = [row.plan for row in table.rows]
+    protocols = {f"protocol {plan.protocol}": plan.rules.hash for plan in plans}
+    policies = {plan.policy for plan in plans} & set(shipped_names())
+    return protocols | {f"policy {name}": str(fingerprint(name)) for name in sorted(policies)}
+
+
+def flown_of(policy: str) -> dict[str, list[tuple[Row, ExpectedRow, str]]]:
+    """Return the rows of a policy by the name of their table, each with the build that flew it."""
+    found: dict[str, list[tuple[Row, ExpectedRow, str]]] = {}
+    for table in TABLES.values():
+        said = expected(table.name)
+        for row, one in zip(table.rows, said.rows if said else (), strict=said is not None):
+            if row.plan.policy == policy:
+                assert said is not None
+                build = one.build_id or said.build_id
+                found.setdefault(table.name, []).append((row, one, build))
+    return found
 
 
 def table_named(name: str) -> Table:
@@ -119,6 +154,11 @@ _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
 _SEERS = ("hover", "sighted", "constant-velocity")
 _SHORT = (*_SEERS, "fast", "eyas")
+_FLIGHT_CONTROLLER: dict[str, Any] = {
+    "tracker": {"supervised": False, "flight": "mended"},
+    "start": {"velocity": "target"},
+}
+"""A drone that its flight controller flies, and that begins at its target's velocity."""
 
 
 def _short_flights() -> Iterator[Table]:
@@ -151,6 +191,13 @@ def _short_flights() -> Iterator[Table]:
         tuple(_rows(("eyas",), _CONDITIONS, protocol="standard")),
     )
     yield Table(
+        "targets",
+        "following-one-target.md",
+        "`eyas` and `eyas-flown` in `paper`: other targets, late actions, flown drones",
+        _PAPER,
+        tuple(_other_targets()),
+    )
+    yield Table(
         "unseen",
         "protocols/unseen.md",
         "`unseen`, six towns by day",
@@ -159,13 +206,51 @@ def _short_flights() -> Iterator[Table]:
     )
 
 
+def _other_targets() -> Iterator[Row]:
+    for label, changes in (
+        ("80 ms late", {"latency": "80"}),
+        ("`Pedestrian`", {"targets": ("Pedestrian",)}),
+        ("`GhostDog`", {"targets": ("GhostDog",)}),
+    ):
+        yield Row(f"`eyas`, {label}", EvaluationPlan(policy="eyas", seeds=FLOWN_SETS, **changes))
+    for label, changes in (
+        ("citystreet", {}),
+        ("downtown", {"maps": ("downtown",)}),
+        ("citystreet, 40 ms late", {"latency": "40"}),
+    ):
+        plan = EvaluationPlan(policy="eyas-flown", settings=_FLIGHT_CONTROLLER, **changes)
+        yield Row(f"`eyas-flown`, {label}", plan)
+
+
+def _lasting() -> Iterator[Row]:
+    for protocol, maps in (("long", ("citystreet", "downtown")), ("distractor", ("citystreet",))):
+        for map_name in maps:
+            for policy in ("hover", "sighted", "constant-velocity", "fast", "eyas"):
+                seeds = FLOWN_SETS if policy == "eyas" else FLOWN_SETS[:1]
+                plan = EvaluationPlan(
+                    policy=policy, protocol=protocol, maps=(map_name,), seeds=seeds
+                )
+                yield Row(f"`{policy}`, `{protocol}` in {map_name} by day", plan)
+
+
 def _long_flights() -> Iterator[Table]:
+    yield Table(
+        "lasting",
+        "protocols/lasting.md",
+        "`long` and `distractor`",
+        ("tsr", "kept", "losses", "found_again"),
+        tuple(_lasting()),
+    )
     for name, policies, columns, page in (
         ("recover", _LASTING, _RECOVERED, "recover"),
         ("recover-camera", _SEERS, _BY_LENGTH, "recover"),
         ("evade", _SEERS, ("kept", "held", "losses", "tsr"), "evade"),
     ):
-        yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, _flown(name, policies))
+        rows = _flown(name, policies)
+        if name != "recover-camera":
+            seeds = FLOWN_SETS if name == "recover" else FLOWN_SETS[:1]
+            rows += _flown(name, ("eyas",), seeds=seeds)
+        yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, rows)
     yield Table(
         "flown",
         "protocols/flown.md",
@@ -184,6 +269,27 @@ def _long_flights() -> Iterator[Table]:
             seeds=THREE_SETS[1:2],
         ),
     )
+    yield Table(
+        "referring-weathers",
+        "following-words.md",
+        "`eyas-words` on both maps in four weathers, `referring`",
+        ("language_gap", "success_right", "success_other", "chosen"),
+        tuple(_in_weathers()),
+    )
+
+
+def _in_weathers() -> Iterator[Row]:
+    for map_name in ("citystreet", "downtown"):
+        for weather in ("day", "night", "foggy", "snow"):
+            plan = EvaluationPlan(
+                policy="eyas-words",
+                protocol="referring",
+                maps=(map_name,),
+                weathers=(weather,),
+                episodes=13,  # one of each kind of phrase and number of look-alikes
+                seeds=THREE_SETS[1:2],
+            )
+            yield Row(f"`eyas-words`, {map_name} by {weather}", plan)
 
 
 def _by_start() -> Iterator[Row]:

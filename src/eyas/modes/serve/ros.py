@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE, PHYSICS_STEP, physics_steps
 from eyas.core.config import updated
+from eyas.core.faults import FaultLog
 from eyas.mavlink.hil.pace import Pace
 from eyas.settings.config import EyasConfig
 from eyas.world.maps import MAPS
@@ -58,7 +59,7 @@ class Bridge:
         from eyas.state.draw import Picture
 
         self._simulation, self._config = simulation, config
-        self._bus, self._messages = bus, messages
+        self._bus, self._messages, self._faults = bus, messages, FaultLog()
         self._steps = physics_steps(config.control.frequency)
         self._between = max(round(PHYSICS_RATE / config.video.fps), 1)
         self._readers = {name: bus.listen(name, kind) for name, kind in HEARD.items()}
@@ -93,10 +94,11 @@ class Bridge:
         from eyas.envs.actions import turn_commands
 
         for name, reader in self._readers.items():
-            for twist in self._bus.heard(reader):
-                parts = _numbers(twist.linear), _numbers(twist.angular)
-                whole = np.array([*parts[0], *parts[1]])
-                self._told[name] = np.where(np.isfinite(whole), whole, 0.0), self.now
+            with self._faults.guard(f"messages of {name}"):
+                for twist in self._bus.heard(reader):
+                    parts = _numbers(twist.linear), _numbers(twist.angular)
+                    whole = np.array([*parts[0], *parts[1]])
+                    self._told[name] = np.where(np.isfinite(whole), whole, 0.0), self.now
         body, camera = (self._held(name) for name in HEARD)
         command = np.array([[body[0], body[1], body[2] * PHYSICS_STEP, body[5]]])
         gimbal = self._config.env.gimbal

@@ -1,5 +1,6 @@
 """Serve clients of the original, in the place of its simulator."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ from eyas.modes.serve.source import SettingsSource
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy
 from eyas.settings.legacy.messages import originals_named
+from eyas.settings.legacy.start_time import AGENT_STEPS, started_later
 from eyas.wire.exchange import SETTINGS_FILE, Exchange
 from eyas.wire.server import Server, Service
 from eyas.world.maps import MAPS
@@ -26,8 +28,9 @@ def run(
     config: EyasConfig,
     root: Path,
     load: Callable[[], EyasConfig] | None = None,
+    until_idle: float = math.inf,
 ) -> None:
-    """Serve clients until the user stops it.
+    """Serve clients until the user stops it, or there is none for long.
 
     If `root` has no `env_config.json`, which clients read too, the settings are written there; an
     existing file is never changed.
@@ -37,6 +40,7 @@ def run(
         root: Folder with the original's `Webots_Simulation` and `Alg_Base`.
         load: Reads the settings again where `env_config.json` holds them, as programs of clients
             change it before they announce themselves; None: they do not change.
+        until_idle: Time without a client after which it ends [s].
 
     Raises:
         EyasError: Something cannot be built, read or written, or the folder or the port is in use.
@@ -53,7 +57,7 @@ def run(
         source = SettingsSource(config, exchange.settings if load else None, load)
         desk = _Desk(source, config, root)
         try:
-            Server(exchange, desk.ask, source.place).run()
+            Server(exchange, desk.ask, source.place, until_idle).run()
         except KeyboardInterrupt as error:
             error.add_note("clients that still wait must be started again")
             raise
@@ -94,6 +98,7 @@ def _crew(config: EyasConfig, count: int) -> "TrackerGroup":
     from eyas.sim.worlds import together
     from eyas.wire.tracker_group import TrackerGroup
 
+    config = started_later(config, AGENT_STEPS * count)
     steps = physics_steps(config.control.frequency)
     with originals_named(config):
         return TrackerGroup(build_simulation(config, together(count)), steps)

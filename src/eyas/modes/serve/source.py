@@ -11,7 +11,7 @@ from eyas.core.errors import EyasError
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import legacy_key_of
 
-__all__ = ["SettingsSource"]
+__all__ = ["SettingsSource", "quietly"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -53,7 +53,7 @@ class SettingsSource:
             return self._config
         self._seen = signature
         try:
-            told = list(_differences(self._config, _quietly(self._load)))
+            told = list(_differences(self._config, quietly(self._load)))
             if told:
                 more = f" and {len(told) - _TOLD} more" if len(told) > _TOLD else ""
                 _LOG.info("%s has changed: %s%s", self._path, ", ".join(told[:_TOLD]), more)
@@ -67,7 +67,7 @@ class SettingsSource:
         signature = self._signature()
         if self._load is not None and signature != self._peeked:
             with suppress(EyasError):  # written just now; told when agents announce themselves
-                wire = _quietly(self._load).wire
+                wire = quietly(self._load).wire
                 self._place, self._peeked = (wire.address, wire.port), signature
         return self._place
 
@@ -81,7 +81,7 @@ class SettingsSource:
         return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def _quietly(load: Callable[[], EyasConfig]) -> EyasConfig:
+def quietly(load: Callable[[], EyasConfig]) -> EyasConfig:
     """Return settings without what loading them warns of."""
     before, _LOG.disabled = _LOG.disabled, True
     try:

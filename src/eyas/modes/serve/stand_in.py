@@ -20,13 +20,16 @@ _SIMULATOR = "Webots_Simulation"
 _WORLD = WorldPath("the world", "map", "weather")
 
 
-def install(folder: Path, root: Path | None, overrides: Sequence[str]) -> Path:
+def install(
+    folder: Path, root: Path | None, overrides: Sequence[str], until_idle: float | None = None
+) -> Path:
     """Write the program into a folder; return its path.
 
     Args:
         folder: Made if it does not exist.
         root: The original's folder, with `Webots_Simulation`; None: found at each start.
         overrides: Settings as `key=value`, for each start.
+        until_idle: Time without a client after which it ends [s]; None: it does not.
 
     Raises:
         OutputError: Another program of that name is there, or writing failed.
@@ -39,6 +42,8 @@ def install(folder: Path, root: Path | None, overrides: Sequence[str]) -> Path:
     fixed = [word for override in overrides for word in ("--set", override)]
     if root is not None:
         fixed += ["--root", str(root.resolve())]
+    if until_idle is not None:
+        fixed += ["--until-idle", repr(until_idle)]
     # Without -P, modules of the program's folder would be taken for those of Eyas and others.
     command = [sys.executable, "-P", "-m", "eyas.cli.webots", *fixed, "--"]
     text = f'#!/bin/sh\n{_MARK}exec {shlex.join(command)} "$@"\n'

@@ -10,12 +10,12 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from eyas import __version__
 from eyas.core.errors import DataFileError, UnknownNameError
 from eyas.core.machine import describe_machine
+from eyas.core.scratch import scratch
 from eyas.lanes import thread_count
 from eyas.lanes.folder import FOLDER_VARIABLE
 from eyas.modes.progress import frames_bar
@@ -150,8 +150,8 @@ def measured(chosen: Iterable[Case]) -> Hashes:
 def _empty_cache() -> Iterator[None]:
     """Have what is kept written to a folder that is removed at the end."""
     before = os.environ.get(FOLDER_VARIABLE)
-    with TemporaryDirectory(prefix="eyas-verify-", ignore_cleanup_errors=True) as folder:
-        os.environ[FOLDER_VARIABLE] = folder
+    with scratch() as folder:
+        os.environ[FOLDER_VARIABLE] = str(folder)
         try:
             yield
         finally:

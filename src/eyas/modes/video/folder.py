@@ -27,15 +27,15 @@ from eyas.settings.legacy.adapter import save_legacy
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import ATTRIBUTION_FILE
 
-__all__ = ["VideoFolder", "check_folder", "open_folder"]
+__all__ = ["VideoFolder", "check_folder", "open_folder", "recorded_seed"]
 
 SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
 ORIGIN = "version.json"
 """Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
-"build": {...}, "files": {...}}`. The build, since another one may draw different pictures; the
-files, so that `--overwrite` can delete them even if the package of a user's own writer is no longer
-installed."""
+"build": {...}, "files": {...}, "seed": 0}`. The build, since another one may draw different
+pictures; the files, so that `--overwrite` can delete them even if the package of a user's own
+writer is no longer installed."""
 
 STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
 """Names of the logs in the folder of a recording, outside of the trackers' folders."""
@@ -135,6 +135,14 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
         )
 
 
+def recorded_seed(path: Path) -> int | None:
+    """Return the seed of the recording in a folder; None if it cannot be read there."""
+    with suppress(DataFileError):
+        seed = read_settings(path / SETTINGS).get("seed")
+        return seed if isinstance(seed, int) else None
+    return None
+
+
 def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> VideoFolder:
     """Prepare a folder for recording and write the settings; call it under `folder_lock`.
 
@@ -161,6 +169,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     origin = {
         **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
         "files": asdict(files),
+        "seed": config.seed,
     }
     write_atomic(path / ORIGIN, (json.dumps(origin) + "\n").encode())
     notice = MAPS.get(config.world.map).attribution()

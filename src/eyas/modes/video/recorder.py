@@ -136,8 +136,8 @@ class Recorder:
             config.camera.width,
             rgb="rgb" in wanted,
             # A picture needs at least one array of pixels; this one is the fastest.
-            depth="depth" in wanted or not pictures,
-            object_id="object_id" in wanted,
+            depth="depth" in wanted or "others" in wanted or not pictures,
+            object_id="object_id" in wanted or "others" in wanted,
             class_id="class_id" in wanted,
             normal="normal" in wanted,
             subject=True,

@@ -20,6 +20,7 @@ from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import RecordingProgress, print_report, step_log
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
+from eyas.settings.legacy.start_time import CHANNEL_STEPS, started_later
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
@@ -63,15 +64,16 @@ def run(
         chosen_writers(writers_in(config.video.writers))
         check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
-        sim = _built(config)
+        flown = started_later(config, CHANNEL_STEPS * config.video.channels)
+        sim = _built(flown)
     with closing(sim):
         with originals_named(config):
-            _require_traffic(config, sim.traffic.duration)
+            _require_traffic(flown, sim.traffic.duration)
             sim.reset()  # raises if there are fewer targets than trackers
-            mover = mover_of(config, sim)
+            mover = mover_of(flown, sim)
         with folder_lock(folder, "recording into it"):
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
-            _record(sim, config, mover, recording, quiet=quiet)
+            _record(sim, flown, mover, recording, quiet=quiet)
     write_formats(config.video.writers, folder, quiet=quiet)
 
 

@@ -152,7 +152,7 @@ def height_map(
     ground = frame[3] + reliefs(scene.terrain, corners[:, :, :2])
     rise = (corners[:, :, 2] - ground).max(axis=1)
     level = mesh.normals[mesh.triangles, 2].mean(axis=1) > 0.2
-    of_kind = (kind == ObjectClass.STRUCTURE) == structures
+    of_kind = np.isin(kind, (ObjectClass.STRUCTURE, ObjectClass.ROAD)) == structures
     chosen = np.flatnonzero(level & of_kind & (rise > (_DECK if structures else _LOWEST)))
     flat = (corners[:, :, :2] - frame[:2]) * frame[2]
     picture, pen = _canvas(shape)

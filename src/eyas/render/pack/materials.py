@@ -97,4 +97,6 @@ def _road_materials(scene: Scene) -> set[Material]:
     kind = scene.object_class[scene.static_object]
     flat = mesh.normals[mesh.triangles[:, 0], 2] > 0.7
     road = flat & np.isin(kind, (ObjectClass.ROAD, ObjectClass.MARKING))
-    return {mesh.palette[index] for index in np.unique(mesh.materials[road])}
+    found = {mesh.palette[index] for index in np.unique(mesh.materials[road])}
+    # Snow lies on the plain lines of flyovers, unlike on paint, which has a texture.
+    return {material for material in found if material.texture != "plain"}

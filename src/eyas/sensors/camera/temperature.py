@@ -68,6 +68,8 @@ _WARMTH = {
     ObjectClass.PERSON: Warmth(6.0, 0.1, 1.0),
     ObjectClass.ROBOT: Warmth(14.0, 0.3, 4.0),
     ObjectClass.BICYCLE: Warmth(6.0, 0.1, 1.0),
+    ObjectClass.BOAT: Warmth(16.0, 0.5, 3.0),
+    ObjectClass.TRAIN: Warmth(18.0, 0.6, 5.0),
 }
 
 _WARM, _COLD = 22.0, -3.0

@@ -8,13 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from eyas.core.config import Problem, updated, validated
+from eyas.core.config import Problem, updated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import LegacyEntry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
+from eyas.settings.legacy.older import renewed
 from eyas.settings.legacy.own_target import CUSTOM
 from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
@@ -39,7 +40,10 @@ LIKE_THE_ORIGINAL = updated(
     {
         "video": {"jpeg_quality": 100, "flight": "exact"},
         "tracker": {"flight": Flight.ORIGINAL.value, "off_centre": True},
-        "traffic": {"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
+        "traffic": {
+            **{"signals": Signals.AMBER.value, "lamps": Lamps.DARK.value},
+            "update_routes": False,  # so that a file that is written of it means the same traffic
+        },
     },
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""
@@ -65,7 +69,7 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
             original's path.
     """
     config = (base or LIKE_THE_ORIGINAL).model_copy(update={"original": {}})
-    return _with(config, every_key() | flat(values), ENTRIES)
+    return _with(config, every_key() | flat(renewed(values)), ENTRIES)
 
 
 def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
@@ -79,7 +83,7 @@ def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
     Raises:
         ConfigError: As from `from_legacy`.
     """
-    said = flat(changes)
+    said = flat(renewed(changes))
     if not GROUP_KEYS.isdisjoint(said):
         said = {KEEP_ALIVE: False} | said  # who says how groups come means that they do
     touched = [entry for entry in ENTRIES if not said.keys().isdisjoint(entry.keys)]
@@ -167,7 +171,7 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[LegacyEntry]) ->
     defaults = every_key()
     kept = {key: value for key, value in kept.items() if value != defaults[key]}
     original = kept if kept or new.original is not None else None
-    return validated(EyasConfig, {**dict(new), "original": original})
+    return updated(new, {"original": original})
 
 
 def _is_idle(entry: LegacyEntry, target: object) -> bool:

@@ -226,6 +226,19 @@ class Varied(LegacyEntry):
         return {self.path: {kind: [values[self.least], values[self.most]]}, **also}
 
     @override
+    def remarks(self, values: Values) -> Iterator[str]:
+        if not values[self.random] or (self.default and values[self.default]):
+            return
+        least, most = values[self.least], values[self.most]
+        assert isinstance(least, int | float), "the adapter has checked the types"
+        assert isinstance(most, int | float)
+        if least > most:
+            yield (
+                f"{self.least}: {shown(least)} is above {self.most}, which is {shown(most)}; "
+                "values between the two are drawn"
+            )
+
+    @override
     def write(self, fields: Values) -> Values:
         value = fields[self.path]
         if self.default and value is None:
@@ -278,6 +291,7 @@ class Pitch(Varied):
 
     @override
     def remarks(self, values: Values) -> Iterator[str]:
+        yield from Varied.remarks(self, values)
         for key, used in self._limited(values).items():
             yield (
                 f"{key}: {shown(values[key])} is out of the gimbal's range of {_LEAST} to {_MOST};"

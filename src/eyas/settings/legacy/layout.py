@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from eyas.core.config import Problem
+from eyas.core.config import Problem, unknown_keys
 from eyas.settings.legacy.entries import LegacyEntry, Values
 
 __all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
@@ -36,24 +36,34 @@ def flat(values: Nested) -> dict[str, object]:
     """Return values by dotted path.
 
     Raises:
-        ConfigError: A key that the original does not have, or a value that should be a group.
+        ConfigError: Keys that the original does not have, or a value that should be a group.
     """
     defaults = legacy_defaults()
+    if unknown := unknown_keys(_unknown(values)):
+        raise unknown.error()
     by_path: dict[str, object] = {}
     for key, value in values.items():
-        if key not in defaults:
-            raise Problem((key,), value, "", tuple(defaults), unknown_key=True).error()
         known = defaults[key]
         if not isinstance(known, Mapping):
             by_path[key] = _whole(value) if key.endswith(_COUNTS) else value
             continue
         if not isinstance(value, Mapping):
             raise Problem((key,), value, f"an object with {', '.join(known)}").error()
-        for inner, inner_value in value.items():
-            if inner not in known:
-                raise Problem((key, inner), value, "", tuple(known), unknown_key=True).error()
-            by_path[f"{key}.{inner}"] = inner_value
+        by_path |= {f"{key}.{inner}": inner_value for inner, inner_value in value.items()}
     return by_path
+
+
+def _unknown(values: Nested) -> list[Problem]:
+    """Return a problem for each key that the original does not have."""
+    defaults = legacy_defaults()
+    unknown: list[tuple[tuple[str, ...], Nested]] = [
+        ((key,), defaults) for key in values if key not in defaults
+    ]
+    for group, known in defaults.items():
+        inside = values.get(group)
+        if isinstance(known, Mapping) and isinstance(inside, Mapping):
+            unknown += [((group, key), known) for key in inside if key not in known]
+    return [Problem(path, None, "", tuple(known), unknown_key=True) for path, known in unknown]
 
 
 def nested(by_path: Values) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """The original's path of a world file, which contains map and weather."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,6 +8,7 @@ from typing_extensions import override
 from eyas.core.config import shown
 from eyas.core.errors import ConfigError
 from eyas.settings.legacy.entries import Guess, LegacyEntry, Values
+from eyas.world.config import world_of
 
 __all__ = ["WorldPath"]
 
@@ -18,7 +18,7 @@ _SIMPLE = "simpleway"
 
 @dataclass(frozen=True, slots=True)
 class WorldPath(LegacyEntry):
-    """The path of a world file: `<map>-<weather>.wbt`, or `simpleway-<skin>_<weather>.wbt`."""
+    """The path of a world file, see `world_of`."""
 
     key: str
     map: str
@@ -41,14 +41,8 @@ class WorldPath(LegacyEntry):
             return {}
         if not isinstance(path, str):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
-        found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
-        if not found:
-            return {}
-        name, weather = found[1], found[2]
-        skin, joint, rest = weather.rpartition("_")
-        if name == _SIMPLE and joint:
-            name, weather = f"{_SIMPLE}-{skin}", rest
-        return {self.map: name, self.weather: weather}
+        found = world_of(path)
+        return {} if found is None else dict(zip((self.map, self.weather), found, strict=True))
 
     @override
     def remarks(self, values: Values) -> Iterator[str]:

@@ -14,6 +14,7 @@ from eyas.sim.device.flight import START
 from eyas.sim.device.records import arrays_of
 from eyas.sim.episodes import Episodes, Sampler
 from eyas.sim.light import LightChanges
+from eyas.sim.starts import starts_in
 from eyas.sim.worlds import Worlds, each_alone
 from eyas.state.snapshot import Snapshot
 from eyas.trackers.tracker import Tracker
@@ -59,7 +60,8 @@ class HostEpisodes:
         if tracker.sample is not None:
             samplers.insert(0, partial(tracker.sample, self.memory))
         traffic, snapshot = assets.traffic, self.snapshot
-        self.episodes = Episodes(config, traffic, self.worlds, light, snapshot, samplers)
+        starts = starts_in(assets, snapshot, self.worlds, shared_target=config.same_target)
+        self.episodes = Episodes(config, traffic, self.worlds, light, snapshot, samplers, starts)
 
     def begin(self, trackers: Chosen) -> NDArray[Any]:
         """Draw episodes, and return them as rows of `START`, shape (K,).

@@ -99,6 +99,11 @@ class DeviceSimulation:
         """See `eyas.sim.simulation.Simulation.reseed_alone`."""
         self._host.episodes.reseed_alone(trackers, seeds)
 
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """See `eyas.sim.simulation.Simulation.seeds`."""
+        return self._host.episodes.seeds
+
     def reset(self, trackers: Chosen) -> None:
         """Begin a new episode of some trackers, shape (K,).
 

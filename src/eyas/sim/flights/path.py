@@ -1,5 +1,6 @@
 """The interface of a camera path: what it is told, and the sketch of a flight that it gives."""
 
+from abc import abstractmethod
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -74,11 +75,12 @@ class FlightSketch(NamedTuple):
 class CameraPath(Protocol):
     """A camera path. One object sketches many episodes and remembers nothing."""
 
-    in_view: float
+    in_view: float = 1.0
     """Share of time in which the target is in the picture if the settings ask for none, 0 to 1."""
-    searches: bool
+    searches: bool = False
     """Whether the camera looks around when it looks away, and does so at first."""
 
+    @abstractmethod
     def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Return a flight; whatever is random about it is sampled from `rng`."""
         ...

@@ -3,7 +3,7 @@
 from typing import Any
 
 from eyas.core.errors import ConfigError
-from eyas.core.own_code import running, takes
+from eyas.core.own_code import left_out, running, takes
 from eyas.core.registry import Registry
 from eyas.sim.flights.path import CameraPath
 
@@ -36,6 +36,8 @@ def path_named(name: str) -> CameraPath:
         ConfigError: There is no such class, or it is not a camera path.
     """
     found = PATHS.get(name)
+    if left_out(found, ["sketch"]):
+        raise _refused(name, "it has no 'sketch'")
     if why := takes(found):
         raise _refused(name, why)
     with running(SETTING, name):

@@ -16,6 +16,7 @@ from eyas.sim.views.delay import SeenState
 from eyas.sim.views.event_views import EventViews
 from eyas.sim.views.further_camera import FurtherCamera
 from eyas.sim.views.outlines import Outlines
+from eyas.sim.views.parked import ParkedObjects, SeenParked
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.views.words import in_view, target_in_words
@@ -81,6 +82,7 @@ class View:
         self._sensors = sensors
         self._worlds = worlds
         self._kind, self._camera = assets.traffic.motion.kind, config.camera
+        self._assets = assets
 
     def draw(
         self,
@@ -160,6 +162,23 @@ class View:
         """
         cameras, lens = self.state.shown.cameras, self.lens_of(tracker)
         return self._outlines.of(actors, wanted, cameras, tracker, lens)
+
+    @cached_property
+    def _parked(self) -> ParkedObjects:
+        return ParkedObjects(self._assets.scene)
+
+    def parked(
+        self, tracker: int, shown: NDArray[np.int32], depth: NDArray[np.float32]
+    ) -> list[SeenParked]:
+        """Return the parked objects that a tracker's picture shows, see `ParkedObjects.seen`.
+
+        Args:
+            tracker: The tracker.
+            shown: Object of each pixel of its picture, shape (H, W).
+            depth: Distance of each pixel along the optical axis [m], shape (H, W).
+        """
+        cameras, lens = self.state.shown.cameras, self.lens_of(tracker)
+        return self._parked.seen(shown, depth, cameras, tracker, lens)
 
     def lens_of(self, tracker: int) -> Lens | None:
         """Return the lens of a tracker's camera; None: it is a pinhole."""

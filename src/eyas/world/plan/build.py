@@ -302,8 +302,10 @@ def _far(work: _Work, piece: p.Far) -> Mesh:
 def _deck(work: _Work, layer: p.Deck) -> None:
     builder, floor = work.builder, FLOOR_HEIGHT
     legs = [pillars.pillar_mesh(leg, floor) for leg in layer.legs]
-    decks = [overpass.deck_mesh(part, floor) for part in (layer.middle, layer.descent)]
-    owner = builder.add(ObjectClass.STRUCTURE, *decks, *legs)
+    parts = (layer.middle, layer.descent)
+    sides = [overpass.sides_mesh(part, floor) for part in parts]
+    owner = builder.add(ObjectClass.STRUCTURE, *sides, *legs)
+    builder.add(ObjectClass.ROAD, *map(overpass.carriageway_mesh, parts))
     for outline, bottom, top in overpass.deck_prisms(layer.middle, floor):
         builder.add_prism(outline, bottom, top, owner)
     for pillar in layer.pillars:

@@ -17,10 +17,11 @@ __all__ = [
     "DECK_DEPTH",
     "DECK_WIDTH",
     "SOLID_BELOW",
+    "carriageway_mesh",
     "deck_area",
-    "deck_mesh",
     "deck_prisms",
     "path",
+    "sides_mesh",
 ]
 
 DECK_WIDTH = 14.0
@@ -87,19 +88,25 @@ def deck_area(middle: Points) -> shapely.Polygon:
     return shapely.buffer(shapely.LineString(middle[:, :2]), _OUT, cap_style="flat")
 
 
-def deck_mesh(middle: Points, floor: float) -> Mesh:
-    """Return the deck with its walls and lines; low parts stand on solid sides.
+def carriageway_mesh(middle: Points) -> Mesh:
+    """Return the asphalt and the lines of a deck with this centre line, from `path`."""
+    return concatenate(
+        [
+            _swept(middle, _SECTION[:2], _ASPHALT, TEXTURES["asphalt"]),
+            *(_line(middle, offset, 0.15) for offset in (-_HALF + 0.4, 0.0, _HALF - 0.4)),
+            *(_line(middle, offset, 0.15, dashed=True) for offset in (-_HALF / 2, _HALF / 2)),
+        ]
+    )
+
+
+def sides_mesh(middle: Points, floor: float) -> Mesh:
+    """Return the walls and the underside of a deck; low parts stand on solid sides.
 
     Args:
         middle: Centre line from `path`.
         floor: z of the ground [m].
     """
-    pieces = [
-        _swept(middle, _SECTION[:2], _ASPHALT, TEXTURES["asphalt"]),
-        _swept(middle, _SECTION[1:], _CONCRETE, TEXTURES["concrete"]),
-        *(_line(middle, offset, 0.15) for offset in (-_HALF + 0.4, 0.0, _HALF - 0.4)),
-        *(_line(middle, offset, 0.15, dashed=True) for offset in (-_HALF / 2, _HALF / 2)),
-    ]
+    pieces = [_swept(middle, _SECTION[1:], _CONCRETE, TEXTURES["concrete"])]
     # Where a ramp begins, the walls themselves reach into the floor.
     height = middle[:, 2] - floor
     low = np.flatnonzero((height > _SKIRT) & (height < SOLID_BELOW))

@@ -40,7 +40,8 @@ class Thing:
 
     levels: Callable[["ThingKind", np.random.Generator, Season], Levels]
     """Returns its shape, the finest level of detail first; the origin is its foot."""
-    kind: ObjectClass = ObjectClass.STRUCTURE
+    kind: ObjectClass
+    """Its class: what a detector would name it, if it has such a name."""
     solid: str = "nothing"
     """What of it is solid, a row of `SOLIDS`."""
     trees: int = 0
@@ -165,6 +166,7 @@ def _plant(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Le
 
 
 _TREE, _POLE, _GROUND = ObjectClass.TREE, ObjectClass.POLE, ObjectClass.GROUND
+_STRUCTURE, _CAR = ObjectClass.STRUCTURE, ObjectClass.CAR
 _LIGHT = (lamps.LIGHT[0], lamps.LIGHT[2])
 
 THINGS: Mapping[str, Thing] = {
@@ -177,7 +179,7 @@ THINGS: Mapping[str, Thing] = {
     ),
     "stand": Thing(levels=_stand, kind=_TREE, trees=forest.TREES),
     **{name: Thing(levels=_plant(name), kind=_TREE) for name in PLANTS if name != "island"},
-    "island": Thing(levels=_plant("island")),
+    "island": Thing(levels=_plant("island"), kind=_STRUCTURE),
     **{name: Thing(levels=_wild(name), kind=_GROUND) for name in WILD},
     "stones": Thing(
         levels=lambda kind, rng, season: stones.stone_levels(rng, kind.variant), kind=_GROUND
@@ -185,27 +187,42 @@ THINGS: Mapping[str, Thing] = {
     "boulder": Thing(
         levels=lambda kind, rng, season: stones.boulder_levels(rng, kind.variant), kind=_GROUND
     ),
-    "jetty": Thing(levels=_always(jetties.jetty_levels)),
-    "boat": Thing(levels=lambda kind, rng, season: jetties.boat_levels(kind.variant)),
+    "jetty": Thing(levels=_always(jetties.jetty_levels), kind=_STRUCTURE),
+    "boat": Thing(
+        levels=lambda kind, rng, season: jetties.boat_levels(kind.variant), kind=ObjectClass.BOAT
+    ),
     "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
     "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
     "dark traffic light": Thing(
         levels=_always(partial(signals.signal_levels, amber=False)), kind=_POLE, solid="signal"
     ),
     "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
-    **{name: Thing(levels=_always(make)) for name, make in furniture.FURNITURE.items()},
-    **{name: Thing(levels=_always(make)) for name, make in clutter.CLUTTER.items()},
+    **{
+        name: Thing(levels=_always(make), kind=_STRUCTURE)
+        for name, make in furniture.FURNITURE.items()
+    },
+    **{
+        name: Thing(
+            levels=_always(make),
+            kind=ObjectClass.BICYCLE if name == "bicycle rack" else _STRUCTURE,
+        )
+        for name, make in clutter.CLUTTER.items()
+    },
     "gantry": Thing(
         levels=lambda kind, rng, season: gantries.gantry_levels(kind.variant),
         kind=_POLE,
         solid="gantry",
     ),
     "parked car": Thing(
-        levels=lambda kind, rng, season: parked_cars.parked_car(kind.variant), solid="car"
+        levels=lambda kind, rng, season: parked_cars.parked_car(kind.variant),
+        kind=_CAR,
+        solid="car",
     ),
-    "parked taxi": Thing(levels=_always(parked_cars.parked_taxi), solid="car"),
-    "bale": Thing(levels=_always(furniture.bale_levels), solid="bale"),
-    "subway entrance": Thing(levels=_always(subway.entrance_levels), solid="entrance"),
-    "fountain": Thing(levels=_always(furniture.fountain_levels)),
+    "parked taxi": Thing(levels=_always(parked_cars.parked_taxi), kind=_CAR, solid="car"),
+    "bale": Thing(levels=_always(furniture.bale_levels), kind=_STRUCTURE, solid="bale"),
+    "subway entrance": Thing(
+        levels=_always(subway.entrance_levels), kind=_STRUCTURE, solid="entrance"
+    ),
+    "fountain": Thing(levels=_always(furniture.fountain_levels), kind=_STRUCTURE),
 }
 """The kinds by name, each made of a `ThingKind` of a plan, random numbers, and the season."""

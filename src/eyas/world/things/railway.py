@@ -331,7 +331,7 @@ def _add_train(builder: SceneBuilder, line: Viaduct, first: float, cars: int, tr
     for k in range(cars):
         place = first + k * _PITCH
         spot = (*line.at(place, track).tolist(), _RAIL)
-        owner = builder.add_copy(ObjectClass.STRUCTURE, kind, spot, line.turn, 1.0, owner)
+        owner = builder.add_copy(ObjectClass.TRAIN, kind, spot, line.turn, 1.0, owner)
     long, wide, high = _CAR
     ends = (first - long / 2, first + (cars - 1) * _PITCH + long / 2)
     outline = line.strip(*ends, track - wide / 2, track + wide / 2)

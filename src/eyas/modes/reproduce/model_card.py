@@ -4,7 +4,8 @@ reporting" (FAccT 2019).
 
 from hashlib import sha256
 
-from eyas.evaluation.policies.shipped import Card, Score, card_of, file_of
+from eyas.evaluation.policies.shipped import card_of, file_of
+from eyas.modes.reproduce.tables import TABLES, flown_of
 
 __all__ = ["model_card"]
 
@@ -43,32 +44,28 @@ def model_card(name: str) -> str:
             f"| file | `{file_of(name).name}`, SHA-256 `{digest}` |\n| licence | MIT, as Eyas |",
             f"## Intended use\n\n{_USE}",
             f"## Trained on\n\n{card.trained_on}",
-            f"## What it reaches\n\n{_scores(card)}",
+            f"## What it reaches\n\n{_figures(name)}",
             "## Limits\n\n" + "\n".join(f"- {limit}" for limit in card.limits),
             f"## What it could be used for besides\n\n{harm}",
         )
     )
 
 
-def _scores(card: Card) -> str:
-    told = any(score.language_gap is not None for score in card.scores)
-    rows = "\n".join(map(_told_row if told else _row, card.scores))
-    figures = "success | language gap" if told else "CR | TSR"
-    return (
-        "Means over the episodes of protocols (`docs/evaluation.md`), which training has not had.\n"
-        f"\n| protocol | map | weather | n | {figures} |\n|---|---|---|---|---|---|\n{rows}"
-    )
-
-
-def _told_row(score: Score) -> str:
-    place = f"{score.protocol} | {score.map} | {score.weather} | {score.n}"
-    return f"| {place} | {score.success:.3f} | {score.language_gap:.3f} |"
-
-
-def _row(score: Score) -> str:
-    changed = score.target if score.target != "SUMO_VEHICLE" else ""
-    late = f"{score.latency} ms late" if score.latency != "0" else ""
-    drone = "flown drone" if score.flown else ""
-    protocol = ", ".join(filter(None, (score.protocol, changed, late, drone)))
-    cells = (protocol, score.map, score.weather, str(score.n))
-    return f"| {' | '.join(cells)} | {score.cr:.1f} | {score.tsr:.3f} |"
+def _figures(name: str) -> str:
+    """Return the rows of a policy in all tables of the documents."""
+    parts = [
+        "The rows of this policy in the tables that `eyas reproduce` flies again, with the number "
+        "of episodes, 95 % intervals and the build that flew them. Training has had none of these "
+        "episodes."
+    ]
+    for table, rows in flown_of(name).items():
+        columns = TABLES[table].columns
+        lines = [f"| | n | {' | '.join(columns)} | build |", "|---" * (len(columns) + 3) + "|"]
+        for row, one, build in rows:
+            cells = [one.cells[column] for column in columns]
+            label = row.label.partition(", ")[2]
+            lines.append(f"| {' | '.join([label, str(one.n), *cells, f'`{build}`'])} |")
+        page = TABLES[table].page
+        parts += [f"{TABLES[table].title} ([about it](../{page}), `eyas reproduce {table}`):"]
+        parts += ["\n".join(lines)]
+    return "\n\n".join(parts)

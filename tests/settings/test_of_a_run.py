@@ -1,0 +1,35 @@
+"""Files of the original that ask for another world each time."""
+
+import pytest
+
+from eyas.core.config import updated
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import from_legacy
+from eyas.settings.legacy.of_a_run import of_a_run
+
+
+def original(*, fixed=False, update=False):
+    return from_legacy({"Sumo_Params": {"fixed_seed": fixed, "rou_update": update}})
+
+
+def test_each_run_has_a_seed_of_its_own_which_repeats_it(caplog):
+    caplog.set_level("INFO", "eyas")
+    first, second = of_a_run(original()), of_a_run(original())
+    assert first.seed != second.seed
+    assert f"--seed {second.seed} repeats it" in caplog.messages[-1]
+    assert of_a_run(updated(original(), {"seed": first.seed})) == first
+    assert of_a_run(original(), first.seed) == first
+    assert first.traffic.seed is None
+
+
+def test_routes_are_updated_where_the_file_says_so():
+    pytest.importorskip("libsumo")
+    first, second = of_a_run(original(update=True)), of_a_run(original(update=True))
+    assert first.traffic.seed != second.traffic.seed
+    assert of_a_run(original(update=True), first.seed) == first
+    assert of_a_run(first) == first  # as `config.json` has it
+
+
+@pytest.mark.parametrize("config", [EyasConfig(), original(fixed=True, update=True)])
+def test_all_else_stays_as_it_is(config):
+    assert of_a_run(config) is config
