@@ -360,11 +360,12 @@ def test_labels_of_another_size_are_refused(foreign, data):
         run(root, ["got10k"], None, ExportOptions())
 
 
-@pytest.mark.parametrize("spoil", ["cut", "flip", "delete", "no sums"])
+@pytest.mark.parametrize("spoil", ["cut", "flip", "delete", "no sums", "cut sums"])
 def test_a_finished_export_that_was_damaged_is_made_again(data, tmp_path, caplog, spoil):
     folder = tmp_path / "otb"
     export(data, "otb", folder, ExportOptions())
-    whole = contents(folder)
+    made = contents(folder).items()
+    pictures_and_boxes = {name: content for name, content in made if name.startswith("train")}
     path = sorted(folder.glob("train/*/groundtruth_rect.txt"))[0]
     if spoil == "cut":
         path.write_bytes(path.read_bytes()[:20])
@@ -372,11 +373,16 @@ def test_a_finished_export_that_was_damaged_is_made_again(data, tmp_path, caplog
         content = bytearray(path.read_bytes())
         content[3] ^= 1
         path.write_bytes(content)
+    elif spoil == "cut sums":
+        path = folder / CHECKSUMS
+        path.write_bytes(path.read_bytes()[:70])
     else:
         path = folder / CHECKSUMS if spoil == "no sums" else path
         path.unlink()
+    (folder / "my notes.txt").write_text("mine")
     export(data, "otb", folder, ExportOptions(resume=True))
-    assert contents(folder) == whole
+    assert (folder / "my notes.txt").read_text() == "mine"
+    assert {name: contents(folder).get(name) for name in pictures_and_boxes} == pictures_and_boxes
     assert f"{path}: not as it was exported" in caplog.text
     caplog.clear()
     export(data, "otb", folder, ExportOptions(resume=True))

@@ -166,6 +166,7 @@ OWN = {
     "learning.tracking.training:_Run._learn": _OUTPUT,
     "learning.tracking.training:_refuse_other_build": _OUTPUT,
     "learning.tracking.training:_restore": _OUTPUT,
+    "modes.dataset.make:_damaged": _OUTPUT,
     "modes.dataset.make:_lines": _OUTPUT,
     "modes.dataset.merge:_digest": _OUTPUT,
     "modes.dataset.parts:digest_of": _OUTPUT,

@@ -24,12 +24,19 @@ from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
 from eyas.datasets.registry import FORMATS, SETTING
-from eyas.exports.checksums import CHECKSUMS, damaged_files, read_checksums, seal_folder
+from eyas.exports.checksums import (
+    CHECKSUMS,
+    SEALED,
+    damaged_files,
+    read_checksums,
+    seal_folder,
+)
 
 __all__ = [
     "EXPORTS",
     "ExportOptions",
     "add_episodes",
+    "damaged_export",
     "export",
     "exports_folder",
     "finish_export",
@@ -107,9 +114,7 @@ def export(
     with folder_lock(folder, "exporting into it"):
         if _open(folder, _identity(recording, name, options), options):
             form.finish(_add_all(form, recording, folder, told))
-            seal_folder(folder, _ASIDE)
-            with refusals(folder):
-                (folder / GROWING).replace(folder / FINISHED)
+            _finish(folder, _identity(recording, name, options))
         else:
             told(recording.frame_count)
         # Last, so that an export which is killed here has all that it needs, or is finished.
@@ -157,9 +162,20 @@ def finish_export(folder: Path, named: str, name: str, recording: Recording) -> 
         episode.__dict__.pop("labels", None)
     form.finish(exported)
     shutil.rmtree(folder / KEPT, ignore_errors=True)
-    seal_folder(folder, _ASIDE)
-    identity = {**_identity(recording, name, ExportOptions()), "recording": named}
-    write_atomic(folder / FINISHED, (json.dumps(identity, indent=1) + "\n").encode())
+    _finish(folder, {**_identity(recording, name, ExportOptions()), "recording": named})
+
+
+def _finish(folder: Path, identity: dict[str, Any]) -> None:
+    """Write the file that says that an export is complete."""
+    known = {**identity, SEALED: seal_folder(folder, _ASIDE)}
+    write_atomic(folder / FINISHED, (json.dumps(known, indent=1) + "\n").encode())
+    with refusals(folder):
+        (folder / GROWING).unlink(missing_ok=True)
+
+
+def damaged_export(folder: Path) -> Path | None:
+    """Return a file of a finished export that has changed since; None if none has."""
+    return next(damaged_files(folder, _read(folder / FINISHED).get(SEALED)), None)
 
 
 def require_outputs(recording: Recording, name: str, make: type[Format]) -> None:
@@ -238,12 +254,14 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
                 f"{shown(identity[key])}; start again with --overwrite"
             )
         _delete_parts(folder)
-        damaged = next(damaged_files(folder), None) if known == FINISHED else None
+        damaged = damaged_export(folder) if known == FINISHED else None
         if damaged is None:
             return known == GROWING
         _LOG.warning("%s: not as it was exported, so all is exported again", damaged)
-        _empty(folder)
-        names = set()
+        with refusals(folder):
+            (folder / DONE).unlink(missing_ok=True)
+            (folder / FINISHED).replace(folder / GROWING)
+        return True
     if names:
         raise OutputError(
             f"{folder}: not empty; continue its export with --resume, replace it with --overwrite,"

@@ -15,6 +15,7 @@ from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.recording import DATASET_FILE
 from eyas.datasets.statistics import PartFacts
+from eyas.exports.checksums import SEALED
 
 __all__ = ["MAKING_FILE", "RECIPE_FILE", "Plan", "described_parts", "read_plan", "write_plan"]
 
@@ -108,15 +109,23 @@ def read_plan(path: Path) -> Plan:
     return validated(Plan, known)
 
 
-def write_plan(root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] = ()) -> None:
+def write_plan(
+    root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] = (), sealed: str = ""
+) -> None:
     """Write the plan of a data set: that in the making, or with parts `dataset.json`.
+
+    Args:
+        root: Folder of the data set.
+        plan: The plan.
+        parts: The parts that are complete.
+        sealed: SHA-256 of the checksums of the other files.
 
     Raises:
         OutputError: It cannot be written.
     """
     told: dict[str, Any] = plan.model_dump(mode="json")
     if parts:
-        told = {"command": plan.command, **told, "parts": described_parts(parts)}
+        told = {"command": plan.command, **told, SEALED: sealed, "parts": described_parts(parts)}
     name = DATASET_FILE if parts else MAKING_FILE
     text = json.dumps(told, indent=1, default=lambda config: config.model_dump(mode="json"))
     write_atomic(root / name, f"{text}\n".encode())

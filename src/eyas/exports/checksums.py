@@ -9,8 +9,12 @@ from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited, refusals, write_atomic
 
 __all__ = [
-    "CHECKSUMS", "GROWING", "checksum_lines", "damaged_files", "read_checksums", "seal_folder",
+    "CHECKSUMS", "GROWING", "SEALED", "checksum_lines", "damaged_files", "read_checksums",
+    "seal_folder",
 ]  # fmt: skip
+
+SEALED = "contents"
+"""Key of the SHA-256 of the checksums, in the file that says that a folder is complete."""
 
 CHECKSUMS, GROWING = "checksums.sha256", ".checksums"
 """Names of the file, and of the one that grows during a recording, in the recording's folder."""
@@ -36,8 +40,9 @@ def checksum_lines(sums: Mapping[str, str]) -> bytes:
     return "".join(f"{digest}  {name}\n" for name, digest in sorted(sums.items())).encode()
 
 
-def seal_folder(folder: Path, aside: Collection[str]) -> None:
-    """Write the checksums of all files of a folder, which are then on the disk.
+def seal_folder(folder: Path, aside: Collection[str]) -> str:
+    """Write the checksums of all files of a folder, which are then on the disk; return the SHA-256
+    of that file.
 
     Args:
         folder: The folder.
@@ -53,13 +58,22 @@ def seal_folder(folder: Path, aside: Collection[str]) -> None:
     write_atomic(folder / CHECKSUMS, checksum_lines(sums))
     # Others have the same content elsewhere, in the recording that they are a link to.
     flushed([*(path for path in paths if path.stat().st_nlink == 1), folder / CHECKSUMS])
+    return sum_of(folder / CHECKSUMS)
 
 
-def damaged_files(folder: Path) -> Iterator[Path]:
-    """Yield the files that are missing or not as they were when the folder was finished."""
+def damaged_files(folder: Path, sealed: object) -> Iterator[Path]:
+    """Yield the files that are missing or not as they were when the folder was finished.
+
+    Args:
+        folder: The folder.
+        sealed: The SHA-256 of its checksums, from `seal_folder`; anything else: it is not known.
+    """
     try:
         sums = read_checksums(folder / CHECKSUMS)
+        whole = sum_of(folder / CHECKSUMS) == sealed
     except DataFileError:
+        whole = False
+    if not whole:
         yield folder / CHECKSUMS
         return
     for name, digest in sums.items():

@@ -12,15 +12,16 @@ from pathlib import Path
 
 from rich.console import Console
 
+from eyas.core.decoding import read_json
 from eyas.core.errors import EyasError, OutputError
 from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
-from eyas.datasets.export import EXPORTS, exports_folder, finish_export
+from eyas.datasets.export import EXPORTS, damaged_export, exports_folder, finish_export
 from eyas.datasets.layout import MAKING_FILE, Plan, read_plan, write_plan
 from eyas.datasets.plan import Part
 from eyas.datasets.recording import DATASET_FILE, Recording, load_part
 from eyas.datasets.statistics import PartFacts
-from eyas.exports.checksums import damaged_files, seal_folder
+from eyas.exports.checksums import SEALED, damaged_files, seal_folder
 from eyas.lanes import thread_count
 from eyas.modes.dataset.describe import describe
 from eyas.modes.dataset.parts import (
@@ -155,16 +156,20 @@ def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
     """Yield the files of a finished data set that have changed since; parts that have some are no
     longer known as complete.
     """
-    yield from damaged_files(root)
+    if not (root / "parts").exists():  # of one behind a URL, only dataset.json is on this machine
+        return
+    yield from damaged_files(root, read_json(root / DATASET_FILE, 1 << 28).get(SEALED))
     for name in plan.recipe.formats if plan.shard is None else ():
-        yield from damaged_files(exports_folder(root, name, None))
+        found = damaged_export(exports_folder(root, name, None))
+        yield from [] if found is None else [found]
     for part in plan.parts():
         folder = root / part.folder
         try:
-            known = read_facts(folder) is not None
+            facts = read_facts(folder)
         except EyasError:
-            known = False
-        damaged = [*damaged_files(folder), *([] if known else [folder / PART_FILE])]
+            facts = None
+        known = [folder / PART_FILE] if facts is None else []
+        damaged = known or list(damaged_files(folder, facts and facts.checksums))
         if damaged:
             with refusals(folder):
                 (folder / PART_FILE).unlink(missing_ok=True)
@@ -228,8 +233,8 @@ def complete(plan: Plan, root: Path, making: Making) -> None:
     if plan.shard is None:
         _export(plan, [part for part, _ in described], root, making)
         describe(plan, described, root)
-    seal_folder(root, ("parts", EXPORTS, MAKING_FILE, DATASET_FILE, EXPORTED, LOCK))
-    write_plan(root, plan, described)
+    aside = ("parts", EXPORTS, MAKING_FILE, DATASET_FILE, EXPORTED, LOCK)
+    write_plan(root, plan, described, seal_folder(root, aside))
     with refusals(root):
         for name in (MAKING_FILE, EXPORTED):
             (root / name).unlink(missing_ok=True)
