@@ -201,14 +201,12 @@ class Job:
 
 
 class Format(Protocol):
-    """One layout of files. A subclass may omit `__init__` and `finish`.
-
-    Attributes:
-        job: What is exported, and how.
-    """
+    """One layout of files. A subclass may omit `__init__` and `finish`."""
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
+    job: Job
+    """What is exported, and how."""
 
     def __init__(self, job: Job) -> None:
         self.job = job
