@@ -28,13 +28,17 @@ def changed(path, change):
     return values
 
 
-def is_free(port):
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as trial:
+def heard(port, agents):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+        out.connect(("127.0.0.1", port))
+        out.send(b"%d" % agents)
+        out.settimeout(0.02)
         try:
-            trial.bind(("127.0.0.1", port))
-        except OSError:
+            out.recv(1)
+        except ConnectionRefusedError:
             return False
-    return True
+        except TimeoutError:
+            return True
 
 
 def learn(agent):
@@ -60,11 +64,10 @@ def main():
     changed("config.json", lambda values: values["Benchmark"].update(port_process=port))
     world = f"{args.Scene}-{args.Weather}.wbt" if args.Scene else args.map
     subprocess.Popen(f"webots --no-rendering --mode=fast {WORLDS}{world}", shell=True)
-    while is_free(port):  # the original sleeps for 20 s
+    while not heard(port, args.workers):  # the original sleeps for 20 s
         time.sleep(0.01)
     players = [threading.Thread(target=learn, args=(agent,)) for agent in range(args.workers)]
     for player in players:
-        Client.announce(port, args.workers)
         player.start()
     for player in players:
         player.join()

@@ -359,16 +359,15 @@ def run(  # noqa: PLR0913  # one parameter for each option
 
     overrides = gathered(set_, map_name, weather, seed)
     settings = quietly(partial(load_settings, config, overrides, trust=trust))
-    common = {"config": config, "set_": overrides, "trust": trust}
     if settings.mode is Mode.DEMO:
         _announce("demo")
-        demo(**common, headless=headless)
+        demo(config, set_=overrides, trust=trust, headless=headless)
     elif settings.mode is Mode.VIDEO:
         _announce("video")
-        video(**common, out=out or Path("runs/video"))
+        video(out or Path("runs/video"), config, set_=overrides, trust=trust)
     elif settings.original is None:
         _announce("train")
-        train(**common, out=out)
+        train(out, config, set_=overrides, trust=trust)
     else:
         above = config.absolute().parents[len(SETTINGS_FILE.parts) - 1 :]
         root = root or (above[0] if above and (above[0] / SETTINGS_FILE).exists() else None)

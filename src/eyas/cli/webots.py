@@ -4,6 +4,7 @@ import os
 import re
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 __all__ = ["main"]
@@ -28,17 +29,16 @@ def _listen_early(words: Sequence[str]) -> None:
 
     worlds = [word for word in words if word.endswith(".wbt")]
     fixed = words[words.index("--root") + 1 :][:1] if "--root" in words else worlds[-1:]
-    for folder in (*map(Path, fixed), Path()):
-        whole = Path(os.path.abspath(folder))
-        for above in (whole, *whole.parents):
-            settings = above / "Webots_Simulation/traffic_project/config/env_config.json"
-            if settings.is_file():
-                text = settings.read_text(encoding="utf-8", errors="replace")
-                port = re.search(r'"Config_Agen_Num_Port"\s*:\s*([1-9]\d{0,4})\b', text)
-                address = re.search(r'"Socket_Ip"\s*:\s*"([^"]*)"', text)
-                if port and int(port[1]) < 65536:
-                    listen_early(address[1] if address else "127.0.0.1", int(port[1]))
-                return
+    starts = [Path(os.path.abspath(folder)) for folder in (*fixed, "")]
+    roots = (root for start in starts for root in (start, *start.parents))
+    files = (root / "Webots_Simulation/traffic_project/config/env_config.json" for root in roots)
+    with suppress(OSError):
+        file = next((file for file in files if file.is_file()), Path(os.devnull))
+        text = file.read_text(encoding="utf-8", errors="replace")
+        port = re.search(r'"Config_Agen_Num_Port"\s*:\s*([1-9]\d{0,4})\b', text)
+        address = re.search(r'"Socket_Ip"\s*:\s*"([^"]*)"', text)
+        if port and int(port[1]) < 65536:
+            listen_early(address[1] if address else "127.0.0.1", int(port[1]))
 
 
 def _arguments(words: Sequence[str]) -> list[str]:

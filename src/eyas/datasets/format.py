@@ -208,17 +208,15 @@ class Job:
 
 
 class Format(Protocol):
-    """One layout of files. A subclass may omit `__init__` and `finish`.
-
-    Attributes:
-        job: What is exported, and how.
-    """
+    """One layout of files. A subclass may omit `__init__` and `finish`."""
 
     needs: ClassVar[AbstractSet[str]]
     """Names of the writers whose files it is made of; `jpeg` stands for pictures of any kind."""
     first_sight: ClassVar[bool] = False
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
+    job: Job
+    """What is exported, and how."""
 
     def __init__(self, job: Job) -> None:
         self.job = job

@@ -152,7 +152,9 @@ class Exchange:
                 name = found.name.removeprefix(".").removesuffix(PART_SUFFIX)
                 if not _OURS.fullmatch(name) or found.is_dir(follow_symlinks=False):
                     continue
-                if found.stat(follow_symlinks=False).st_mtime < before:
+                with suppress(FileNotFoundError):  # a client has just taken it
+                    if found.stat(follow_symlinks=False).st_mtime >= before:
+                        continue
                     Path(found.path).unlink(missing_ok=True)
                     removed += 1
         return removed

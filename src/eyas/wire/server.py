@@ -164,6 +164,7 @@ class Server:
                 sessions[number].action = RESET
             _LOG.info("serving %s in %s", _named(names), self._exchange.files)
             self._late.clear()
+            self._active = time.monotonic()  # making the world may have taken long
             while True:
                 other = self._gather(service, sessions, announcements)
                 if other is not None:
