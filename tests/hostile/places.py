@@ -103,6 +103,7 @@ READERS = {
     "modes.leaderboard.verify:_flown_again": "records",
     "modes.track.run:_open": "json",
     "modes.track.run:_scored": "boxes",
+    "settings.file:_parsed": "settings",
     "settings.file:read_settings": "settings",
     "traffic.net_file:SumoNet.__init__": "roads",
     "traffic.recording_file:RecordingFile.outline": "traffic",
@@ -127,6 +128,7 @@ _OUTPUT = "what this run, or an earlier one into the same folder, has written"
 _CODE = "a file that is code, and is read only if its user says so"
 _SOCKET = "a socket, tested in the servers' part"
 OWN = {
+    "cli.webots:_listen_early": "settings, of which one number is looked for; they are read later",
     "core.build:_digest_of": _PACKAGE,
     "core.cache.array_file:map_arrays": _CACHE,
     "core.installed:_origin": _PACKAGE,
@@ -139,7 +141,6 @@ OWN = {
     "datasets.formats.lerobot:LeRobot._episode": _OUTPUT,
     "datasets.formats.minari:Minari.add": _OUTPUT,
     "datasets.formats.minari:Minari.finish": _OUTPUT,
-    "evaluation.policies.model_card:model_card": _PACKAGE,
     "evaluation.policies.sb3:_loaded": _CODE,
     "evaluation.policies.shipped:card_of": _PACKAGE,
     "evaluation.policies.table:fingerprint": _CODE,
@@ -184,6 +185,7 @@ OWN = {
     "modes.maps.webots.controllers.ground:settings_of": _OUTPUT,
     "modes.maps.webots.controllers.sumo_supervisor:_offset_of": _OUTPUT,
     "modes.maps.webots.project:_controllers": _PACKAGE,
+    "modes.reproduce.model_card:model_card": _PACKAGE,
     "modes.reproduce.tables:expected": _PACKAGE,
     "modes.serve.stand_in:_is_ours": _OUTPUT,
     "modes.track.run:_failures": _OUTPUT,
