@@ -55,8 +55,7 @@ def _figures(name: str) -> str:
     """Return the rows of a policy in all tables of the documents."""
     parts = [
         "The rows of this policy in the tables that `eyas reproduce` flies again, with the number "
-        "of episodes, 95 % intervals and the build that flew them. Training has had none of these "
-        "episodes."
+        "of episodes, 95 % intervals and the build that flew them."
     ]
     for table, rows in flown_of(name).items():
         columns = TABLES[table].columns
