@@ -15,7 +15,7 @@ from eyas.task.config import DoneConfig, StartConfig
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
 
-PARTS = {"first": ("train", (16, 1.2, 0.6)), "second": ("val", (0, 0.7854, 0.7))}
+PARTS = {"first": ("train", (30, 1.2, 0.6)), "second": ("val", (0, 0.7854, 0.7))}
 """Split, seed, field of view, pitch. In the first something hides targets, and a truck with a
 trailer and people are followed; in the second they are cut and lost."""
 

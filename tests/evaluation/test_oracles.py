@@ -20,7 +20,7 @@ from eyas.world.maps import MAPS
 
 ORACLES = ("sighted", "constant-velocity", "road-graph")
 
-HIDDEN_AT_FIRST = 77_000_012
+HIDDEN_AT_FIRST = 77_000_014
 """Seed of an episode of `paper`, direction 0, whose target stands below a tree at the start."""
 
 
@@ -69,7 +69,7 @@ def test_what_is_seen_is_followed_exactly(fly):
 
 def test_only_one_that_searches_finds_a_target_hidden_at_first(fly):
     cv, best = (
-        fly(name, 4, seeds=(HIDDEN_AT_FIRST - 12,)) for name in ("constant-velocity", "sighted")
+        fly(name, 4, seeds=(HIDDEN_AT_FIRST - 2,)) for name in ("constant-velocity", "sighted")
     )
     hidden = [number for number, record in enumerate(cv) if record.seed == HIDDEN_AT_FIRST]
     (number,) = hidden

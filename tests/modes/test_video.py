@@ -386,8 +386,9 @@ class Probe(Writer):
         shown = frame.object_id == frame.target.object_id
         for other in frame.others:
             assert (frame.object_id == other.object_id).sum() == other.seen_pixels
-        vehicles = set(np.unique(frame.object_id[frame.object_id >= ACTOR_OBJECT]).tolist())
-        assert vehicles == {frame.target.object_id} | {other.object_id for other in frame.others}
+        moving = set(np.unique(frame.object_id[frame.object_id >= ACTOR_OBJECT]).tolist())
+        others = {other.object_id for other in frame.others if not other.parked}
+        assert moving == {frame.target.object_id} | others
         near = np.linalg.norm(frame.target.centre - frame.camera.position)
         return (
             int(shown.sum()),

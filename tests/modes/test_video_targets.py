@@ -188,7 +188,7 @@ def test_a_class_of_a_users_package(record):
 
 @pytest.mark.slow
 def test_a_trajectory_file(record, tmp_path: Path):
-    lines = [f"{t},{-41.0 + 1.2 * t},{3.0 + 0.5 * t}" for t in range(40)]
+    lines = [f"{t},{-30.0 + 1.2 * t},{8.0 + 0.5 * t}" for t in range(40)]  # no tree above it
     (tmp_path / "walk.csv").write_text("\n".join(["t,x,y", *lines]))
     recorded = record(custom={"trajectory": str(tmp_path / "walk.csv"), "body": "BB-8"})
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
@@ -198,7 +198,7 @@ def test_a_trajectory_file(record, tmp_path: Path):
     assert recorded.moved() == pytest.approx(1.3 * recorded.seconds(), rel=0.01)
     for one in recorded.labels:
         x, y = one["target_position"][:2]
-        assert (x + 41.0) * 0.5 == pytest.approx((y - 3.0) * 1.2, abs=1e-3)  # on its line
+        assert (x + 30.0) * 0.5 == pytest.approx((y - 8.0) * 1.2, abs=1e-3)  # on its line
         assert one["target_yaw"] == pytest.approx(np.arctan2(0.5, 1.2), abs=1e-3)
     speed = np.hypot(*recorded.labels[0]["target_velocity"][:2])
     assert speed == pytest.approx(1.3, rel=0.01)

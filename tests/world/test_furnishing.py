@@ -82,7 +82,7 @@ def test_parked_cars_stand_in_bays_and_are_part_of_the_scene(scene, plan):
     assert apart.min(axis=1).max() < 0.4
     assert len(set(apart.argmin(axis=1))) == len(indices)  # one car in a bay
     kinds = scene.object_class[scene.fixtures.object_id[indices]]
-    assert (kinds == ObjectClass.STRUCTURE).all()
+    assert np.isin(kinds, [ObjectClass.CAR, ObjectClass.TRUCK]).all()
     lots = shapely.union_all([park.area for park in plan.car_parks])
     assert shapely.covers(lots, outlines(scene, indices)).all()
 

@@ -21,6 +21,8 @@ _SIGNS = ("cannot allocate memory", "failed to map segment", "can't start new th
 
 def lacks_memory(error: BaseException | None) -> bool:
     """Return whether an error comes of too little memory."""
+    if isinstance(error, SystemError):  # of C code that could not make its own error
+        return True
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
 
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
@@ -217,6 +216,8 @@ def decoded_picture(path: Path, largest: int, size: tuple[int, int], bands: int)
     Raises:
         DataFileError: It cannot be read or decoded, or has another size or number of colours.
     """
+    from PIL import Image, UnidentifiedImageError  # slow to import, and a start decodes none
+
     content = io.BytesIO(read_limited(path, largest))
     try:
         with warnings.catch_warnings():

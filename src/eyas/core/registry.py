@@ -107,6 +107,10 @@ class Registry(Generic[T]):
             self._loaded[name] = self._checked(name, self._found(name))
         return self._loaded[name]
 
+    def forget(self) -> None:
+        """Look all objects up again when they are next asked for: a file of one has changed."""
+        self._loaded.clear()
+
     def _found(self, name: str) -> T | str:
         """Return the table's entry for a name: an object, or a path to it."""
         if name in self._table:

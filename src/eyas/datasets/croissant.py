@@ -94,7 +94,7 @@ def croissant(plan: Plan, frames_sha256: str, notices: Mapping[str, str]) -> dic
         "name": recipe.name,
         "description": named,
         "license": LICENCES[recipe.licence],
-        "version": plan.eyas,
+        "version": plan.eyas.partition(".dev")[0],
         "creator": {"@type": "Organization", "name": "made by its recipe with Eyas"},
         "citeAs": f"{recipe.title}, made with Eyas {plan.eyas}, build {plan.build_id}",
         "keywords": ["synthetic", "drone", "visual tracking", "object detection"],

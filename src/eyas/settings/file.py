@@ -11,7 +11,7 @@ from typing import Any
 from eyas.core.clock import PHYSICS_RATE, physics_steps
 from eyas.core.config import group_of, updated, validated
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import read_limited, write_atomic
+from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
 from eyas.settings.legacy.messages import named_path
@@ -118,9 +118,14 @@ def read_settings(path: Path) -> Nested:
         DataFileError: The file is missing, unreadable, cut off, or not a JSON object.
     """
     try:
-        content = read_limited(path, _LARGEST)
+        with path.open("rb") as file:  # which may be a pipe of a shell, as in --config <(...)
+            content = file.read(_LARGEST + 1)
+        if len(content) > _LARGEST:
+            raise DataFileError(f"{path}: cannot read: larger than {_LARGEST >> 20} MiB")
         encoding = json.detect_encoding(content)
         values = _parsed(content.decode(encoding), path)
+    except OSError as error:
+        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:

@@ -189,6 +189,7 @@ def _write_plan(folder: Path, origin: Origin, features: Survey) -> None:
     origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
     # Last, since a folder with this file is a map.
     write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
+    MAPS.forget()
 
 
 def _name(text: str) -> str:
