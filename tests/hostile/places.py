@@ -104,7 +104,6 @@ READERS = {
     "modes.track.run:_open": "json",
     "modes.track.run:_scored": "boxes",
     "settings.file:_parsed": "settings",
-    "settings.file:read_settings": "settings",
     "traffic.net_file:SumoNet.__init__": "roads",
     "traffic.recording_file:RecordingFile.outline": "traffic",
     "traffic.recording_file:RecordingFile.read": "traffic",
