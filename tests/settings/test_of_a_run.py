@@ -30,6 +30,18 @@ def test_routes_are_updated_where_the_file_says_so():
     assert of_a_run(first) == first  # as `config.json` has it
 
 
+def test_without_sumo_a_run_begins_somewhere_in_the_recording_that_ships(monkeypatch):
+    monkeypatch.setattr("eyas.settings.legacy.of_a_run._sumo", lambda: False)
+    begin = original(update=True)
+    first, second = of_a_run(begin, 5), of_a_run(begin, 6)
+    assert first.start.warm_up_steps != second.start.warm_up_steps
+    late = (first.start.warm_up_steps - begin.start.warm_up_steps) / 500
+    assert 0 < late < 1260.0 - begin.video.total_time
+    assert first.video.start_time == begin.video.start_time + late
+    assert of_a_run(begin, 5) == first
+    assert of_a_run(first) == first  # as `config.json` has it
+
+
 @pytest.mark.parametrize("config", [EyasConfig(), original(fixed=True, update=True)])
 def test_all_else_stays_as_it_is(config):
     assert of_a_run(config) is config

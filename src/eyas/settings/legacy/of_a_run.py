@@ -1,11 +1,14 @@
 """The seed of a run whose `env_config.json` asks for another world each time (`fixed_seed`)."""
 
 import logging
+import random
 
+from eyas.core.clock import PHYSICS_RATE
 from eyas.core.config import updated
 from eyas.core.errors import MissingExtraError
 from eyas.core.rng import TEST_SEEDS, fresh_seed
 from eyas.settings.config import EyasConfig
+from eyas.traffic.config import Source
 
 __all__ = ["of_a_run"]
 
@@ -17,8 +20,9 @@ def of_a_run(config: EyasConfig, seed: int | None = None) -> EyasConfig:
     file leaves them open.
 
     With `fixed_seed` false, targets, looks and starts follow a seed that is drawn, and with
-    `rou_update` true the traffic does, too, where SUMO can record it. A seed that is given repeats
-    the run. Other settings are returned as they are.
+    `rou_update` true the traffic does, too: SUMO records it anew, and without SUMO the run begins
+    somewhere in the recording that ships. A seed that is given repeats the run. Other settings are
+    returned as they are.
 
     Args:
         config: The settings.
@@ -34,9 +38,29 @@ def of_a_run(config: EyasConfig, seed: int | None = None) -> EyasConfig:
             "fixed_seed is false: the seed of this run is %d; --seed %d repeats it", seed, seed
         )
     changes: dict[str, object] = {"seed": seed}
-    if config.traffic.update_routes and config.traffic.recording is None and _sumo():
-        changes["traffic"] = {"seed": seed % TEST_SEEDS}
+    traffic = config.traffic
+    if traffic.update_routes and traffic.recording is None and traffic.source is Source.RECORDED:
+        changes |= {"traffic": {"seed": seed % TEST_SEEDS}} if _sumo() else _later(config, seed)
     return updated(config, changes)
+
+
+def _later(config: EyasConfig, seed: int) -> dict[str, object]:
+    """Return changes by which a run begins later in the recording that ships, at a whole second.
+
+    With the seed of that recording, they are not applied twice.
+    """
+    from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION
+
+    video, first = config.video, config.start.warm_up_steps
+    flown = first + config.done.total_steps + video.warm_up_steps
+    needed = max(video.start_time + video.total_time, flown / PHYSICS_RATE)
+    room = int(STANDARD_DURATION - needed) if video.episode_frames is None else 0
+    seconds = random.Random(seed).randrange(max(room, 1))
+    return {
+        "traffic": {"seed": CANONICAL_SEED},
+        "start": {"warm_up_steps": first + seconds * PHYSICS_RATE},
+        "video": {"start_time": video.start_time + seconds},
+    }
 
 
 def _sumo() -> bool:
@@ -46,6 +70,6 @@ def _sumo() -> bool:
     try:
         sumo_binary("netconvert")
     except MissingExtraError:
-        _LOG.info("rou_update is true, but without SUMO the traffic is a recording that ships")
+        _LOG.info("rou_update is true, but without SUMO the run begins somewhere in a recording")
         return False
     return True
