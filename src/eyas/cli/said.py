@@ -15,14 +15,17 @@ def say(line: str) -> None:
         print(f"eyas: {one_line(line)}", file=sys.stderr, flush=True)
 
 
-_SIGNS = ("cannot allocate memory", "failed to map segment", "can't start new thread")
+_SIGNS = (
+    "cannot allocate memory",
+    "failed to map segment",
+    "can't start new thread",
+    "error return without exception set",  # Python itself, where it cannot even make the error
+)
 """What libraries and Python say where memory is too little for a library or a thread."""
 
 
 def lacks_memory(error: BaseException | None) -> bool:
     """Return whether an error comes of too little memory."""
-    if isinstance(error, SystemError):  # of C code that could not make its own error
-        return True
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True
