@@ -5,21 +5,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from eyas.core.clock import PHYSICS_STEP
-from eyas.core.pinhole import field_along
-from eyas.mesh.assembly import concatenate, transformed
-from eyas.render.pack.geometry import build_geometry
-from eyas.render.renderer import CpuRenderer, build_renderer
-from eyas.render.textures.library import build_textures
-from eyas.sim.assets import Assets, load_assets
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.still import StillWorld
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import PartLibrary, Views
-from eyas.state.mesh import Mesh, Surface
-from eyas.targets.catalogue import KINDS
-from eyas.targets.rig import part_library
+from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.core.pinhole import field_along
+from eyas.engine.mesh.assembly import concatenate, transformed
+from eyas.engine.render.pack.geometry import build_geometry
+from eyas.engine.render.renderer import CpuRenderer, build_renderer
+from eyas.engine.render.textures.library import build_textures
+from eyas.engine.sim.assets import Assets, load_assets
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import PartLibrary, Views
+from eyas.engine.state.mesh import Mesh, Surface
+from eyas.engine.targets.catalogue import KINDS
+from eyas.engine.targets.rig import part_library
 
 CHUNK = 32.0
 """Side of the squares that are skipped if not in view [m]."""

@@ -17,8 +17,8 @@ import gymnasium
 import numpy as np
 
 import eyas  # noqa: F401  # registers the environments
-from eyas.modes.video.run import run as record
-from eyas.settings.config import EyasConfig
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.video.run import run as record
 
 WEATHERS = ("day", "foggy", "night", "snow")
 SHORT = {"channels": 3, "total_time": 4.0, "fps": 12.5}

@@ -8,12 +8,12 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.modes.evaluation_plots import require_matplotlib
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.worlds import each_alone
-from eyas.task.config import StartConfig, StartVelocity
-from eyas.trackers.config import TrackerConfig
+from eyas.benchmark.plots import require_matplotlib
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.task.config import StartConfig, StartVelocity
+from eyas.engine.trackers.config import TrackerConfig
 
 SPEEDS, STEPS = (2.0, 5.0, 10.0), 3000
 COLOURS = ("#9db9cc", "#1b6ca8", "#c8553d")

@@ -11,12 +11,12 @@ import sys
 
 import numpy as np
 
-from eyas.core.config import validated
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import DrawStage, Picture
-from eyas.world.maps import MAPS
+from eyas.engine.core.config import validated
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import DrawStage, Picture
+from eyas.engine.world.maps import MAPS
 
 DRONES, SECONDS, EVERY = 24, 60.0, 0.1
 POSES = ((22.0, 1.37), (15.0, 0.6))

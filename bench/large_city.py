@@ -14,21 +14,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.mesh.assembly import concatenate
-from eyas.render.bake.ambient import bake_ambient
-from eyas.render.bake.land import no_land
-from eyas.render.bake.shadows import bake_shadows
-from eyas.render.bake.tracks import TrackMap
-from eyas.render.kernels.visibility.passes import SMALLEST_DETAIL
-from eyas.render.pack.geometry import build_geometry
-from eyas.render.pack.light import Baked, build_light
-from eyas.render.renderer import CpuRenderer
-from eyas.render.textures.library import build_textures
-from eyas.sim.scenes import load_scene
-from eyas.state.draw import DrawList, DrawStage, PartLibrary, Picture, Views
-from eyas.state.mesh import Mesh
-from eyas.state.scene import Fixtures, Lamps, ObjectClass, Scene
-from eyas.world.maps import MAPS
+from eyas.engine.mesh.assembly import concatenate
+from eyas.engine.render.bake.ambient import bake_ambient
+from eyas.engine.render.bake.land import no_land
+from eyas.engine.render.bake.shadows import bake_shadows
+from eyas.engine.render.bake.tracks import TrackMap
+from eyas.engine.render.kernels.visibility.passes import SMALLEST_DETAIL
+from eyas.engine.render.pack.geometry import build_geometry
+from eyas.engine.render.pack.light import Baked, build_light
+from eyas.engine.render.renderer import CpuRenderer
+from eyas.engine.render.textures.library import build_textures
+from eyas.engine.sim.scenes import load_scene
+from eyas.engine.state.draw import DrawList, DrawStage, PartLibrary, Picture, Views
+from eyas.engine.state.mesh import Mesh
+from eyas.engine.state.scene import Fixtures, Lamps, ObjectClass, Scene
+from eyas.engine.world.maps import MAPS
 
 __all__ = ["horizon_views", "large_city", "street_views"]
 

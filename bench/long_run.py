@@ -15,14 +15,14 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.core.machine import describe_machine
-from eyas.modes.video.config import VideoConfig
-from eyas.modes.video.run import run
-from eyas.settings.config import EyasConfig
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
+from eyas.engine.core.machine import describe_machine
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import Picture
+from eyas.engine.video.run import run
 
 
 def resident() -> int:

@@ -13,12 +13,12 @@ import math
 import socket
 import time
 
-from eyas.core.config import updated
-from eyas.mavlink.dialect import dialect
-from eyas.mavlink.fleet import Fleet
-from eyas.modes.serve.mavlink import AS_FLOWN
-from eyas.sim.build import build_simulation
-from eyas.sim.worlds import together
+from eyas.engine.core.config import updated
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.worlds import together
+from eyas.robotics.mavlink.dialect import dialect
+from eyas.robotics.mavlink.fleet import Fleet
+from eyas.robotics.serve_mavlink import AS_FLOWN
 
 common = dialect()
 

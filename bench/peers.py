@@ -20,12 +20,12 @@ import numpy as np
 from city import City, finest_renderer, load_city
 from PIL import Image
 
-from eyas.core.machine import describe_machine
-from eyas.render.renderer import CpuRenderer
-from eyas.sim.assets import load_assets
-from eyas.sim.config import SimConfig
-from eyas.state.draw import DrawList, Picture
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.engine.core.machine import describe_machine
+from eyas.engine.render.renderer import CpuRenderer
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.state.draw import DrawList, Picture
+from eyas.engine.state.scene import ACTOR_OBJECT
 
 SIDE = 84
 """Size of the pictures [pixels]."""

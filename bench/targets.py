@@ -10,15 +10,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eyas.core.config import validated
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.worlds import together
-from eyas.state.draw import Picture
-from eyas.state.motion import ActorState
-from eyas.targets.catalogue import kind_index, models_of
-from eyas.targets.kind import Looks
-from eyas.targets.rig import Rigs
+from eyas.engine.core.config import validated
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.worlds import together
+from eyas.engine.state.draw import Picture
+from eyas.engine.state.motion import ActorState
+from eyas.engine.targets.catalogue import kind_index, models_of
+from eyas.engine.targets.kind import Looks
+from eyas.engine.targets.rig import Rigs
 
 WORLDS, ACTORS, REPEATS = 1000, 40, 15
 

@@ -52,7 +52,7 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.fixture(scope="session")
 def emulated():
-    """What has `eyas.lanes.cuda` find a card that runs PTX on this processor."""
+    """What has `eyas.gpu.cuda` find a card that runs PTX on this processor."""
     if shutil.which("cc") is None:
         pytest.skip("there is no C compiler")
     sys.path.append(str(Path(__file__).parents[1] / "tools"))

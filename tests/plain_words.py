@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from eyas.targets.catalogue import MODELS, kind_of
-from eyas.targets.colour_names import COLOUR_NAMES
+from eyas.engine.targets.catalogue import MODELS, kind_of
+from eyas.engine.targets.colour_names import COLOUR_NAMES
 
 CARS = {
     "BmwX5Simple": "suv",

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from eyas.sensors.obstacles import obstacles_of, solids_of
-from eyas.state.motion import SAMPLE, Motion
-from eyas.state.scene import Colliders, ObjectClass, Scene
-from eyas.state.snapshot import Snapshot
-from eyas.state.terrain import Terrain
-from eyas.targets.catalogue import model_index
-from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND
+from eyas.engine.sensors.obstacles import obstacles_of, solids_of
+from eyas.engine.state.motion import SAMPLE, Motion
+from eyas.engine.state.scene import Colliders, ObjectClass, Scene
+from eyas.engine.state.snapshot import Snapshot
+from eyas.engine.state.terrain import Terrain
+from eyas.engine.targets.catalogue import model_index
+from eyas.engine.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND
 
 GROUND, WALL, POLE = 0, 1, 2
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from eyas import ATTRIBUTES
-from eyas.modes.maps.info import figures_of
-from eyas.sim.scenes import load_scene
-from eyas.targets.catalogue import KINDS, habit_of, kind_index
-from eyas.targets.config import TargetName
-from eyas.targets.vehicles.kinds import VEHICLE_KINDS
-from eyas.world.maps import MAPS
+from eyas.engine.sim.scenes import load_scene
+from eyas.engine.targets.catalogue import KINDS, habit_of, kind_index
+from eyas.engine.targets.config import TargetName
+from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
+from eyas.engine.world.maps import MAPS
+from eyas.maps.programs.info import figures_of
 
 ROOT = Path(__file__).parent.parent
 

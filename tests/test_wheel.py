@@ -22,7 +22,7 @@ PROGRAM = """
 import importlib, pkgutil, sys
 import eyas
 names = [module.name for module in pkgutil.walk_packages(eyas.__path__, "eyas.")]
-from eyas.core.errors import MissingExtraError
+from eyas.engine.core.errors import MissingExtraError
 for name in names:
     try:
         file = str(importlib.import_module(name).__file__)
@@ -33,10 +33,10 @@ for name in names:
         assert error.name in ("torch", "onnx"), error.name
         continue
     assert file.startswith(sys.prefix), file
-from eyas.sim.scenes import load_network
-from eyas.traffic.library import RESPAWN_GROUPS
-from eyas.traffic.recording_file import load
-from eyas.world.maps import MAPS
+from eyas.engine.sim.scenes import load_network
+from eyas.engine.traffic.library import RESPAWN_GROUPS
+from eyas.engine.traffic.recording_file import load
+from eyas.engine.world.maps import MAPS
 for name in MAPS.built_in:
     assert len(load_network(name, 0).lane_points) > 100
     recordings = MAPS.get(name).shipped_traffic()

@@ -20,24 +20,24 @@ from unittest.mock import patch
 import numpy as np
 
 import eyas
-from eyas.core.build import this_build
-from eyas.core.config import updated
-from eyas.evaluation.comparison import differences
-from eyas.evaluation.policies.table import open_policy
-from eyas.evaluation.policies.tracker import tracker as flying
-from eyas.evaluation.policies.tracker.detector import Clue, Detector, Found
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import Tracker
-from eyas.evaluation.protocols import protocol_named
-from eyas.evaluation.record import EpisodeRecord
-from eyas.evaluation.result import RESULT, cell, load_run
-from eyas.evaluation.rows import rows_of
+from eyas.benchmark.comparison import differences
+from eyas.benchmark.policies.tracker import tracker as flying
+from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
+from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.tracker import Tracker
+from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.record import EpisodeRecord
+from eyas.benchmark.result import RESULT, cell, load_run
+from eyas.benchmark.rows import rows_of
+from eyas.engine.core.build import this_build
+from eyas.engine.core.config import updated
+from eyas.engine.policies.table import open_policy
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import flights, lessons, training
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle
 from eyas.learning.tracking.samples import Samples
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
 
 PLACES = (
     ("paper", "citystreet", "day", 24),

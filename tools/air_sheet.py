@@ -9,13 +9,13 @@ import numpy as np
 from PIL import Image
 from weather_sheet import rotation
 
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.simulation import Simulation
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
-from eyas.state.snapshot import CameraState
-from eyas.targets.catalogue import KINDS
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.simulation import Simulation
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import Picture
+from eyas.engine.state.snapshot import CameraState
+from eyas.engine.targets.catalogue import KINDS
 
 SIZE = (240, 320)
 WIND = {"speed": 5.0, "direction": 0.4}

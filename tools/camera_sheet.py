@@ -16,13 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from eyas.core.config import updated, validated
-from eyas.evaluation.protocols.corrupted import CORRUPTIONS
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.simulation import Simulation
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
+from eyas.benchmark.protocols.corrupted import CORRUPTIONS
+from eyas.engine.core.config import updated, validated
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.simulation import Simulation
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import Picture
 
 SIDE, MARGIN, LABEL = (320, 240), 6, 22
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from PIL import Image, ImageDraw
 
-from eyas.core.config import updated
-from eyas.exports.label import read_labels
-from eyas.modes.video import run as video
-from eyas.settings.config import EyasConfig
+from eyas.engine.core.config import updated
+from eyas.engine.exports.label import read_labels
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.video import run as video
 
 SHOWN = {
     "follow": ("citystreet", 5),

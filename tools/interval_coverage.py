@@ -26,10 +26,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eyas.evaluation.record import EpisodeRecord
-from eyas.evaluation.result import load_run
-from eyas.evaluation.rows import figures_of
-from eyas.evaluation.statistics import (
+from eyas.benchmark.record import EpisodeRecord
+from eyas.benchmark.result import load_run
+from eyas.benchmark.rows import figures_of
+from eyas.benchmark.statistics import (
     Clusters,
     Interval,
     clusters_of,

@@ -20,12 +20,12 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from eyas.sim.assets import load_assets
-from eyas.sim.still import StillWorld
-from eyas.state.draw import Picture, Views
-from eyas.state.scene import ACTOR_OBJECT
-from eyas.traffic.config import TrafficConfig, VehicleType
-from eyas.world.config import WorldConfig
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.state.draw import Picture, Views
+from eyas.engine.state.scene import ACTOR_OBJECT
+from eyas.engine.traffic.config import TrafficConfig, VehicleType
+from eyas.engine.world.config import WorldConfig
 
 MAPS = ("citystreet", "downtown", "lake", "village", "desert", "farmland")
 PITCH = {6: 0.35, 13: 0.8, 22: 1.1, 40: 1.3}

@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from eyas.engine.render.kernels.surface.signalling import BRAKING, LEFT
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.state.draw import Picture, Views
+from eyas.engine.state.motion import Lamp
+from eyas.engine.traffic.config import TrafficConfig
+from eyas.engine.traffic.lamps import shining
+from eyas.engine.world.config import WorldConfig
 from eyas.lanes import interpreted
-from eyas.render.kernels.surface.signalling import BRAKING, LEFT
-from eyas.sim.assets import load_assets
-from eyas.sim.still import StillWorld
-from eyas.state.draw import Picture, Views
-from eyas.state.motion import Lamp
-from eyas.traffic.config import TrafficConfig
-from eyas.traffic.lamps import shining
-from eyas.world.config import WorldConfig
 
 SIZE, LABEL = (240, 320), 14
 GREEN_AT, RED_AT = 100.0, 130.0

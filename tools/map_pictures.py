@@ -13,11 +13,11 @@ import numpy as np
 from PIL import Image
 from weather_sheet import rotation
 
-from eyas.sim.assets import load_assets
-from eyas.sim.still import StillWorld
-from eyas.state.draw import Picture, Views
-from eyas.traffic.config import TrafficConfig
-from eyas.world.config import WorldConfig
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.state.draw import Picture, Views
+from eyas.engine.traffic.config import TrafficConfig
+from eyas.engine.world.config import WorldConfig
 
 SIZE, GAP, TIME = (480, 640), 8, 300.0
 IMAGES = Path(__file__).parents[1] / "docs" / "images"

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from eyas.modes.targets.stage import Camera, TargetPose, TargetStage
-from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
+from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of
 
 FIELD = np.deg2rad(45.0)
 DISTANCES = (4.0, 6.0, 9.0, 13.0)

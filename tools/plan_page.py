@@ -13,12 +13,12 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import annotated_types
 
-from eyas.state.mesh import Material
-from eyas.world.build.materials import FACADES, TEXTURES
-from eyas.world.build.values import MaterialRecord, Named, Rows, Shape
-from eyas.world.plan.file import TAGS, plain, schema
-from eyas.world.plan.plan import MapPlan
-from eyas.world.things.kinds import SOLIDS, THINGS
+from eyas.engine.state.mesh import Material
+from eyas.engine.world.build.materials import FACADES, TEXTURES
+from eyas.maps.build.values import MaterialRecord, Named, Rows, Shape
+from eyas.maps.plan.file import TAGS, plain, schema
+from eyas.maps.plan.plan import MapPlan
+from eyas.maps.things.kinds import SOLIDS, THINGS
 
 __all__ = ["page_of_records", "schema_text"]
 

@@ -21,11 +21,11 @@ import numpy as np
 from emulated_card import EmulatedCard, Loaded, emulated_card
 from numpy.typing import NDArray
 
-import eyas.render.device as drawing
-from eyas.lanes.cuda import CudaDevice, cuda_device
-from eyas.modes.bench.device import on_device
-from eyas.modes.bench.pictures import PictureBatch
-from eyas.render.kernels import stages
+import eyas.gpu.render.device as drawing
+from eyas.cli.bench.device import on_device
+from eyas.cli.bench.pictures import PictureBatch
+from eyas.gpu.cuda import CudaDevice, cuda_device
+from eyas.gpu.render import stages
 
 _TEXT = 16
 """Instructions of a block that are shown at most."""

@@ -1,5 +1,5 @@
 """Make what ships in the package: machine code (`eyas.lanes.shipped`), modules of functions
-(`eyas.lanes.modules`), PTX (`eyas.lanes.cuda.code`), and digests of syntax (`eyas.lanes.syntax`).
+(`eyas.lanes.modules`), PTX (`eyas.gpu.cuda.code`), and digests of syntax (`eyas.lanes.syntax`).
 
     python tools/ship_kernels.py              # some minutes; commit what it changes
     python tools/ship_kernels.py --check      # is the code in the package that of these sources?
@@ -21,9 +21,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import eyas
-from eyas.core import program
+from eyas.engine.core import program
+from eyas.engine.sim.step import step_of
+from eyas.engine.trackers.drone import DRONE
+from eyas.gpu.cuda import code as ptx
 from eyas.lanes import CompiledCall, modules
-from eyas.lanes.cuda import code as ptx
 from eyas.lanes.folder import read_trusted
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -36,29 +38,27 @@ from eyas.lanes.shipped import (
     read_archive,
 )
 from eyas.lanes.syntax import INDEX, index_of
-from eyas.sim.step import step_of
-from eyas.trackers.drone import DRONE
 
 USES_ALL = """
 import tempfile
 import numpy as np
 import eyas
 from eyas.lanes.elementary.arrays import sin
-from eyas.sensors.config import Colours
-from eyas.sensors.stack import FrameStack
-from eyas.sim.assets import load_assets
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.still import StillWorld
-from eyas.sim.urban_wind import winds_over
-from eyas.sim.views.actor_bounds import bounds_of, make_rows
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
-from eyas.state.terrain import Terrain
-from eyas.task.privileged import fill_privileged
-from eyas.traffic.recorded import recorded_motion
-from eyas.traffic.recording_file import load
-from eyas.world.maps import MAPS
+from eyas.engine.sensors.config import Colours
+from eyas.engine.sensors.stack import FrameStack
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.sim.urban_wind import winds_over
+from eyas.engine.sim.views.actor_bounds import bounds_of, make_rows
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import Picture
+from eyas.engine.state.terrain import Terrain
+from eyas.engine.task.privileged import fill_privileged
+from eyas.engine.traffic.recorded import recorded_motion
+from eyas.engine.traffic.recording_file import load
+from eyas.engine.world.maps import MAPS
 
 sin(np.zeros(1))
 winds_over(np.zeros((4, 4)))
@@ -161,8 +161,8 @@ from pathlib import Path
 import numpy as np
 import torch
 from eyas import EyasVectorEnv
-from eyas.lanes.cuda import code
-from eyas.lanes.device import HostDevice
+from eyas.gpu.cuda import code
+from eyas.gpu.device import HostDevice
 from eyas.lanes.held import Held
 
 code.ARCHIVE = Path("none")  # what is in the package already is made anew
@@ -203,7 +203,7 @@ envs.reset(seed=1)
 
 PACKAGE = Path(eyas.__file__).parent
 
-FOR_DEVICES = ("eyas.render.kernels.stages", "eyas.sim.device.", "eyas.envs.device.")
+FOR_DEVICES = ("eyas.gpu.render.stages", "eyas.gpu.sim.", "eyas.gpu.envs.")
 """Rooms of kernels that run on graphics processors; they ship as PTX."""
 
 

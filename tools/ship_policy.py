@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.evaluation.policies.shipped import TRAINED, Card
+from eyas.benchmark.policies.shipped import TRAINED, Card
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import load_settings
 from eyas.learning.config import Method
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import load_settings
 
 _FLOWN = "eyas-flown"
 """The tracker for flown drones, of the same run as `eyas`."""

@@ -5,10 +5,10 @@
                                             # compares, and notes that today's code gives the same
     python tools/shipped_data.py --note     # notes it for what has just been made anew
 
-The notes, `shipped_data.json` beside this file, hold the code (`eyas.core.program`) that made each
+The notes, `shipped_data.json` beside this file, hold the code (`eyas.engine.core.program`) that made each
 file: all that it refers to, but for `core` and `lanes`, whose own tests hold what they compute to
 the bit. What comes out otherwise is made anew with `eyas traffic record --map NAME --canonical`.
-`tests/traffic/test_shipped_data.py` fails where something is stale.
+`tests/maps/test_shipped_data.py` fails where something is stale.
 """
 
 import argparse
@@ -20,19 +20,19 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.core.program import closure_of, definitions_of
-from eyas.sim.cover import cover_of
-from eyas.traffic.library import _recorded
-from eyas.traffic.network import build_network
-from eyas.traffic.record import record
-from eyas.traffic.recording_file import RecordingFile
-from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import TEST_TOWNS, MapRecipe, network_file
-from eyas.world.roads.network_file import load_network
+from eyas.engine.core.program import closure_of, definitions_of
+from eyas.engine.sim.cover import cover_of
+from eyas.engine.traffic.library import _recorded
+from eyas.engine.traffic.network import build_network
+from eyas.engine.traffic.record import record
+from eyas.engine.traffic.recording_file import RecordingFile
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.recipe import TEST_TOWNS, MapRecipe, network_file
+from eyas.engine.world.roads.network_file import load_network
 
 NOTES = Path(__file__).with_suffix(".json")
 
-ELSEWHERE = ("eyas.core.", "eyas.lanes.")
+ELSEWHERE = ("eyas.engine.core.", "eyas.lanes.")
 
 
 def main() -> None:

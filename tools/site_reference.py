@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import eyas
-from eyas.core.allowed import describe
-from eyas.core.config import Config, entries_of, group_of
-from eyas.settings.schema import field_texts
+from eyas.engine.core.allowed import describe
+from eyas.engine.core.config import Config, entries_of, group_of
+from eyas.engine.settings.schema import field_texts
 
 NAMES: dict[str, tuple[str, ...]] = {
     "What the commands do": (
@@ -138,7 +138,7 @@ def _plain(text: str) -> str:
 
 def settings() -> str:
     """Return a table for each group of settings: type and range, default, unit, meaning."""
-    from eyas.settings.config import EyasConfig
+    from eyas.engine.settings.config import EyasConfig
 
     return "\n\n".join(_group("", EyasConfig))
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from eyas.evaluation.entry import EntryClass, entry_class
-from eyas.evaluation.policies.table import open_policy
-from eyas.modes.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
+from eyas.benchmark.entry import EntryClass, entry_class
+from eyas.benchmark.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
+from eyas.engine.policies.table import open_policy
 
 __all__ = ["standings"]
 

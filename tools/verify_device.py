@@ -34,23 +34,23 @@ from emulated_card import emulated_card
 from numpy.typing import NDArray
 
 from eyas import EyasVectorEnv, __version__
-from eyas.core import exact
-from eyas.core.build import this_build
-from eyas.core.machine import describe_machine
-from eyas.lanes.cuda import CudaError, cuda_device, gpu_line
-from eyas.lanes.device import Device, HostDevice
-from eyas.modes.bench.device import on_device, seconds_of
-from eyas.modes.bench.pictures import PictureBatch
-from eyas.render.read_back import ReadBackRenderer
-from eyas.render.renderer import CpuRenderer
-from eyas.sim.assets import load_assets
-from eyas.sim.config import SimConfig
-from eyas.sim.still import StillWorld
-from eyas.state.draw import Picture, Views
-from eyas.state.lighting import LightState
-from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.terrain import reliefs
-from eyas.world.config import WorldConfig
+from eyas.cli.bench.device import on_device, seconds_of
+from eyas.cli.bench.pictures import PictureBatch
+from eyas.engine.core.build import this_build
+from eyas.engine.core.machine import describe_machine
+from eyas.engine.render.renderer import CpuRenderer
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.state.draw import Picture, Views
+from eyas.engine.state.lighting import LightState
+from eyas.engine.state.scene import ACTOR_OBJECT
+from eyas.engine.state.terrain import reliefs
+from eyas.engine.world.config import WorldConfig
+from eyas.gpu.cuda import CudaError, cuda_device, gpu_line
+from eyas.gpu.device import Device, HostDevice
+from eyas.gpu.render.read_back import ReadBackRenderer
+from eyas.lanes import exact
 
 CHECKSUMS = Path(__file__).with_name("device_checksums.json")
 

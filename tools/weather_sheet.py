@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
-from eyas.sim.assets import load_assets
-from eyas.sim.still import StillWorld
-from eyas.state.draw import Picture, Views
-from eyas.traffic.config import TrafficConfig
-from eyas.world.config import WorldConfig
-from eyas.world.maps import MAPS
-from eyas.world.weather import WEATHERS
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.state.draw import Picture, Views
+from eyas.engine.traffic.config import TrafficConfig
+from eyas.engine.world.config import WorldConfig
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.weather import WEATHERS
 
 SIZE = (126, 168)
 HEIGHT, PITCH, TIME = 17.0, 0.42, 300.0

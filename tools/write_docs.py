@@ -13,11 +13,11 @@ from pathlib import Path
 from plan_page import page_of_records, schema_text
 from standings import standings
 
-from eyas.evaluation.policies.shipped import shipped_names
-from eyas.exports.label import FIELDS, LabelField, label_schema
-from eyas.modes.reproduce.model_card import model_card
-from eyas.modes.reproduce.run import markdown
-from eyas.modes.reproduce.tables import TABLES, expected
+from eyas.benchmark.policies.shipped import shipped_names
+from eyas.benchmark.reproduce.model_card import model_card
+from eyas.benchmark.reproduce.run import markdown
+from eyas.benchmark.reproduce.tables import TABLES, expected
+from eyas.engine.exports.label import FIELDS, LabelField, label_schema
 
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- made by tools/write_docs.py -->", "<!-- end -->"

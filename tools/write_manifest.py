@@ -5,9 +5,9 @@
 Run it when bytes have changed on purpose, and commit the file with the change.
 """
 
-from eyas.core.files import write_atomic
-from eyas.modes.verify.cases import cases
-from eyas.modes.verify.run import compared, manifest_path, measured, read_manifest, text_of
+from eyas.cli.verify.cases import cases
+from eyas.cli.verify.run import compared, manifest_path, measured, read_manifest, text_of
+from eyas.engine.core.files import write_atomic
 
 
 def main() -> None:

@@ -16,188 +16,188 @@ Gymnasium.
 
 from typing import TYPE_CHECKING, Any
 
-from eyas.envs.registration import register as _register
+from eyas.engine.envs.registration import register as _register
 
 if TYPE_CHECKING:
-    from eyas.core.clock import PHYSICS_STEP as PHYSICS_STEP
-    from eyas.core.config import updated as updated
-    from eyas.core.errors import ActionError as ActionError
-    from eyas.core.errors import ConfigError as ConfigError
-    from eyas.core.errors import DataFileError as DataFileError
-    from eyas.core.errors import EyasError as EyasError
-    from eyas.core.errors import MissingExtraError as MissingExtraError
-    from eyas.core.errors import OutputError as OutputError
-    from eyas.core.errors import SpawnError as SpawnError
-    from eyas.core.errors import UnknownNameError as UnknownNameError
-    from eyas.core.files import write_atomic as write_atomic
-    from eyas.core.frames import rotate as rotate
-    from eyas.custom.own import Ride as Ride
-    from eyas.datasets.format import Format as Format
-    from eyas.datasets.recording import RecordedEpisode as RecordedEpisode
-    from eyas.datasets.recording import RecordedFrame as RecordedFrame
-    from eyas.datasets.recording import Recording as Recording
-    from eyas.datasets.recording import load as load
-    from eyas.envs.keys import hover_action as hover_action
-    from eyas.envs.legacy_observation import LegacyObservation as LegacyObservation
-    from eyas.envs.lerobot import make_lerobot_env as make_lerobot_env
-    from eyas.envs.observation import Observation as Observation
-    from eyas.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
-    from eyas.envs.registration import register_map as register_map
-    from eyas.envs.sb3 import EyasVecEnv as EyasVecEnv
-    from eyas.envs.tracking_env import TrackingEnv as TrackingEnv
-    from eyas.envs.vector_env import EyasVectorEnv as EyasVectorEnv
-    from eyas.evaluation.box_trackers import BoxTracker as BoxTracker
-    from eyas.evaluation.policies.policy import Decision as Decision
-    from eyas.evaluation.policies.policy import Policy as Policy
-    from eyas.evaluation.policies.policy import PolicyInput as PolicyInput
-    from eyas.evaluation.policies.policy import Start as Start
-    from eyas.evaluation.steering import towards as towards
-    from eyas.exports.frame import Frame as Frame
-    from eyas.exports.label import label_schema as label_schema
-    from eyas.exports.label import read_labels as read_labels
-    from eyas.exports.writer import Episode as Episode
-    from eyas.exports.writer import EpisodeWriter as EpisodeWriter
-    from eyas.exports.writer import Files as Files
-    from eyas.exports.writer import Gather as Gather
-    from eyas.exports.writer import Run as Run
-    from eyas.exports.writer import Summary as Summary
-    from eyas.exports.writer import Writer as Writer
+    from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
+    from eyas.datasets.tracking.box_trackers import BoxTracker as BoxTracker
+    from eyas.engine.api import evaluate as evaluate
+    from eyas.engine.api import export as export
+    from eyas.engine.api import make as make
+    from eyas.engine.api import make_config as make_config
+    from eyas.engine.api import make_dataset as make_dataset
+    from eyas.engine.api import make_vec as make_vec
+    from eyas.engine.api import record as record
+    from eyas.engine.api import track as track
+    from eyas.engine.api import train as train
+    from eyas.engine.core.clock import PHYSICS_STEP as PHYSICS_STEP
+    from eyas.engine.core.config import updated as updated
+    from eyas.engine.core.errors import ActionError as ActionError
+    from eyas.engine.core.errors import ConfigError as ConfigError
+    from eyas.engine.core.errors import DataFileError as DataFileError
+    from eyas.engine.core.errors import EyasError as EyasError
+    from eyas.engine.core.errors import MissingExtraError as MissingExtraError
+    from eyas.engine.core.errors import OutputError as OutputError
+    from eyas.engine.core.errors import SpawnError as SpawnError
+    from eyas.engine.core.errors import UnknownNameError as UnknownNameError
+    from eyas.engine.core.files import write_atomic as write_atomic
+    from eyas.engine.core.frames import rotate as rotate
+    from eyas.engine.custom.own import Ride as Ride
+    from eyas.engine.envs.keys import hover_action as hover_action
+    from eyas.engine.envs.lerobot import make_lerobot_env as make_lerobot_env
+    from eyas.engine.envs.observation import Observation as Observation
+    from eyas.engine.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
+    from eyas.engine.envs.registration import register_map as register_map
+    from eyas.engine.envs.sb3 import EyasVecEnv as EyasVecEnv
+    from eyas.engine.envs.tracking_env import TrackingEnv as TrackingEnv
+    from eyas.engine.envs.vector_env import EyasVectorEnv as EyasVectorEnv
+    from eyas.engine.exports.frame import Frame as Frame
+    from eyas.engine.exports.label import label_schema as label_schema
+    from eyas.engine.exports.label import read_labels as read_labels
+    from eyas.engine.exports.writer import Episode as Episode
+    from eyas.engine.exports.writer import EpisodeWriter as EpisodeWriter
+    from eyas.engine.exports.writer import Files as Files
+    from eyas.engine.exports.writer import Gather as Gather
+    from eyas.engine.exports.writer import Run as Run
+    from eyas.engine.exports.writer import Summary as Summary
+    from eyas.engine.exports.writer import Writer as Writer
+    from eyas.engine.mesh.shell import Shell as Shell
+    from eyas.engine.names import list_formats as list_formats
+    from eyas.engine.names import list_maps as list_maps
+    from eyas.engine.names import list_policies as list_policies
+    from eyas.engine.names import list_presets as list_presets
+    from eyas.engine.names import list_targets as list_targets
+    from eyas.engine.names import list_weathers as list_weathers
+    from eyas.engine.policies.policy import Decision as Decision
+    from eyas.engine.policies.policy import Policy as Policy
+    from eyas.engine.policies.policy import PolicyInput as PolicyInput
+    from eyas.engine.policies.policy import Start as Start
+    from eyas.engine.policies.steering import towards as towards
+    from eyas.engine.recordings.format import Format as Format
+    from eyas.engine.recordings.recording import RecordedEpisode as RecordedEpisode
+    from eyas.engine.recordings.recording import RecordedFrame as RecordedFrame
+    from eyas.engine.recordings.recording import Recording as Recording
+    from eyas.engine.recordings.recording import load as load
+    from eyas.engine.settings.config import EyasConfig as EyasConfig
+    from eyas.engine.settings.file import load_settings as load_settings
+    from eyas.engine.sim.build import build_simulation as build_simulation
+    from eyas.engine.sim.config import SimConfig as SimConfig
+    from eyas.engine.sim.flights.path import FlightScene as FlightScene
+    from eyas.engine.sim.flights.path import FlightSketch as FlightSketch
+    from eyas.engine.sim.simulation import Simulation as Simulation
+    from eyas.engine.sim.simulation import StepResult as StepResult
+    from eyas.engine.sim.worlds import each_alone as each_alone
+    from eyas.engine.sim.worlds import together as together
+    from eyas.engine.state.draw import Picture as Picture
+    from eyas.engine.state.mesh import Material as Material
+    from eyas.engine.state.mesh import Mesh as Mesh
+    from eyas.engine.state.roads import RoadEdge as RoadEdge
+    from eyas.engine.state.roads import RoadGraph as RoadGraph
+    from eyas.engine.state.roads import RoadNetwork as RoadNetwork
+    from eyas.engine.state.roads import RoadNode as RoadNode
+    from eyas.engine.state.scene import ObjectClass as ObjectClass
+    from eyas.engine.state.scene import Scene as Scene
+    from eyas.engine.state.snapshot import CameraState as CameraState
+    from eyas.engine.state.snapshot import Snapshot as Snapshot
+    from eyas.engine.state.snapshot import TrackerState as TrackerState
+    from eyas.engine.state.terrain import Terrain as Terrain
+    from eyas.engine.targets.grammar.attributes import ATTRIBUTES as ATTRIBUTES
+    from eyas.engine.task.packets import BasicPacket as BasicPacket
+    from eyas.engine.task.packets import InputPacket as InputPacket
+    from eyas.engine.task.packets import RewardPacket as RewardPacket
+    from eyas.engine.task.radar_packet import RadarPacket as RadarPacket
+    from eyas.engine.task.step_line import StepLine as StepLine
+    from eyas.engine.task.terms import RewardTerm as RewardTerm
+    from eyas.engine.trackers.config import TrackerConfig as TrackerConfig
+    from eyas.engine.trackers.flown import flown_drone as flown_drone
+    from eyas.engine.trackers.tracker import Tracker as Tracker
+    from eyas.engine.world.maps import MapRecipe as MapRecipe
+    from eyas.engine.world.weather import CLEAR_DAY as CLEAR_DAY
+    from eyas.engine.world.weather import DAY as DAY
+    from eyas.engine.world.weather import Season as Season
+    from eyas.engine.world.weather import Weather as Weather
     from eyas.lanes import kernel as kernel
-    from eyas.mesh.shell import Shell as Shell
-    from eyas.modes.api import evaluate as evaluate
-    from eyas.modes.api import export as export
-    from eyas.modes.api import make as make
-    from eyas.modes.api import make_config as make_config
-    from eyas.modes.api import make_dataset as make_dataset
-    from eyas.modes.api import make_vec as make_vec
-    from eyas.modes.api import record as record
-    from eyas.modes.api import track as track
-    from eyas.modes.api import train as train
-    from eyas.modes.names import list_formats as list_formats
-    from eyas.modes.names import list_maps as list_maps
-    from eyas.modes.names import list_policies as list_policies
-    from eyas.modes.names import list_presets as list_presets
-    from eyas.modes.names import list_targets as list_targets
-    from eyas.modes.names import list_weathers as list_weathers
-    from eyas.settings.config import EyasConfig as EyasConfig
-    from eyas.settings.file import load_settings as load_settings
-    from eyas.sim.build import build_simulation as build_simulation
-    from eyas.sim.config import SimConfig as SimConfig
-    from eyas.sim.flights.path import FlightScene as FlightScene
-    from eyas.sim.flights.path import FlightSketch as FlightSketch
-    from eyas.sim.simulation import Simulation as Simulation
-    from eyas.sim.simulation import StepResult as StepResult
-    from eyas.sim.worlds import each_alone as each_alone
-    from eyas.sim.worlds import together as together
-    from eyas.state.draw import Picture as Picture
-    from eyas.state.mesh import Material as Material
-    from eyas.state.mesh import Mesh as Mesh
-    from eyas.state.roads import RoadEdge as RoadEdge
-    from eyas.state.roads import RoadGraph as RoadGraph
-    from eyas.state.roads import RoadNetwork as RoadNetwork
-    from eyas.state.roads import RoadNode as RoadNode
-    from eyas.state.scene import ObjectClass as ObjectClass
-    from eyas.state.scene import Scene as Scene
-    from eyas.state.snapshot import CameraState as CameraState
-    from eyas.state.snapshot import Snapshot as Snapshot
-    from eyas.state.snapshot import TrackerState as TrackerState
-    from eyas.state.terrain import Terrain as Terrain
-    from eyas.targets.grammar.attributes import ATTRIBUTES as ATTRIBUTES
-    from eyas.task.packets import BasicPacket as BasicPacket
-    from eyas.task.packets import InputPacket as InputPacket
-    from eyas.task.packets import RewardPacket as RewardPacket
-    from eyas.task.radar_packet import RadarPacket as RadarPacket
-    from eyas.task.step_line import StepLine as StepLine
-    from eyas.task.terms import RewardTerm as RewardTerm
-    from eyas.trackers.config import TrackerConfig as TrackerConfig
-    from eyas.trackers.flown import flown_drone as flown_drone
-    from eyas.trackers.tracker import Tracker as Tracker
-    from eyas.world.land.mounds import Mound as Mound
-    from eyas.world.maps import MapRecipe as MapRecipe
-    from eyas.world.osm.features import Survey as Survey
-    from eyas.world.plan.file import read_plan as read_plan
-    from eyas.world.plan.file import write_plan as write_plan
-    from eyas.world.plan.plan import Hills as Hills
-    from eyas.world.plan.plan import MapPlan as MapPlan
-    from eyas.world.weather import CLEAR_DAY as CLEAR_DAY
-    from eyas.world.weather import DAY as DAY
-    from eyas.world.weather import Season as Season
-    from eyas.world.weather import Weather as Weather
+    from eyas.maps.land.mounds import Mound as Mound
+    from eyas.maps.osm.features import Survey as Survey
+    from eyas.maps.plan.file import read_plan as read_plan
+    from eyas.maps.plan.file import write_plan as write_plan
+    from eyas.maps.plan.plan import Hills as Hills
+    from eyas.maps.plan.plan import MapPlan as MapPlan
 
 __version__: str
 """Version of this Eyas, by the tags of git (`tools/version.py`); "0" in a folder that is not
 installed. `build_id` identifies the code exactly."""
 
 build_id: str
-"""Identifies code and data of this Eyas, see `eyas.core.build`: results of the same build, settings
+"""Identifies code and data of this Eyas, see `eyas.engine.core.build`: results of the same build, settings
 and seed are the same to the bit."""
 
 _PLACES = {
-    "core.clock": ("PHYSICS_STEP",),
-    "core.config": ("updated",),
-    "core.errors": (
+    "engine.core.clock": ("PHYSICS_STEP",),
+    "engine.core.config": ("updated",),
+    "engine.core.errors": (
         *("ActionError", "ConfigError", "DataFileError", "EyasError", "MissingExtraError"),
         *("OutputError", "SpawnError", "UnknownNameError"),
     ),
-    "core.files": ("write_atomic",),
-    "core.frames": ("rotate",),
-    "custom.own": ("Ride",),
-    "datasets.format": ("Format",),
-    "datasets.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
-    "envs.keys": ("hover_action",),
-    "envs.legacy_observation": ("LegacyObservation",),
-    "envs.lerobot": ("make_lerobot_env",),
-    "envs.observation": ("Observation",),
-    "envs.pettingzoo": ("EyasParallelEnv",),
-    "envs.registration": ("register_map",),
-    "envs.sb3": ("EyasVecEnv",),
-    "envs.tracking_env": ("TrackingEnv",),
-    "envs.vector_env": ("EyasVectorEnv",),
-    "evaluation.box_trackers": ("BoxTracker",),
-    "evaluation.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
-    "evaluation.steering": ("towards",),
-    "exports.frame": ("Frame",),
-    "exports.label": ("label_schema", "read_labels"),
-    "exports.writer": (
+    "engine.core.files": ("write_atomic",),
+    "engine.core.frames": ("rotate",),
+    "engine.custom.own": ("Ride",),
+    "engine.recordings.format": ("Format",),
+    "engine.recordings.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
+    "engine.envs.keys": ("hover_action",),
+    "dat.legacy_observation": ("LegacyObservation",),
+    "engine.envs.lerobot": ("make_lerobot_env",),
+    "engine.envs.observation": ("Observation",),
+    "engine.envs.pettingzoo": ("EyasParallelEnv",),
+    "engine.envs.registration": ("register_map",),
+    "engine.envs.sb3": ("EyasVecEnv",),
+    "engine.envs.tracking_env": ("TrackingEnv",),
+    "engine.envs.vector_env": ("EyasVectorEnv",),
+    "datasets.tracking.box_trackers": ("BoxTracker",),
+    "engine.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
+    "engine.policies.steering": ("towards",),
+    "engine.exports.frame": ("Frame",),
+    "engine.exports.label": ("label_schema", "read_labels"),
+    "engine.exports.writer": (
         *("Episode", "EpisodeWriter", "Files", "Gather", "Run", "Summary", "Writer"),
     ),
     "lanes": ("kernel",),
-    "mesh.shell": ("Shell",),
-    "modes.api": (
+    "engine.mesh.shell": ("Shell",),
+    "engine.api": (
         *("evaluate", "export", "make", "make_config", "make_dataset", "make_vec"),
         *("record", "track", "train"),
     ),
-    "modes.names": (
+    "engine.names": (
         *("list_formats", "list_maps", "list_policies", "list_presets", "list_targets"),
         "list_weathers",
     ),
-    "settings.config": ("EyasConfig",),
-    "settings.file": ("load_settings",),
-    "sim.build": ("build_simulation",),
-    "sim.config": ("SimConfig",),
-    "sim.flights.path": ("FlightScene", "FlightSketch"),
-    "sim.simulation": ("Simulation", "StepResult"),
-    "sim.worlds": ("each_alone", "together"),
-    "state.draw": ("Picture",),
-    "state.mesh": ("Material", "Mesh"),
-    "state.roads": ("RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode"),
-    "state.scene": ("ObjectClass", "Scene"),
-    "state.snapshot": ("CameraState", "Snapshot", "TrackerState"),
-    "state.terrain": ("Terrain",),
-    "targets.grammar.attributes": ("ATTRIBUTES",),
-    "task.packets": ("BasicPacket", "InputPacket", "RewardPacket"),
-    "task.radar_packet": ("RadarPacket",),
-    "task.step_line": ("StepLine",),
-    "task.terms": ("RewardTerm",),
-    "trackers.config": ("TrackerConfig",),
-    "trackers.flown": ("flown_drone",),
-    "trackers.tracker": ("Tracker",),
-    "world.land.mounds": ("Mound",),
-    "world.maps": ("MapRecipe",),
-    "world.osm.features": ("Survey",),
-    "world.plan.file": ("read_plan", "write_plan"),
-    "world.plan.plan": ("Hills", "MapPlan"),
-    "world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
+    "engine.settings.config": ("EyasConfig",),
+    "engine.settings.file": ("load_settings",),
+    "engine.sim.build": ("build_simulation",),
+    "engine.sim.config": ("SimConfig",),
+    "engine.sim.flights.path": ("FlightScene", "FlightSketch"),
+    "engine.sim.simulation": ("Simulation", "StepResult"),
+    "engine.sim.worlds": ("each_alone", "together"),
+    "engine.state.draw": ("Picture",),
+    "engine.state.mesh": ("Material", "Mesh"),
+    "engine.state.roads": ("RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode"),
+    "engine.state.scene": ("ObjectClass", "Scene"),
+    "engine.state.snapshot": ("CameraState", "Snapshot", "TrackerState"),
+    "engine.state.terrain": ("Terrain",),
+    "engine.targets.grammar.attributes": ("ATTRIBUTES",),
+    "engine.task.packets": ("BasicPacket", "InputPacket", "RewardPacket"),
+    "engine.task.radar_packet": ("RadarPacket",),
+    "engine.task.step_line": ("StepLine",),
+    "engine.task.terms": ("RewardTerm",),
+    "engine.trackers.config": ("TrackerConfig",),
+    "engine.trackers.flown": ("flown_drone",),
+    "engine.trackers.tracker": ("Tracker",),
+    "maps.land.mounds": ("Mound",),
+    "engine.world.maps": ("MapRecipe",),
+    "maps.osm.features": ("Survey",),
+    "maps.plan.file": ("read_plan", "write_plan"),
+    "maps.plan.plan": ("Hills", "MapPlan"),
+    "engine.world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
 }
 """Where the public names are. A test holds them equal to the imports above, which type checkers and
 editors read."""
@@ -211,7 +211,7 @@ _register()
 
 def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
     if name == "build_id":  # reads all files of the package, so only when it is asked for
-        from eyas.core.build import this_build
+        from eyas.engine.core.build import this_build
 
         return this_build().id
     if name == "__version__":

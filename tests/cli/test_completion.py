@@ -12,7 +12,7 @@ import typer.main
 import eyas
 from eyas.cli.app import app
 from eyas.cli.completion import Shell, script
-from eyas.cli.options import POLICIES
+from eyas.engine.terminal.options import POLICIES
 
 BASH = """
 source "$1"; shift
@@ -126,7 +126,7 @@ def test_a_shell_that_is_opened_waits_for_no_simulation():
         "import sys; from eyas.cli.main import main; sys.argv = ['eyas', 'completion', 'bash']\n"
         "try: main()\n"
         "except SystemExit as end: assert not end.code\n"
-        "heavy = {'eyas.sim.simulation', 'gymnasium', 'llvmlite', 'shapely'}\n"
+        "heavy = {'eyas.engine.sim.simulation', 'gymnasium', 'llvmlite', 'shapely'}\n"
         "print('loaded:', sorted(heavy & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

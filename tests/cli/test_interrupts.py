@@ -107,7 +107,7 @@ from eyas.cli.main import main
 def run():
     from eyas.lanes import entry
     entry.shipped_code = lambda name: None  # so that there is something to compile
-    from eyas.render.ahead import draw_nothing
+    from eyas.engine.render.ahead import draw_nothing
     print("ready", flush=True)
     draw_nothing()
     signal.pause()  # a fast machine is done before the signal comes

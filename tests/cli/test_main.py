@@ -12,12 +12,12 @@ import eyas
 from eyas import __version__, build_id
 from eyas.cli.app import app
 from eyas.cli.main import main
+from eyas.dat.settings.adapter import save_legacy, to_legacy
+from eyas.dat.wire.exchange import SETTINGS_FILE
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.preset import PRESETS
+from eyas.engine.world.maps import MAPS
 from eyas.lanes import thread_count
-from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import save_legacy, to_legacy
-from eyas.settings.preset import PRESETS
-from eyas.wire.exchange import SETTINGS_FILE
-from eyas.world.maps import MAPS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -113,7 +113,7 @@ def test_long_values_are_shortened(monkeypatch, capsys, key, value):
 @pytest.mark.parametrize("count", ["0", "-1", "x", " ", "1e9", "9" * 3000, "\uff13"])
 def test_a_number_of_threads_that_is_none_is_one_line(monkeypatch, capsys, count):
     monkeypatch.setenv("NUMBA_NUM_THREADS", count)
-    monkeypatch.setattr("eyas.settings.file.load_settings", lambda *_, **__: thread_count())
+    monkeypatch.setattr("eyas.engine.settings.file.load_settings", lambda *_, **__: thread_count())
     code, _, lines = run(monkeypatch, capsys, "train")
     assert (code, len(lines)) == (2, 1)
     assert lines[0].startswith("eyas: error: NUMBA_NUM_THREADS: ")
@@ -288,7 +288,7 @@ def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch,
         file.parent.mkdir(parents=True, exist_ok=True)
         save_legacy(config, file)
 
-    monkeypatch.setattr("eyas.modes.serve.run.run", run_server)
+    monkeypatch.setattr("eyas.dat.serve.run.run", run_server)
     for _ in range(2):  # the second reads the file of the first
         run(monkeypatch, capsys, "serve", "--root", tmp_path)
     assert served[0] == served[1]

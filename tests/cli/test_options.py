@@ -1,7 +1,7 @@
 """What the options of commands mean together."""
 
-from eyas.cli.options import gathered
-from eyas.settings.file import load_settings
+from eyas.engine.settings.file import load_settings
+from eyas.engine.terminal.options import gathered
 
 
 def test_short_options_win_over_set() -> None:

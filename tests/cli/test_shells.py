@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import eyas
+from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import save_settings
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.video import run as video
 from eyas.lanes.folder import cache_folder
-from eyas.modes.video import run as video
-from eyas.modes.video.config import VideoConfig
-from eyas.sensors.config import CameraConfig
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import save_settings
 
 CONFIG = EyasConfig(
     camera=CameraConfig(width=64, height=48),

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from eyas.datasets.layout import Plan
+from eyas.datasets.making.make import Making, make
+from eyas.datasets.making.spread import on_ray
 from eyas.datasets.recipe import read_recipe
-from eyas.modes.dataset.make import Making, make
-from eyas.modes.dataset.spread import on_ray
 
 TINY = {
     "name": "tiny",

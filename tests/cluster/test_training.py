@@ -6,11 +6,11 @@ import signal
 import pytest
 import torch
 
-from eyas.core.config import updated, validated
-from eyas.core.errors import ConfigError, EyasError
+from eyas.engine.core.config import updated, validated
+from eyas.engine.core.errors import ConfigError, EyasError
+from eyas.engine.settings.config import EyasConfig
 from eyas.learning.shards import RayShards, on_ray
 from eyas.learning.trainer import train
-from eyas.settings.config import EyasConfig
 
 torch.set_num_threads(1)
 

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from eyas.datasets.export import ExportOptions, export
-from eyas.datasets.recording import Recording, load
-from eyas.modes.video import run as video
-from eyas.modes.video.config import VideoConfig
-from eyas.sensors.config import CameraConfig
-from eyas.settings.config import EyasConfig
-from eyas.task.config import DoneConfig, StartConfig
-from eyas.traffic.config import TrafficConfig
-from eyas.traffic.library import CANONICAL_MIX
+from eyas.engine.recordings.export import ExportOptions, export
+from eyas.engine.recordings.recording import Recording, load
+from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.task.config import DoneConfig, StartConfig
+from eyas.engine.traffic.config import TrafficConfig
+from eyas.engine.traffic.library import CANONICAL_MIX
+from eyas.engine.video import run as video
 
 PARTS = {"first": ("train", (30, 1.2, 0.6)), "second": ("val", (0, 0.7854, 0.7))}
 """Split, seed, field of view, pitch. In the first something hides targets, and a truck with a

@@ -13,8 +13,8 @@ from pycocotools import mask as coco_masks
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
 
-from eyas.datasets.format import objects_of
 from eyas.datasets.rle import encoded_masks
+from eyas.engine.recordings.format import objects_of
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.datasets.format import objects_of
+from eyas.engine.recordings.format import objects_of
 
 
 def read_rows(path: Path) -> np.ndarray:

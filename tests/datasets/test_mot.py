@@ -2,7 +2,7 @@
 
 import pytest
 
-from eyas.datasets.format import CLASS_NAMES, objects_of
+from eyas.engine.recordings.format import CLASS_NAMES, objects_of
 
 NAMES = list(CLASS_NAMES.values())
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from eyas.datasets.format import objects_of
-from eyas.exports.boxes import quaternion_of
+from eyas.engine.exports.boxes import quaternion_of
+from eyas.engine.recordings.format import objects_of
 
 TABLES = {
     "attribute", "calibrated_sensor", "category", "ego_pose", "instance", "log", "map", "sample",

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from eyas.core.own_code import imported
-from eyas.datasets.registry import FORMATS
+from eyas.engine.core.own_code import imported
+from eyas.engine.recordings.registry import FORMATS
 
 OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
 

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import pytest
 
-from eyas.core.config import validated
-from eyas.core.errors import ConfigError, DataFileError, EyasError
 from eyas.datasets.plan import in_order_of_work, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, SPLITS, Recipe, read_recipe
+from eyas.engine.core.config import validated
+from eyas.engine.core.errors import ConfigError, DataFileError, EyasError
 
 BASE = {
     "name": "some",

@@ -9,13 +9,13 @@ import warnings
 import numpy as np
 import pytest
 
-from eyas.datasets.export import ExportOptions, export
 from eyas.datasets.motion import motion_of
-from eyas.datasets.recording import load
-from eyas.modes.video import run as video
-from eyas.modes.video.config import VideoConfig
-from eyas.sensors.config import CameraConfig
-from eyas.settings.config import EyasConfig
+from eyas.engine.recordings.export import ExportOptions, export
+from eyas.engine.recordings.recording import load
+from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.video import run as video
 
 
 @pytest.fixture(scope="module")
@@ -155,7 +155,7 @@ def test_two_exports_are_the_same_to_the_byte(recorded, tmp_path, name):
     [("lerobot", "pyarrow"), ("minari", "h5py"), ("rerun", "rerun"), ("mcap", "mcap")],
 )
 def test_a_missing_library_is_told_in_one_line(recorded, tmp_path, monkeypatch, name, module):
-    from eyas.core.errors import MissingExtraError
+    from eyas.engine.core.errors import MissingExtraError
 
     monkeypatch.setitem(sys.modules, module, None)
     with pytest.raises(MissingExtraError, match="needs the extra 'exports'"):

@@ -13,12 +13,12 @@ from got10k.datasets import DTB70, GOT10k
 from got10k.experiments import ExperimentGOT10k
 from got10k.trackers import Tracker
 
-from eyas.datasets.export import ExportOptions, export
-from eyas.datasets.first_sight import from_first_sight
 from eyas.datasets.formats.sot import cover_levels
-from eyas.datasets.recording import Recording, load
-from eyas.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
-from eyas.exports.label import LABELS
+from eyas.engine.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
+from eyas.engine.exports.label import LABELS
+from eyas.engine.recordings.export import ExportOptions, export
+from eyas.engine.recordings.first_sight import from_first_sight
+from eyas.engine.recordings.recording import Recording, load
 
 # It reads files with np.loadtxt, which warns of sequences of one frame; its report divides by 0.
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from globox import Annotation, BoxFormat
 
-from eyas.datasets.format import objects_of
 from eyas.datasets.formats import uavdt
+from eyas.engine.recordings.format import objects_of
 
 VISDRONE = {"person": 1, "car": 4, "truck": 6, "bus": 9, "motorcycle": 10, "robot": 11,
             "bicycle": 3, "boat": 11, "train": 11}  # fmt: skip

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from eyas.datasets.format import CLASS_NAMES, objects_of
 from eyas.datasets.outlines import least_rectangles, outlines
+from eyas.engine.recordings.format import CLASS_NAMES, objects_of
 
 NAMES = list(CLASS_NAMES.values())
 SIZE = np.array([160, 120])

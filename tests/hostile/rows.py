@@ -31,7 +31,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from values import json_contents, mutated  # beside this file
 
 import eyas
-from eyas.core.errors import EyasError
+from eyas.engine.core.errors import EyasError
 
 BUDGET, BOMB = 16 << 20, 256 << 20
 """What readers may unpack here, which keeps the test quick, and what a bomb unpacks to [bytes]."""
@@ -112,7 +112,7 @@ ABSURD_WORDS = ("1e300", "-1.7e308", "inf", "nan", "9" * 400, "1e999", str(2**62
 
 @row("json")
 def _json(folder, chance, most):
-    from eyas.core.decoding import read_json
+    from eyas.engine.core.decoding import read_json
 
     path = folder / "a.json"
     path.write_text(json.dumps({"a": [1, 2.5, "x", True], "b": {"c": None}}))
@@ -121,8 +121,8 @@ def _json(folder, chance, most):
 
 @row("settings")
 def _settings(folder, chance, most):
-    from eyas.settings.config import EyasConfig
-    from eyas.settings.file import load_settings, save_settings
+    from eyas.engine.settings.config import EyasConfig
+    from eyas.engine.settings.file import load_settings, save_settings
 
     path = folder / "config.json"
     save_settings(EyasConfig(), path)
@@ -144,8 +144,8 @@ EXAMPLE = {
 
 @row("plan")
 def _plan(folder, chance, most):
-    from eyas.modes.maps.plan_files import named_file_problems
-    from eyas.world.plan.file import problems
+    from eyas.maps.plan.file import problems
+    from eyas.maps.programs.plan_files import named_file_problems
 
     path = folder / "own.plan.json"
     path.write_text(json.dumps(EXAMPLE))
@@ -164,7 +164,7 @@ def gzip_bomb() -> bytes:
 
 @row("plan.gz")
 def _plan_gz(folder, chance, most):
-    from eyas.world.plan import file
+    from eyas.maps.plan import file
 
     limited(file)
     path = folder / "own.plan.json.gz"
@@ -176,7 +176,7 @@ def _plan_gz(folder, chance, most):
 def _map_json(folder, chance, most):
     from dataclasses import asdict
 
-    from eyas.world.maps.files import Origin, origin_of
+    from eyas.engine.world.maps.files import Origin, origin_of
 
     path = folder / "map.json"
     origin = Origin("own", "Own", "own.osm", 8.5, 47.4, (300.0, 300.0), checksums={"a": "0" * 64})
@@ -193,9 +193,9 @@ dir="s"/><tlLogic id="t" type="static" offset="5"><phase duration="30" state="G"
 
 @row("roads")
 def _roads(folder, chance, most):
-    from eyas.traffic.net_file import SumoNet, road_network
-    from eyas.traffic.signals import signal_plan
-    from eyas.world.maps import files
+    from eyas.engine.traffic.net_file import SumoNet, road_network
+    from eyas.engine.traffic.signals import signal_plan
+    from eyas.engine.world.maps import files
 
     limited(files, "_LARGEST_ROADS")
     path = folder / "roads.net.xml"
@@ -220,10 +220,10 @@ def _roads(folder, chance, most):
 def _network(folder, chance, most):
     from dataclasses import replace
 
-    from eyas.modes.maps.info import _lengths, street_lines
-    from eyas.traffic.net_file import SumoNet, road_network
-    from eyas.world.roads import network_file
-    from eyas.world.roads.network_file import load_network, save_network
+    from eyas.engine.traffic.net_file import SumoNet, road_network
+    from eyas.engine.world.roads import network_file
+    from eyas.engine.world.roads.network_file import load_network, save_network
+    from eyas.maps.programs.info import _lengths, street_lines
 
     limited(network_file)
     path = folder / "network.npz"
@@ -286,12 +286,12 @@ OSM = """<osm version="0.6"><bounds minlat="48.1" minlon="11.5" maxlat="48.102" 
 
 @row("osm")
 def _osm(folder, chance, most):
-    from eyas.world.osm import reader
-    from eyas.world.osm.houses import houses_of
-    from eyas.world.osm.projection import Projection
-    from eyas.world.osm.reader import covered, read_osm
-    from eyas.world.osm.rings import Shapes
-    from eyas.world.osm.streets import street_file
+    from eyas.maps.osm import reader
+    from eyas.maps.osm.houses import houses_of
+    from eyas.maps.osm.projection import Projection
+    from eyas.maps.osm.reader import covered, read_osm
+    from eyas.maps.osm.rings import Shapes
+    from eyas.maps.osm.streets import street_file
 
     limited(reader)
     path = folder / "town.osm"
@@ -324,7 +324,7 @@ def _osm(folder, chance, most):
 def _pbf(folder, chance, most):
     import osmium
 
-    from eyas.world.osm.reader import read_osm
+    from eyas.maps.osm.reader import read_osm
 
     path = folder / "town.osm.pbf"
     source = folder / "source.osm"
@@ -340,10 +340,10 @@ def _pbf(folder, chance, most):
 
 @row("traffic")
 def _traffic(folder, chance, most):
-    from eyas.traffic import recording_file
-    from eyas.traffic.config import TrafficConfig, VehicleType
-    from eyas.traffic.recording import Provenance, Recording
-    from eyas.traffic.recording_file import RecordingFile, load, save
+    from eyas.engine.traffic import recording_file
+    from eyas.engine.traffic.config import TrafficConfig, VehicleType
+    from eyas.engine.traffic.recording import Provenance, Recording
+    from eyas.engine.traffic.recording_file import RecordingFile, load, save
 
     limited(recording_file)
     path = folder / "traffic.npz"
@@ -370,9 +370,9 @@ TRACK = "t,x,y,z,yaw\n0,0,0,0,0\n1,1,0,0.5,0.1\n2,2,1,0,0.2\n3,3,1,0,0.1\n"
 
 @row("trajectory")
 def _trajectory(folder, chance, most):
-    from eyas.custom.problems import of_noise, of_trajectory, worst
-    from eyas.custom.smoothing import smoothed
-    from eyas.custom.trajectory import read_trajectory
+    from eyas.engine.custom.problems import of_noise, of_trajectory, worst
+    from eyas.engine.custom.smoothing import smoothed
+    from eyas.engine.custom.trajectory import read_trajectory
 
     path = folder / "track.csv"
     path.write_text(TRACK)
@@ -403,8 +403,8 @@ f -1 -2 -3
 
 
 def of_mesh(folder, name, content, chance, most, *bombs):
-    from eyas.custom.config import CustomConfig
-    from eyas.custom.kind import own_target
+    from eyas.engine.custom.config import CustomConfig
+    from eyas.engine.custom.kind import own_target
 
     path = folder / name
     path.write_bytes(content)
@@ -480,7 +480,7 @@ def _proto(folder, chance, most):
 
 @row("latencies")
 def _latencies(folder, chance, most):
-    from eyas.evaluation.delay import delay_from
+    from eyas.benchmark.delay import delay_from
 
     path = folder / "latency.txt"
     path.write_text("12.5\n30\n44\n")
@@ -490,7 +490,7 @@ def _latencies(folder, chance, most):
 
 @row("drone log")
 def _drone_log(folder, chance, most):
-    from eyas.modes.drone.log import read_log
+    from eyas.robotics.fitting.log import read_log
 
     path = folder / "flight.csv"
     names = ["time", *(f"velocity_{axis}" for axis in "xyz")]
@@ -503,7 +503,7 @@ def _drone_log(folder, chance, most):
 
 @row("policy messages")
 def _messages(folder, chance, most):
-    from eyas.evaluation.policies.apart import receive, send
+    from eyas.benchmark.policies.apart import receive, send
 
     path, stream = folder / "message", io.BytesIO()
     send(stream, {"a": 1}, [np.zeros((3, 4), np.float32)])
@@ -523,8 +523,8 @@ def _messages(folder, chance, most):
 
 @row("onnx")
 def _onnx(folder, chance, most):
-    from eyas.evaluation.policies import trained
-    from eyas.evaluation.policies.onnx import load_onnx
+    from eyas.benchmark.policies import trained
+    from eyas.benchmark.policies.onnx import load_onnx
 
     path = folder / "fast.onnx"
     shutil.copy(Path(trained.__path__[0]) / "fast.onnx", path)
@@ -547,10 +547,10 @@ RECORD = {
 
 @row("records")
 def _records(folder, chance, most):
-    from eyas.evaluation.protocols import PROTOCOLS, protocol_named
-    from eyas.evaluation.record import read_records
-    from eyas.evaluation.result import table
-    from eyas.evaluation.rows import rows_of
+    from eyas.benchmark.protocols import PROTOCOLS, protocol_named
+    from eyas.benchmark.record import read_records
+    from eyas.benchmark.result import table
+    from eyas.benchmark.rows import rows_of
 
     path = folder / "episodes.jsonl"
     path.write_text(json.dumps(RECORD))
@@ -567,8 +567,8 @@ def _records(folder, chance, most):
 
 @row("stamp")
 def _stamp(folder, chance, most):
-    from eyas.evaluation.plan import EvaluationPlan, stamp
-    from eyas.evaluation.result import STAMP, load_run
+    from eyas.benchmark.plan import EvaluationPlan, stamp
+    from eyas.benchmark.result import STAMP, load_run
 
     path = folder / STAMP
     path.write_text(stamp(EvaluationPlan(policy="hover")).model_dump_json())
@@ -577,7 +577,7 @@ def _stamp(folder, chance, most):
 
 @row("card")
 def _card(folder, chance, most):
-    from eyas.modes.leaderboard.card import CARD, read_card
+    from eyas.benchmark.leaderboard.card import CARD, read_card
 
     path = folder / CARD
     path.write_text(json.dumps({"name": "x", "authors": ["y"], "link": "https://a.b/c"}))
@@ -586,7 +586,7 @@ def _card(folder, chance, most):
 
 @row("mark")
 def _mark(folder, chance, most):
-    from eyas.modes.leaderboard.mark import MARK, fitting_mark
+    from eyas.benchmark.leaderboard.mark import MARK, fitting_mark
 
     path = folder / MARK
     path.write_text(json.dumps({"build": "b", "seed": 1, "flown": ["a"], "episodes": 2,
@@ -596,7 +596,7 @@ def _mark(folder, chance, most):
 
 @row("submission")
 def _submission(folder, chance, most):
-    from eyas.modes.leaderboard.submission import _text_in
+    from eyas.benchmark.leaderboard.submission import _text_in
 
     path = folder / "timing.json"
     path.write_text(json.dumps({"machine": "a fast one", "mean_ms": 3.5}))
@@ -608,10 +608,10 @@ def _submission(folder, chance, most):
 
 def recorded(folder: Path) -> Path:
     """Return a copy of a recording of two frames, which is made once."""
-    from eyas.modes.video.run import run
-    from eyas.sensors.config import CameraConfig
-    from eyas.settings.config import EyasConfig
-    from eyas.world.config import WorldConfig
+    from eyas.engine.sensors.config import CameraConfig
+    from eyas.engine.settings.config import EyasConfig
+    from eyas.engine.video.run import run
+    from eyas.engine.world.config import WorldConfig
 
     made = folder.parent / "recorded"
     if not made.exists():
@@ -674,7 +674,7 @@ def _flow(folder, chance, most):
 
 @row("arrays")
 def _arrays(folder, chance, most):
-    from eyas.datasets import recording
+    from eyas.engine.recordings import recording
 
     path, read, _ = of_frame(folder, "arrays", "*/*/arrays/*.npz")
     limited(recording)
@@ -708,7 +708,7 @@ def _checksums(folder, chance, most):
 
 @row("export")
 def _exported(folder, chance, most):
-    from eyas.datasets.export import ExportOptions, export
+    from eyas.engine.recordings.export import ExportOptions, export
 
     data = eyas.load(recorded(folder))
     out = folder / "otb"
@@ -747,7 +747,7 @@ def _dataset_plan(folder, chance, most):
 
 @row("boxes")
 def _boxes(folder, chance, most):
-    from eyas.modes.track.run import _boxes_file, _scored
+    from eyas.datasets.tracking.run import _boxes_file, _scored
 
     episode = eyas.load(recorded(folder))[0]
     path = _boxes_file(folder, episode)

@@ -22,12 +22,12 @@ import numpy as np
 import pytest
 
 import eyas
-from eyas.core.bounds import FARTHEST
-from eyas.core.config import updated
-from eyas.modes.serve.mavlink import AS_FLOWN
-from eyas.sim.build import build_simulation
-from eyas.sim.worlds import together
-from eyas.state.draw import Picture
+from eyas.engine.core.bounds import FARTHEST
+from eyas.engine.core.config import updated
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.worlds import together
+from eyas.engine.state.draw import Picture
+from eyas.robotics.serve_mavlink import AS_FLOWN
 
 from .values import ABSURD, HUGE_WHOLE, NOT_FINITE, json_contents, mutated
 
@@ -36,7 +36,7 @@ pytestmark = pytest.mark.slow  # simulations are built for it
 RECEIVE = {"recv", "recvfrom", "recv_into", "recvfrom_into", "recvmsg", "accept", "urlopen"}
 STREAMS = {("os", "read"), ("stream", "read"), ("reader", "take"), ("sys", "stdin")}
 WORDS = re.compile("|".join([*RECEIVE, *map(".".join, STREAMS), "process_request", "async for"]))
-NOT_OURS = "modes/maps/webots/controllers"  # copied out, and run by Webots
+NOT_OURS = "dat/webots/controllers"  # copied out, and run by Webots
 
 NUMBERS = (*ABSURD, *NOT_FINITE, 3.4e38, -1e5, 0.0, -0.0, 1.0)
 SMALL = {
@@ -108,8 +108,8 @@ def messages_of_mavlink(common, vehicle):
 
 def feed_mavlink(simulation, tmp_path, caplog):
     common = pytest.importorskip("pymavlink.dialects.v20.common")
-    from eyas.mavlink.dialect import Parser, _nearest
-    from eyas.mavlink.fleet import Fleet
+    from eyas.robotics.mavlink.dialect import Parser, _nearest
+    from eyas.robotics.mavlink.fleet import Fleet
 
     sent, chance, parser = [], random.Random(1), Parser()
     fleet = Fleet(simulation, updated(AS_FLOWN, SMALL).mavlink, sent.append)
@@ -154,8 +154,8 @@ def feed_mavlink(simulation, tmp_path, caplog):
 
 
 def driven():
-    from eyas.mavlink.hil.drone import DrivenDrone
-    from eyas.trackers.driven import driven_drone
+    from eyas.engine.trackers.driven import driven_drone
+    from eyas.robotics.mavlink.hil.drone import DrivenDrone
 
     config = updated(AS_FLOWN, SMALL | {"tracker": {"supervised": False, "ground_contact": True}})
     tracker = driven_drone(config.tracker)
@@ -173,7 +173,7 @@ def begin(serve, server):
 
 
 def feed_ardupilot(simulation, tmp_path, caplog):
-    from eyas.mavlink.hil.ardupilot import ArduPilot
+    from eyas.robotics.mavlink.hil.ardupilot import ArduPilot
 
     drone, chance = driven(), random.Random(2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as heard, heard.dup() as server:
@@ -200,7 +200,7 @@ def feed_ardupilot(simulation, tmp_path, caplog):
 
 def feed_px4(simulation, tmp_path, caplog):
     common = pytest.importorskip("pymavlink.dialects.v20.common")
-    from eyas.mavlink.hil.px4 import Px4
+    from eyas.robotics.mavlink.hil.px4 import Px4
 
     drone, chance, packer = driven(), random.Random(3), common.MAVLink(None, 1, 1)
     server = socket.create_server(("127.0.0.1", 0))
@@ -221,7 +221,7 @@ def feed_px4(simulation, tmp_path, caplog):
 
 
 def feed_announcements(simulation, tmp_path, caplog):
-    from eyas.wire.announcements import Announcements
+    from eyas.dat.wire.announcements import Announcements
 
     announcements, chance = Announcements("127.0.0.1", 0), random.Random(4)
     texts = [str(number).encode() for number in (*NUMBERS, *HUGE_WHOLE, -1, 0, 1025)]
@@ -236,8 +236,8 @@ def feed_announcements(simulation, tmp_path, caplog):
 
 
 def feed_wire(simulation, tmp_path, caplog):
-    from eyas.wire.client_session import ClientSession
-    from eyas.wire.exchange import Names
+    from eyas.dat.wire.client_session import ClientSession
+    from eyas.dat.wire.exchange import Names
 
     session = ClientSession(Names(tmp_path, "DRONE0"), lambda line: None)
     chance, texts = random.Random(5), [str(number) for number in (*NUMBERS, *HUGE_WHOLE, "\u0663")]
@@ -253,7 +253,7 @@ def feed_wire(simulation, tmp_path, caplog):
 
 
 def feed_ros(simulation, tmp_path, caplog):
-    from eyas.modes.serve.ros import HEARD, Bridge
+    from eyas.robotics.serve_ros import HEARD, Bridge
 
     class Bus:
         """Hears what is put into `next`; a bus that needs no network."""
@@ -305,9 +305,9 @@ def feed_demo(simulation, tmp_path, caplog):
     from websockets.exceptions import ConnectionClosed
     from websockets.sync.client import connect
 
-    from eyas.modes.demo.run import listen
-    from eyas.modes.demo.server import DemoServer
-    from eyas.modes.demo.session import Session
+    from eyas.demo.run import listen
+    from eyas.demo.server import DemoServer
+    from eyas.demo.session import Session
 
     session = Session(updated(AS_FLOWN, SMALL), ("follow",), tmp_path)
     listening, chance, loop = listen("127.0.0.1", 0), random.Random(6), asyncio.new_event_loop()
@@ -353,7 +353,7 @@ def asyncio_run(loop, task):
 
 
 def feed_policy(simulation, tmp_path, caplog):
-    from eyas.evaluation.policies.apart import _decision, receive, send
+    from eyas.benchmark.policies.apart import _decision, receive, send
 
     chance, whole = random.Random(7), io.BytesIO()
     send(whole, {"failed": {}}, [np.zeros((2, 3)), np.zeros(2)])
@@ -372,17 +372,17 @@ def feed_policy(simulation, tmp_path, caplog):
 
 
 FEEDERS = {
-    ("mavlink/endpoint.py", "recvfrom"): feed_mavlink,
-    ("mavlink/hil/ardupilot.py", "recvfrom"): feed_ardupilot,
-    ("mavlink/hil/px4.py", "accept"): feed_px4,
-    ("mavlink/hil/px4.py", "recv"): feed_px4,
-    ("wire/announcements.py", "recvfrom"): feed_announcements,
-    ("wire/client_session.py", "read"): feed_wire,
-    ("exports/ros/dds.py", "take"): feed_ros,
-    ("modes/demo/server.py", "async for"): feed_demo,
-    ("modes/demo/server.py", "process_request"): feed_demo,
-    ("evaluation/policies/apart.py", "read"): feed_policy,
-    ("modes/bench/measurement.py", "read"): None,  # counters of this machine's own system
+    ("robotics/mavlink/endpoint.py", "recvfrom"): feed_mavlink,
+    ("robotics/mavlink/hil/ardupilot.py", "recvfrom"): feed_ardupilot,
+    ("robotics/mavlink/hil/px4.py", "accept"): feed_px4,
+    ("robotics/mavlink/hil/px4.py", "recv"): feed_px4,
+    ("dat/wire/announcements.py", "recvfrom"): feed_announcements,
+    ("dat/wire/client_session.py", "read"): feed_wire,
+    ("robotics/ros/dds.py", "take"): feed_ros,
+    ("demo/server.py", "async for"): feed_demo,
+    ("demo/server.py", "process_request"): feed_demo,
+    ("benchmark/policies/apart.py", "read"): feed_policy,
+    ("cli/bench/measurement.py", "read"): None,  # counters of this machine's own system
 }
 
 

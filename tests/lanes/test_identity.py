@@ -23,8 +23,8 @@ import importlib, json, pkgutil
 import eyas
 from eyas.lanes.identity import identity, language_hash
 from eyas.lanes import CompiledCall
-from eyas.sim.step import step_of
-from eyas.trackers.drone import DRONE
+from eyas.engine.sim.step import step_of
+from eyas.engine.trackers.drone import DRONE
 
 found = list(step_of(DRONE))
 rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar")
@@ -83,12 +83,12 @@ def edited(tmp_path_factory):
 def test_comments_docstrings_annotations_and_blank_lines_change_nothing(edited):
     assert not edited(
         {
-            "task/reward.py": {
+            "engine/task/reward.py": {
                 '"""': '"""Another word. ',
                 "\nimport numpy as np\n": "\n\n# A comment.\n\nimport numpy as np\n",
                 "-> float:": "-> 'float':",
             },
-            "render/kernels/surface/shade.py": {"\nfrom ": "\n# A comment.\nfrom "},
+            "engine/render/kernels/surface/shade.py": {"\nfrom ": "\n# A comment.\nfrom "},
             "lanes/compilation.py": {'"""': '"""Another word. '},
             "cli/tools.py": {'"""': '"""The word kernel. '},
         }
@@ -97,9 +97,9 @@ def test_comments_docstrings_annotations_and_blank_lines_change_nothing(edited):
 
 def test_a_constant_changes_the_kernels_that_read_it(edited):
     step = {"_fly", "_carry", "_begin"}
-    assert edited({"task/reward.py": {"0.5": "0.25"}}) == step
-    assert edited({"core/clock.py": {"RATE = 500": "RATE = 400"}}) >= step
-    assert edited({"render/kernels/surface/snow.py": {"0.": "1."}}) == {"draw_views"}
+    assert edited({"engine/task/reward.py": {"0.5": "0.25"}}) == step
+    assert edited({"engine/core/clock.py": {"RATE = 500": "RATE = 400"}}) >= step
+    assert edited({"engine/render/kernels/surface/snow.py": {"0.": "1."}}) == {"draw_views"}
 
 
 def test_what_decides_how_kernels_are_compiled_changes_their_folder(edited):

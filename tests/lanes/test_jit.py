@@ -13,10 +13,10 @@ import types
 import pytest
 
 import eyas
+from eyas.engine.sim.step import step_of
+from eyas.engine.trackers.drone import DRONE
+from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import Kernel, kernel, specialised
-from eyas.sim.step import step_of
-from eyas.trackers.drone import DRONE
-from eyas.trackers.tracker import Tracker
 
 
 @kernel
@@ -114,7 +114,7 @@ def test_processes_share_what_was_compiled_until_the_source_of_a_kernel_changes(
     assert run(SPECIALISED, tmp_path) == [10.0, 2, True]
 
 
-DRIVERS = ("eyas.sim.device.", "eyas.envs.device.", "eyas.render.kernels.stages")
+DRIVERS = ("eyas.gpu.sim.", "eyas.gpu.envs.", "eyas.gpu.render.stages")
 """Rooms of functions that become kernels of a device only when they are launched."""
 
 
@@ -123,7 +123,7 @@ def test_eyas_itself_calls_no_kernel_from_python():
     functions = [
         function
         for info in pkgutil.walk_packages(eyas.__path__, "eyas.")
-        if not info.name.startswith(("eyas.core.", "eyas.traffic.sumo", *DRIVERS))
+        if not info.name.startswith(("eyas.engine.core.", "eyas.engine.traffic.sumo", *DRIVERS))
         for function in functions_of(importlib.import_module(info.name))
     ]
     assert len(functions) > 500

@@ -14,9 +14,9 @@ print(not refusal(), kernel_folder())
 """
 
 COMPILES = """
-from eyas.core.frames import wrap_angle
+from eyas.engine.core.frames import wrap_angle
 from eyas.lanes.folder import refusal
-from eyas.render import ahead
+from eyas.engine.render import ahead
 ahead.nothing_compiled = lambda name: True  # even if Eyas brings code for this machine
 ahead.begin_ahead("")
 assert not ahead._compiling + ahead._doing_other

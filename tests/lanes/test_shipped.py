@@ -8,12 +8,12 @@ import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
+from eyas.gpu.cuda import code
+from eyas.gpu.render import stages as stages_of_cards
 from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
-from eyas.lanes.cuda import code
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import archive_of, read_archive
-from eyas.render.kernels import stages as stages_of_cards
 
 CODE = {"double-a-b": MachineCode("double_a_b", ("memcpy",), b"code")}
 

@@ -8,11 +8,11 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from eyas.core.config import updated, validated
-from eyas.core.errors import ConfigError
+from eyas.engine.core.config import updated, validated
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.settings.config import EyasConfig
+from eyas.learning.run import run
 from eyas.learning.trainer import train
-from eyas.modes.train import run
-from eyas.settings.config import EyasConfig
 
 SMALL = validated(
     EyasConfig,

@@ -8,7 +8,7 @@ import pytest
 torch = pytest.importorskip("torch")
 onnxruntime = pytest.importorskip("onnxruntime")
 
-from eyas.envs.config import EnvConfig, ObservationConfig
+from eyas.engine.settings.env import EnvConfig, ObservationConfig
 from eyas.learning.export import export
 from eyas.learning.network import ACTIONS, HOVER, NetworkShape, TrackingNetwork
 

@@ -10,10 +10,12 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from eyas.cli.main import main
-from eyas.core.config import updated, validated
-from eyas.core.errors import EyasError
-from eyas.envs.batch import Truth
-from eyas.evaluation.steering import towards
+from eyas.engine.core.config import updated, validated
+from eyas.engine.core.errors import EyasError
+from eyas.engine.envs.batch import Truth
+from eyas.engine.policies.steering import towards
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import load_settings
 from eyas.learning import dagger, ppo
 from eyas.learning.config import Method, TrainConfig
 from eyas.learning.network import NetworkShape, TrackingNetwork
@@ -21,8 +23,6 @@ from eyas.learning.rollout import Roller
 from eyas.learning.shards import TorchThreads
 from eyas.learning.teacher import Teacher
 from eyas.learning.trainer import train
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import load_settings
 
 SMALL = validated(
     EyasConfig,

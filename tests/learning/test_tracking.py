@@ -9,19 +9,21 @@ import pytest
 import torch
 from typer.testing import CliRunner
 
+from eyas.benchmark.delay import delay_from
+from eyas.benchmark.episode import Place
+from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
+from eyas.benchmark.policies.tracker.detector import OUTPUTS
+from eyas.benchmark.policies.tracker.metadata import OBSERVED
+from eyas.benchmark.policies.tracker.settings import FLOWN, TrackerSettings
+from eyas.benchmark.protocols import protocol_named
 from eyas.cli.app import app
-from eyas.core.config import updated
-from eyas.core.errors import ConfigError, DataFileError, OutputError
-from eyas.evaluation.delay import delay_from
-from eyas.evaluation.episode import Place
-from eyas.evaluation.flight import BatchFlight
-from eyas.evaluation.policies.policy import env_config
-from eyas.evaluation.policies.table import open_policy
-from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
-from eyas.evaluation.policies.tracker.detector import OUTPUTS
-from eyas.evaluation.policies.tracker.metadata import OBSERVED
-from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
-from eyas.evaluation.protocols import protocol_named
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
+from eyas.engine.policies.policy import env_config
+from eyas.engine.policies.table import open_policy
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import driving, flights, lessons, samples
 from eyas.learning.tracking.driving import driven
 from eyas.learning.tracking.export import export
@@ -32,8 +34,6 @@ from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.samples import GROUP, Samples
 from eyas.learning.tracking.shots import Shots, load, save
 from eyas.learning.tracking.training import train
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
 
 SIZE = 24, 32
 ENV = env_config(

@@ -14,15 +14,15 @@ pytest.importorskip("torch")
 
 import torch
 
+from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
 from eyas.cli.runs import _default_folder
-from eyas.core.build import this_build
-from eyas.core.config import updated, validated
-from eyas.core.errors import EyasError
-from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
+from eyas.engine.core.build import this_build
+from eyas.engine.core.config import updated, validated
+from eyas.engine.core.errors import EyasError
+from eyas.engine.settings.config import EyasConfig
 from eyas.learning.checkpoint import RunFolder
 from eyas.learning.shards import TorchThreads
 from eyas.learning.trainer import train
-from eyas.settings.config import EyasConfig
 
 SMALL = validated(
     EyasConfig,
@@ -129,7 +129,7 @@ def test_the_default_folder_is_numbered(tmp_path, monkeypatch):
 def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
     folder = tmp_path / "run"
     script = (
-        "import sys; from pathlib import Path; from eyas.settings.file import load_settings\n"
+        "import sys; from pathlib import Path; from eyas.engine.settings.file import load_settings\n"
         "from eyas.learning.trainer import train\n"
         "train(load_settings(Path(sys.argv[1])), Path(sys.argv[2]))"
     )

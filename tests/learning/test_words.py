@@ -8,22 +8,22 @@ import pytest
 import torch
 from typer.testing import CliRunner
 
+from eyas.benchmark.policies.listener.detector import NAMES, OUTPUTS, STRIDE, VehicleDetector
+from eyas.benchmark.policies.shipped import file_of
+from eyas.benchmark.policies.tracker.metadata import OBSERVED
 from eyas.cli.app import app
-from eyas.core.config import updated
-from eyas.core.errors import ConfigError, OutputError
-from eyas.evaluation.policies.listener.detector import NAMES, OUTPUTS, STRIDE, VehicleDetector
-from eyas.evaluation.policies.policy import env_config
-from eyas.evaluation.policies.shipped import file_of
-from eyas.evaluation.policies.table import open_policy
-from eyas.evaluation.policies.tracker.metadata import OBSERVED
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError, OutputError
+from eyas.engine.policies.policy import env_config
+from eyas.engine.policies.table import open_policy
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
+from eyas.engine.targets.colour_names import COLOUR_NAMES
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import PLACES, Scenes, Vehicles, drawn
 from eyas.learning.words.training import LISTENER, train
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
-from eyas.targets.colour_names import COLOUR_NAMES
 
 PRESET = load_settings(preset_file("eyas-words"))
 SIZE = 24, 32

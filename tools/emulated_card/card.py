@@ -1,4 +1,4 @@
-"""The driver that runs programs, as `eyas.lanes.cuda` finds it."""
+"""The driver that runs programs, as `eyas.gpu.cuda` finds it."""
 
 import atexit
 import ctypes
@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from emulated_card.instructions import statement
 from emulated_card.program import Places, Program, read_program
+from eyas.gpu.cuda import CudaArray, device
+from eyas.gpu.cuda.code import ARCHIVE
+from eyas.gpu.cuda.driver import VARIABLE, driver
 from eyas.lanes.container import unpacked
-from eyas.lanes.cuda import CudaArray, device
-from eyas.lanes.cuda.code import ARCHIVE
-from eyas.lanes.cuda.driver import VARIABLE, driver
 
 __all__ = ["EmulatedCard", "Loaded", "driver_library", "emulated_card"]
 
@@ -210,7 +210,7 @@ def _compiled(path: Path, *arguments: Path | str) -> Path:
 
 @contextmanager
 def emulated_card(seed: int = 0) -> Iterator[EmulatedCard]:
-    """Have `eyas.lanes.cuda` find an emulated card; PyTorch takes its memory for the processor's.
+    """Have `eyas.gpu.cuda` find an emulated card; PyTorch takes its memory for the processor's.
 
     Args:
         seed: See `EmulatedCard`.

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from eyas.cli.options import AsJson
+from eyas.engine.terminal.options import AsJson
 
 if TYPE_CHECKING:
     from importlib.metadata import Distribution

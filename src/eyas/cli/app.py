@@ -10,14 +10,21 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
-from eyas.cli import data, drone, evaluate, maps, reproduce, runs, targets, tools, traffic
+from eyas.benchmark import commands as evaluate
+from eyas.benchmark.reproduce import command as reproduce
+from eyas.cli import runs, tools
 from eyas.cli.about import about
 from eyas.cli.completion import completion
-from eyas.cli.said import lacks_memory, say
 from eyas.cli.switches import as_switches
-from eyas.core.errors import EyasError, one_line
-from eyas.core.own_code import ended
-from eyas.core.scratch import remove_left_scratch
+from eyas.cli.targets import commands as targets
+from eyas.datasets import commands as data
+from eyas.engine.core.errors import EyasError, one_line
+from eyas.engine.core.own_code import ended
+from eyas.engine.core.scratch import remove_left_scratch
+from eyas.engine.terminal.said import lacks_memory, say
+from eyas.maps import commands as maps
+from eyas.maps.traffic import commands as traffic
+from eyas.robotics import commands as drone
 
 __all__ = ["app", "run"]
 

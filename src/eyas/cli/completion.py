@@ -68,7 +68,7 @@ def _options(command: Any) -> list[tuple[str, str]]:  # noqa: ANN401
 
 def _names() -> dict[str, Sequence[str]]:
     """Return the names that options take, by option."""
-    from eyas.modes import names
+    from eyas.engine import names
 
     lists: dict[str, Callable[[], Sequence[str]]] = {
         "--map": names.list_maps,

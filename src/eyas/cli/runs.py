@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from eyas.cli.options import (
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.terminal.options import (
     POLICIES,
     SEVERAL,
     ConfigFile,
@@ -24,11 +25,10 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
-from eyas.cli.said import say
-from eyas.core.errors import ConfigError
+from eyas.engine.terminal.said import say
 
 if TYPE_CHECKING:
-    from eyas.settings.config import EyasConfig
+    from eyas.engine.settings.config import EyasConfig
 
 __all__ = ["demo", "run", "serve", "train", "video"]
 
@@ -67,17 +67,17 @@ def demo(  # noqa: PLR0913  # one parameter for each option
     ] = None,
 ) -> None:
     """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
-    from eyas.settings.file import load_settings
+    from eyas.engine.settings.file import load_settings
 
     if seconds is not None and not headless:
         raise ConfigError("--seconds: only with --headless")
     overrides = gathered(set_, map_name, weather, seed)
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if config is not None:
-        from eyas.settings.legacy.of_a_run import of_a_run
+        from eyas.dat.settings.of_a_run import of_a_run
 
         settings = of_a_run(settings)
-    from eyas.modes.demo import run as demo  # after all checks
+    from eyas.demo import run as demo  # after all checks
 
     listening = None if headless else demo.listen(host, port)
     session = demo.session_of(settings, policy)
@@ -120,8 +120,8 @@ def video(  # noqa: PLR0913  # one parameter for each option
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Record labelled pictures and videos of drones that film their targets."""
-    from eyas.settings.config import Mode
-    from eyas.settings.file import load_settings
+    from eyas.engine.settings.config import Mode
+    from eyas.engine.settings.file import load_settings
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
@@ -135,14 +135,14 @@ def video(  # noqa: PLR0913  # one parameter for each option
         overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if config is not None:
-        from eyas.modes.video.folder import recorded_seed
-        from eyas.settings.legacy.of_a_run import of_a_run
+        from eyas.dat.settings.of_a_run import of_a_run
+        from eyas.engine.video.folder import recorded_seed
 
         settings = of_a_run(settings, recorded_seed(out) if resume else None)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         say(f"note: {said}")
-    from eyas.modes.video import (
+    from eyas.engine.video import (
         run as video,  # compiled kernels: slow to import, so only after all checks
     )
 
@@ -191,7 +191,7 @@ def train(  # noqa: PLR0913  # one parameter for each option
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Teach a network to track, and write it as an ONNX file."""
-    from eyas.settings.file import load_settings
+    from eyas.engine.settings.file import load_settings
 
     preset = preset or (None if config else "fast")
     overrides = gathered(set_, map_name, weather, seed)
@@ -201,10 +201,10 @@ def train(  # noqa: PLR0913  # one parameter for each option
         overrides.append(f"train.device={json.dumps(device)}")
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if steps is not None:
-        from eyas.core.config import updated
+        from eyas.engine.core.config import updated
 
         settings = updated(settings, {"train": settings.train.scaled(steps)})
-    from eyas.modes.train import run
+    from eyas.learning.run import run
 
     policy = run(
         settings, out or _default_folder(resume=resume), resume=resume, quiet=quiet, ray=ray
@@ -285,16 +285,16 @@ def serve(  # noqa: PLR0913  # one parameter for each option
         _tell_ros(ros, chosen_file(config, preset), overrides, trust=trust)
         return
     if root is None:
-        from eyas.modes.serve.mavlink import AS_FLOWN
-        from eyas.settings.file import load_settings
+        from eyas.engine.settings.file import load_settings
+        from eyas.robotics.serve_mavlink import AS_FLOWN
 
         file = chosen_file(config, preset)
         _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
         return
-    from eyas.settings.config import Mode
-    from eyas.settings.file import load_settings
-    from eyas.settings.legacy.adapter import LIKE_THE_ORIGINAL
-    from eyas.wire.exchange import SETTINGS_FILE
+    from eyas.dat.settings.adapter import LIKE_THE_ORIGINAL
+    from eyas.dat.wire.exchange import SETTINGS_FILE
+    from eyas.engine.settings.config import Mode
+    from eyas.engine.settings.file import load_settings
 
     file = chosen_file(config, preset)
     if file is None and (root / SETTINGS_FILE).exists():
@@ -303,14 +303,14 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if preset is None:
-        from eyas.settings.legacy.of_a_run import of_a_run
+        from eyas.dat.settings.of_a_run import of_a_run
 
         settings = of_a_run(settings)
         load = partial(_again, load, settings.seed)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
         say(f"note: {said}")
-    from eyas.modes.serve.run import run as serve_clients  # after all checks
+    from eyas.dat.serve.run import run as serve_clients  # after all checks
 
     again = load if file == root / SETTINGS_FILE else None
     serve_clients(settings, root, again, until_idle=until_idle or math.inf)
@@ -318,7 +318,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 
 def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     """Return the settings of a server as they are now, for the same run."""
-    from eyas.settings.legacy.of_a_run import of_a_run
+    from eyas.dat.settings.of_a_run import of_a_run
 
     return of_a_run(load(), seed)
 
@@ -352,10 +352,10 @@ def run(  # noqa: PLR0913  # one parameter for each option
     In mode train, an env_config.json serves the benchmark's clients (eyas serve), and native
     settings teach a network (eyas train).
     """
-    from eyas.modes.serve.source import quietly
-    from eyas.settings.config import Mode
-    from eyas.settings.file import load_settings
-    from eyas.wire.exchange import SETTINGS_FILE
+    from eyas.dat.serve.source import quietly
+    from eyas.dat.wire.exchange import SETTINGS_FILE
+    from eyas.engine.settings.config import Mode
+    from eyas.engine.settings.file import load_settings
 
     overrides = gathered(set_, map_name, weather, seed)
     settings = quietly(partial(load_settings, config, overrides, trust=trust))
@@ -387,8 +387,8 @@ def _announce(command: str) -> None:
 
 def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
     """Fly a drone for nodes of ROS 2, until Ctrl-C."""
-    from eyas.modes.serve.ros import AS_FLOWN, run
-    from eyas.settings.file import load_settings
+    from eyas.engine.settings.file import load_settings
+    from eyas.robotics.serve_ros import AS_FLOWN, run
 
     run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
 
@@ -398,10 +398,10 @@ def _fly(
 ) -> None:
     """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
     if addresses:
-        from eyas.modes.serve.mavlink import run
+        from eyas.robotics.serve_mavlink import run
 
         run(settings, addresses)
         return
-    from eyas.modes.serve import hil
+    from eyas.robotics import serve_hil as hil
 
     hil.run(settings, px4=px4, ardupilot=ardupilot)

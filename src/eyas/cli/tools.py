@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from eyas.cli.options import (
+from eyas.engine.terminal.options import (
     SEVERAL,
     AsJson,
     ConfigFile,
@@ -18,10 +18,10 @@ from eyas.cli.options import (
     chosen_file,
     gathered,
 )
-from eyas.cli.said import say
+from eyas.engine.terminal.said import say
 
 if TYPE_CHECKING:
-    from eyas.settings.config import EyasConfig
+    from eyas.engine.settings.config import EyasConfig
 
 
 __all__ = ["bench", "cache_app", "config_app", "doctor", "policies_app", "verify", "webots_shim"]
@@ -51,7 +51,7 @@ def bench(
     ] = None,
 ) -> None:
     """Measure the speed of Eyas on this machine, as medians."""
-    from eyas.modes.bench import run as bench
+    from eyas.cli.bench import run as bench
 
     bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera, device=device)
 
@@ -60,7 +60,7 @@ def doctor(
     json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Tell what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
-    from eyas.modes.doctor import run
+    from eyas.cli.doctor import run
 
     run(as_json=json_)
 
@@ -76,7 +76,7 @@ def verify(
 
     Exit code 1 if anything differs.
     """
-    from eyas.modes.verify.run import run
+    from eyas.cli.verify.run import run
 
     if not run(quick=quick, map_name=map_, as_json=json_):
         raise typer.Exit(1)
@@ -99,10 +99,10 @@ def show_config(
     ] = False,
 ) -> None:
     """Check the settings, and print all of them as JSON."""
-    from eyas.settings.file import load_settings
-    from eyas.settings.legacy.messages import originals_named
-    from eyas.settings.trust import code_of
-    from eyas.world.maps import MAPS
+    from eyas.dat.settings.messages import originals_named
+    from eyas.engine.settings.file import load_settings
+    from eyas.engine.settings.trust import code_of
+    from eyas.engine.world.maps import MAPS
 
     # Nothing that the file names is imported here, so it may be anyone's.
     settings = load_settings(chosen_file(config, preset), gathered(set_), trust=True)
@@ -121,10 +121,10 @@ def convert_config(
     set_: Overrides = None,
 ) -> None:
     """Convert settings between the native and the DAT benchmark's notation."""
-    from eyas.core.errors import OutputError
-    from eyas.core.files import write_atomic
-    from eyas.settings.file import load_settings, read_settings
-    from eyas.settings.legacy.adapter import is_legacy
+    from eyas.dat.settings.adapter import is_legacy
+    from eyas.engine.core.errors import OutputError
+    from eyas.engine.core.files import write_atomic
+    from eyas.engine.settings.file import load_settings, read_settings
 
     if target.exists():
         raise OutputError(f"{target}: already exists; settings files are never overwritten")
@@ -136,13 +136,13 @@ def convert_config(
 @config_app.command("schema")
 def print_schema() -> None:
     """Print the JSON Schema of settings, by which editors complete and check them."""
-    from eyas.settings.schema import config_schema
+    from eyas.engine.settings.schema import config_schema
 
     typer.echo(json.dumps(config_schema(), indent=1))
 
 
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
-    from eyas.settings.legacy.adapter import to_legacy
+    from eyas.dat.settings.adapter import to_legacy
 
     if legacy:
         return json.dumps(to_legacy(settings), indent=4)
@@ -157,7 +157,7 @@ cache_app = typer.Typer(
 @cache_app.command("info")
 def cache_info(*, as_json: AsJson = False) -> None:
     """Print the folder, size, size limit and contents of the cache."""
-    from eyas.modes import cache
+    from eyas.cli import cache
 
     cache.run_info(as_json=as_json)
 
@@ -169,7 +169,7 @@ def clear_cache(
     ] = None,
 ) -> None:
     """Delete the contents of the cache; they are made again when they are needed."""
-    from eyas.modes import cache
+    from eyas.cli import cache
 
     cache.run_clear(kind)
 
@@ -186,7 +186,7 @@ def warm_cache(
     ] = None,
 ) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""
-    from eyas.modes.cache import run_warm
+    from eyas.cli.cache import run_warm
 
     run_warm(map_name or (), weather or ())
 
@@ -203,9 +203,9 @@ def _policies_group() -> None: ...
 @policies_app.command("list")
 def list_policies(*, as_json: AsJson = False) -> None:
     """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
-    from eyas.evaluation.policies.shipped import card_of, shipped_names
-    from eyas.evaluation.policies.table import BUILT_IN
-    from eyas.modes.reproduce.tables import flown_of
+    from eyas.benchmark.policies.shipped import card_of, shipped_names
+    from eyas.benchmark.reproduce.tables import flown_of
+    from eyas.engine.policies.table import BUILT_IN
 
     if as_json:
         listed: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
@@ -232,9 +232,9 @@ def policy_card(
     name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],
 ) -> None:
     """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
-    from eyas.core.errors import UnknownNameError
-    from eyas.evaluation.policies.shipped import shipped_names
-    from eyas.modes.reproduce.model_card import model_card
+    from eyas.benchmark.policies.shipped import shipped_names
+    from eyas.benchmark.reproduce.model_card import model_card
+    from eyas.engine.core.errors import UnknownNameError
 
     if name not in shipped_names():
         raise UnknownNameError("NAME", name, shipped_names())
@@ -258,8 +258,8 @@ def webots_shim(
     set_: Overrides = None,
 ) -> None:
     """Install a program named webots that starts 'eyas serve', for programs that start Webots."""
-    from eyas.modes.serve.stand_in import install as write
-    from eyas.settings.file import load_settings
+    from eyas.dat.serve.stand_in import install as write
+    from eyas.engine.settings.file import load_settings
 
     load_settings(None, set_ or ())  # a mistake is told now
     path = write(install, root, set_ or (), until_idle)

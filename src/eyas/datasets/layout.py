@@ -6,16 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.core.build import this_build
-from eyas.core.config import Config, validated
-from eyas.core.decoding import read_json
-from eyas.core.errors import DataFileError
-from eyas.core.files import write_atomic
 from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
-from eyas.datasets.recording import DATASET_FILE
 from eyas.datasets.statistics import PartFacts
-from eyas.exports.checksums import SEALED
+from eyas.engine.core.build import this_build
+from eyas.engine.core.config import Config, validated
+from eyas.engine.core.decoding import read_json
+from eyas.engine.core.errors import DataFileError
+from eyas.engine.core.files import write_atomic
+from eyas.engine.exports.checksums import SEALED
+from eyas.engine.recordings.recording import DATASET_FILE
 
 __all__ = ["MAKING_FILE", "RECIPE_FILE", "Plan", "described_parts", "read_plan", "write_plan"]
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
-from eyas.core.errors import ConfigError
-from eyas.datasets.recording import RecordedEpisode
-from eyas.exports.label import Label
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.lanes import exact
 
 __all__ = ["STATE_NAMES", "TRUTH_NAMES", "Motion", "action_names", "motion_of", "task_of"]
 

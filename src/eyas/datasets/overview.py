@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from eyas.core.jpeg import jpeg_bytes
 from eyas.datasets.card import range_texts
-from eyas.datasets.format import objects_of
 from eyas.datasets.layout import Plan
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.datasets.statistics import UNITS
+from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.recordings.format import objects_of
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["chosen_frames", "contact_sheet", "page", "stacked"]
 

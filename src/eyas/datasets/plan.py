@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from eyas.core.clock import PHYSICS_RATE
-from eyas.core.config import updated
-from eyas.core.errors import ConfigError, EyasError, UnknownNameError
-from eyas.datasets.export import formats_needs
 from eyas.datasets.recipe import Recipe
-from eyas.exports.registry import chosen_writers
-from eyas.settings.config import EyasConfig
-from eyas.targets.config import TargetName
-from eyas.traffic.library import STANDARD_DURATION
-from eyas.world.maps import MAPS
+from eyas.engine.core.clock import PHYSICS_RATE
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
+from eyas.engine.exports.registry import chosen_writers
+from eyas.engine.recordings.export import formats_needs
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.targets.config import TargetName
+from eyas.engine.traffic.library import STANDARD_DURATION
+from eyas.engine.world.maps import MAPS
 
 __all__ = ["Part", "in_order_of_work", "planned", "sample_of", "shard_of"]
 

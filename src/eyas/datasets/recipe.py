@@ -7,15 +7,15 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.behaviours.config import ExtraConfig
-from eyas.core.code_names import NAMES_CODE, code_named
-from eyas.core.config import Config, updated, validated
-from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.core.variation import Variation
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import read_settings
-from eyas.settings.trust import code_of, refuse_named
-from eyas.targets.config import TargetName
+from eyas.engine.behaviours.config import ExtraConfig
+from eyas.engine.core.code_names import NAMES_CODE, code_named
+from eyas.engine.core.config import Config, updated, validated
+from eyas.engine.core.errors import ConfigError, UnknownNameError
+from eyas.engine.core.variation import Variation
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import read_settings
+from eyas.engine.settings.trust import code_of, refuse_named
+from eyas.engine.targets.config import TargetName
 
 __all__ = ["LICENCES", "SHIPPED", "SPLITS", "Camera", "Recipe", "Split", "Splits", "read_recipe"]
 
@@ -158,7 +158,7 @@ def read_recipe(named: str, *, trust: bool = False) -> Recipe:
 
     Args:
         named: `detect`, `follow`, `sot`, or the path of a file.
-        trust: Whether the file may name code, see `eyas.settings.trust`.
+        trust: Whether the file may name code, see `eyas.engine.settings.trust`.
 
     Raises:
         UnknownNameError: There is no such recipe, and no such file.

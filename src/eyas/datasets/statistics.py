@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from eyas.core.config import Config
-from eyas.datasets.format import CLASS_NAMES, SeenObject, objects_of
-from eyas.datasets.recording import RecordedEpisode
-from eyas.exports.label import Label
-from eyas.state.scene import ObjectClass
+from eyas.engine.core.config import Config
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import CLASS_NAMES, SeenObject, objects_of
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.engine.state.scene import ObjectClass
 
 __all__ = ["EDGES", "PartFacts", "added", "facts_of"]
 

@@ -11,17 +11,17 @@ from typing import Any
 
 import torch
 
-from eyas.core.build import Build, this_build
-from eyas.core.errors import DataFileError, OutputError
-from eyas.core.files import refusals, write_atomic
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import load_settings, save_settings
+from eyas.engine.core.build import Build, this_build
+from eyas.engine.core.errors import DataFileError, OutputError
+from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import load_settings, save_settings
 
 __all__ = ["RunFolder", "TrainingProgress", "readable"]
 
 Row = dict[str, float]
 
-_NOT_LEARNED = ("exports", "mavlink", "modes/video", "overlay", "wire")
+_NOT_LEARNED = ("exports", "mavlink", "engine/video", "overlay", "wire")
 """Rooms that have no part in a training run."""
 
 

@@ -6,11 +6,11 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from eyas.core.allowed import Said
-from eyas.core.code_names import NAMES_CODE
-from eyas.core.config import Config
-from eyas.world.config import WorldConfig
-from eyas.world.simple_maps import simple_world
+from eyas.engine.core.allowed import Said
+from eyas.engine.core.code_names import NAMES_CODE
+from eyas.engine.core.config import Config
+from eyas.engine.world.config import WorldConfig
+from eyas.engine.world.simple_maps import simple_world
 
 __all__ = [
     "LESSON",

@@ -2,7 +2,7 @@
 
 import torch
 
-from eyas.core.errors import ConfigError
+from eyas.engine.core.errors import ConfigError
 
 __all__ = ["torch_device"]
 

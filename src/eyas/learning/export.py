@@ -11,9 +11,9 @@ from onnx import TensorProto, helper, numpy_helper
 from torch import Tensor, nn
 
 from eyas import __version__
-from eyas.core.files import write_atomic
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.policies.tracker.metadata import METADATA
+from eyas.benchmark.policies.tracker.metadata import METADATA
+from eyas.engine.core.files import write_atomic
+from eyas.engine.settings.env import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
 __all__ = ["Graph", "export", "write_model"]

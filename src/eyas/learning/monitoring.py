@@ -9,22 +9,22 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.delay import delay_from
-from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
-from eyas.evaluation.flight import BatchFlight
-from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
-from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.protocols import protocol_named
+from eyas.benchmark.delay import delay_from
+from eyas.benchmark.episode import EpisodeSpec, Place, episodes_of
+from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.protocols import protocol_named
+from eyas.engine.policies.policy import Decision, PolicyInput, Start
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.env import EnvConfig
+from eyas.engine.world.maps import MAPS
 from eyas.learning.network import TrackingNetwork
-from eyas.settings.config import EyasConfig
-from eyas.world.maps import MAPS
 
 __all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "evaluation_episodes"]
 
 
 class EvaluationScores(NamedTuple):
-    """Means over the episodes, see `eyas.evaluation.record.EpisodeRecord`."""
+    """Means over the episodes, see `eyas.benchmark.record.EpisodeRecord`."""
 
     cr: float
     tsr: float

@@ -11,12 +11,12 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from torch import Tensor
 
-from eyas.envs.vector_env import EyasVectorEnv
+from eyas.engine.envs.vector_env import EyasVectorEnv
+from eyas.engine.settings.config import EyasConfig
 from eyas.learning.config import Method
 from eyas.learning.devices import torch_device
 from eyas.learning.network import TrackingNetwork
 from eyas.learning.teacher import Teacher
-from eyas.settings.config import EyasConfig
 
 __all__ = ["Finished", "Roller", "Rollout"]
 

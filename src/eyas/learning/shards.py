@@ -9,12 +9,12 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 import torch
 
-from eyas.core.errors import ConfigError, EyasError
-from eyas.evaluation.fliers import connected, one_line
+from eyas.benchmark.fliers import connected, one_line
+from eyas.engine.core.errors import ConfigError, EyasError
+from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Finished, Roller, Rollout
-from eyas.settings.config import EyasConfig
 
 __all__ = ["LocalShards", "MakeShards", "Shards", "TorchThreads", "on_ray"]
 

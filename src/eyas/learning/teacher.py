@@ -5,12 +5,12 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from eyas.envs.batch import Truth
-from eyas.evaluation.policies.policy import PolicyInput, Start
-from eyas.evaluation.policies.predictors import ConstantVelocity
-from eyas.evaluation.policies.sighted import Clue, SightOracle
+from eyas.benchmark.policies.predictors import ConstantVelocity
+from eyas.benchmark.policies.sighted import Clue, SightOracle
+from eyas.engine.envs.batch import Truth
+from eyas.engine.policies.policy import PolicyInput, Start
+from eyas.engine.settings.config import EyasConfig
 from eyas.learning.config import TeacherKind
-from eyas.settings.config import EyasConfig
 
 __all__ = ["Teacher"]
 

@@ -8,12 +8,14 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from eyas.core.config import updated
-from eyas.core.errors import ConfigError
-from eyas.core.rng import TEST_SEEDS, stream
-from eyas.envs.choice import steps_per_action
-from eyas.envs.config import ActionKind, ObservationPart
-from eyas.envs.observation import observation_space
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.rng import TEST_SEEDS, stream
+from eyas.engine.envs.choice import steps_per_action
+from eyas.engine.envs.observation import observation_space
+from eyas.engine.sensors.config import ColourLayout
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.env import ActionKind, ObservationPart
 from eyas.learning import dagger, ppo
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
 from eyas.learning.config import Method, Stage
@@ -29,8 +31,6 @@ from eyas.learning.monitoring import (
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Finished
 from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
-from eyas.sensors.config import ColourLayout
-from eyas.settings.config import EyasConfig
 
 __all__ = ["train"]
 

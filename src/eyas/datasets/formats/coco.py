@@ -12,8 +12,9 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from eyas.core.files import atomic_path
-from eyas.datasets.format import (
+from eyas.datasets.rle import encoded_masks
+from eyas.engine.core.files import atomic_path
+from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
@@ -25,8 +26,7 @@ from eyas.datasets.format import (
     picture_ending,
     split_of,
 )
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
-from eyas.datasets.rle import encoded_masks
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["Coco"]
 

@@ -23,14 +23,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
-from eyas.core.frames import wrap_angle
-from eyas.datasets.format import Exported, Format, Job, SeenObject, by_split, lines, objects_of
-from eyas.datasets.recording import RecordedEpisode
-from eyas.exports.boxes import box_of, camera_pose
-from eyas.exports.label import Label
-from eyas.lanes import interpreted
-from eyas.state.scene import ObjectClass
+from eyas.engine.core.frames import wrap_angle
+from eyas.engine.exports.boxes import box_of, camera_pose
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import (
+    Exported,
+    Format,
+    Job,
+    SeenObject,
+    by_split,
+    lines,
+    objects_of,
+)
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.engine.state.scene import ObjectClass
+from eyas.lanes import exact, interpreted
 
 __all__ = ["Kitti", "occlusion_level"]
 

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.decoding import npz_arrays
-from eyas.core.errors import DataFileError, MissingExtraError
-from eyas.core.files import read_limited
-from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
-from eyas.datasets.recording import RecordedEpisode
+from eyas.engine.core.decoding import npz_arrays
+from eyas.engine.core.errors import DataFileError, MissingExtraError
+from eyas.engine.core.files import read_limited
+from eyas.engine.recordings.format import KEPT, Exported, Format, Job
+from eyas.engine.recordings.recording import RecordedEpisode
 
 if TYPE_CHECKING:
     import pyarrow

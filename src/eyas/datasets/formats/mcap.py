@@ -9,12 +9,12 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from eyas.core.errors import MissingExtraError
-from eyas.core.files import atomic_path, read_limited, refusals
-from eyas.datasets.format import Format, Job, SeenObject, objects_of, split_of
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
-from eyas.exports.boxes import box_of, camera_pose, quaternion_of
-from eyas.exports.label import label_schema
+from eyas.engine.core.errors import MissingExtraError
+from eyas.engine.core.files import atomic_path, read_limited, refusals
+from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
+from eyas.engine.exports.label import label_schema
+from eyas.engine.recordings.format import Format, Job, SeenObject, objects_of, split_of
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["Mcap"]
 

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import MissingExtraError, OutputError
-from eyas.core.files import atomic_path
-from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
-from eyas.datasets.recording import RecordedEpisode
+from eyas.engine.core.errors import MissingExtraError, OutputError
+from eyas.engine.core.files import atomic_path
+from eyas.engine.recordings.format import KEPT, Exported, Format, Job
+from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["Minari"]
 

@@ -12,7 +12,7 @@ detector, for trackers that want detections.
 
 from collections.abc import Iterable, Sequence
 
-from eyas.datasets.format import (
+from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
@@ -24,7 +24,7 @@ from eyas.datasets.format import (
     picture_ending,
     split_of,
 )
-from eyas.datasets.recording import RecordedEpisode
+from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["Mot"]
 

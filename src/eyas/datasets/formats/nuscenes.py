@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from eyas.core import exact
-from eyas.core.files import atomic_path
-from eyas.core.frames import rotate_back
-from eyas.datasets.format import (
+from eyas.engine.core.files import atomic_path
+from eyas.engine.core.frames import rotate_back
+from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import (
     Exported,
     Format,
     Job,
@@ -29,11 +30,9 @@ from eyas.datasets.format import (
     objects_of,
     picture_ending,
 )
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
-from eyas.exports.boxes import box_of, camera_pose, quaternion_of
-from eyas.exports.label import Label
-from eyas.lanes import interpreted
-from eyas.state.scene import ObjectClass
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
+from eyas.engine.state.scene import ObjectClass
+from eyas.lanes import exact, interpreted
 
 __all__ = ["NuScenes"]
 

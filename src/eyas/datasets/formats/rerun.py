@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from eyas.core.errors import MissingExtraError
-from eyas.core.files import read_limited
-from eyas.datasets.format import Format, Job, objects_of, split_of
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
-from eyas.exports.boxes import box_of, camera_pose, quaternion_of
+from eyas.engine.core.errors import MissingExtraError
+from eyas.engine.core.files import read_limited
+from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
+from eyas.engine.recordings.format import Format, Job, objects_of, split_of
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["Rerun"]
 

@@ -10,9 +10,9 @@ import json
 import tarfile
 from collections.abc import Sequence
 
-from eyas.core.files import atomic_path, read_limited
-from eyas.datasets.format import KEPT, Exported, Format, Job, picture_ending
-from eyas.datasets.recording import RecordedEpisode
+from eyas.engine.core.files import atomic_path, read_limited
+from eyas.engine.recordings.format import KEPT, Exported, Format, Job, picture_ending
+from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["WebDataset"]
 

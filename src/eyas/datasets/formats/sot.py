@@ -11,10 +11,18 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.datasets.format import CLASS_NAMES, Exported, Format, Job, by_split, lines, split_of
-from eyas.datasets.recording import RecordedEpisode
-from eyas.exports.label import Label
-from eyas.state.scene import ObjectClass
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import (
+    CLASS_NAMES,
+    Exported,
+    Format,
+    Job,
+    by_split,
+    lines,
+    split_of,
+)
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.engine.state.scene import ObjectClass
 
 __all__ = ["Dtb70", "Got10k", "Lasot", "Otb", "Sequences", "Uav123", "target_boxes"]
 

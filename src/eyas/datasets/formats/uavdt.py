@@ -10,13 +10,19 @@ bus; motorcycles, what is more than half outside the picture, and what is to be 
 import math
 from collections.abc import Sequence
 
-from eyas.core import exact
-from eyas.core.frames import wrap_angle
-from eyas.datasets.format import Format, Job, SeenObject, left_top_width_height, lines, objects_of
-from eyas.datasets.recording import RecordedEpisode
-from eyas.exports.label import Label
-from eyas.lanes import interpreted
-from eyas.state.scene import ObjectClass
+from eyas.engine.core.frames import wrap_angle
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import (
+    Format,
+    Job,
+    SeenObject,
+    left_top_width_height,
+    lines,
+    objects_of,
+)
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.engine.state.scene import ObjectClass
+from eyas.lanes import exact, interpreted
 
 __all__ = ["Uavdt"]
 

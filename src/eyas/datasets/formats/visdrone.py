@@ -8,7 +8,9 @@ outside the picture; occlusion is 0 for nothing, 1 for up to half, 2 for more.
 
 from collections.abc import Iterator
 
-from eyas.datasets.format import (
+from eyas.datasets.formats.kitti import occlusion_level
+from eyas.datasets.formats.sot import target_boxes
+from eyas.engine.recordings.format import (
     Format,
     Job,
     SeenObject,
@@ -19,10 +21,8 @@ from eyas.datasets.format import (
     picture_ending,
     split_of,
 )
-from eyas.datasets.formats.kitti import occlusion_level
-from eyas.datasets.formats.sot import target_boxes
-from eyas.datasets.recording import RecordedEpisode
-from eyas.state.scene import ObjectClass
+from eyas.engine.recordings.recording import RecordedEpisode
+from eyas.engine.state.scene import ObjectClass
 
 __all__ = ["VisDroneDet", "VisDroneMot", "VisDroneSot"]
 

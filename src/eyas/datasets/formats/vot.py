@@ -10,9 +10,17 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.datasets.format import Exported, Format, Job, by_split, lines, picture_ending, split_of
 from eyas.datasets.formats.sot import boxes_or_nan, target_boxes
-from eyas.datasets.recording import RecordedEpisode
+from eyas.engine.recordings.format import (
+    Exported,
+    Format,
+    Job,
+    by_split,
+    lines,
+    picture_ending,
+    split_of,
+)
+from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["Vot"]
 

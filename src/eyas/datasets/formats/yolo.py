@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.datasets.format import (
+from eyas.datasets.outlines import least_rectangles, outlines
+from eyas.engine.exports.label import Label
+from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
@@ -23,9 +25,7 @@ from eyas.datasets.format import (
     picture_ending,
     split_of,
 )
-from eyas.datasets.outlines import least_rectangles, outlines
-from eyas.datasets.recording import RecordedEpisode, RecordedFrame
-from eyas.exports.label import Label
+from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["Yolo", "YoloOriented", "YoloSegments"]
 

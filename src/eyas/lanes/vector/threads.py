@@ -16,7 +16,7 @@ __all__ = ["RECORD", "agree", "ballot", "from_lane", "lane_number"]
 _I1, _I32, _I64, _VOID = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.VoidType()
 
 RECORD = "worker_record"
-"""Name of places on the stack that hold the same for all lanes, see `eyas.lanes.ptx`."""
+"""Name of places on the stack that hold the same for all lanes, see `eyas.gpu.ptx`."""
 
 _SEGMENT = ((32 - WIDTH) << 8) | 31
 """Operand of a shuffle that stays within the lanes of a worker (PTX ISA, `shfl.sync`)."""

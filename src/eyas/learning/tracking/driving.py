@@ -10,15 +10,15 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.clock import PHYSICS_STEP
-from eyas.core.rng import stream
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.episode_batch import EpisodeGroup, episode_groups
-from eyas.evaluation.policies.tracker.course import HORIZONS, Course
-from eyas.evaluation.policies.tracker.motion import MotionFilter
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.episode_batch import EpisodeGroup, episode_groups
+from eyas.benchmark.policies.tracker.course import HORIZONS, Course
+from eyas.benchmark.policies.tracker.motion import MotionFilter
+from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.core.rng import stream
+from eyas.engine.settings.env import EnvConfig
+from eyas.engine.state.motion import ActorState
 from eyas.learning.tracking.flights import episodes_by_day, protocol_of_batch
-from eyas.state.motion import ActorState
 
 __all__ = ["LOOK", "Drives", "driven"]
 

@@ -1,4 +1,4 @@
-"""The network of the tracker as an ONNX file, see `eyas.evaluation.policies.tracker.detector`."""
+"""The network of the tracker as an ONNX file, see `eyas.benchmark.policies.tracker.detector`."""
 
 from pathlib import Path
 
@@ -6,11 +6,11 @@ import numpy as np
 import onnx
 from onnx import TensorProto, helper
 
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
-from eyas.evaluation.policies.tracker.detector import STRIDE
-from eyas.evaluation.policies.tracker.metadata import TRACKER
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
+from eyas.benchmark.policies.tracker.detector import STRIDE
+from eyas.benchmark.policies.tracker.metadata import TRACKER
+from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.engine.settings.env import EnvConfig
 from eyas.learning.export import Graph, write_model
 from eyas.learning.tracking.forecast import FARTHEST, Forecast
 from eyas.learning.tracking.network import (

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from eyas.core.rng import stream
-from eyas.evaluation.delay import delay_from
-from eyas.evaluation.episode import EpisodeSpec, Place
-from eyas.evaluation.flight import BatchFlight
-from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.protocols.lasting import LONG
+from eyas.benchmark.delay import delay_from
+from eyas.benchmark.episode import EpisodeSpec, Place
+from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.protocols.lasting import LONG
+from eyas.engine.core.rng import stream
+from eyas.engine.targets.config import TargetName
 from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.shots import Shots
-from eyas.targets.config import TargetName
 
 __all__ = ["MAPS", "WEATHERS", "Pilot", "episodes_by_day", "flown", "protocol_of_batch"]
 

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from eyas.evaluation.policies.tracker.course import HORIZONS, PAST
+from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
 from eyas.learning.tracking.driving import Drives
 
 __all__ = ["FARTHEST", "Forecast", "taught_forecast"]

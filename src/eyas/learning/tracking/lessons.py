@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from eyas.evaluation.policies.tracker.detector import STRIDE
+from eyas.benchmark.policies.tracker.detector import STRIDE
 from eyas.learning.config import LESSON
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.samples import GROUP, Sample, Samples

@@ -9,7 +9,7 @@ competes with all cells; it follows from what the picture shows around the expec
 import torch
 from torch import Tensor, nn
 
-from eyas.evaluation.policies.tracker.detector import STRIDE
+from eyas.benchmark.policies.tracker.detector import STRIDE
 
 __all__ = ["MEAN", "SPREAD", "DetectorNetwork"]
 
@@ -88,7 +88,7 @@ class DetectorNetwork(nn.Module):
         Args:
             features: Of `see`.
             answers: Of `see`.
-            clue: As the inputs of `eyas.evaluation.policies.tracker.detector`.
+            clue: As the inputs of `eyas.benchmark.policies.tracker.detector`.
         """
         expected, spread, key, known = clue
         apart = (self.keys_of(answers) - key[:, None]).square().sum(-1)

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
-from eyas.evaluation.policies.tracker.tracker import Tracker
+from eyas.benchmark.policies.tracker.tracker import Tracker
+from eyas.engine.policies.policy import Decision, PolicyInput, Start
+from eyas.engine.settings.env import EnvConfig
+from eyas.lanes import exact
 from eyas.learning.tracking.shots import Shots, projected
 
 __all__ = ["Oracle", "Pupil"]

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
-from eyas.core.files import write_atomic
-from eyas.state.snapshot import Snapshot
+from eyas.engine.core.files import write_atomic
+from eyas.engine.state.snapshot import Snapshot
+from eyas.lanes import exact
 
 __all__ = ["Shots", "load", "projected", "save"]
 

@@ -15,14 +15,17 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from eyas.core.build import Build, this_build
-from eyas.core.config import updated
-from eyas.core.errors import ConfigError
-from eyas.core.files import write_atomic
-from eyas.core.rng import stream
-from eyas.evaluation.policies.table import open_policy
-from eyas.evaluation.policies.tracker.settings import FLOWN, TrackerSettings
-from eyas.evaluation.policies.tracker.tracker import Tracker
+from eyas.benchmark.policies.tracker.settings import FLOWN, TrackerSettings
+from eyas.benchmark.policies.tracker.tracker import Tracker
+from eyas.engine.core.build import Build, this_build
+from eyas.engine.core.config import updated
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.files import write_atomic
+from eyas.engine.core.rng import stream
+from eyas.engine.policies.table import open_policy
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, readable
 from eyas.learning.config import TrackerTraining
 from eyas.learning.tracking.driving import Drives, driven
@@ -34,9 +37,6 @@ from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.samples import Samples
 from eyas.learning.tracking.shots import Shots, load, save
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
 
 __all__ = ["train"]
 

@@ -1,4 +1,4 @@
-"""The network of the listener as an ONNX file, see `eyas.evaluation.policies.listener.detector`."""
+"""The network of the listener as an ONNX file, see `eyas.benchmark.policies.listener.detector`."""
 
 from pathlib import Path
 
@@ -8,10 +8,10 @@ import torch
 from onnx import TensorProto, helper
 from torch import nn
 
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.policies.listener.detector import BODIES, NAMES
-from eyas.evaluation.policies.tracker.metadata import TRACKER
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.listener.detector import BODIES, NAMES
+from eyas.benchmark.policies.tracker.metadata import TRACKER
+from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.engine.settings.env import EnvConfig
 from eyas.learning.export import Graph, write_model
 from eyas.learning.tracking.export import scaled_pixels
 from eyas.learning.tracking.network import OFFSET

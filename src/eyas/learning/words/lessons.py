@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.nn import functional
 
-from eyas.evaluation.policies.listener.detector import STRIDE
+from eyas.benchmark.policies.listener.detector import STRIDE
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import Scenes, Vehicles, chosen
 

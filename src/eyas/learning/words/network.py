@@ -7,7 +7,7 @@ of a map, and what is known of it stands beside the peak.
 import torch
 from torch import Tensor, nn
 
-from eyas.evaluation.policies.listener.detector import BODIES, NAMES, STRIDE
+from eyas.benchmark.policies.listener.detector import BODIES, NAMES, STRIDE
 from eyas.learning.tracking.network import MEAN, OFFSET, SPREAD
 
 __all__ = ["PARTS", "PLAIN", "ListenerNetwork"]
@@ -58,7 +58,7 @@ class ListenerNetwork(nn.Module):
         return -(-self.size[0] // STRIDE), -(-self.size[1] // STRIDE)
 
     def forward(self, pictures: Tensor) -> tuple[Tensor, ...]:
-        """Return the outputs of `eyas.evaluation.policies.listener.detector`.
+        """Return the outputs of `eyas.benchmark.policies.listener.detector`.
 
         Args:
             pictures: Shape (B, 3, H, W).

@@ -7,20 +7,20 @@ from typing import Any, Final, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
-from eyas.core.rng import stream
-from eyas.envs.config import EnvConfig
-from eyas.evaluation.episode import EpisodeSpec, Place
-from eyas.evaluation.look_alikes import COLOURS, HEIGHT, PITCH
-from eyas.evaluation.policies.listener.detector import BODIES, NAMES
-from eyas.evaluation.protocols.referring import REFERRING
-from eyas.sim.build import build_simulation
-from eyas.sim.simulation import Simulation
-from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
-from eyas.targets.catalogue import MODELS, kind_index, kind_of, models_of
-from eyas.targets.colour_names import COLOUR_NAMES, colour_distances
-from eyas.targets.grammar.in_view import InView, body_of
+from eyas.benchmark.episode import EpisodeSpec, Place
+from eyas.benchmark.look_alikes import COLOURS, HEIGHT, PITCH
+from eyas.benchmark.policies.listener.detector import BODIES, NAMES
+from eyas.benchmark.protocols.referring import REFERRING
+from eyas.engine.core.rng import stream
+from eyas.engine.settings.env import EnvConfig
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.simulation import Simulation
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import Picture
+from eyas.engine.targets.catalogue import MODELS, kind_index, kind_of, models_of
+from eyas.engine.targets.colour_names import COLOUR_NAMES, colour_distances
+from eyas.engine.targets.grammar.in_view import InView, body_of
+from eyas.lanes import exact
 
 __all__ = ["PLACES", "SCENES", "Scenes", "Vehicles", "chosen", "drawn"]
 

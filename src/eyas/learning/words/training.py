@@ -8,18 +8,18 @@ from typing import Final
 import numpy as np
 import torch
 
-from eyas.core.errors import ConfigError
-from eyas.core.rng import stream
-from eyas.evaluation.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.rng import stream
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
 from eyas.learning.config import WordsTraining
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import Loss, lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import Scenes, drawn
-from eyas.settings.config import EyasConfig
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
 
 __all__ = ["LISTENER", "train"]
 

@@ -1,0 +1,283 @@
+"""`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
+
+import json
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.terminal.options import POLICIES, SEVERAL
+
+if TYPE_CHECKING:
+    from eyas.benchmark.fliers import Flier
+
+__all__ = ["compare", "evaluate", "leaderboard"]
+
+
+_Policy = Annotated[
+    str,
+    typer.Option(
+        "--policy",
+        help=f"{POLICIES}, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
+    ),
+]
+_Protocol = Annotated[
+    str,
+    typer.Option(
+        "--protocol", help="paper, standard, unseen, long, search, ...: see docs/evaluation.md."
+    ),
+]
+_Maps = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--map",
+        help=f"By default citystreet; {SEVERAL}. A town of another seed: citystreet:900000001.",
+    ),
+]
+_Weathers = Annotated[
+    list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
+]
+_Targets = Annotated[
+    list[str] | None,
+    typer.Option("--target", help=f"By default the protocol's, mostly SUMO_VEHICLE; {SEVERAL}."),
+]
+_Episodes = Annotated[
+    int | None,
+    typer.Option("--episodes", help="For each map, weather, target and start direction."),
+]
+_Seed = Annotated[
+    int | None, typer.Option("--seed", help="The one seed of the run: that of its first episode.")
+]
+_Seeds = Annotated[
+    str | None,
+    typer.Option(
+        "--seeds",
+        help="Several sets of episodes: the first seed of each, with commas, or their number.",
+    ),
+]
+_Latency = Annotated[
+    str,
+    typer.Option(
+        "--latency",
+        help="Milliseconds, a published system's (openfly, spf, ...), a file of them, or measured.",
+    ),
+]
+_LatencyCurve = Annotated[
+    bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
+]
+_Sample = Annotated[
+    bool, typer.Option("--sample", help="Sample a network's actions instead of taking the best.")
+]
+_InProcess = Annotated[
+    bool,
+    typer.Option(
+        "--in-process",
+        help="Fly your own code in this process, for a debugger: the class is then privileged.",
+    ),
+]
+_Batch = Annotated[int, typer.Option("--batch", help="Episodes flown together.")]
+_Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a setting of env, what the policy sees and does; one of tracker, control, "
+        "camera, start.velocity or extras makes another protocol.",
+    ),
+]
+_Out = Annotated[Path | None, typer.Option("--out", help="Folder to write to.")]
+_AsPublished = Annotated[
+    bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
+]
+_Plots = Annotated[
+    bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
+]
+_Videos = Annotated[
+    bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
+]
+_Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted evaluation.")]
+_Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
+]
+_Ray = Annotated[
+    bool, typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster).")
+]
+_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+def evaluate(  # noqa: PLR0913  # one parameter for each option
+    policy: _Policy,
+    protocol: _Protocol = "paper",
+    maps: _Maps = None,
+    weathers: _Weathers = None,
+    targets: _Targets = None,
+    episodes: _Episodes = None,
+    seed: _Seed = None,
+    seeds: _Seeds = None,
+    latency: _Latency = "0",
+    latency_curve: _LatencyCurve = False,
+    sample: _Sample = False,
+    in_process: _InProcess = False,
+    batch: _Batch = 64,
+    set_: _Changes = None,
+    out: _Out = None,
+    as_published: _AsPublished = False,
+    plots: _Plots = False,
+    videos: _Videos = False,
+    resume: _Resume = False,
+    overwrite: _Overwrite = False,
+    ray: _Ray = False,
+    quiet: _Quiet = False,
+) -> None:
+    """Fly a policy in the episodes of a protocol, and tell how well it tracks.
+
+    The exit code is 1 if the policy has failed in all episodes.
+    """
+    from eyas.benchmark.episode import seed_sets
+    from eyas.benchmark.plan import EvaluationPlan, folder_name
+    from eyas.engine.core.config import validated
+
+    values: dict[str, Any] = {
+        "policy": policy,
+        "protocol": protocol,
+        **({"maps": maps} if maps else {}),
+        "weathers": weathers or ["day"],
+        "targets": targets,
+        **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
+        "in_process": in_process,
+    }
+    changes = _changes(set_ or [])
+    values |= {"env": changes.pop("env", {}), "settings": changes}
+    if seed is not None and seeds is not None:
+        raise ConfigError("--seed and --seeds cannot be used together")
+    if seed is not None or seeds is not None:
+        values["seeds"] = seed_sets(seeds) if seeds is not None else (seed,)
+    plan = validated(EvaluationPlan, values)
+    folder = out or Path("runs/evaluation") / folder_name(plan)
+    if latency_curve and (as_published or videos):
+        raise ConfigError("--latency-curve: not together with --as-published or --videos")
+    if ray and latency == "measured":
+        raise ConfigError("--ray: not together with --latency measured: that is of this machine")
+    with _flier(ray=ray) as flier:
+        common: Any = {"resume": resume, "overwrite": overwrite, "plots": plots, "quiet": quiet}
+        if latency_curve:
+            from eyas.benchmark.latency_curve import run_curve
+
+            records = run_curve(plan, folder, flier=flier, **common)
+        else:
+            from eyas.benchmark.run import run
+
+            own: Any = {"as_published": as_published, "videos": videos}
+            records = run(plan, folder, flier=flier, **own, **common)
+    if all(record.error is not None for record in records):
+        raise typer.Exit(1)
+
+
+def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
+    """Return what flies the batches."""
+    if ray:
+        from eyas.benchmark.fliers import on_ray
+
+        return on_ray()
+    from eyas.benchmark.fliers import fly_here
+
+    return nullcontext(fly_here)
+
+
+_FREE = (["start", "velocity"], ["extras"])
+"""Settings that `--set` changes, besides all of some groups."""
+
+
+def _changes(said: list[str]) -> dict[str, Any]:
+    """Return changes from `env.key=value`, and of other rooms.
+
+    Raises:
+        ConfigError: One is of another form, or changes what the protocol fixes.
+    """
+    from eyas.engine.settings.file import parsed_override
+
+    changes: dict[str, Any] = {}
+    for text in said:
+        keys, value = parsed_override(text)
+        if keys[0] not in ("env", "tracker", "control", "camera") and keys not in _FREE:
+            raise ConfigError(
+                f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
+                "tracker.KEY, control.KEY, camera.KEY, start.velocity or extras; all else "
+                "belongs to the protocol"
+            )
+        group = changes
+        for key in keys[:-1]:
+            group = group.setdefault(key, {})
+        group[keys[-1]] = value
+    return changes
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder of an evaluation.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another.")],
+    across_builds: Annotated[
+        bool, typer.Option("--across-builds", help="Compare although Eyas itself differs.")
+    ] = False,
+    json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Tell by how much B differs from A in the episodes that both have flown."""
+    from eyas.benchmark.comparison import differences, refuse_incomparable, text_of
+    from eyas.benchmark.result import load_run
+
+    (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
+    refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
+    found = differences(records_a, records_b, stamp_a.plan.rules)
+    if json_:
+        typer.echo(json.dumps([each._asdict() for each in found], indent=1))
+        return
+    for name, stamp in (("A", stamp_a), ("B", stamp_b)):
+        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
+    typer.echo(text_of(found, stamp_a.plan.rules.rank))
+
+
+leaderboard = typer.Typer(help="Rank evaluations, and fly those of others again.")
+_Entries = Annotated[
+    Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
+]
+
+
+@leaderboard.command()
+def page(
+    folder: _Entries,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
+    ] = None,
+) -> None:
+    """Write a page that ranks all evaluations in a folder."""
+    from eyas.benchmark.leaderboard.page import run
+
+    typer.echo(run(folder, out or folder / "index.html"))
+
+
+@leaderboard.command()
+def verify(
+    folder: _Entries,
+    share: Annotated[
+        float, typer.Option("--share", help="Part of the episodes; at least one batch.")
+    ] = 0.1,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Which episodes; by default drawn afresh.")
+    ] = None,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Run the code that entries name or bring.")
+    ] = False,
+) -> None:
+    """Fly some episodes of each evaluation again, and mark those whose records are equal.
+
+    The exit code is 1 if the records of one are not those of its flights.
+    """
+    from eyas.benchmark.leaderboard.verify import Verdict, verify
+
+    found = []
+    for finding in verify(folder, share=share, seed=seed, trust=trust):
+        typer.echo(finding.line)
+        found.append(finding.verdict)
+    if Verdict.DIFFERENT in found:
+        raise typer.Exit(1)

@@ -1,0 +1,77 @@
+"""Where a hidden target should be: further straight on, or along the lanes of the map.
+
+Both are baselines: they neither turn with a target nor search for it.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.benchmark.policies.lane_graph import SPACING, Lanes
+from eyas.benchmark.policies.sighted import Clue, SightOracle
+from eyas.engine.policies.policy import Start
+from eyas.lanes import exact
+
+__all__ = ["AlongLanes", "ConstantVelocity", "constant_velocity", "road_graph"]
+
+Floats = NDArray[np.float64]
+
+
+class ConstantVelocity:
+    """The target goes on at its last velocity."""
+
+    def begin(self, start: Start) -> None:
+        """Do nothing: it remembers nothing."""
+
+    def places(self, clue: Clue) -> Floats:
+        """Return where the targets are after going straight on, shape (N, 2)."""
+        places: Floats = clue.last.place + clue.last.velocity * clue.age[:, None]
+        return places
+
+
+class AlongLanes:
+    """The target goes on at its last speed in its lane, over junctions into the straightest one;
+    where there is no lane, straight on.
+    """
+
+    def begin(self, start: Start) -> None:
+        """Take the lanes of the maps."""
+        self._lanes = Lanes(start.roads())
+        count = len(start.seeds)
+        self._point = np.full(count, -1)
+        """Last point of its lane that each hidden target has passed; -1: it is in no lane."""
+        self._past = np.zeros(count)
+        """How far it is past it [m]."""
+        self._age = np.zeros(count)
+        """Its age when it was last moved [s]."""
+        self._straight = ConstantVelocity()
+
+    def places(self, clue: Clue) -> Floats:
+        """Return where the targets are in their lanes, shape (N, 2)."""
+        places = self._straight.places(clue)
+        graph, last = self._lanes.graph, clue.last
+        for row in np.flatnonzero(clue.known & (clue.age > 0.0) & (self._age == 0.0)).tolist():
+            found = self._lanes.near(row, last.place[row], float(last.yaw[row]))
+            self._point[row], self._past[row] = found[0] if len(found) else -1, 0.0
+        self._past += exact.hypot(*last.velocity.T) * (clue.age - self._age)
+        self._age = np.where(clue.known, clue.age, 0.0)
+        while (far := self._past >= SPACING).any():
+            self._past[far] -= SPACING
+            self._point[far] = graph.after[self._point[far], 0]
+        inside = clue.known & (clue.age > 0.0) & (self._point >= 0)
+        point, share = self._point[inside], self._past[inside, None] / SPACING
+        following = graph.place[graph.after[point, 0]]
+        places[inside] = (1.0 - share) * graph.place[point] + share * following
+        return places
+
+
+def constant_velocity(changes: Mapping[str, Any]) -> SightOracle:
+    """Return the oracle that goes straight on."""
+    return SightOracle(changes, ConstantVelocity())
+
+
+def road_graph(changes: Mapping[str, Any]) -> SightOracle:
+    """Return the oracle that goes on along the lanes."""
+    return SightOracle(changes, AlongLanes())

@@ -1,0 +1,91 @@
+"""Somebody among many who look the same: does the policy keep the right one?"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.benchmark.envelope import Envelope
+from eyas.benchmark.episode import EpisodeSpec
+from eyas.benchmark.episode_batch import EpisodeBatch
+from eyas.benchmark.meter import LOOK
+from eyas.benchmark.neighbours import in_company
+from eyas.benchmark.protocol import NEVER, Protocol
+from eyas.benchmark.scenario import Scenario
+from eyas.engine.policies.sight import nearest_to_middle
+
+__all__ = ["CROWD", "CrowdScenario", "switches"]
+
+_HEIGHT: Final = 12.0
+"""Of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22 m."""
+
+_SWITCHED: Final = 0.5
+"""Time for which another must be followed to count as a switch [s]."""
+
+
+class CrowdScenario(Scenario):
+    """Finds out whom each drone follows: the one in the picture that is nearest to its middle."""
+
+    def __init__(
+        self, batch: EpisodeBatch, protocol: Protocol, episodes: Sequence[EpisodeSpec]
+    ) -> None:
+        super().__init__(batch.count)
+        self._batch = batch
+        self._targets = batch.snapshot().targets.actor.copy()
+        self._nearest = np.full((batch.count, protocol.steps // LOOK), -1, np.int64)
+        self._least = round(_SWITCHED / (LOOK * protocol.period))
+
+    def measure(self, step: int, active: NDArray[np.bool_]) -> None:
+        """Find out whom the active flights follow, at every look."""
+        if (step + 1) % LOOK == 0:
+            nearest = self._batch.gathered(lambda group: nearest_to_middle(group.simulation))
+            self._nearest[active, step // LOOK] = nearest[active]
+
+    def figures(self, row: int) -> dict[str, float | None]:
+        """Return how often another has been followed instead, and the share of looks at which it
+        was the target.
+        """
+        nearest, target = self._nearest[row], int(self._targets[row])
+        return {
+            "identity_switches": float(switches(nearest, target, self._least)),
+            "kept_share": float((nearest == target).mean()),
+        }
+
+
+def switches(nearest: NDArray[np.int64], target: int, least: int) -> int:
+    """Return how often a flight has gone over from its target to another.
+
+    Args:
+        nearest: Whom it follows at each look, -1: nobody, shape (M,).
+        target: Whom it should follow.
+        least: Number of looks in a row for which another must be followed.
+    """
+    starts = np.flatnonzero(np.diff(nearest, prepend=nearest[0] - 1))
+    lengths = np.diff(starts, append=len(nearest))
+    count, on_target = 0, False
+    for who, length in zip(nearest[starts].tolist(), lengths.tolist(), strict=True):
+        if who == target:
+            on_target = True
+        elif who >= 0 and length >= least and on_target:
+            count, on_target = count + 1, False
+    return count
+
+
+CROWD = Protocol(
+    "crowd",
+    "60 s: somebody among many who look the same, who meet and cross each other's ways",
+    {
+        "objects": {"max_count": 200, "group_size": 200, "interval": 0.1},
+        "extras": [],
+        "start": {"height": _HEIGHT},
+        "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
+    },
+    targets=("Pedestrian",),
+    columns=("kept", "kept_share", "identity_switches", "tsr", "flawless", "losses"),
+    rank="kept_share",
+    alike=True,
+    choose=in_company,
+    scenario=CrowdScenario,
+    envelope=Envelope(lowest=8.0, highest=15.0),
+)

@@ -1,0 +1,197 @@
+"""Pictures of `eyas bench`: sizes, weathers, the whole city, and the time of each stage."""
+
+import math
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Literal
+
+import numpy as np
+from rich.table import Table
+
+from eyas.cli.bench.measurement import Measurement, of_pictures
+from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.still import StillWorld
+from eyas.engine.sim.worlds import each_alone
+from eyas.engine.state.draw import DrawStage, Picture, Views
+from eyas.engine.world.config import WorldConfig
+
+__all__ = [
+    "BY_DAY",
+    "OTHER_WEATHERS",
+    "SIZES",
+    "PictureBatch",
+    "StageTime",
+    "measure_horizon",
+    "measure_pictures",
+    "measure_stages",
+    "stage_table",
+]
+
+SIZES = ((64, 84, 84), (1, 84, 84), (1, 640, 480), (1, 1280, 720))
+"""Number of views, width and height of the measured pictures."""
+
+_STAGES = (
+    (DrawStage.CULLING, "traffic, poses, culling"),
+    (DrawStage.VERTICES, "vertices"),
+    (DrawStage.RASTERISING, "rasterising"),
+    (DrawStage.MOVERS_LIGHT, "light of movers"),
+    (DrawStage.SHADING, "shading"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class StageTime:
+    """The time that one stage of drawing a picture takes."""
+
+    pictures: str
+    """Size of the pictures, and how many are drawn at once."""
+    stage: str
+    microseconds: float
+    """Median for one picture [us]."""
+    share: float
+    """Share of the time of the whole picture."""
+
+
+def measure_stages(seconds: float) -> list[StageTime]:
+    """Return the times of all stages for each of `SIZES`.
+
+    A stage's time is the time to draw up to its end, less the time to draw up to its start.
+    The measurements alternate, so that other load on the machine affects all of them alike.
+
+    Args:
+        seconds: Time to measure each size [s].
+    """
+    times = []
+    for views, width, height in SIZES:
+        simulation = build_simulation(SimConfig(), each_alone(views))
+        simulation.reset()
+        picture = Picture.create(views, height, width)
+        trackers = np.arange(views, dtype=np.int32)
+        calls: list[Callable[[], object]] = [
+            partial(simulation.draw, trackers, picture, until=stage) for stage, _ in _STAGES
+        ]
+        assert picture.rgb is not None  # created above
+        calls.append(picture.rgb.copy)
+        ends = _medians(calls, seconds)
+        spent = [*np.diff([0.0, *ends[:-1]]), ends[-1]]
+        name = f"{width}x{height}, {views} view{'s' * (views > 1)}"
+        for (_, stage), time_ in zip((*_STAGES, (None, "copying out")), spent, strict=True):
+            share = float(time_) / (ends[-2] + ends[-1])
+            times.append(StageTime(name, stage, 1e6 * float(time_) / views, share))
+    return times
+
+
+def _medians(calls: list[Callable[[], object]], seconds: float) -> list[float]:
+    """Return the median time of each call [s]."""
+    spent: list[list[float]] = [[] for _ in calls]
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end or len(spent[0]) < 5:
+        for call, times in zip(calls, spent, strict=True):
+            start = time.perf_counter()
+            call()
+            times.append(time.perf_counter() - start)
+    return [statistics.median(times[1:]) for times in spent]
+
+
+def stage_table(times: list[StageTime]) -> Table:
+    """Return the times as a table: stages down, sizes across."""
+    table = Table(title="where the time of a picture goes [us, share]", title_justify="left")
+    table.add_column("stage")
+    sizes = list(dict.fromkeys(time_.pictures for time_ in times))
+    for size in sizes:
+        table.add_column(size, justify="right")
+    for stage in dict.fromkeys(time_.stage for time_ in times):
+        found = {time_.pictures: time_ for time_ in times if time_.stage == stage}
+        cells = (f"{found[s].microseconds:,.0f}  {found[s].share:4.0%}" for s in sizes)
+        table.add_row(stage, *cells)
+    return table
+
+
+@dataclass(frozen=True, slots=True)
+class PictureBatch:
+    """What to draw at once."""
+
+    views: int
+    width: int
+    height: int
+    weather: str = "day"
+    samples: Literal[1, 2, 4] = 1
+
+    @property
+    def name(self) -> str:
+        """Name of the measurement."""
+        name = f"pictures {self.width}x{self.height}, {self.views} view{'s' * (self.views > 1)}"
+        name += f", {self.weather}" * (self.weather != "day")
+        return name + f", {self.samples} samples" * (self.samples > 1)
+
+
+BY_DAY = (
+    PictureBatch(1, 84, 84),
+    PictureBatch(64, 48, 48),
+    PictureBatch(64, 84, 84),
+    PictureBatch(64, 84, 84, samples=2),
+    PictureBatch(64, 84, 84, samples=4),
+    PictureBatch(1, 640, 480),
+    PictureBatch(1, 1280, 720),
+)
+OTHER_WEATHERS = (
+    PictureBatch(64, 84, 84, weather="night"),
+    PictureBatch(64, 84, 84, weather="snow"),
+)
+
+
+def measure_pictures(pictures: PictureBatch, seconds: float) -> Measurement:
+    """Return the measurement of drawing pictures.
+
+    Args:
+        pictures: What to draw.
+        seconds: Time to measure [s].
+    """
+    config = SimConfig(
+        camera=CameraConfig(samples=pictures.samples), world=WorldConfig(weather=pictures.weather)
+    )
+    simulation = build_simulation(config, each_alone(pictures.views))
+    simulation.reset()
+    picture = Picture.create(pictures.views, pictures.height, pictures.width)
+    trackers = np.arange(pictures.views, dtype=np.int32)
+    includes = "traffic of each world, posing, culling, shading with shadows, RGB"
+    size = pictures.views, pictures.width, pictures.height
+    return of_pictures(
+        pictures.name, includes, lambda: simulation.draw(trackers, picture), size, seconds
+    )
+
+
+def measure_horizon(seconds: float) -> Measurement:
+    """Return the measurement of views from a ring outside the city, which show all of it."""
+    assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
+    count, pitch, field_of_view = 64, 0.3, 1.2
+    points = assets.scene.network.lane_points
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    away = np.linalg.norm(points - centre, axis=1).max() / math.sin(0.5 * field_of_view)
+    turn = np.arange(count) * (math.tau / count)
+    out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    level = np.stack([-out[:, 0], -out[:, 1], np.zeros(count)], axis=1)
+    forward = math.cos(pitch) * level - math.sin(pitch) * np.array([0.0, 0.0, 1.0])
+    left = np.cross([0.0, 0.0, 1.0], level)
+    views = Views(
+        position=np.column_stack([centre + away * out, np.full(count, away * math.tan(pitch))]),
+        rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
+        world=np.zeros(count, np.int32),
+        subject=np.full(count, -1, np.int32),
+        field_of_view=field_of_view,
+    )
+    movers = StillWorld(assets).movers(300.0)
+    picture = Picture.create(count, 84, 84)
+    includes = f"all of the city from {away:.0f} m, pitch {pitch}: drawing alone"
+    name = "pictures 84x84, 64 views, horizon"
+
+    def draw() -> None:
+        assets.renderer.draw(views, movers, picture)
+
+    return of_pictures(name, includes, draw, (count, 84, 84), seconds)

@@ -1,0 +1,118 @@
+"""The groups and keys of an `env_config.json`, by dotted path."""
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from eyas.dat.settings.entries import LegacyEntry, Values
+from eyas.engine.core.config import Problem, unknown_keys
+
+__all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
+
+Nested = Mapping[str, Any]
+"""The content of a JSON object."""
+
+_COUNTS = "_Steps"
+"""End of the keys of numbers of steps, which may be written as 1500.0 too."""
+
+
+@cache
+def legacy_defaults() -> Nested:
+    """Return the values that keys have if a file does not contain them."""
+    values: dict[str, Any] = json.loads(
+        files("eyas.dat.settings").joinpath("defaults.json").read_text()
+    )
+    return values
+
+
+def every_key() -> dict[str, object]:
+    """Return the values of all keys if a file contains none of them."""
+    return flat(legacy_defaults())
+
+
+def flat(values: Nested) -> dict[str, object]:
+    """Return values by dotted path.
+
+    Raises:
+        ConfigError: Keys that the original does not have, or a value that should be a group.
+    """
+    defaults = legacy_defaults()
+    if unknown := unknown_keys(_unknown(values)):
+        raise unknown.error()
+    by_path: dict[str, object] = {}
+    for key, value in values.items():
+        known = defaults[key]
+        if not isinstance(known, Mapping):
+            by_path[key] = _whole(value) if key.endswith(_COUNTS) else value
+            continue
+        if not isinstance(value, Mapping):
+            raise Problem((key,), value, f"an object with {', '.join(known)}").error()
+        by_path |= {f"{key}.{inner}": inner_value for inner, inner_value in value.items()}
+    return by_path
+
+
+def _unknown(values: Nested) -> list[Problem]:
+    """Return a problem for each key that the original does not have."""
+    defaults = legacy_defaults()
+    unknown: list[tuple[tuple[str, ...], Nested]] = [
+        ((key,), defaults) for key in values if key not in defaults
+    ]
+    for group, known in defaults.items():
+        inside = values.get(group)
+        if isinstance(known, Mapping) and isinstance(inside, Mapping):
+            unknown += [((group, key), known) for key in inside if key not in known]
+    return [Problem(path, None, "", tuple(known), unknown_key=True) for path, known in unknown]
+
+
+def nested(by_path: Values) -> dict[str, Any]:
+    """Return values by dotted path as groups; also those of our settings."""
+    groups: dict[str, Any] = {}
+    for path, value in by_path.items():
+        *above, name = path.split(".")
+        inner = groups
+        for group in above:
+            inner = inner.setdefault(group, {})
+        inner[name] = value
+    return groups
+
+
+def check_kinds(entry: LegacyEntry, values: Values, *, idle: bool = False) -> None:
+    """Refuse switches and numbers of a wrong type.
+
+    A key for one field is checked by that field, unless the entry has no effect (`idle`).
+    """
+    for key in entry.keys:
+        if isinstance(values[key], Mapping) and isinstance(every_key()[key], str):
+            allowed = f"a name; more than one: {', '.join(entry.paths)}"
+            raise Problem((key,), values[key], allowed).error()
+    if len(entry.keys) == 1 and not idle:
+        return
+    for key in entry.keys:
+        value, default = values[key], every_key()[key]
+        if isinstance(default, bool):
+            fits, allowed = isinstance(value, bool), "true or false"
+        elif isinstance(default, list):
+            fits, allowed = _are_numbers(value, len(default)), f"a list of {len(default)} numbers"
+        else:
+            fits, allowed = _is_number(value), "a number"
+        if not fits:
+            raise Problem((key,), value, allowed).error()
+
+
+def _whole(value: object) -> object:
+    """Return 1500.0 as 1500."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
+    return int(value) if whole and isinstance(value, float) else value
+
+
+def _is_number(value: object) -> bool:
+    """Return whether a JSON value is a finite number, not a truth value."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) < 1e308
+
+
+def _are_numbers(value: object, count: int) -> bool:
+    return isinstance(value, list) and len(value) == count and all(map(_is_number, value))

@@ -1,0 +1,263 @@
+"""The world file: ground, roads, buildings and plants of a map in the light of a weather."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.dat.webots.shapes import Shapes, face_set
+from eyas.dat.webots.vrml import Node, Use, Value, floats, label
+from eyas.engine.state.lighting import Lighting
+from eyas.engine.state.mesh import Mesh
+from eyas.engine.state.scene import Lamps, ObjectClass, Scene
+from eyas.engine.state.terrain import Terrain
+from eyas.lanes import exact
+from eyas.maps.exports.scene_parts import Part, copies_of, parts_of, prototypes_of
+from eyas.maps.programs.prisms import prism
+
+__all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
+
+BASIC_STEP = 2
+"""Of physics, as in the original [ms]."""
+
+_SUN = 2.7
+"""Intensity of the original's sun, which by a clear day has the colour 1."""
+
+_GROUND = {ObjectClass.GROUND, ObjectClass.WATER}
+"""What is drawn by the node `land`."""
+
+Floats = NDArray[np.float64]
+
+
+def sky_nodes(title: str, light: Lighting, notice: str) -> list[Node]:
+    """Return the nodes about the world as a whole: settings, view, sky, sun and fog.
+
+    Args:
+        title: Name of the world.
+        light: Light and air.
+        notice: Whose data the map is made of.
+    """
+    sky = [0.5 * (a + b) for a, b in zip(light.zenith_colour, light.horizon_colour, strict=True)]
+    told = ["Made by Eyas for Webots R2023b, where its authors have not seen it run.", *[notice]]
+    nodes = [
+        Node(
+            "WorldInfo",
+            {
+                "title": title, "info": [line for line in told if line],
+                "basicTimeStep": BASIC_STEP, "FPS": 30, "coordinateSystem": "ENU",
+            },
+        ),
+        Node(
+            "Viewpoint",
+            {"orientation": (0.0, 1.0, 0.0, 0.9), "position": (-60.0, 0.0, 70.0), "near": 3.0},
+        ),
+        Node("Background", {"skyColor": [_shown(sky)], "luminosity": light.luminosity}, "tbg"),
+        _sun(light),
+    ]  # fmt: skip
+    if light.foggy:
+        nodes.append(
+            Node(
+                "Fog",
+                {
+                    "color": _shown(light.fog_colour),
+                    "fogType": "EXPONENTIAL2" if light.fog_power == 2 else "EXPONENTIAL",
+                    "visibilityRange": 1.0 / light.fog_density,
+                },
+                "fog",
+            )
+        )
+    return nodes
+
+
+def _sun(light: Lighting) -> Node:
+    strongest = max(light.sun_colour)
+    colour = [part / strongest if strongest else 1.0 for part in light.sun_colour]
+    return Node(
+        "DirectionalLight",
+        {
+            "color": _shown(colour),
+            "direction": tuple(-part for part in light.sun_direction),
+            "intensity": _SUN * strongest,
+            "castShadows": strongest > 0.0,
+        },
+        "tbgl",
+    )
+
+
+def _shown(radiance: Sequence[float]) -> tuple[float, ...]:
+    """Return a linear colour as sRGB."""
+    return tuple(
+        round(float(exact.power(min(max(part, 0.0), 1.0), 1 / 2.2)), 4) for part in radiance
+    )
+
+
+def scene_nodes(scene: Scene, shapes: Shapes, detail: int, *, shining: bool) -> Iterator[Node]:
+    """Yield the nodes of all that stands on a map: a solid for the ground, one for each building
+    and the like, and one for each class of repeated things.
+
+    Args:
+        scene: The map.
+        shapes: Makes the shapes of the file.
+        detail: Level of detail of trees and furniture; 0 is the finest.
+        shining: Whether street lamps shine.
+    """
+    solid = _Solids(scene)
+    parts = list(parts_of(scene))
+    yield _land(scene, shapes, [part.mesh for part in parts if part.object_class in _GROUND])
+    for part in parts:
+        if part.object_class not in _GROUND:
+            yield _part(part, shapes, solid)
+    yield from _repeated(scene, shapes, detail)
+    touched = solid.rest()
+    if touched:
+        fields: dict[str, Value] = {"name": "solid things", "boundingObject": _group(touched)}
+        yield Node("Solid", fields, "solid_things")
+    yield from _lamps(scene.lamps, shining=shining)
+
+
+def _land(scene: Scene, shapes: Shapes, meshes: Sequence[Mesh]) -> Node:
+    """Return the ground: its drawn meshes, and the grid of its heights, which is solid."""
+    shown = [shape for mesh in meshes for shape in shapes.of(_lifted(mesh, scene.terrain.floor))]
+    grid, west, south = _grid(scene.terrain, scene.size)
+    bound = Node("Pose", {"translation": (west, south, 0.0), "children": [grid]})
+    return Node(
+        "Solid",
+        {
+            "translation": (0.0, 0.0, scene.terrain.floor), "name": "land",
+            "children": shown, "boundingObject": bound, "locked": True,
+        },
+        "land",
+    )  # fmt: skip
+
+
+def _lifted(mesh: Mesh, floor: float) -> Mesh:
+    """Return a mesh in the frame of the land."""
+    places = mesh.positions - np.array([0.0, 0.0, floor], np.float32)
+    return Mesh(places, mesh.normals, mesh.uvs, mesh.triangles, mesh.materials, mesh.palette)
+
+
+def _grid(terrain: Terrain, size: tuple[float, float]) -> tuple[Node, float, float]:
+    """Return the heights above the floor, and where their south-western corner is [m]."""
+    heights, spacing = terrain.relief, (terrain.spacing, terrain.spacing)
+    west, south = terrain.west, terrain.south
+    if not heights.size:
+        heights, spacing = np.zeros((2, 2), np.float32), size
+        west, south = -0.5 * size[0], -0.5 * size[1]
+    fields: dict[str, Value] = {
+        "xDimension": heights.shape[1], "yDimension": heights.shape[0],
+        "xSpacing": spacing[0], "ySpacing": spacing[1],
+        "height": floats(heights.ravel()),
+    }  # fmt: skip
+    return Node("ElevationGrid", fields), west, south
+
+
+def _part(part: Part, shapes: Shapes, solid: "_Solids") -> Node:
+    owner = int(part.name.rpartition("-")[2])
+    fields: dict[str, Value] = {"name": part.name, "children": shapes.of(part.mesh)}
+    touched = solid.of(owner)
+    if touched:
+        fields["boundingObject"] = _group(touched)
+    return Node("Solid", {**fields, "locked": True}, label(part.name))
+
+
+def _group(nodes: list[Node]) -> Node:
+    return Node("Group", {"children": nodes})
+
+
+def _repeated(scene: Scene, shapes: Shapes, detail: int) -> Iterator[Node]:
+    """Yield a group for each class of repeated things; each prototype is told once."""
+    prototypes = prototypes_of(scene.fixtures, detail)
+    groups: dict[ObjectClass, list[Value]] = {}
+    named: dict[int, Use] = {}
+    for copies in copies_of(scene):
+        number = copies.prototype
+        if not len(prototypes[number].triangles):
+            continue
+        for pose in copies.pose.astype(np.float64):
+            if number not in named:
+                name = label(f"{copies.name}_{number}")
+                shown: Value = Node("Group", {"children": shapes.of(prototypes[number])}, name)
+                named[number] = Use(name)
+            else:
+                shown = named[number]
+            groups.setdefault(copies.object_class, []).append(_copy(pose, shown))
+    for kind, things in groups.items():
+        yield Node("Group", {"children": things}, label(f"{kind.name.lower()}s"))
+
+
+def _copy(pose: Floats, shown: Value) -> Node:
+    size = np.sqrt(np.square(pose[:, :3]).sum(axis=0))
+    fields: dict[str, Value] = {
+        "translation": _rounded(pose[:, 3]), "rotation": _axis_angle(pose[:, :3] / size),
+        "scale": _rounded(size), "children": [shown],
+    }  # fmt: skip
+    return Node("Transform", fields)
+
+
+def _rounded(values: Floats) -> tuple[float, ...]:
+    return tuple(round(float(value), 8) + 0.0 for value in values)
+
+
+def _axis_angle(turn: Floats) -> tuple[float, ...]:
+    """Return a rotation matrix as a unit axis and an angle [rad]."""
+    twice = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+    sine = 0.5 * exact.length(twice)
+    cosine = 0.5 * (float(np.trace(turn)) - 1.0)
+    angle = float(exact.atan2(sine, cosine))
+    if sine > 1e-6:
+        axis = twice / (2.0 * sine)
+    elif cosine > 0.0:
+        return 0.0, 0.0, 1.0, 0.0
+    else:  # half a turn: the axis is that of the projection (R + 1) / 2
+        projection = 0.5 * (turn + np.eye(3))
+        axis = projection[:, int(np.argmax(np.diag(projection)))]
+        axis = axis / exact.length(axis)
+    return (*_rounded(axis), round(angle, 8))
+
+
+def _lamps(lamps: Lamps, *, shining: bool) -> Iterator[Node]:
+    for number, (place, axis) in enumerate(zip(lamps.position, lamps.axis, strict=True)):
+        yield Node(
+            "SpotLight",
+            {
+                "location": _rounded(place.astype(np.float64)),
+                "direction": _rounded(axis.astype(np.float64)),
+                "intensity": lamps.intensity, "attenuation": (0.0, 0.0, 1.0),
+                "beamWidth": 0.8 * lamps.cut_off, "cutOffAngle": lamps.cut_off, "radius": 60.0,
+                "color": (1.0, 1.0, 1.0), "on": shining,
+            },
+            f"lamp_{number}",
+        )  # fmt: skip
+
+
+class _Solids:
+    """What bodies meet: prisms and upright cylinders, by the object that they are of."""
+
+    def __init__(self, scene: Scene) -> None:
+        solids = scene.colliders
+        self._of: dict[int, list[Node]] = {}
+        for number, (low, high) in enumerate(pairwise(solids.prism_first.tolist())):
+            span = float(solids.prism_bottom[number]), float(solids.prism_top[number])
+            made = face_set(*prism(solids.prism_points[low:high], span))
+            self._of.setdefault(int(solids.prism_object[number]), []).append(made)
+        for number, radius in enumerate(solids.cylinder_radius.tolist()):
+            bottom = float(solids.cylinder_bottom[number])
+            height = float(solids.cylinder_top[number]) - bottom
+            x, y = solids.cylinder_centre[number].tolist()
+            made = Node(
+                "Pose",
+                {
+                    "translation": (x, y, bottom + 0.5 * height),
+                    "children": [Node("Cylinder", {"height": height, "radius": radius})],
+                },
+            )
+            self._of.setdefault(int(solids.cylinder_object[number]), []).append(made)
+
+    def of(self, owner: int) -> list[Node]:
+        """Return those of an object, once."""
+        return self._of.pop(owner, [])
+
+    def rest(self) -> list[Node]:
+        """Return those that are left, such as trunks."""
+        return [node for nodes in self._of.values() for node in nodes]

@@ -1,0 +1,216 @@
+"""What is done with recordings and data sets: `eyas export`, `eyas dataset`, `eyas track`."""
+
+import logging
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eyas.engine.terminal.options import SEVERAL
+
+__all__ = ["dataset_app", "export", "track"]
+
+
+def export(  # noqa: PLR0913  # one parameter for each option
+    recording: Annotated[
+        Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
+    ],
+    formats: Annotated[
+        list[str],
+        typer.Option(
+            "--format",
+            help=f"coco, mot, ..., see docs/exports.md, or package.module:Class; {SEVERAL}.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder of the exports; by default RECORDING/exports."),
+    ] = None,
+    copy: Annotated[
+        bool,
+        typer.Option("--copy/--link", help="Copy the pictures, or make hard links to them."),
+    ] = False,
+    least_side: Annotated[
+        int,
+        typer.Option(
+            "--least-side", min=1, help="Ignore objects narrower or lower than so many pixels."
+        ),
+    ] = 1,
+    least_visible: Annotated[
+        float,
+        typer.Option(
+            "--least-visible", min=0.0, max=1.0, help="Ignore objects of which less is visible."
+        ),
+    ] = 0.0,
+    ignore_parked: Annotated[
+        bool,
+        typer.Option("--ignore-parked", help="Ignore parked cars and whatever else never moves."),
+    ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue an interrupted export.")
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="First delete an export that is in the folder.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Export a recording in the formats of other tools: COCO, MOTChallenge, GOT-10k, YOLO, ..."""
+    from eyas.engine.core.errors import ConfigError
+    from eyas.engine.recordings.run import run
+
+    if resume and overwrite:
+        raise ConfigError("--overwrite and --resume cannot be used together")
+    if math.isnan(least_visible):
+        raise ConfigError("--least-visible: nan is not allowed: 0 to 1")
+    from eyas.engine.recordings.export import ExportOptions
+
+    options = ExportOptions(
+        copies=copy,
+        least_side=least_side,
+        least_visible=least_visible,
+        ignore_parked=ignore_parked,
+        resume=resume,
+        overwrite=overwrite,
+    )
+    run(recording, formats, out, options, quiet=quiet)
+
+
+def track(  # noqa: PLR0913  # one parameter for each option
+    recording: Annotated[
+        Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
+    ],
+    tracker: Annotated[
+        str,
+        typer.Option(
+            "--tracker",
+            help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder to write to; by default runs/track/<data>-<tracker>."),
+    ] = None,
+    split: Annotated[
+        str | None, typer.Option("--split", help="Only train, val or test of a data set.")
+    ] = None,
+    restarts: Annotated[
+        bool,
+        typer.Option("--restarts", help="After a failure, give the tracker the true box again."),
+    ] = False,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=1, help="Processes; by default one for each core."),
+    ] = None,
+    plots: Annotated[
+        bool, typer.Option("--plots", help="Draw success and precision (extra plots).")
+    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+) -> None:
+    """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
+    from eyas.benchmark.plots import require_matplotlib
+    from eyas.datasets.tracking.report import draw_curves, print_figures
+    from eyas.datasets.tracking.run import Scoring, run
+    from eyas.engine.core.errors import ConfigError
+
+    if resume and overwrite:
+        raise ConfigError("--overwrite and --resume cannot be used together")
+    if plots:
+        require_matplotlib()  # not only when all is tracked
+    name = tracker.rpartition(":")[2].lower()
+    folder = out or Path("runs/track") / f"{recording.resolve().name}-{name}"
+    results = run(
+        Scoring(tracker, recording, split, restarts),
+        folder,
+        workers=workers,
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+    )
+    if plots:
+        draw_curves(folder, results)
+    if not quiet:
+        print_figures(folder, results)
+
+
+dataset_app = typer.Typer(no_args_is_help=True, help="Make data sets from recipes.")
+
+_Workers = Annotated[
+    int | None,
+    typer.Option("--workers", min=1, max=1024, help="Processes; by default one for each core."),
+]
+_Continue = Annotated[bool, typer.Option("--resume", help="Continue an interrupted data set.")]
+_Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+
+
+@dataset_app.command("make")
+def make_dataset(  # noqa: PLR0913  # one parameter for each option
+    recipe: Annotated[
+        str,
+        typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False),
+    ],
+    out: Annotated[
+        str, typer.Option("--out", help="Folder to write to, or a URL: s3://bucket/folder.")
+    ],
+    workers: _Workers = None,
+    sample: Annotated[
+        bool, typer.Option("--sample", help="Make a hundredth, to look at it first.")
+    ] = False,
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            "--shard", metavar="I/N", help="Make one of N shards; see eyas dataset merge."
+        ),
+    ] = None,
+    ray: Annotated[
+        bool, typer.Option("--ray", help="Spread the parts over a Ray cluster (extra cluster).")
+    ] = False,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Let the recipe name code, which is then run.")
+    ] = False,
+    resume: _Continue = False,
+    quiet: _Silent = False,
+) -> None:
+    """Record a data set with all cores, export and describe it."""
+    from eyas.datasets.making.make import Making
+    from eyas.datasets.making.run import parsed_shard, run
+
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
+    making = Making(workers=workers, resume=resume, quiet=quiet)
+    run(recipe, out, making, sample=sample, shard=parsed_shard(shard), ray=ray, trust=trust)
+
+
+@dataset_app.command("merge")
+def merge_dataset(
+    shards: Annotated[
+        list[Path], typer.Argument(metavar="SHARD...", help="Folders of all shards, in any order.")
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")],
+    workers: _Workers = None,
+    resume: _Continue = False,
+    quiet: _Silent = False,
+) -> None:
+    """Join the shards of a data set, after checking that all are there and whole."""
+    from eyas.datasets.making.make import Making
+    from eyas.datasets.making.merge import merge
+
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
+    merge(shards, out, Making(workers=workers, resume=resume, quiet=quiet))
+
+
+@dataset_app.command("show")
+def show_recipe(
+    recipe: Annotated[
+        str, typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False)
+    ],
+) -> None:
+    """Print a recipe with all defaults, to make another of it."""
+    from eyas.datasets.recipe import read_recipe
+
+    typer.echo(read_recipe(recipe, trust=True).model_dump_json(indent=1))

@@ -1,0 +1,285 @@
+"""Makes a data set: records the parts of a plan, exports them, and describes all.
+
+The same plan gives the same bytes: on one core or many, in shards or at once, killed and continued
+or not.
+"""
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from eyas.datasets.layout import MAKING_FILE, Plan, read_plan, write_plan
+from eyas.datasets.making.describe import describe
+from eyas.datasets.making.parts import (
+    PART_FILE,
+    check_part,
+    export_part,
+    read_facts,
+    record_part,
+    worlds_of,
+)
+from eyas.datasets.making.workers import work
+from eyas.datasets.plan import Part
+from eyas.datasets.statistics import PartFacts
+from eyas.engine.core.decoding import read_json
+from eyas.engine.core.errors import EyasError, OutputError
+from eyas.engine.core.files import PART_SUFFIX, refusals, write_atomic
+from eyas.engine.core.folder_lock import LOCK, folder_lock
+from eyas.engine.exports.checksums import SEALED, damaged_files, seal_folder
+from eyas.engine.recordings.export import EXPORTS, damaged_export, exports_folder, finish_export
+from eyas.engine.recordings.recording import DATASET_FILE, Recording, load_part
+from eyas.engine.terminal.progress import frames_bar
+from eyas.lanes import thread_count
+
+__all__ = ["Making", "Recorded", "complete", "continuable", "make", "open_folder", "report"]
+
+_LOG = logging.getLogger("eyas")
+
+EXPORTED = ".exported"
+"""Names of the parts whose exports are complete, a line each, while a data set is being made."""
+
+Recorded = Callable[[Sequence[Part], Path], Iterator[tuple[Part, PartFacts]]]
+"""Records parts into the folder of the data set; yields each that is complete."""
+
+
+@dataclass(frozen=True, slots=True)
+class Making:
+    """How a data set is made; its bytes do not depend on it."""
+
+    workers: int | None = None
+    """Number of processes; None: one for each core."""
+    resume: bool = False
+    """Whether one in the folder is continued."""
+    quiet: bool = True
+
+    @property
+    def processes(self) -> int:
+        """Number of processes."""
+        return self.workers or thread_count()
+
+    def threads(self, parts: int) -> int:
+        """Return how many threads each process has for so many parts."""
+        return max(1, thread_count() // max(1, min(self.processes, parts)))
+
+
+def make(
+    plan: Plan,
+    root: Path,
+    making: Making,
+    recorded: Recorded | None = None,
+    kept: Callable[[Part | None], None] = lambda part: None,
+) -> None:
+    """Make a data set, or what is missing of it.
+
+    Args:
+        plan: The plan.
+        root: Its folder.
+        making: How.
+        recorded: What records parts; None: the processes of this machine.
+        kept: Is told of each part that is complete, and at the end of None; see
+            `eyas.datasets.making.remote`.
+
+    Raises:
+        EyasError: The recipe cannot be met, the folder is taken, or something cannot be written;
+            one line.
+        KeyboardInterrupt: The user stopped it; every file that exists is complete.
+    """
+    parts = plan.parts()
+    if root.exists():
+        _left(root, plan, resume=making.resume)  # refuses a folder at once that is taken
+    _check_worlds(parts, root, making)
+    with folder_lock(root, "making a data set in it"), continuable(root):
+        if open_folder(root, plan, resume=making.resume):
+            _record(parts, root, making, recorded or _on_this_machine(making), kept)
+            complete(plan, root, making)
+            kept(None)
+
+
+def _check_worlds(parts: Sequence[Part], root: Path, making: Making) -> None:
+    """Build each world once, so that a recipe that cannot be met is told before any is drawn."""
+    missing = [part for part in parts if not (root / part.folder / PART_FILE).exists()]
+    worlds = worlds_of(missing)
+    if worlds:
+        for _ in work(worlds, check_part, making.processes, making.threads(len(worlds))):
+            pass
+
+
+def _on_this_machine(making: Making) -> Recorded:
+    def recorded(parts: Sequence[Part], root: Path) -> Iterator[tuple[Part, PartFacts]]:
+        return work(parts, record_part, making.processes, making.threads(len(parts)), root)
+
+    return recorded
+
+
+@contextmanager
+def continuable(root: Path) -> Iterator[None]:
+    """Tell how to go on after an interrupt, or when nothing can be written."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        interrupt.add_note(f"every file in {root} is whole; continue with --resume")
+        raise
+    except OutputError as error:
+        if "--resume" in str(error):
+            raise
+        raise OutputError(f"{error}; continue with --resume") from error
+
+
+def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
+    """Prepare the folder of a data set; return whether anything is left to do.
+
+    Raises:
+        OutputError: It holds something else, or one that may not be continued.
+        DataFileError: What is there cannot be read.
+    """
+    found = _left(root, plan, resume=resume)
+    if found == DATASET_FILE:
+        damaged = list(_damaged(root, plan))
+        if not damaged:
+            return False
+        _LOG.warning(
+            "%s: not as it was made (%d such files), so what is of it is made again",
+            *(damaged[0], len(damaged)),
+        )
+    if found != MAKING_FILE:
+        write_plan(root, plan)
+    with refusals(root):
+        (root / DATASET_FILE).unlink(missing_ok=True)
+    return True
+
+
+def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
+    """Yield the files of a finished data set that have changed since; parts that have some are no
+    longer known as complete.
+    """
+    if not (root / "parts").exists():  # of one behind a URL, only dataset.json is on this machine
+        return
+    yield from damaged_files(root, read_json(root / DATASET_FILE, 1 << 28).get(SEALED))
+    for name in plan.recipe.formats if plan.shard is None else ():
+        found = damaged_export(exports_folder(root, name, None))
+        yield from [] if found is None else [found]
+    for part in plan.parts():
+        folder = root / part.folder
+        try:
+            facts = read_facts(folder)
+        except EyasError:
+            facts = None
+        known = [folder / PART_FILE] if facts is None else []
+        damaged = known or list(damaged_files(folder, facts and facts.checksums))
+        if damaged:
+            with refusals(folder):
+                (folder / PART_FILE).unlink(missing_ok=True)
+        yield from damaged
+
+
+def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
+    """Return the file by which a data set is known that is to be continued; None: there is none.
+
+    Raises:
+        OutputError: As `open_folder`.
+        DataFileError: As `open_folder`.
+    """
+    with refusals(root):
+        names = {inside.name for inside in root.iterdir()} - {LOCK}
+    names = {name for name in names if not name.endswith(PART_SUFFIX)}
+    if not names:
+        return None
+    if not resume:
+        raise OutputError(
+            f"{root}: not empty; continue its data set with --resume, or name another folder"
+        )
+    found = next((name for name in (DATASET_FILE, MAKING_FILE) if name in names), None)
+    if found is None:
+        raise OutputError(f"{root}: not a data set: it has no {MAKING_FILE} or {DATASET_FILE}")
+    differs = read_plan(root / found).difference(plan)
+    if differs:
+        raise OutputError(f"{root}: not continued: {differs}; name another folder")
+    return found
+
+
+def _record(
+    parts: Sequence[Part],
+    root: Path,
+    making: Making,
+    recorded: Recorded,
+    kept: Callable[[Part | None], None],
+) -> None:
+    missing, done = [], 0
+    for part in parts:
+        if read_facts(root / part.folder) is None:
+            missing.append(part)
+        else:
+            done += part.frames
+    with frames_bar("recording", sum(part.frames for part in parts), quiet=making.quiet) as told:
+        told(done)
+        if missing:
+            for part, _ in recorded(missing, root):
+                kept(part)
+                done += part.frames
+                told(done)
+
+
+def complete(plan: Plan, root: Path, making: Making) -> None:
+    """Export and describe a data set whose parts are all there; a shard is only described.
+
+    Raises:
+        EyasError: A file cannot be read or written.
+    """
+    described = [(part, _known(root, part)) for part in plan.parts()]
+    if plan.shard is None:
+        _export(plan, [part for part, _ in described], root, making)
+        describe(plan, described, root)
+    aside = ("parts", EXPORTS, MAKING_FILE, DATASET_FILE, EXPORTED, LOCK)
+    write_plan(root, plan, described, seal_folder(root, aside))
+    with refusals(root):
+        for name in (MAKING_FILE, EXPORTED):
+            (root / name).unlink(missing_ok=True)
+
+
+def _known(root: Path, part: Part) -> PartFacts:
+    facts = read_facts(root / part.folder)
+    if facts is None:
+        raise OutputError(f"{root / part.folder}: the part is not complete")
+    return facts
+
+
+def _export(plan: Plan, parts: Sequence[Part], root: Path, making: Making) -> None:
+    """Put all parts into the formats of the recipe, in all processes."""
+    formats, name = plan.recipe.formats, plan.recipe.name
+    if not formats:
+        return
+    done = _lines(root / EXPORTED)
+    missing = [part for part in parts if part.name not in done]
+    frames = sum(part.frames for part in parts if part.name in done)
+    total = sum(part.frames for part in parts)
+    with frames_bar("exporting", total, quiet=making.quiet) as told:
+        told(frames)
+        call = work(missing, export_part, making.processes, 1, root, name, formats)
+        for part, _ in call if missing else ():
+            done.append(part.name)
+            write_atomic(root / EXPORTED, "".join(f"{each}\n" for each in done).encode())
+            frames += part.frames
+            told(frames)
+    episodes = [each for part in parts for each in load_part(root, part.split, part.name)]
+    for form in formats:
+        finish_export(exports_folder(root, form, None), name, form, Recording(root, episodes))
+
+
+def _lines(path: Path) -> list[str]:
+    return path.read_text().splitlines() if path.exists() else []
+
+
+def report(plan: Plan, place: str, *, quiet: bool) -> None:
+    """Print what was made at a place."""
+    if quiet:
+        return
+    told = f"{place}: {plan.recipe.name}"
+    if plan.shard is not None:
+        told += f", shard {plan.shard[0]} of {plan.shard[1]}"
+    else:
+        told += "; overview.html there shows it"
+    Console().print(told, highlight=False, markup=False, soft_wrap=True)

@@ -1,0 +1,81 @@
+"""`eyas dataset make`, from the words of a user."""
+
+import re
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from eyas.datasets.layout import RECIPE_FILE, Plan
+from eyas.datasets.making.make import Making, make, report
+from eyas.datasets.recipe import Recipe, read_recipe
+from eyas.engine.core.config import validated
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.video.action import check_flight
+
+__all__ = ["parsed_shard", "run"]
+
+
+def run(  # noqa: PLR0913  # choices of the user's
+    named: str | Mapping[str, Any],
+    out: str,
+    making: Making,
+    *,
+    sample: bool = False,
+    shard: tuple[int, int] | None = None,
+    ray: bool = False,
+    trust: bool = False,
+) -> None:
+    """Make a data set, or what is missing of it.
+
+    Args:
+        named: `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON.
+        out: Its folder, or a URL of one, `s3://bucket/folder`.
+        making: How it is made.
+        sample: Whether only a hundredth is made.
+        shard: Number of the shard, from 1, and of all shards; None: all of it.
+        ray: Whether the processes of Ray record.
+        trust: Whether the recipe may name code.
+
+    Raises:
+        EyasError: The recipe is wrong or cannot be met, the folder is taken, or something cannot
+            be written; one line.
+        KeyboardInterrupt: The user stopped it; every file that exists is complete.
+    """
+    if isinstance(named, str):
+        recipe, source = read_recipe(named, trust=trust), named
+    else:
+        recipe, source = validated(Recipe, named), RECIPE_FILE
+    plan = Plan.of(recipe, source, sample=sample, shard=shard)
+    for part in plan.parts():  # refuses a recipe that cannot be met, before anything begins
+        check_flight(part.config)
+    with ExitStack() as stack:
+        recorded = None
+        if ray:
+            from eyas.datasets.making.spread import on_ray
+
+            recorded = stack.enter_context(on_ray())
+        if "://" in out:
+            from eyas.datasets.making.remote import Remote
+
+            remote = Remote(out)
+            with remote.scratch(plan, making) as root:
+                make(plan, root, replace(making, resume=True), recorded, remote.keep)
+        else:
+            make(plan, Path(out), making, recorded)
+    report(plan, out, quiet=making.quiet)
+
+
+def parsed_shard(text: str | None) -> tuple[int, int] | None:
+    """Return number and count of `3/100`.
+
+    Raises:
+        ConfigError: It is of another form.
+    """
+    if text is None:
+        return None
+    found = re.fullmatch(r"(\d{1,9})/(\d{1,9})", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
+        raise ConfigError(f"--shard: {text!r} is not allowed: I/N, I from 1 to N, such as 3/100")
+    return int(found[1]), int(found[2])

@@ -1,0 +1,146 @@
+"""Runs the demo in the browser, or as lines in a terminal."""
+
+import asyncio
+import os
+import socket
+import sys
+import time
+import webbrowser
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any
+
+from eyas.benchmark.policies.shipped import shipped_names
+from eyas.demo.orders import open_with_a_chase
+from eyas.demo.session import Session
+from eyas.engine.core.errors import OutputError
+from eyas.engine.settings.config import EyasConfig
+from eyas.engine.task.step_line import step_line
+from eyas.lanes.interrupts import let_in, shielded
+
+__all__ = ["RECORDINGS", "listen", "run_browser", "run_headless", "session_of"]
+
+_LOOK = 0.05
+"""Time from one look for signals to the next [s]."""
+
+
+def run_until_signal(serving: Coroutine[Any, Any, None]) -> None:
+    """Run a coroutine; a signal that asks the program to end cancels it.
+
+    The interrupt is raised when the loop has ended. Raised in the loop, wherever that happens to
+    be, it would be the failure of a task that nobody awaits, such as of one page's.
+
+    Raises:
+        KeyboardInterrupt: There was such a signal.
+    """
+    with shielded():
+        interrupt = asyncio.run(_ended(serving))
+    if interrupt is not None:
+        raise interrupt
+
+
+async def _ended(serving: Coroutine[Any, Any, None]) -> KeyboardInterrupt | None:
+    """Await a coroutine; return the interrupt that has cancelled it, if any."""
+    task, interrupt = asyncio.create_task(serving), None
+    while not task.done():
+        await asyncio.wait([task], timeout=_LOOK)
+        try:
+            let_in()
+        except KeyboardInterrupt as raised:
+            interrupt = interrupt or raised
+            task.cancel()
+    if not task.cancelled():
+        task.result()
+    return interrupt
+
+
+RECORDINGS = Path("runs/demo")
+BUILT_IN = ("follow", "servo")
+LINES = 10
+"""Lines per second in a terminal."""
+
+
+def session_of(config: EyasConfig, policy: str | None = None) -> Session:
+    """Return what is flown in a demo.
+
+    Args:
+        config: The settings.
+        policy: A policy that may fly, beside those that come with Eyas.
+
+    Raises:
+        EyasError: The world cannot be built.
+    """
+    names = (*BUILT_IN, *shipped_names(), *((policy,) if policy else ()))
+    return Session(config, tuple(dict.fromkeys(names)), RECORDINGS)
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """Return a socket that listens, before a world is built for nothing.
+
+    Args:
+        host: The address to bind.
+        port: The port; 0: any that is free.
+
+    Raises:
+        OutputError: The port cannot be had.
+    """
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        return socket.create_server(address[:2], family=family)
+    except OSError as error:
+        raise OutputError(
+            f"port {port} of {host}: cannot be used: {error.strerror or error}; "
+            "name another with --port, or 0 for any"
+        ) from None
+
+
+def run_browser(
+    session: Session,
+    host: str,
+    listening: socket.socket,
+    *,
+    browser: bool,
+    say: Callable[[str], None],
+) -> None:
+    """Serve the demo's page until it is interrupted.
+
+    Args:
+        session: What is flown.
+        host: The address that is bound.
+        listening: Its socket, see `listen`.
+        browser: Whether to open a browser, where there is one.
+        say: Prints the line with the address.
+    """
+    from eyas.demo.server import DemoServer
+
+    open_with_a_chase(session)
+
+    def begun(address: str) -> None:
+        say(address)
+        if browser and _has_screen():
+            webbrowser.open(address)
+
+    run_until_signal(DemoServer(session, host, listening).run(begun))
+
+
+def _has_screen() -> bool:
+    """Return whether a browser could show up: else one that runs in the terminal would start."""
+    if sys.platform != "linux":
+        return True
+    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+
+
+def run_headless(session: Session, seconds: float, say: Callable[[str], None]) -> None:
+    """Hover, and print the reward in real time as the original's console does.
+
+    Args:
+        session: What is flown.
+        seconds: How long.
+        say: Prints a line.
+    """
+    begun = time.monotonic()
+    session.clock.skip(begun)
+    for line in range(1, round(seconds * LINES) + 1):
+        time.sleep(max(begun + line / LINES - time.monotonic(), 0.0))
+        session.advance(time.monotonic())
+        say(step_line(session.flight.simulation.snapshot, 0, "DRONE0"))

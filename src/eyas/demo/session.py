@@ -1,0 +1,141 @@
+"""All that is going on in the demo: the flight, who flies, what is shown and recorded."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+from eyas.demo.choices import Builder, WorldChoice
+from eyas.demo.controllers import Controller, Duel
+from eyas.demo.controls import Held, command_of
+from eyas.demo.flight import DemoFlight
+from eyas.demo.frame import DemoFrame
+from eyas.demo.pace import Clock, PictureSize
+from eyas.demo.readings import readings, traffic
+from eyas.demo.recording import DemoRecording
+from eyas.demo.views import Screen
+from eyas.engine.settings.config import EyasConfig
+
+__all__ = ["Session"]
+
+SILENCE = 0.5
+"""Time after which the keys of a page that says nothing are released [s]."""
+CHUNK = 10
+"""Largest number of physics steps between two looks at the reward."""
+TRAFFIC = 3
+"""Frames from one list of all vehicles to the next."""
+
+
+class Session:
+    """State of the demo, in the thread that flies.
+
+    Args:
+        config: The settings.
+        policies: Names of the policies that may fly.
+        recordings: The folder in which recordings are made.
+    """
+
+    def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
+        self.policies, self.recordings = policies, recordings
+        self.size, self.clock = PictureSize(), Clock(time.monotonic())
+        self.overlay = True
+        self.recording: DemoRecording | None = None
+        self.duel: Duel | None = None
+        self.duel_later: str | None = None
+        """The policy of a duel that begins when the new world is built."""
+        self.sides_change = False
+        """Whether the next flight of the duel is to begin."""
+        plan = WorldChoice(config, config.traffic.max_vehicles)
+        self.builder = Builder(plan)
+        self.begin_flight(plan.build())
+        self._frames = 0
+
+    def begin_flight(self, flight: DemoFlight) -> None:
+        """Go on with another flight."""
+        self.flight = flight
+        self.screen = Screen(flight)
+        self.hand_over(None, None)
+        self.hold({}, (0, 0.0), 0.0)
+        self.extra_steps = 0
+
+    def hand_over(self, controller: Controller | None, name: str | None) -> None:
+        """Let a controller fly; None: the keys."""
+        self.controller, self.controller_name, self._left = controller, name, 0
+
+    def hold(self, held: Held, source: tuple[int, float], now: float) -> None:
+        """Hold controls, until something else is said, or nothing for half a second.
+
+        Args:
+            held: The controls.
+            source: Sequence number of the message, and the page's time of the last change [ms].
+            now: The time [s].
+        """
+        self._held, self.source, self._heard = held, source, now
+
+    def advance(self, now: float) -> None:
+        """Fly until now.
+
+        Raises:
+            EyasError: A policy failed, or a frame could not be written.
+        """
+        steps = self.clock.steps(now) + self.extra_steps
+        self.extra_steps = 0
+        if self.duel is not None and self.duel.waits(now):
+            return
+        if now - self._heard > SILENCE:
+            self._held = {}
+        while steps > 0 and not self.sides_change:
+            steps -= self._advance_some(steps, now)
+
+    def _advance_some(self, steps: int, now: float) -> int:
+        """Fly some of the steps that are due; return how many."""
+        some = min(steps, CHUNK)
+        if self.controller is None:
+            command = command_of(self._held)
+        else:
+            if self._left <= 0:
+                self._decided, self._left = self.controller.decide()
+            command, some = self._decided, min(some, self._left)
+        if self.recording is not None:
+            some = min(some, self.recording.steps_left)
+        self.flight.fly(command, some, self._held)
+        self._left -= some
+        if self.recording is not None:
+            self.recording.count(command, some)
+        if self.duel is not None:
+            self._score(some, now)
+        return some
+
+    def _score(self, steps: int, now: float) -> None:
+        duel = self.duel
+        assert duel is not None
+        reward = float(self.flight.simulation.snapshot.episodes.reward[0])
+        self.sides_change |= duel.count(reward, steps, now)
+
+    def frame(self, now: float) -> DemoFrame:
+        """Draw the next frame."""
+        begun = time.perf_counter()
+        self._frames += 1
+        width, height = self.size.now
+        rgb = self.screen.draw(width, height)
+        frame = DemoFrame(self._frames, self._state(now, width, height), rgb)
+        self.size.spent(time.perf_counter() - begun)
+        return frame
+
+    def _state(self, now: float, width: int, height: int) -> dict[str, Any]:
+        """Return what the page gets beside the picture."""
+        state = readings(self.flight) | {
+            "frame": self._frames,
+            "sequence": self.source[0],
+            "input": self.source[1],
+            "view": self.screen.view,
+            "size": [width, height],
+            "speed_of_time": self.clock.speed,
+            "flies": self.controller_name,
+            "recorded": None if self.recording is None else self.recording.frames,
+            "duel": None if self.duel is None else self.duel.told(now),
+            "body": self.screen.body(width, height),
+            "marks": self.screen.marks(width, height) if self.overlay else None,
+        }
+        if self._frames % TRAFFIC == 1:
+            state["traffic"] = traffic(self.flight)
+        return state

@@ -1,0 +1,115 @@
+"""Files that may come from anyone, read; our own, written under a temporary name and renamed."""
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from eyas.engine.core.errors import DataFileError, OutputError
+from eyas.lanes.folder import open_at_once
+
+__all__ = [
+    "PART_SUFFIX",
+    "atomic_path",
+    "part_path",
+    "read_limited",
+    "refusals",
+    "user_path",
+    "write_atomic",
+]
+
+PART_SUFFIX = ".part"
+"""Ending of a file that is still being written; such a file may be deleted at any time."""
+
+
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
+
+
+def part_path(path: Path) -> Path:
+    """Return the hidden temporary path, beside `path`, under which the file is written."""
+    return path.with_name(f".{path.name}{PART_SUFFIX}")
+
+
+@contextmanager
+def refusals(path: Path) -> Iterator[None]:
+    """Turn errors of the file system inside the block into one line about `path`.
+
+    Raises:
+        OutputError: The file system refused (full disk, no permission, a folder in the way).
+    """
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from error
+
+
+@contextmanager
+def atomic_path(path: Path) -> Iterator[Path]:
+    """Yield a temporary path beside `path`; rename it to `path` if the block succeeds.
+
+    Raises:
+        OutputError: The file system refused (full disk, no permission, a folder in the way).
+    """
+    part = part_path(path)
+    with refusals(path):
+        try:
+            yield part
+            os.replace(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+
+
+def write_atomic(path: Path, data: bytes) -> None:
+    """Write a file completely or not at all.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    with atomic_path(path) as part:
+        # Without Python's file objects: half of the time, of which `eyas serve` has 12 in a round.
+        file = os.open(part, _NEW, 0o666)
+        try:
+            left = memoryview(data)
+            while left:
+                left = left[os.write(file, left) :]
+        finally:
+            os.close(file)
+
+
+def user_path(text: str) -> Path:
+    """Return the path that a user has written, with `~` as in a shell.
+
+    Raises:
+        DataFileError: There is no such user.
+    """
+    try:
+        return Path(text).expanduser()
+    except RuntimeError as error:
+        raise DataFileError(f"{text}: cannot read: {error}") from error
+
+
+def read_limited(path: Path, largest: int) -> bytes:
+    """Return the content of a file.
+
+    Args:
+        path: The file.
+        largest: Largest allowed size [bytes].
+
+    Raises:
+        DataFileError: The file is missing or unreadable, too large, or no ordinary file: a device
+            or a pipe would be read for ever.
+    """
+    try:
+        with open(path, "rb", opener=open_at_once) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise DataFileError(f"{path}: cannot read: not an ordinary file")
+            content = file.read(largest + 1)
+    except OSError as error:
+        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    except ValueError as error:  # a character that no path can have
+        raise DataFileError(f"{path}: cannot read: {error}") from error
+    if len(content) > largest:
+        raise DataFileError(f"{path}: cannot read: larger than {largest >> 20} MiB")
+    return content

@@ -1,0 +1,272 @@
+"""The program as a graph: its definitions, what each says, and what each refers to.
+
+What is kept on disk, resumed or compared is identified by the code that makes it. A *definition* is
+what binds a name of a module: a function, a class with its methods, a constant. The *closure* of a
+definition is all that it refers to, directly or not, however late it is imported. It is read from
+the sources without running them, because a start that finds everything in the cache imports little
+of what once made it.
+
+What a definition says and refers to is read by `eyas.engine.core.definitions`. A package that uses
+`import_module` refers to all its modules. Where a name cannot be found, its whole module is taken:
+one dependency too many costs seconds, a missing one a wrong result.
+"""
+
+import functools
+import json
+import sys
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from eyas.engine.core.cache.entries import write_whole
+from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.definitions import Definition, digest_of, read_definitions
+from eyas.lanes.folder import cache_folder
+from eyas.lanes.identity import language_hash
+
+__all__ = [
+    "INDEX",
+    "Place",
+    "UnknownCodeError",
+    "closure_of",
+    "code_of",
+    "definitions_in",
+    "definitions_of",
+    "index_of",
+]
+
+INDEX = Path(__file__).with_name("definitions.json")
+"""The definitions in the files of the package, by digests of their text: reading them from the text
+takes some milliseconds for each file. Those of files that were edited are kept in the cache."""
+
+_APART = (
+    "eyas.engine.core.cache",
+    "eyas.engine.core.errors",
+    "eyas.engine.core.own_code",
+    "eyas.engine.core.program",
+)
+"""Modules that keep, refuse or find things, and decide no value; not followed."""
+
+_COMPILER = ("eyas.lanes",)
+"""Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
+
+_LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}
+"""Libraries that compute, by the names under which they are imported; their versions count."""
+
+Place = tuple[str, str]
+"""A definition: its module and its name; a library has no name."""
+
+
+class UnknownCodeError(TypeError):
+    """It is not known where the code of something lies: it was typed in, or made by `exec`."""
+
+
+def code_of(what: Callable[..., Any]) -> str:
+    """Return what identifies the code of a function, of a `partial` of one, or of a class.
+
+    Raises:
+        UnknownCodeError: It is not known where its code lies.
+    """
+    found: Any = what
+    while isinstance(found, functools.partial) or hasattr(found, "__wrapped__"):
+        found = found.func if isinstance(found, functools.partial) else found.__wrapped__
+    for inner in ("function", "py_func", "__func__"):  # of a kernel, and of a bound method
+        found = getattr(found, inner, found)
+    if not hasattr(found, "__qualname__"):  # an object that can be called
+        found = type(found)
+    return _code(found.__module__ or "", found.__qualname__.partition(".")[0])
+
+
+@cache
+def _code(module: str, name: str) -> str:
+    said = []
+    for at, what in sorted(closure_of(module, name)):
+        if not what:
+            said.append(_library(at))
+        elif what == _LANGUAGE:
+            said.append(f"language of kernels {language_hash()}")
+        else:
+            said.append(f"{at}:{what} {definitions_of(at)[what].digest}")
+    return digest_of("\n".join(filter(None, said)))
+
+
+def closure_of(module: str, name: str) -> set[Place]:
+    """Return a definition and all that it refers to, in Eyas and in the package that it lies in.
+
+    Raises:
+        UnknownCodeError: The module's file is not found.
+    """
+    package = module.partition(".")[0]
+    if package in _LIBRARIES:
+        return {(package, "")}
+    if not definitions_of(module):
+        raise UnknownCodeError(f"{module}: its file is not found, so {name} is not identified")
+    known = definitions_of(module)
+    left = list(_targets(module, name if name in known else "", package))
+    seen = set(left)
+    while left:
+        for other in _references(left.pop(), package):
+            if other not in seen:
+                seen.add(other)
+                left.append(other)
+    return seen
+
+
+_LANGUAGE = "<language>"
+
+
+@cache
+def _references(place: Place, package: str) -> tuple[Place, ...]:
+    """Return the definitions that one refers to.
+
+    Args:
+        place: The definition.
+        package: The package that is followed beside Eyas.
+    """
+    module, name = place
+    if not name or name == _LANGUAGE:
+        return ()
+    found: dict[Place, None] = {}
+    for reference in definitions_of(module)[name].refers:
+        at, colon, chain = reference.rpartition(":")
+        at = _absolute(at, module) if colon else module
+        found.update(dict.fromkeys(_targets(at, chain, package)))
+        if at == "importlib" and chain == "import_module":
+            for inner in _modules_in(module):
+                found.update(dict.fromkeys(_targets(inner, "", package)))
+    return tuple(found)
+
+
+def _modules_in(package: str) -> list[str]:
+    """Return the modules in the folder of a package, which it imports by names it has found."""
+    path = _path(package)
+    if path is None or path.name != "__init__.py":
+        return []
+    return [f"{package}.{file.stem}" for file in sorted(path.parent.glob("*.py")) if file != path]
+
+
+@cache
+def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
+    """Return the definitions that a name of a module stands for; all of the module's for "".
+
+    Args:
+        module: The module.
+        chain: Name and attributes, `exact.length`.
+        package: See `_references`.
+    """
+    if module.partition(".")[0] not in ("eyas", package):
+        return ((module.partition(".")[0], ""),)
+    if _lies_in(module, _COMPILER):
+        return (("eyas", _LANGUAGE),)
+    first, _, rest = chain.partition(".")
+    inner = f"{module}.{first}"
+    known = definitions_of(module)
+    if _lies_in(module, _APART):
+        return ()
+    if first in known:
+        if known[first].digest:
+            return ((module, first),)
+        at, _, name = known[first].refers[0].rpartition(":")
+        return _targets(_absolute(at, module), ".".join(filter(None, (name, rest))), package)
+    if first and _path(inner) is not None:
+        return _targets(inner, rest, package)
+    return tuple((module, name) for name, said in known.items() if said.digest)
+
+
+def _lies_in(module: str, rooms: tuple[str, ...]) -> bool:
+    return any(module == room or module.startswith(f"{room}.") for room in rooms)
+
+
+def _absolute(module: str, inside: str) -> str:
+    """Return the whole name of a module that is named from inside another, perhaps with dots."""
+    name = module.lstrip(".")
+    up = len(module) - len(name)
+    if not up:
+        return module
+    path = _path(inside)
+    parts = inside.split(".")
+    parts = parts[: len(parts) - up + (path is not None and path.name == "__init__.py")]
+    return ".".join(filter(None, (*parts, name)))
+
+
+@cache
+def _library(name: str) -> str:
+    if name not in _LIBRARIES:
+        return ""
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return f"{name} {version(_LIBRARIES[name])}"
+    except PackageNotFoundError:
+        return ""
+
+
+@cache
+def _path(module: str) -> Path | None:
+    """Return the file of a module, which need not be imported; None: there is none."""
+    first, _, rest = module.partition(".")
+    loaded = sys.modules.get(first)
+    if not rest:
+        own = getattr(loaded, "__file__", None)
+        return Path(own) if own and own.endswith(".py") else None
+    for folder in getattr(loaded, "__path__", ()):
+        path = Path(folder, *rest.split("."))
+        for file in (path / "__init__.py", path.with_suffix(".py")):
+            if file.is_file():
+                return file
+    return None
+
+
+@cache
+def definitions_of(module: str) -> dict[str, Definition]:
+    """Return the definitions in a module by name; empty if its file cannot be read."""
+    path = _path(module)
+    try:
+        return {} if path is None else definitions_in(path.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return {}
+
+
+def definitions_in(text: bytes) -> dict[str, Definition]:
+    """Return the definitions in the text of a file, from the package or the cache if possible."""
+    digest = digest_of(text)
+    kept = cache_folder() / Kind.DEFINITIONS / f"eyas-{digest}.json"
+    try:
+        return _as_definitions(json.loads(_index().get(digest) or kept.read_bytes()))
+    except (OSError, ValueError, TypeError, AttributeError):
+        found = dict(sorted(read_definitions(text).items()))
+    with suppress(OSError):  # whoever keeps what was made tells of it
+        write_whole(kept, [json.dumps(found).encode()])
+    return found
+
+
+def _as_definitions(known: Any) -> dict[str, Definition]:  # noqa: ANN401  # JSON
+    # In the same order wherever they come from: builds are digests of them.
+    ordered = sorted(known.items())
+    return {name: Definition(digest, tuple(refers)) for name, (digest, refers) in ordered}
+
+
+def index_of(paths: Iterable[Path]) -> str:
+    """Return the content of `INDEX` for some files: JSON with a line for each."""
+    found = {digest_of(text): read_definitions(text) for text in map(Path.read_bytes, paths)}
+    lines = [
+        f'"{digest}":{json.dumps(said, separators=(",", ":"), sort_keys=True)}'
+        for digest, said in sorted(found.items())
+    ]
+    return "{\n" + ",\n".join(lines) + "\n}\n"
+
+
+@cache
+def _index() -> dict[str, bytes]:
+    """Return what `INDEX` says of each file, by the digest of its text.
+
+    It stays JSON until it is asked for: a process needs a part of 200,000 names, which take 13 MiB.
+    """
+    try:
+        lines = INDEX.read_bytes().splitlines()
+    except OSError:
+        return {}
+    told = (line.rstrip(b",").partition(b":") for line in lines)
+    return {digest.decode("ascii", "replace").strip('"'): said for digest, _, said in told if said}

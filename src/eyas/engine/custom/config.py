@@ -1,0 +1,62 @@
+"""Settings of a target of one's own."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from eyas.engine.core.code_names import NAMES_CODE
+from eyas.engine.core.config import Config
+from eyas.engine.targets.habit import Behaviour
+
+__all__ = ["ENDINGS", "MESHES", "CustomConfig"]
+
+MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")
+"""Endings of the mesh files that can be read."""
+
+ENDINGS = (*MESHES, ".proto")
+"""Endings of the files of shapes that can be read."""
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+class CustomConfig(Config):
+    """A target of one's own, in the place of `target`: `mesh`, `path`, `trajectory`, or a `body`
+    with a `behaviour`.
+    """
+
+    mesh: Text | None = None
+    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`), or a Webots `.proto`."""
+    path: Annotated[Text | None, NAMES_CODE] = None
+    """Its class, `package.module:Class`, see `eyas.engine.custom.own.OwnTarget`."""
+    trajectory: Text | None = None
+    """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""
+    smoothing: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Time over which the trajectory's positions are smoothed, see
+    `eyas.engine.custom.smoothing.smoothed`; 0: it passes all points [s]."""
+    body: Text = "Pedestrian"
+    """Kind that is moved by `trajectory` or `behaviour`, if there is neither `mesh` nor `path`."""
+    up: Literal["y", "z"] | None = None
+    """Axis that is up in the file; None: y in glTF, else z."""
+    turn: Annotated[float, Field(ge=-7, le=7)] = 0.0
+    """Angle by which the mesh is turned about its height, so that it looks along x [rad]."""
+    scale: Annotated[float, Field(gt=0, le=1e6)] = 1.0
+    """Factor from the file's unit to metres."""
+    most_triangles: Annotated[int, Field(ge=12, le=200_000)] | None = None
+    """Number of triangles to which a larger mesh is simplified; None: it is left as it is."""
+    behaviour: Behaviour = Behaviour.WANDER
+    """How it moves, where it has no motion of its own."""
+    speed: Annotated[float, Field(ge=0.01, le=50)] = 1.0
+    """How fast it moves with a behaviour [m/s]."""
+    words: Text | None = None
+    """What it is, "a delivery robot"; None: the name of its file or class."""
+
+    @model_validator(mode="after")
+    def _something(self) -> "CustomConfig":
+        alone = self.mesh is None and self.path is None and self.trajectory is None
+        if alone and "behaviour" not in self.model_fields_set:
+            raise ValueError("mesh must be given, or path, trajectory or behaviour")
+        if self.mesh is not None and self.path is not None:
+            raise ValueError("path must be left out where a mesh is given")
+        if self.smoothing > 0.0 and self.trajectory is None:
+            raise ValueError("smoothing must be left out where no trajectory is given")
+        return self

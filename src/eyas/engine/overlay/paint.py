@@ -1,0 +1,180 @@
+"""Draws an overlay over finished pictures; nearer surfaces hide it, by their depths."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.overlay.area import paint_area
+from eyas.engine.overlay.canvas import CASING, NEAR, Canvas, cover
+from eyas.engine.overlay.items import Label, Overlay, ThinLine
+from eyas.engine.overlay.solid import paint_solid
+from eyas.engine.state.draw import Picture, Views
+from eyas.lanes import exact
+
+__all__ = ["paint_overlays", "with_depth"]
+
+SMALLEST, OF_HEIGHT = 9, 0.042
+"""Size of letters: a share of the picture's height, but at least this many pixels."""
+
+
+def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
+    """Paint labels beside their points, moved if needed to be fully inside the picture."""
+    size = max(SMALLEST, round(OF_HEIGHT * canvas.height))
+    gap = 0.5 * size
+    for label in labels:
+        letters, around = _masks(label.text, size)
+        height, width = letters.shape
+        column, row, depth = canvas.project(label.anchor)
+        inside = depth >= NEAR and 0 <= column < canvas.width and 0 <= row < canvas.height
+        if inside:
+            beside = label.clear * canvas.across / depth
+            left, top = column + beside + gap, row - 0.5 * height
+        elif label.always:
+            left, top = float(gap), float(gap)
+        else:
+            continue
+        left = int(np.clip(round(left), 0, max(canvas.width - width, 0)))
+        top = int(np.clip(round(top), 0, max(canvas.height - height, 0)))
+        bottom, right = min(top + height, canvas.height), min(left + width, canvas.width)
+        where = slice(top, bottom), slice(left, right)
+        part = np.s_[: bottom - top, : right - left]
+        canvas.blend(where, CASING, around[part] * 0.85)
+        canvas.blend(where, label.colour, letters[part])
+
+
+@lru_cache(maxsize=64)
+def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return the share of each pixel that letters cover, without and with an outline."""
+    from PIL import Image, ImageDraw, ImageFont  # only where there are labels
+
+    font = ImageFont.load_default(size)
+    stroke = max(1, round(size / 8))
+    left, top, right, bottom = font.getbbox(text)
+    box = math.ceil(right - left) + 2 * stroke, math.ceil(bottom - top) + 2 * stroke
+    at = stroke - left, stroke - top
+    masks = []
+    for width in (0, stroke):
+        image = Image.new("L", box)
+        ImageDraw.Draw(image).text(at, text, fill=255, font=font, stroke_width=width)
+        masks.append(np.asarray(image, np.float32) / np.float32(255.0))
+    return masks[0], masks[1]
+
+
+WIDTH = 1.5
+"""Width, in strokes of the canvas."""
+
+OPACITY = 0.85
+
+BENT_PIECES = 24
+"""Straight pieces of a line that is seen through a lens."""
+
+
+def paint_line(canvas: Canvas, line: ThinLine) -> None:
+    """Paint the part of a line that is in front of the camera and of the picture's surfaces."""
+    ends = _before_the_camera(canvas, line)
+    if ends is None:
+        return
+    pieces = 1 if canvas.lens is None else BENT_PIECES
+    places = canvas.project(np.linspace(ends[0], ends[1], pieces + 1))
+    for start, end in pairwise(places):
+        _paint_piece(canvas, line, start, end)
+
+
+def _paint_piece(
+    canvas: Canvas, line: ThinLine, start: NDArray[np.float64], end: NDArray[np.float64]
+) -> None:
+    """Paint a piece of a line, from one place to another: column, row [pixels] and depth [m]."""
+    along = end[:2] - start[:2]
+    length = float(exact.hypot(*along))
+    if length < 1e-9:
+        return
+    rows, columns = _near(canvas, start, end, WIDTH * canvas.unit + 1.0)
+    right, below = columns + 0.5 - start[0], rows + 0.5 - start[1]
+    share = np.clip((right * along[0] + below * along[1]) / np.square(length), 0.0, 1.0)
+    away = exact.hypot(right - share * along[0], below - share * along[1])
+    # One over the depth is linear in the picture; the depth is not.
+    depth = 1.0 / ((1.0 - share) / start[2] + share / end[2])
+    seen = (depth <= canvas.depth[rows, columns]) * OPACITY
+    half = 0.5 * WIDTH * canvas.unit
+    casing = seen * cover(half + 0.75 * canvas.unit - away) * 0.4
+    canvas.blend_pixels(rows, columns, CASING, casing)
+    canvas.blend_pixels(rows, columns, line.colour, seen * cover(half - away))
+
+
+def _near(
+    canvas: Canvas, start: NDArray[np.float64], end: NDArray[np.float64], margin: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return rows and columns of the pixels in a box around a line that lie near it.
+
+    Args:
+        canvas: The picture.
+        start: Column and row of one end, and whatever else [pixels].
+        end: Of the other.
+        margin: How far around the ends the box reaches, and how near pixels are at least [pixels].
+    """
+    low, high = np.minimum(start, end)[:2], np.maximum(start, end)[:2]
+    where = canvas.window(low, high, margin)
+    along = end[:2] - start[:2]
+    major = int(abs(along[1]) > abs(along[0]))  # 0: columns are counted, 1: rows
+    steps, cross = where[1 - major], where[major]
+    k = np.arange(steps.start, steps.stop)
+    slope = along[1 - major] / along[major]
+    middle = start[1 - major] + slope * (k + 0.5 - start[major])
+    reach = math.ceil(1.5 * margin) + 1  # measured across the axis, a line is up to 1.42 as wide
+    other = np.floor(middle).astype(np.int64)[:, None] + np.arange(-reach, reach + 1)
+    inside = (other >= cross.start) & (other < cross.stop)
+    counted = np.broadcast_to(k[:, None], other.shape)[inside]
+    return (counted, other[inside]) if major else (other[inside], counted)
+
+
+def _before_the_camera(canvas: Canvas, line: ThinLine) -> np.ndarray | None:
+    """Return the ends of the part beyond the near plane, shape (2, 3), or None."""
+    ends = np.stack([line.start, line.end]).astype(np.float64)
+    depth = exact.product(ends - canvas.position, canvas.rotation[:, 0])
+    near = depth < NEAR
+    if near.all():
+        return None
+    if near.any():
+        share = (NEAR - depth[0]) / (depth[1] - depth[0])
+        ends[int(near[1])] = ends[0] + share * (ends[1] - ends[0])
+    return ends
+
+
+def with_depth(picture: Picture) -> Picture:
+    """Return the picture with an array for depths; the other arrays are shared.
+
+    Raises:
+        ValueError: The picture has no colours to draw over.
+    """
+    if picture.rgb is None:
+        raise ValueError("picture: rgb is needed; the overlay is drawn over it")
+    if picture.depth is not None:
+        return picture
+    return replace(picture, depth=np.empty(picture.rgb.shape[:3], np.float32))
+
+
+def paint_overlays(views: Views, overlays: Sequence[Overlay], picture: Picture) -> None:
+    """Draw over the colours of a picture; its other arrays do not change.
+
+    Args:
+        views: The V cameras with which the picture was drawn.
+        overlays: One for each view.
+        picture: With colours and depths.
+    """
+    assert picture.rgb is not None
+    assert picture.depth is not None
+    for v, overlay in enumerate(overlays):
+        canvas = Canvas(views, v, picture.rgb[v], picture.depth[v])
+        for area in overlay.areas:
+            paint_area(canvas, area)
+        for line in overlay.lines:
+            paint_line(canvas, line)
+        for solid in overlay.solids:
+            paint_solid(canvas, solid)
+        paint_labels(canvas, overlay.labels)
+        picture.rgb[v] = canvas.finished()

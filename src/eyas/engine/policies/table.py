@@ -1,0 +1,120 @@
+"""Finds a policy by what a user calls it."""
+
+from collections.abc import Mapping
+from hashlib import sha256
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from eyas.benchmark.policies.shipped import file_of, shipped_names
+from eyas.engine.core.errors import ConfigError, DataFileError, UnknownNameError
+
+if TYPE_CHECKING:  # its observations know the whole simulation, and here are names
+    from eyas.engine.policies.policy import Policy
+
+__all__ = ["BUILT_IN", "FILES", "ORACLES", "fingerprint", "open_policy"]
+
+_ROOM = "eyas.benchmark.policies"
+
+BUILT_IN = {
+    "random": f"{_ROOM}.simple:random",
+    "hover": f"{_ROOM}.simple:hover",
+    "follow": f"{_ROOM}.follow:follow",
+    "sighted": f"{_ROOM}.road_search:sighted",
+    "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
+    "road-graph": f"{_ROOM}.predictors:road_graph",
+    "relay": f"{_ROOM}.relay:relay",
+    "servo": f"{_ROOM}.servo:servo",
+    "gimbal-servo": f"{_ROOM}.servo:gimbal_servo",
+    "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
+    "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
+    **{
+        name: f"{_ROOM}.boxes:{name}"
+        for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
+    },
+}
+"""Functions that take changes of `env` and return a policy, by name."""
+
+ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
+"""Those that are told the truth, and fly by seven actions or, where `env.actions` says so, by
+velocities."""
+
+FILES = {
+    ".onnx": f"{_ROOM}.onnx:load_onnx",
+    ".zip": f"{_ROOM}.sb3:load_sb3",
+    ".pt": f"{_ROOM}.torch_file:load_torch",
+    ".pth": f"{_ROOM}.torch_file:load_torch",
+    ".pt2": f"{_ROOM}.torch_file:load_torch",
+}
+"""Functions that take a path and changes of `env` and return a policy, by the file's ending."""
+
+
+_LARGEST = 1 << 22
+"""Largest number of pixels of an observation, with its frames, that a file may ask for."""
+
+
+def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> "Policy":
+    """Return a policy.
+
+    Args:
+        said: A built-in or shipped name, the path of a file, or `package.module:name`.
+        changes: Changes of `env`.
+        sampled: Whether a network's actions are sampled instead of the best ones.
+
+    Raises:
+        EyasError: There is no such policy, or it cannot be loaded.
+    """
+    policy: Policy
+    path = file_of(said) if said in shipped_names() else Path(said)
+    if said in BUILT_IN:
+        _refuse_sampled(said, sampled=sampled)
+        policy = _imported(BUILT_IN[said])(changes)
+    elif path.suffix in FILES:
+        if not path.is_file():
+            raise DataFileError(f"{path}: cannot read: no such file")
+        policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
+        _refuse_large(path, policy, changes)
+    elif ":" in said:
+        from eyas.benchmark.policies.each import load_callable
+
+        _refuse_sampled(said, sampled=sampled)
+        policy = load_callable(said, changes)
+    else:
+        raise UnknownNameError(
+            "--policy",
+            said,
+            (*BUILT_IN, *shipped_names()),
+            f"(nor a file {', '.join(FILES)}, nor 'package.module:name')",
+        )
+    if policy.env.mixture:
+        raise ConfigError("env.mixture: not allowed here: the protocol chooses the conditions")
+    return policy
+
+
+def fingerprint(said: str) -> str | None:
+    """Return a hash of a policy's file; None if the policy has no file."""
+    path = file_of(said) if said in shipped_names() else Path(said)
+    if said in BUILT_IN or path.suffix not in FILES:
+        return None
+    return sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def _refuse_large(path: Path, policy: "Policy", changes: Mapping[str, Any]) -> None:
+    """Refuse pictures that would take minutes, unless the user has asked for them."""
+    image = policy.env.observation
+    asked = {"width", "height", "frames"} & set(changes.get("observation", {}))
+    if image.width * image.height * image.frames > _LARGEST and not asked:
+        raise ConfigError(
+            f"{path}: asks for observations of {image.frames} x {image.width} x {image.height} "
+            f"pixels; allowed: up to {_LARGEST}, unless --set env.observation.width=... says so"
+        )
+
+
+def _refuse_sampled(said: str, *, sampled: bool) -> None:
+    if sampled:
+        raise ConfigError(f"--sample: not allowed for '{said}': it is not a network with scores")
+
+
+def _imported(path: str) -> Any:  # noqa: ANN401  # a function of the tables above
+    module, _, name = path.partition(":")
+    return getattr(import_module(module), name)

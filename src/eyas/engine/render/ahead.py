@@ -1,0 +1,115 @@
+"""The first start: a second process does some of the work of the first."""
+
+import contextlib
+import logging
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+from eyas.engine.render.bake.ambient import AmbientMap
+from eyas.engine.render.bake.land import no_land
+from eyas.engine.render.bake.shadows import ShadowMap
+from eyas.engine.render.bake.tracks import TrackMap
+from eyas.engine.render.kernels.draw import draw_views
+from eyas.engine.render.pack.geometry import build_geometry
+from eyas.engine.render.pack.light import Baked, build_light
+from eyas.engine.render.renderer import CpuRenderer
+from eyas.engine.state.draw import DrawList, PartLibrary, Picture, Views
+from eyas.engine.state.lighting import Lighting
+from eyas.engine.state.scene import Scene
+from eyas.lanes.entry import nothing_compiled
+from eyas.lanes.folder import kernel_folder, made_folder, not_kept, refusal
+
+__all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
+
+_log = logging.getLogger("eyas")
+
+_PATIENCE = 300.0
+"""Longest time that this process waits for the second one [s]."""
+
+_compiling: list[subprocess.Popen[bytes]] = []
+"""The second process, if it compiles; kept even after that, because Python warns of processes that
+are forgotten before they end."""
+
+_doing_other: list[subprocess.Popen[bytes]] = []
+"""The second process, if it does something else."""
+
+_COMPILE = "from eyas.engine.render.ahead import draw_nothing; draw_nothing()"
+
+
+def begin_ahead(other: str) -> None:
+    """Report a first start to the user, and use a second core for it if there is one.
+
+    The second process compiles the drawing kernels while this one does everything else; if they
+    come with Eyas, it takes over some of that. It never fails: what is missing when this process
+    waits for it, this process makes.
+
+    Args:
+        other: Program that makes something which is kept in the cache, and needed by this process.
+    """
+    compiles, cache = nothing_compiled(draw_views.function), kernel_folder()
+    if compiles and refusal():
+        not_kept(refusal())
+    elif compiles:
+        _log.warning(
+            "first start of this version: compiling takes about half a minute, once; cached in %s",
+            cache,
+        )
+    # A frozen program has no interpreter to start.
+    if refusal() or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
+        return
+    with contextlib.suppress(OSError):
+        made_folder(cache)
+        (cache / "started").touch(exist_ok=False)  # exactly one of several processes succeeds
+        processes = _compiling if compiles else _doing_other
+        processes.append(_started(_COMPILE if compiles else other))
+
+
+def _started(program: str) -> subprocess.Popen[bytes]:
+    """Return a new process that runs a program."""
+    path = os.pathsep.join(filter(None, sys.path))
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", program],
+        env={**os.environ, "PYTHONPATH": path},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def drawing_is_ready() -> None:
+    """Wait until the drawing kernels can be loaded, if the second process compiles them."""
+    _wait(_compiling)
+
+
+def other_is_ready() -> None:
+    """Wait until the other work of the second process is done, if it does any."""
+    _wait(_doing_other)
+
+
+def _wait(processes: list[subprocess.Popen[bytes]]) -> None:
+    for process in processes:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(_PATIENCE)
+
+
+def draw_nothing() -> None:
+    """Draw a view of an empty scene, which compiles every drawing kernel."""
+    scene = Scene.empty()
+    geometry = build_geometry(scene, PartLibrary(()), {"plain": np.zeros((256, 256, 4), np.uint8)})
+    ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
+    black = (0.0, 0.0, 0.0)
+    lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
+    baked = Baked(ShadowMap.empty(), ambient, no_land(), TrackMap.empty())
+    light = build_light(scene, lighting, baked, geometry)
+    views = Views(
+        position=np.zeros((1, 3)),
+        rotation=np.eye(3)[None],
+        world=np.zeros(1, np.int32),
+        subject=np.zeros(1, np.int32),
+        field_of_view=1.0,
+    )
+    renderer = CpuRenderer(geometry, light)
+    renderer.draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8))

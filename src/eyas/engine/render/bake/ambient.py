@@ -1,0 +1,188 @@
+"""Share of the sky seen from ground and roofs: less beside walls, under trees and bridges."""
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.core.cache.cached import cached
+from eyas.engine.core.cache.folder import Kind
+from eyas.engine.render.kernels.light.ambient import (
+    DIRECTIONS,
+    DISTANCES,
+    OpennessBake,
+    bake_openness,
+)
+from eyas.engine.state.scene import ObjectClass, Scene
+from eyas.engine.state.terrain import reliefs
+from eyas.lanes import Held, exact, thread_count
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+
+__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
+
+TEXEL = 1.0
+"""Side of a texel [m]."""
+
+LARGEST = 2048
+"""Largest number of texels along a side."""
+
+_LOWEST = 1.5
+"""Things less high than this above the ground hide no sky [m]."""
+
+_DECK = 3.0
+"""Elevated roads less high than this are taken for the ground [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class AmbientMap:
+    """Share of the sky seen from the ground, or from the roof of a building."""
+
+    openness: NDArray[np.uint16]
+    """Low byte: share of the sky's light that arrives there, 0 to 255; high byte: where row +
+    column is even, height of what hides the rest, else height of the roof, 0 on the ground [m above
+    the ground]; shape (rows, columns)."""
+    frame: NDArray[np.float64]
+    """West and south edge [m], texels per metre, z of the ground [m]."""
+
+
+def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
+    """Return the map of a scene; computed only if the cache lacks it.
+
+    Args:
+        scene: The static scene. Structures lower than `_DECK` hide little and are left out.
+        folder: Folder of the cache; None: the user's.
+    """
+    extent = np.array(scene.size)
+    texel = max(TEXEL, float(extent.max()) / LARGEST)
+    columns, rows = np.ceil(extent / texel).astype(int)
+    terrain = scene.terrain
+    frame = np.array([*(-0.5 * extent), 1.0 / texel, terrain.floor])
+    inputs = (
+        (rows, columns),
+        frame,
+        np.array([terrain.west, terrain.south, terrain.spacing]),
+        terrain.relief,
+        scene.static.positions,
+        scene.static.triangles,
+        scene.object_class[scene.static_object],
+        scene.fixtures.prototype,
+        scene.fixtures.pose,
+    )
+    make = partial(_bake, scene, frame, (rows, columns), texel)
+    openness = cached(Kind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
+    return AmbientMap(openness, frame)
+
+
+def _bake(
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int], texel: float
+) -> NDArray[np.uint16]:
+    solid = height_map(scene, frame, shape)
+    crowns = canopy_map(scene, frame, shape)
+    decks = height_map(scene, frame, shape, structures=True)
+    return openness_of(solid, crowns, decks, texel, thread_count())
+
+
+def openness_of(
+    solid: NDArray[np.float32],
+    crowns: NDArray[np.float32],
+    decks: NDArray[np.float32],
+    texel: float,
+    workers: int,
+) -> NDArray[np.uint16]:
+    """Return `AmbientMap.openness`.
+
+    Args:
+        solid: Height of buildings above the ground [m], shape (rows, columns).
+        crowns: The same of trees.
+        decks: The same of elevated roads.
+        texel: Side of a texel [m].
+        workers: Number of threads.
+    """
+    openness = np.empty(solid.shape, np.uint16)
+    way, distance = _ways(texel), np.array(DISTANCES)
+    square = math.ceil(DISTANCES[-1] / texel) + 1
+    near = _near(decks, square)
+    bake = OpennessBake(way, distance, solid, crowns, decks, square, near, openness)
+    bake_openness(workers, Held(bake))
+    return openness
+
+
+def _ways(texel: float) -> NDArray[np.float64]:
+    """Return `OpennessBake.way`; numpy's sines differ between processors, those of C do not."""
+    angles = [(k + 0.5) * (2.0 * math.pi / DIRECTIONS) for k in range(DIRECTIONS)]
+    return np.array(
+        [
+            [(exact.sin(angle) / texel * far, exact.cos(angle) / texel * far) for far in DISTANCES]
+            for angle in angles
+        ]
+    )
+
+
+def _near(decks: NDArray[np.float32], square: int) -> NDArray[np.bool_]:
+    """Return whether there are decks in each square of texels or in one of the eight around it."""
+    rows, columns = (-(-size // square) for size in decks.shape)
+    near = np.zeros((rows + 2, columns + 2), np.bool_)
+    for row, column in {*map(tuple, (np.argwhere(decks > 0.0) // square).tolist())}:
+        near[row : row + 3, column : column + 3] = True
+    return np.ascontiguousarray(near[1:-1, 1:-1])
+
+
+def height_map(
+    scene: Scene,
+    frame: NDArray[np.float64],
+    shape: tuple[int, int],
+    *,
+    structures: bool = False,
+) -> NDArray[np.float32]:
+    """Return the height of the highest solid above the ground in each texel [m], or that of the
+    highest elevated road.
+
+    The ground itself does not count, however steep it is: hills are not walls.
+    """
+    mesh = scene.static
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    kind = scene.object_class[scene.static_object]
+    ground = frame[3] + reliefs(scene.terrain, corners[:, :, :2])
+    rise = (corners[:, :, 2] - ground).max(axis=1)
+    level = mesh.normals[mesh.triangles, 2].mean(axis=1) > 0.2
+    of_kind = np.isin(kind, (ObjectClass.STRUCTURE, ObjectClass.ROAD)) == structures
+    chosen = np.flatnonzero(level & of_kind & (rise > (_DECK if structures else _LOWEST)))
+    flat = (corners[:, :, :2] - frame[:2]) * frame[2]
+    picture, pen = _canvas(shape)
+    for index in chosen[np.argsort(rise[chosen], kind="stable")]:
+        pen.polygon(flat[index].ravel().tolist(), fill=float(rise[index]))
+    return np.array(picture, np.float32)
+
+
+def canopy_map(
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
+) -> NDArray[np.float32]:
+    """Return the height above the ground of the crown's top over each texel, 0 for none [m]."""
+    fixtures = scene.fixtures
+    picture, pen = _canvas(shape)
+    for index in np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE):
+        points = fixtures.levels[fixtures.prototype[index]][0].positions
+        pose = fixtures.pose[index].astype(np.float64)
+        scale = float(exact.cbrt(exact.determinant(pose[:, :3])))
+        # The outermost leaves are few: the crown is a disc of the mean radius.
+        reach = 0.9 * scale * float(np.abs(points[:, :2]).max())
+        x, y = (pose[:2, 3] - frame[:2]) * frame[2]
+        r = reach * frame[2]
+        ground = frame[3] + float(reliefs(scene.terrain, pose[:2, 3]))
+        top = scale * float(points[:, 2].max()) + pose[2, 3] - ground
+        pen.ellipse((x - r, y - r, x + r, y + r), fill=float(top))
+    return np.array(picture, np.float32)
+
+
+def _canvas(shape: tuple[int, int]) -> "tuple[Image.Image, ImageDraw.ImageDraw]":
+    """Return a picture of heights, and a pen for it."""
+    from PIL import Image, ImageDraw  # not needed where the map is in the cache
+
+    picture = Image.new("F", (shape[1], shape[0]), 0.0)
+    return picture, ImageDraw.Draw(picture)

@@ -1,0 +1,192 @@
+"""Light of street lamps, windows and other sources."""
+
+from eyas.engine.render.kernels.bundles import Light
+from eyas.engine.render.kernels.chance import hashed
+from eyas.engine.render.kernels.scalars import f4, i4, u4
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
+    any_of,
+    gather,
+    greater,
+    lesser,
+    like,
+    root,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+    transposed,
+)
+
+__all__ = ["lamp_gloss", "night_light", "window_light"]
+
+_HEAD = f4(0.95 / 255.0)
+"""Brightest light of head lamps, for each step of `Scratch.shade`."""
+
+_TAIL = f4(0.16 / 255.0)
+"""The same for tail lamps."""
+
+_FULL = f4(0.4536)
+"""Cosine of the angle up to which a beam is even: the original's 1.1 rad."""
+
+_BAYS = f4(4.0)
+"""Windows along a side of one repeat of a facade's texture."""
+
+
+@kernel(inline=True)
+def night_light(
+    light: Light,
+    on: float,
+    point: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    head: float,
+    tail: float,
+) -> tuple[float, float, float]:
+    """Return the light of street lamps and vehicles on a surface; paper in the sun gets 1.
+
+    Args:
+        light: Its lamps.
+        on: Their strength, 0 to 1.
+        point: The point [m].
+        normal: Unit normal of the surface.
+        head: Light of vehicles' head lamps there, see `Scratch.shade`.
+        tail: Light of their tail lamps.
+    """
+    street = on * _street_light(light, point, normal)
+    head, tail = head * (on * _HEAD), tail * (on * _TAIL)
+    return (
+        street + head + tail,
+        f4(0.86) * street + f4(0.93) * head + f4(0.06) * tail,
+        f4(0.62) * street + f4(0.78) * head + f4(0.04) * tail,
+    )
+
+
+@kernel(inline=True)
+def _street_light(
+    light: Light, point: tuple[float, float, float], normal: tuple[float, float, float]
+) -> float:
+    """Return how much light of street lamps a surface gets.
+
+    A lamp is a spot without shadow, as in the original: even to 1.1 rad off its axis, nothing
+    from the cut-off on, and less with the square of the distance.
+    """
+    frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
+    x, y, z = point
+    zero, one = f4(0.0), f4(1.0)
+    total = like(x, zero)
+    rows, columns, most = cells.shape
+    across, down = (x - frame.west) * frame.per_metre, (y - frame.south) * frame.per_metre
+    inside = (across >= zero) & (down >= zero) & (across < f4(columns)) & (down < f4(rows))
+    if not any_of(inside):
+        return total
+    column, row = to_i4(select(inside, across, zero)), to_i4(select(inside, down, zero))
+    first = (row * i4(columns) + column) * i4(most)
+    for k in range(most):
+        which = gather(cells, first + i4(k))
+        lit = inside & (which >= i4(0))
+        if not any_of(lit):
+            break  # lists end with the first empty place
+        lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
+        dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
+        lean = normal[0] * dx + normal[1] * dy + normal[2] * dz
+        square = dx * dx + dy * dy + dz * dz + f4(0.25)
+        inverse = one / root(square)
+        cosine = -(lamp[3] * dx + lamp[4] * dy + lamp[5] * dz) * inverse
+        spot = lesser((cosine - frame.cut_off) / (_FULL - frame.cut_off), one)
+        lit &= (lean > zero) & (spot > zero)
+        total += select(lit, spot * spot * lean * inverse * lamp[6] / square, zero)
+    return total
+
+
+@kernel(inline=True)
+def lamp_gloss(
+    light: Light,
+    on: float,
+    point: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    way: tuple[float, float, float],
+    share: float,
+) -> tuple[float, float, float]:
+    """Return the radiance of street lamps that a wet surface mirrors, drawn out by its roughness.
+
+    Blinn's lobe of half vectors, which is long towards the eye where it is grazed.
+
+    Args:
+        light: Its lamps.
+        on: Their strength, 0 to 1.
+        point: The point [m].
+        normal: Unit normal of the surface.
+        way: Unit vector from the eye.
+        share: Share of light that the surface mirrors; 0: it is dry.
+    """
+    frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
+    x, y, z = point
+    zero, one = f4(0.0), f4(1.0)
+    total = like(x, zero)
+    rows, columns, most = cells.shape
+    across, down = (x - frame.west) * frame.per_metre, (y - frame.south) * frame.per_metre
+    inside = (across >= zero) & (down >= zero) & (across < f4(columns)) & (down < f4(rows))
+    inside &= share > zero
+    if any_of(inside):
+        column, row = to_i4(select(inside, across, zero)), to_i4(select(inside, down, zero))
+        first = (row * i4(columns) + column) * i4(most)
+        for k in range(most):
+            which = gather(cells, first + i4(k))
+            lit = inside & (which >= i4(0))
+            if not any_of(lit):
+                break  # lists end with the first empty place
+            lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
+            dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
+            square = dx * dx + dy * dy + dz * dz + f4(0.25)
+            inverse = one / root(square)
+            hx, hy, hz = dx * inverse - way[0], dy * inverse - way[1], dz * inverse - way[2]
+            lean = normal[0] * hx + normal[1] * hy + normal[2] * hz
+            lobe = greater(lean, zero) * lean / (hx * hx + hy * hy + hz * hz + f4(1e-6))
+            for _ in range(6):
+                lobe *= lobe
+            total += select(lit, lobe * lamp[6] / square, zero)
+    total *= (f4(130.0 / 25.0) * on) * share
+    return total, f4(0.86) * total, f4(0.62) * total
+
+
+@kernel(inline=True)
+def window_light(
+    share: float, building: int, detail: int, u: float, v: float
+) -> tuple[float, float, float]:
+    """Return the light behind the window at (u, v) of a facade: dark, or one of a few lights.
+
+    The building and the position of the window determine which rooms are lit, so the result is
+    the same in every picture. For windows smaller than a pixel, their mean is returned.
+
+    Args:
+        share: Share of lit windows.
+        building: Object id.
+        detail: See `detail_of`; a bay of windows has 64 texels along a side.
+        u: Texture coordinates [tiles].
+        v: Texture coordinates [tiles].
+    """
+    # Moved so that cells have numbers above 0: 64 whole repeats, see `gradients`.
+    column = to_u4(to_i4(_BAYS * u + f4(1024.0))) & u4(255)
+    row = to_u4(to_i4(_BAYS * v + f4(1024.0))) & u4(255)
+    number = to_u4(building)
+    bits = hashed(column, row, number)
+    # Whole storeys are busier than others, as offices are.
+    storey = hashed(row, like(row, u4(7)), number)
+    low, unit = u4(0xFFFF), f4(1.0 / 65535.0)
+    odds = share * (f4(0.5) + to_f4(storey & low) * unit)
+    bright = f4(0.25) + to_f4((bits >> u4(16)) & u4(63)) * f4(0.7 / 63.0)
+    bright = select(to_f4(bits & low) * unit < odds, bright, f4(0.0))
+    kind = (bits >> u4(22)) & u4(15)
+    # Lamps in homes, tubes in offices, the rest screens.
+    home, office = kind < u4(9), kind < u4(14)
+    red = select(office, bright, f4(0.35) * bright)
+    green = bright * select(home, like(u, f4(0.68)), select(office, like(u, f4(0.92)), f4(0.5)))
+    blue = bright * select(home, like(u, f4(0.36)), select(office, like(u, f4(0.74)), f4(0.8)))
+    # A bay is two pixels wide at level 5, and one at level 6.
+    far = lesser(greater(f4(1.0 / 256.0) * to_f4(detail - i4(1280)), f4(0.0)), f4(1.0))
+    near, mean = f4(1.0) - far, f4(0.55) * share * far
+    return (
+        near * red + mean,
+        near * green + f4(0.72) * mean,
+        near * blue + f4(0.46) * mean,
+    )

@@ -1,0 +1,64 @@
+"""Lamps with which vehicles signal: brake lamps and indicators."""
+
+from eyas.engine.render.kernels.scalars import f4, i4
+from eyas.engine.state.mesh import Surface
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, select
+
+__all__ = ["BRAKING", "LEFT", "RIGHT", "signalled"]
+
+_TAIL = int(Surface.TAIL_LAMP)
+
+TAIL_LAMP = i4(_TAIL)
+HIGH_BRAKE_LAMP = i4(int(Surface.HIGH_BRAKE_LAMP))
+INDICATOR_LEFT = i4(int(Surface.INDICATOR_LEFT))
+INDICATOR_RIGHT = i4(int(Surface.INDICATOR_RIGHT))
+
+BRAKING = 1 << (int(Surface.TAIL_LAMP) - _TAIL) | 1 << (int(Surface.HIGH_BRAKE_LAMP) - _TAIL)
+"""Bits of `eyas.engine.state.draw.DrawList.lamps` for a vehicle that brakes."""
+
+LEFT = 1 << (int(Surface.INDICATOR_LEFT) - _TAIL)
+"""The same for one whose indicators shine on the left."""
+
+RIGHT = 1 << (int(Surface.INDICATOR_RIGHT) - _TAIL)
+"""The same on the right."""
+
+_RED = (f4(4.2), f4(0.06), f4(0.04))
+"""Radiance of brake lamps: five times that of tail lamps at night. UN Regulation 7 (R7, 6.1) asks
+for 60 cd at least of the one and allows 12 cd at most of the other."""
+
+_AMBER = (f4(3.6), f4(0.46), f4(0.03))
+"""Radiance of indicators, of 50 cd and more (UN Regulation 6, 6.1)."""
+
+Colour = tuple[float, float, float]
+
+
+@kernel(inline=True)
+def signalled(colour: Colour, surface: int, lamps: int) -> Colour:
+    """Return radiances with those of the lamps of one vehicle that shine.
+
+    Args:
+        colour: The radiance of points of the vehicle without them.
+        surface: A `Surface` of each point.
+        lamps: See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points.
+    """
+    red, green, blue = colour
+    braking = i4(BRAKING)
+    if lamps & braking == braking:
+        shines = (surface == TAIL_LAMP) | (surface == HIGH_BRAKE_LAMP)
+        red, green, blue = _with(red, green, blue, shines, _RED)
+    if lamps & i4(LEFT) != 0:
+        red, green, blue = _with(red, green, blue, surface == INDICATOR_LEFT, _AMBER)
+    if lamps & i4(RIGHT) != 0:
+        red, green, blue = _with(red, green, blue, surface == INDICATOR_RIGHT, _AMBER)
+    return red, green, blue
+
+
+@kernel(inline=True)
+def _with(red: float, green: float, blue: float, shines: bool, light: Colour) -> Colour:
+    """Return radiances with a light where it shines."""
+    if any_of(shines):
+        red = select(shines, red + light[0], red)
+        green = select(shines, green + light[1], green)
+        blue = select(shines, blue + light[2], blue)
+    return red, green, blue

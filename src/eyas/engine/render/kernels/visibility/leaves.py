@@ -1,0 +1,46 @@
+"""Which triangles are leaves, and at which mip level of their texture they are drawn."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.render.kernels.bundles import Geometry
+from eyas.engine.render.kernels.scalars import i8
+from eyas.engine.render.kernels.visibility.clusters import CLUSTER, CLUSTER_ROWS, LEAVES
+from eyas.engine.render.kernels.visibility.holes import LEVELS, holes_level
+from eyas.engine.render.kernels.visibility.triangles import INVERSE
+from eyas.lanes import kernel
+from eyas.lanes.vector import gather
+
+__all__ = ["leaves_of", "tiles_of"]
+
+_TEXELS = 256.0
+"""Texels along a side of a texture."""
+
+
+@kernel(inline=True)
+def tiles_of(geometry: Geometry, at: int) -> float:
+    """Return `LEAVES` of triangle `at`."""
+    row = at // CLUSTER * CLUSTER_ROWS + LEAVES
+    return gather(geometry.cluster, row * CLUSTER + at % CLUSTER)
+
+
+@kernel(inline=True)
+def leaves_of(
+    geometry: Geometry, at: int, triangle: NDArray[np.float64], column: int, focal: float
+) -> int:
+    """Return the layer of a triangle's leaves times `LEVELS`, and its mip level; -1: no holes.
+
+    Args:
+        geometry: Everything that can be drawn.
+        at: The triangle's number.
+        triangle: See `Scratch`.
+        column: Its column there.
+        focal: See `draw_mesh`.
+    """
+    tiles = tiles_of(geometry, at)
+    if tiles < 0.0:
+        return i8(-1)
+    level = holes_level(_TEXELS * tiles / (focal * gather(triangle, INVERSE * CLUSTER + column)))
+    if level < 0:
+        return i8(-1)
+    return i8(gather(geometry.layer, i8(gather(geometry.material, at)))) * LEVELS + level

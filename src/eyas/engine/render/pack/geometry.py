@@ -1,0 +1,170 @@
+"""Packing of a scene and a part library into the arrays of the kernels."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.render.kernels.bundles import GROUP, Geometry
+from eyas.engine.render.kernels.visibility.clusters import CLUSTER
+from eyas.engine.render.pack.boxes import box_of, columns_of, group_boxes, posed_boxes
+from eyas.engine.render.pack.materials import material_table
+from eyas.engine.render.pack.pool import PackedMeshes, Pool, Prototypes, joined, packed_prototypes
+from eyas.engine.render.pack.triangles import shading_rows
+from eyas.engine.render.textures.mipmap import packed_layers
+from eyas.engine.state.draw import PartLibrary
+from eyas.engine.state.mesh import Mesh
+from eyas.engine.state.scene import ObjectClass, Scene
+
+__all__ = ["CHUNK", "PackedScene", "build_geometry", "packed_scene"]
+
+CHUNK = 32.0
+"""Side of the squares into which static triangles are sorted [m]."""
+
+_FIXTURE_CELL = 6.0
+"""Side of the squares by which fixtures are sorted, so that groups of them are small [m]."""
+
+_HIGH = 4.0
+"""Height above which things are grouped separately [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class PackedScene:
+    """What of a `Geometry` a scene decides alone."""
+
+    ground: PackedMeshes
+    """Its static mesh, square by square."""
+    chunk_box: NDArray[np.float32]
+    """Around each square, shape (C, 6)."""
+    fixtures: Prototypes
+
+
+def packed_scene(scene: Scene) -> PackedScene:
+    """Pack what does not move."""
+    ground, boxes = _packed_chunks(scene)
+    return PackedScene(ground, boxes, packed_prototypes(scene.fixtures.levels))
+
+
+def build_geometry(
+    scene: Scene,
+    parts: PartLibrary,
+    textures: Mapping[str, NDArray[np.uint8]],
+    packed: tuple[PackedScene, Sequence[Prototypes]] | None = None,
+) -> Geometry:
+    """Return everything that can be drawn.
+
+    Args:
+        scene: The static scene.
+        parts: Parts of the moving things.
+        textures: sRGB and alpha by name, shape (256, 256, 4) each.
+        packed: The scene, and all parts in their order, where they are packed already.
+
+    Raises:
+        UnknownNameError: A material names a missing texture.
+    """
+    still, moving = packed or (packed_scene(scene), [packed_prototypes(parts.parts)])
+    prototypes = [still.fixtures, *moving]
+    meshes = joined([still.ground, *(each.meshes for each in prototypes)])
+    box, sphere, outline, levels = (
+        np.concatenate([getattr(each, name) for each in prototypes])
+        for name in ("box", "sphere", "silhouette", "levels")
+    )
+    chunks = len(still.ground.ranges)
+    order = _fixture_order(scene.fixtures.pose[:, :, 3])
+    pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
+    prototype = scene.fixtures.prototype[order].astype(np.int32)
+    names = sorted({material.texture for material in meshes.palette} | {"plain"})
+    fixture_boxes = posed_boxes(box[prototype], pose)
+    materials = material_table(scene, parts, meshes.palette, names)
+    return Geometry(
+        cluster=meshes.clusters,
+        bounds=meshes.bounds,
+        corner_uv=meshes.corner_uvs,
+        shading=shading_rows(meshes.slopes, meshes.objects, materials.of(meshes.material)),
+        material=meshes.material,
+        object_id=meshes.objects,
+        object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),
+        chunk_box=columns_of(still.chunk_box, GROUP),
+        chunk_group_box=columns_of(group_boxes(still.chunk_box), CLUSTER),
+        chunk_range=meshes.ranges[:chunks],
+        mesh_range=meshes.ranges[chunks:],
+        level_first=np.cumsum([0, *levels]).astype(np.int32),
+        part_first=len(scene.fixtures.levels),
+        sphere=sphere,
+        box=box,
+        silhouette=outline,
+        lamps=_lamps(scene, parts),
+        fixture_prototype=prototype,
+        fixture_pose=pose,
+        fixture_object=scene.fixtures.object_id[order].astype(np.int32),
+        fixture_box=columns_of(fixture_boxes, GROUP),
+        fixture_group_box=columns_of(group_boxes(fixture_boxes), CLUSTER),
+        layer=materials.layer,
+        surface=materials.surface,
+        tint=materials.tint,
+        texture=packed_layers(textures, names),
+    )
+
+
+def _lamps(scene: Scene, parts: PartLibrary) -> NDArray[np.bool_]:
+    """Return `Geometry.lamps`."""
+    of_parts = parts.lamps or (False,) * len(parts.parts)
+    assert len(of_parts) == len(parts.parts), "lamps: one flag for each part is wanted"
+    return np.array((False,) * len(scene.fixtures.levels) + of_parts, np.bool_)
+
+
+def _packed_chunks(scene: Scene) -> tuple[PackedMeshes, NDArray[np.float32]]:
+    """Return the static mesh square by square, and boxes around them, shape (C, 6)."""
+    pool, mesh = Pool(), scene.static
+    corners = mesh.positions[mesh.triangles]
+    middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
+    cell = np.floor(middle / CHUNK).astype(np.int64)
+    cell -= cell.min(axis=0, initial=0)
+    # A triangle much larger than a square would enlarge that square's box, so it is kept apart.
+    span = (corners.max(axis=1) - corners.min(axis=1))[:, :2].max(axis=1, initial=0)
+    key = np.where(span > 4 * CHUNK, -1, _morton(cell))
+    size = _detail_sizes(scene, corners)
+    order = np.lexsort((-size, key))
+    starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
+    ranges, boxes = [], []
+    for first, last in itertools.pairwise(starts):
+        index = order[first:last]
+        part = Mesh(
+            positions=mesh.positions,
+            normals=mesh.normals,
+            uvs=mesh.uvs,
+            triangles=mesh.triangles[index],
+            materials=mesh.materials[index],
+            palette=mesh.palette,
+        )
+        objects = scene.static_object[index].astype(np.int32)
+        ranges.append(pool.add(part, objects, size[index]))
+        boxes.append(box_of(mesh.positions[part.triangles].reshape(-1, 3)))
+    return pool.packed(ranges), np.array(boxes, np.float32).reshape(-1, 6)
+
+
+def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return `Geometry.size`: details are paint on roads, and parts of buildings before others."""
+    kind = scene.object_class[scene.static_object]
+    detail = np.isin(kind, (ObjectClass.MARKING, ObjectClass.BUILDING))
+    sides = corners[:, 1:] - corners[:, :1]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.where(detail, np.sqrt(area), np.inf).astype(np.float32)
+
+
+def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:
+    """Return an order that keeps neighbours together and high things apart."""
+    cell = np.floor(points[:, :2] / _FIXTURE_CELL).astype(np.int64)
+    key = _morton(cell - cell.min(axis=0, initial=0))
+    return np.lexsort((key, points[:, 2] > _HIGH))
+
+
+def _morton(cell: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return numbers that interleave the bits of x and y (G. M. Morton, 1966)."""
+    number = np.zeros(len(cell), np.int64)
+    for bit in range(16):
+        for axis in range(2):
+            number |= ((cell[:, axis] >> bit) & 1) << (2 * bit + axis)
+    return number

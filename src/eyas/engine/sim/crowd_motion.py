@@ -1,0 +1,274 @@
+"""The motion of a crowd: of the targets that are not vehicles of SUMO's, and of extras."""
+
+import zlib
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.behaviours.config import ExtraConfig
+from eyas.engine.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup, lasting, recycled
+from eyas.engine.core.cache.cached import cached
+from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.rng import stream
+from eyas.engine.core.variation import Mirrored, Variation
+from eyas.engine.custom.config import CustomConfig
+from eyas.engine.sim.air_motion import air_motions
+from eyas.engine.sim.crowd import Crowd
+from eyas.engine.state.motion import SAMPLE, Motion, joined
+from eyas.engine.state.scene import Scene
+from eyas.engine.targets.catalogue import MODELS, habit_of, kind_index, models_of
+from eyas.engine.targets.habit import Behaviour
+from eyas.engine.traffic.signals import SignalPlan
+from eyas.lanes import exact
+
+if TYPE_CHECKING:
+    from eyas.engine.behaviours.ground import Ground
+
+__all__ = ["Surroundings", "crowd_motions", "live_motions", "with_crowd"]
+
+_ASIDE = Mirrored(mirrored=(4.0, 20.0))
+"""Distance of extras from the middle of the road, if no pavement is asked for [m]."""
+
+
+class Surroundings(NamedTuple):
+    """Where and when a crowd moves."""
+
+    scene: Scene
+    clock: SampleClock
+    """Number of samples, and their rate."""
+    seed: int
+    """Of places and ways."""
+    vehicles: Motion | None = None
+    """The vehicles, for which those wait who cross roads; None: there are none, or their motion is
+    not known in advance."""
+    lights: SignalPlan | None = None
+    """What crossings with lights show, see `walk_plan`; None: there are none."""
+
+
+def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
+
+    Args:
+        crowd: The crowd.
+        around: Where and when it moves.
+
+    Raises:
+        ConfigError: Somebody is to cross roads among vehicles whose motion is not known.
+        SpawnError: The map has no room for all.
+    """
+    if crowd.driven and around.vehicles is None:
+        _refuse_crossing(crowd)
+    ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
+    groups = _groups(crowd, around.clock)
+    motions = [
+        _kept(group, number, around, crowd.driven, ground) for number, group in enumerate(groups)
+    ]
+    if crowd.custom is not None:
+        motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
+    return motions
+
+
+def live_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of all but vehicles that SUMO drives now, see `crowd_motions`."""
+    return [*crowd_motions(crowd, around), *_above(crowd, around)]
+
+
+def with_crowd(
+    vehicles: Motion | None, crowd: Crowd, around: Surroundings
+) -> tuple[Motion, NDArray[np.bool_]]:
+    """Return the motion of vehicles and, after them, of a crowd, and who may be a target.
+
+    Args:
+        vehicles: The vehicles; None: there are none.
+        crowd: The crowd.
+        around: Where and when it moves.
+
+    Raises:
+        SpawnError: The map has no room for all.
+    """
+    before = [] if vehicles is None else [vehicles]
+    if crowd.custom is None and _groups(crowd, around.clock):
+        motion, counts = _all_kept(before, crowd, around)
+    else:
+        every = [*before, *crowd_motions(crowd, around)]
+        motion, counts = joined(every), [len(one.kind) for one in every]
+    above = _above(crowd, around)
+    motion, counts = joined([motion, *above]), [*counts, *(len(one.kind) for one in above)]
+    followed = 0 if crowd.follows_vehicles else len(before)
+    return motion, np.repeat(np.arange(len(counts)) == followed, counts)
+
+
+def _above(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of what flies."""
+    scene, clock, seed = around.scene, around.clock, around.seed
+    return air_motions(crowd.airborne, scene, clock, seed, around.vehicles)
+
+
+def _all_kept(
+    before: Sequence[Motion], crowd: Crowd, around: Surroundings
+) -> tuple[Motion, list[int]]:
+    """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
+
+    Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
+    reads little.
+    """
+    groups = _groups(crowd, around.clock)
+    ground = cache(partial(_ground, around, crowd.driven))
+    parts = [
+        partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
+    ]
+    tables = [motion.table for motion in before]
+    depends_on = [
+        _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
+    ]
+    make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
+    indices = [kind_index(group.kind) for group in groups]
+    kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
+    table = numbers.view(SAMPLE)[..., 0]
+    lamps = np.zeros((0, 0), np.uint8)
+    if before and before[0].lamps.size:
+        lamps = np.zeros(table.shape, np.uint8)
+        lamps[:, : len(before[0].kind)] = before[0].lamps
+    motion = Motion(table, kind.astype(np.int32), around.clock.rate, 0.0, lamps)
+    return motion, [*(len(one.kind) for one in before), *counts]
+
+
+def _ground(around: Surroundings, driven: bool) -> "Ground":
+    """Return the ground, whose roads are left to vehicles where these drive."""
+    from eyas.engine.behaviours.ground import Ground  # with shapely
+
+    return Ground(around.scene, roads=driven, lights=around.lights)
+
+
+def _side_by_side(
+    tables: Sequence[NDArray[np.void]], parts: Sequence[Callable[[], NDArray[np.float32]]]
+) -> NDArray[np.float32]:
+    driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
+    return np.concatenate([*driven, *(part() for part in parts)], axis=1)
+
+
+def _kept(
+    group: ScriptedGroup,
+    number: int,
+    around: Surroundings,
+    driven: bool,
+    ground: Callable[[], "Ground"],
+) -> Motion:
+    """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
+    make = partial(_numbers_of, group, number, around, ground)
+    inputs = _depends_on(group, number, around, driven)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
+    return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
+
+
+def _numbers_of(
+    group: ScriptedGroup, number: int, around: Surroundings, ground: Callable[[], "Ground"]
+) -> NDArray[np.float32]:
+    """Return the numbers of the samples of a group's motion.
+
+    Args:
+        group: Who moves.
+        number: Which of the crowd's groups it is.
+        around: Where and when it moves.
+        ground: Returns the ground.
+    """
+    from eyas.engine.behaviours.scripted import scripted_table  # with shapely
+
+    rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
+    table = scripted_table(ground(), group, around.clock, rng, around.vehicles)
+    return table.view(np.float32).reshape(*table.shape, -1)
+
+
+def _depends_on(
+    group: ScriptedGroup, number: int, around: Surroundings, driven: bool
+) -> tuple[object, ...]:
+    """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
+    scene, clock, seed, vehicles, lights = around
+    crosses = group.behaviour is Behaviour.CROSSING
+    along = group.behaviour in (Behaviour.PAVEMENT, Behaviour.VERGE, Behaviour.RIDE)
+    heeds = crosses or (scene.footways.told and along)
+    waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
+    obeys = lights if crosses else None
+    moves = group._replace(setting="", chosen_by="")  # which only messages name
+    return (_ground, _plan_of(scene), moves, clock, seed, number, driven, waits_for, obeys)
+
+
+def _groups(crowd: Crowd, clock: SampleClock) -> list[ScriptedGroup]:
+    groups = []
+    if crowd.custom is None and not crowd.follows_vehicles:
+        lifetimes = _lifetimes(crowd, clock)
+        target = ExtraConfig(kind=crowd.target)
+        groups.append(_group(target, lifetimes, crowd.objects.offset, "objects.max_count"))
+    for number, extra in enumerate(crowd.extras):
+        if not extra.is_traffic:
+            lifetimes = lasting(extra.count, clock.samples)
+            one = _group(extra, lifetimes, _ASIDE, f"extras.{number}.count")
+            groups.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
+    return groups
+
+
+def _lifetimes(crowd: Crowd, clock: SampleClock) -> Lifetimes:
+    return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
+
+
+def _refuse_crossing(crowd: Crowd) -> None:
+    """Raise an error if somebody is to cross roads."""
+    custom = crowd.custom.behaviour if crowd.custom is not None else None
+    for setting, behaviour in (
+        ("custom.behaviour", custom),
+        *((f"extras.{k}.behaviour", extra.behaviour) for k, extra in enumerate(crowd.extras)),
+    ):
+        if behaviour is Behaviour.CROSSING:
+            raise ConfigError(
+                f"{setting}: 'crossing' is not allowed with traffic.source=live, as it is unknown "
+                "in advance; allowed: 'pavement'"
+            )
+
+
+def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "Ground") -> Motion:
+    """Return the motion of a target of one's own; not kept, as its class may have changed."""
+    from eyas.engine.custom.motion import Places, custom_motion  # with shapely
+
+    clock = around.clock
+    places = Places(_lifetimes(crowd, clock), crowd.objects.offset, around.vehicles)
+    return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
+
+
+def _group(
+    extra: ExtraConfig, lifetimes: Lifetimes, offset: Variation, setting: str
+) -> ScriptedGroup:
+    models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
+    if extra.behaviour is Behaviour.RIDE:  # always ahead, along what is beside one
+        breadth = max(model.width for model in models)
+    else:
+        breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
+    return ScriptedGroup(
+        kind=extra.kind.value,
+        breadth=breadth,
+        behaviour=extra.behaviour,
+        habit=habit_of(extra.kind.value),
+        lifetimes=lifetimes,
+        offset=offset,
+        setting=setting,
+    )
+
+
+def _plan_of(scene: Scene) -> tuple[object, ...]:
+    """Return what of a map paths depend on."""
+    mesh, fixtures, colliders = scene.static, scene.fixtures, scene.colliders
+    told = scene.footways
+    return (
+        *(told.kerb_points, told.kerb_first, told.crossings, told.lights),
+        *(scene.name, scene.size, scene.terrain, scene.network),
+        *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
+        *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),
+        *(colliders.prism_bottom, colliders.prism_top, colliders.cylinder_centre),
+        *(colliders.cylinder_radius, colliders.cylinder_bottom, colliders.cylinder_top),
+    )

@@ -1,0 +1,226 @@
+"""Scenes, their packed geometry and their solids: made once, kept on disk, shared by all weathers
+of a season.
+"""
+
+import itertools
+import logging
+from collections.abc import Callable, Sequence
+from enum import Enum
+from functools import lru_cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.core.cache.cached import cached
+from eyas.engine.core.cache.folder import Kind
+from eyas.engine.render.ahead import other_is_ready
+from eyas.engine.render.kernels.bundles import Geometry
+from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
+from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
+from eyas.engine.render.textures.library import build_textures
+from eyas.engine.sensors.obstacles import Solids, solids_of
+from eyas.engine.state.draw import PartLibrary
+from eyas.engine.state.roads import RoadNetwork
+from eyas.engine.state.scene import Scene
+from eyas.engine.targets.catalogue import KINDS
+from eyas.engine.targets.kind import Kind as TargetKind
+from eyas.engine.targets.rig import part_library
+from eyas.engine.traffic.network import build_network
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.recipe import MapRecipe
+from eyas.engine.world.street.signals import lens_levels
+from eyas.engine.world.weather import Season
+
+__all__ = [
+    "Lenses",
+    "load_geometry",
+    "load_network",
+    "load_parts",
+    "load_scene",
+    "load_solids",
+    "load_textures",
+    "paint",
+]
+
+
+class Lenses(Enum):
+    """What is drawn of signals that change."""
+
+    NONE = 0
+    PLAIN = 1
+    """The lenses that shine."""
+    COVERING = 2
+    """These, and what hides an amber that does not, see `lens_levels`."""
+
+
+_LOG = logging.getLogger("eyas")
+
+
+def load_network(map_name: str, seed: int) -> RoadNetwork:
+    """Return a map's roads: shipped for seed 0 and few others, else built by netconvert.
+
+    Raises:
+        MissingExtraError: netconvert is needed but not installed.
+    """
+    recipe = MAPS.get(map_name)
+    return recipe.shipped_network(seed) or build_network(recipe.roads(seed))
+
+
+def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> Scene:
+    """Return everything on a map that does not move."""
+    return _scene(map_name, seed, season)
+
+
+@lru_cache(maxsize=4)
+def _scene(map_name: str, seed: int, season: Season) -> Scene:
+    # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
+    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
+    make = partial(_built, text, network, season, recipe.name)
+    return make() if origin is None else cached(Kind.SCENE, make, origin, of=Scene)
+
+
+def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
+    from eyas.maps.plan.build import build_scene  # not needed where the scene is kept
+    from eyas.maps.plan.file import plan_of
+
+    _LOG.info("building the map '%s', once", name)
+    return build_scene(plan_of(text.tobytes()), network, season)
+
+
+@lru_cache(maxsize=4)
+def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
+    """Return the plan of a map as its file tells it, UTF-8.
+
+    It is kept apart from what is built of it: a change of a shape places nothing anew, and a
+    change of a planner builds anew only what it has placed elsewhere.
+    """
+    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    make, data = partial(_planned, recipe, network, seed), recipe.data_hash()
+    if data is None:
+        return make()
+    return cached(
+        Kind.PLAN, make, (recipe.plan, recipe.name, data, seed, network), of=NDArray[np.uint8]
+    )
+
+
+def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
+    from eyas.maps.plan.file import text_of
+
+    plan = recipe.complete_plan(network, seed)
+    return np.frombuffer(text_of(plan).encode(), np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _origin(map_name: str, seed: int, season: Season) -> tuple[object, ...] | None:
+    """Return what a scene, and so all that is made of it, depends on.
+
+    None for a map without a folder: nobody knows what it is made of, so nothing is kept on disk.
+    """
+    if MAPS.get(map_name).data_hash() is None:
+        return None
+    return _built, _text_of(map_name, seed), season.value, load_network(map_name, seed)
+
+
+@lru_cache(maxsize=4)
+def load_solids(map_name: str, seed: int, season: Season) -> Solids:
+    """Return everything on a map that rays and bodies may meet."""
+    make = partial(solids_of, load_scene(map_name, seed, season))
+    origin = _origin(map_name, seed, season)
+    return make() if origin is None else cached(Kind.SOLIDS, make, origin, of=Solids)
+
+
+@lru_cache(maxsize=4)
+def load_geometry(
+    map_name: str,
+    seed: int,
+    season: Season,
+    kinds: tuple[int, ...],
+    *,
+    lenses: Lenses = Lenses.NONE,
+) -> Geometry:
+    """Return the geometry of a scene and of the parts of moving objects, for the kernels.
+
+    Args:
+        map_name: Name of the map.
+        seed: Seed of the map.
+        season: Season of the weather.
+        kinds: Kinds of the moving objects, indices into `KINDS`.
+        lenses: Which lights of signals are parts, too, the last ones.
+    """
+    scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
+    make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
+    if origin is None:
+        return make()
+    inputs = (*origin, part_library, _chosen(kinds), build_textures, lenses.value)
+    return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
+
+
+def _packed(
+    scene: Scene,
+    origin: tuple[object, ...] | None,
+    kinds: tuple[int, ...],
+    textures: Callable[[], dict[str, NDArray[np.uint8]]],
+    *,
+    lenses: Lenses,
+) -> Geometry:
+    other_is_ready()  # which may be to `paint`
+    parts = load_parts(kinds)
+    shown = _with_lights(parts, lenses)
+    # Kept by itself: other movers on the same map are packed in a second.
+    pack = partial(packed_scene, scene)
+    still = pack() if origin is None else cached(Kind.GEOMETRY, pack, origin, of=PackedScene)
+    lights = packed_prototypes(shown.parts[len(parts.parts) :])
+    return build_geometry(
+        scene, shown, textures(), (still, [*map(_packed_kind, _chosen(kinds)), lights])
+    )
+
+
+def _packed_kind(kind: TargetKind) -> Prototypes:
+    return cached(Kind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
+
+
+def _pack_kind(kind: TargetKind) -> Prototypes:
+    return packed_prototypes(_parts_of(kind).parts)
+
+
+def _parts_of(kind: TargetKind) -> PartLibrary:
+    return cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
+
+
+def paint(kinds: Sequence[int]) -> None:
+    """Put textures, and the parts of kinds of moving objects, into the cache.
+
+    Args:
+        kinds: See `load_geometry`.
+    """
+    load_textures()
+    load_parts(tuple(kinds))
+
+
+def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
+    return tuple(KINDS[kind] for kind in kinds)
+
+
+def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
+    """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
+    # One entry for each kind: whoever adds another to a world makes the parts of that one only.
+    made = [_parts_of(kind) for kind in _chosen(kinds)]
+    return PartLibrary(
+        tuple(itertools.chain.from_iterable(one.parts for one in made)),
+        tuple(itertools.chain.from_iterable(one.lamps for one in made)),
+    )
+
+
+def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
+    """Return a library with the lights of signals after its other parts."""
+    if wanted is Lenses.NONE:
+        return parts
+    lenses = lens_levels(covers=wanted is Lenses.COVERING)
+    lamps = parts.lamps or (False,) * len(parts.parts)
+    return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
+
+
+def load_textures() -> dict[str, NDArray[np.uint8]]:
+    """Return all textures by name."""
+    return cached(Kind.TEXTURES, build_textures, (), of=dict[str, NDArray[np.uint8]])

@@ -1,0 +1,143 @@
+"""What is sensed after each physics step: contacts, lidar, and the errors of the other sensors.
+
+What is off does not exist here, so that it costs nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.core.rng import EpisodeKey
+from eyas.engine.core.variation import bounds
+from eyas.engine.sensors.camera.event_sensor import EventSensors
+from eyas.engine.sensors.grain import Grain
+from eyas.engine.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
+from eyas.engine.sensors.obstacles import Obstacles, obstacles_of
+from eyas.engine.sensors.readings import Readings, has_errors
+from eyas.engine.sim.assets import Assets
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.views.further_camera import FurtherOptics
+from eyas.engine.sim.views.optics import Optics
+from eyas.engine.sim.worlds import Worlds
+from eyas.engine.state.snapshot import Snapshot
+from eyas.engine.task.config import Crash
+from eyas.engine.task.contact import Contacts
+from eyas.engine.trackers.config import TrackerKind
+
+__all__ = ["SensorSuite"]
+
+
+class _Sensor(Protocol):
+    def begin(self, tracker: int, rng: np.random.Generator) -> None: ...
+
+
+class SensorSuite:
+    """The sensors of N trackers that the settings ask for.
+
+    Attributes:
+        lidar: None if it is off.
+        readings: None if the sensors have no errors.
+        grain: None if the camera has no noise.
+        optics: What is modelled of the camera beyond a pinhole.
+        further: The cameras that trackers have beside that one.
+        events: None if there are no event cameras.
+        follow: Whether `advance` must be called after each physics step.
+
+    Args:
+        config: The settings.
+        assets: Map and traffic.
+        worlds: The worlds of the trackers.
+        snapshot: Their state.
+        active: Whether each moves in a step, shape (N,); read at each.
+        bodies: Whether they have bodies, which others meet.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        assets: Assets,
+        worlds: Worlds,
+        snapshot: Snapshot,
+        active: NDArray[np.bool_],
+        *,
+        bodies: bool,
+    ) -> None:
+        self.lidar: Lidar | None = None
+        self.readings: Readings | None = None
+        self._contacts: Contacts | None = None
+        crash = config.done.crash
+        if config.lidar.enabled or crash is not Crash.ORIGINAL:
+            obstacles = obstacles_of(
+                assets.solids(),
+                assets.scene.terrain,
+                assets.traffic.motion,
+                worlds.of,
+                worlds.models,
+                snapshot.trackers if bodies else None,
+            )
+            if crash is not Crash.ORIGINAL:
+                self._contacts = _contacts(config, snapshot, obstacles, active)
+            if config.lidar.enabled:
+                latest = round(bounds(config.control.observation_latency_steps)[1])
+                mount = CAR_MOUNT if config.tracker.kind is TrackerKind.CAR else MOUNT
+                self.lidar = Lidar(config.lidar, snapshot, obstacles, active, latest, mount)
+        if has_errors(config.sensors):
+            self.readings = Readings(config.sensors, snapshot, active)
+        self.grain = Grain.of(config.sensors.camera, len(active))
+        size = config.camera.height, config.camera.width
+        self.events = EventSensors.of(config.camera.events, size, len(active))
+        taken = assets, config.world.hour, len(active)
+        self.optics = Optics(config.camera, *taken)
+        self.further = tuple(FurtherOptics(camera, *taken) for camera in config.cameras)
+        # Contacts come first: they may end the episode that the others then see.
+        self._following = [
+            sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
+        ]
+        self.follow = bool(self._following)
+
+    @property
+    def told(self) -> NDArray[np.float64] | None:
+        """What sensors with errors read, see `Readings`; None if none has errors."""
+        return None if self.readings is None else self.readings.told
+
+    def begin(self, trackers: Sequence[int], key_of: Callable[[int], EpisodeKey]) -> None:
+        """Begin episodes of some trackers, which are at their starts.
+
+        Args:
+            trackers: The trackers.
+            key_of: Returns what the random numbers of a tracker's episode depend on.
+        """
+        sensors: dict[str, _Sensor | None] = {
+            "contacts": self._contacts,
+            "lidar": self.lidar,
+            "readings": self.readings,
+            "grain": self.grain,
+            "events": self.events,
+        }
+        for name, sensor in sensors.items():
+            if sensor is not None:
+                for tracker in trackers:
+                    sensor.begin(tracker, key_of(tracker).stream(name))
+        for tracker in trackers:
+            for optics in (self.optics, *self.further):
+                optics.begin(tracker, key_of(tracker).stream)
+        self.advance()
+
+    def renew(self) -> None:
+        """Begin a command."""
+        if self._contacts is not None:
+            self._contacts.renew()
+
+    def advance(self) -> None:
+        """Sense, after a physics step."""
+        for sensor in self._following:
+            sensor.advance()
+
+
+def _contacts(
+    config: SimConfig, snapshot: Snapshot, obstacles: Obstacles, active: NDArray[np.bool_]
+) -> Contacts:
+    ends = config.done.crash is Crash.END
+    return Contacts(snapshot, obstacles, active, config.done.grace_steps, ends=ends)

@@ -1,0 +1,230 @@
+"""What a camera has in view, and the target in words that tell it from that."""
+
+import math
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.core.lens import Lens, places, principal_point, widest
+from eyas.engine.state.motion import ActorState, ActorView
+from eyas.engine.state.snapshot import CameraState, Snapshot
+from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of
+from eyas.engine.targets.grammar.in_view import InView
+from eyas.engine.targets.words import Seen, told_apart
+from eyas.lanes import exact
+
+__all__ = ["in_view", "target_in_words"]
+
+Floats = NDArray[np.float64]
+
+
+def target_in_words(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+) -> str:
+    """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
+
+    No other actor of which a part is in the camera's view shares it, hidden or not.
+
+    Args:
+        shown: The state that the picture shows.
+        around: The actors around the tracker at that time.
+        tracker: The tracker.
+        aspect: Height of the camera's picture over its width.
+        lens: Its lens; None: a pinhole.
+    """
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
+    target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
+    actors, _, model, colour = around
+    # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
+    middle = corners.mean(axis=1)
+    forward, column = middle[:, 0], _placed(middle, wide, aspect, lens)[:, 0]
+
+    def seen(row: int) -> Seen:
+        actor = chosen[row]
+        return Seen(
+            model=int(model[actor]),
+            colour=colour[actor].tolist(),
+            speed=float(actors.speed[0, actor]),
+            yaw_rate=float(actors.yaw_rate[0, actor]),
+            column=float(column[row]),
+            distance=float(forward[row]),
+        )
+
+    (own,) = np.flatnonzero(chosen == target).tolist()
+    others = np.flatnonzero(inside & (chosen != target)).tolist()
+    return told_apart(seen(own), [seen(row) for row in others])
+
+
+def in_view(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+) -> InView:
+    """Return the moving objects of which a part is in a tracker's view, and its target in any case.
+
+    Args:
+        shown: The state that the picture shows.
+        around: The actors around the tracker at that time.
+        tracker: The tracker.
+        aspect: Height of the camera's picture over its width.
+        lens: Its lens; None: a pinhole.
+    """
+    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
+    inside |= chosen == shown.targets.actor[tracker]
+    actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
+    actors, _, model, colour = around
+    place = _placed(corners[inside].mean(axis=1), wide, aspect, lens)
+    heading, ahead = actors.yaw[0, actor], np.array([kind_of(m).ahead for m in model[actor]])
+    along = np.stack([exact.cos(heading), exact.sin(heading)], axis=1)
+    return InView(
+        actor=actor.astype(np.int64),
+        model=model[actor].astype(np.int64),
+        colour=colour[actor].astype(np.float64),
+        speed=actors.speed[0, actor],
+        yaw_rate=actors.yaw_rate[0, actor],
+        heading=heading,
+        middle=actors.position[0, actor, :2] + ahead[:, None] * along,
+        size=np.array([MODELS[m].size[:2] for m in model[actor]]).reshape(-1, 2),
+        place=place,
+    )
+
+
+def _placed(points: Floats, wide: float, aspect: float, lens: Lens | None) -> Floats:
+    """Return where points are in a picture, in shares of its sides, also if they are behind it.
+
+    Args:
+        points: Forward, left and up of the camera [m], shape (..., 3).
+        wide: Tangent of half the horizontal field of view.
+        aspect: Height of the picture over its width.
+        lens: The lens; None: a pinhole.
+    """
+    forward, left, up = np.moveaxis(points, -1, 0)
+    before = np.maximum(forward, 1e-3)
+    if lens is not None:
+        bent = places(lens, np.stack([-left, -up, before], axis=-1)) / (2.0 * wide)
+        column, row = principal_point(lens, 1.0, 1.0)
+        return np.stack([column + bent[..., 0], row + bent[..., 1] / aspect], axis=-1)
+    reach = before * wide
+    return np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=-1)
+
+
+def _surely_near(
+    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None
+) -> tuple[NDArray[np.int64], NDArray[np.bool_], Floats]:
+    """Return actors that are near a tracker's view or its target, shape (K,), of which a part is
+    inside, (K,), and the corners of their boxes forward, left and up of the camera [m], (K, 8, 3).
+    """
+    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+    actors, _, model, _ = around
+    wide = _half_width(cameras, tracker)
+    middles = _in_camera(actors.position[0], cameras, tracker)
+    seen = wide if lens is None else widest(lens, (1.0, aspect), (0.5 / wide, 0.5 / wide))
+    near = _may_be_in_view(
+        middles, _reach(len(MODELS))[model], seen, wide * aspect if lens is None else seen
+    )
+    near &= actors.present[0] & ~_flying(len(MODELS))[model]
+    near[target] = True
+    chosen = np.flatnonzero(near)
+    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
+    if lens is not None:
+        return chosen, _in_bent_view(corners, wide, aspect, lens), corners
+    return chosen, _in_view(corners, wide, wide * aspect), corners
+
+
+def _half_width(cameras: CameraState, tracker: int) -> float:
+    """Return the tangent of half the horizontal field of view of a tracker's camera."""
+    return float(exact.tan(0.5 * float(cameras.field_of_view[tracker])))
+
+
+_LIMBS = 2.0
+"""Limbs reach less than this out of the box of a model's size, and so do trailers that swing [m].
+"""
+
+
+@cache
+def _flying(models: int) -> NDArray[np.bool_]:
+    """Return which of so many models fly: phrases speak of what is on the ground."""
+    return np.array([model.motion == "flies" for model in MODELS[:models]])
+
+
+@cache
+def _reach(models: int) -> Floats:
+    """Return how far any corner of each of so many models may be from its place [m]."""
+    return np.array(
+        [
+            exact.length(model.size) + abs(kind_of(k).ahead)
+            for k, model in enumerate(MODELS[:models])
+        ]
+    )
+
+
+def _may_be_in_view(middles: Floats, reach: Floats, wide: float, high: float) -> NDArray[np.bool_]:
+    """Return whether spheres may be in a view, as `_in_view` does for boxes; most are far aside."""
+    forward, left, up = middles.T
+    reach = reach + _LIMBS
+    across, down = math.sqrt(1.0 + wide * wide) * reach, math.sqrt(1.0 + high * high) * reach
+    inside: NDArray[np.bool_] = (
+        (forward > -reach)
+        & (np.abs(left) - forward * wide < across)
+        & (np.abs(up) - forward * high < down)
+    )
+    return inside
+
+
+def _corners(actors: ActorState, chosen: NDArray[np.integer], model: NDArray[np.int32]) -> Floats:
+    """Return the corners of the boxes of some actors of one world [m], shape (K, 8, 3)."""
+    low, high = np.empty((2, len(chosen), 3))
+    for row, actor in enumerate(chosen.tolist()):
+        low[row], high[row] = _extent(actors, actor, int(model[actor]))
+    pick = np.array([[bit >> axis & 1 for axis in range(3)] for bit in range(8)], bool)
+    own = np.where(pick, high[:, None], low[:, None])
+    yaw, slope = actors.yaw[0, chosen], actors.slope[0, chosen]
+    cosine, sine = exact.cos(yaw)[:, None], exact.sin(yaw)[:, None]
+    east = cosine * own[..., 0] - sine * own[..., 1]
+    north = sine * own[..., 0] + cosine * own[..., 1]
+    up = own[..., 2] + own[..., 0] * exact.tan(slope)[:, None]
+    corners: Floats = np.stack([east, north, up], axis=-1) + actors.position[0, chosen][:, None]
+    return corners
+
+
+def _extent(actors: ActorState, actor: int, model: int) -> Floats | tuple[list[float], list[float]]:
+    """Return the least and largest coordinates of an actor ahead, left and up of its place [m]."""
+    travelled, speed = float(actors.travelled[0, actor]), float(actors.speed[0, actor])
+    slope, hitch = float(actors.slope[0, actor]), float(actors.hitch[0, actor])
+    limbs = extent_of(model, travelled, speed, slope)
+    if limbs is not None:
+        return limbs
+    length, width, height = MODELS[model].size
+    middle, half = kind_of(model).ahead, 0.5 * width + 0.5 * length * abs(hitch)  # swings aside
+    return [middle - 0.5 * length, -half, 0.0], [middle + 0.5 * length, half, height]
+
+
+def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
+    """Return points forward, left and up of a tracker's camera [m], shape (..., 3)."""
+    away, axes = points - cameras.position[tracker], cameras.rotation[tracker]
+    seen = [sum(away[..., k] * axes[k, axis] for k in range(3)) for axis in range(3)]
+    return np.stack(seen, axis=-1)
+
+
+def _in_bent_view(corners: Floats, wide: float, aspect: float, lens: Lens) -> NDArray[np.bool_]:
+    """Return the same through a lens: whether the boxes around their corners reach the picture."""
+    before = corners[..., 0] > 1e-3
+    place = _placed(corners, wide, aspect, lens)
+    low = np.where(before[..., None], place, np.inf).min(axis=1)
+    high = np.where(before[..., None], place, -np.inf).max(axis=1)
+    inside: NDArray[np.bool_] = ((low < 1.0) & (high > 0.0)).all(axis=1)
+    return inside
+
+
+def _in_view(corners: Floats, wide: float, high: float) -> NDArray[np.bool_]:
+    """Return whether any part of boxes may be in a view: none is outside of one of its planes.
+
+    Args:
+        corners: Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3).
+        wide: Tangent of half the horizontal field of view.
+        high: Tangent of half the vertical field of view.
+    """
+    forward, left, up = np.moveaxis(corners, -1, 0)
+    planes = [forward, forward * wide - left, forward * wide + left]
+    planes += [forward * high - up, forward * high + up]
+    inside: NDArray[np.bool_] = np.all([(plane > 0.0).any(axis=1) for plane in planes], axis=0)
+    return inside

@@ -1,0 +1,159 @@
+"""The motion of all actors: one table, independent of its source."""
+
+from collections.abc import Sequence
+from enum import IntFlag
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SAMPLE", "ActorState", "ActorView", "Lamp", "Motion", "joined"]
+
+SAMPLE: Final = np.dtype(
+    [
+        ("x", np.float32),
+        ("y", np.float32),
+        ("z", np.float32),
+        ("velocity_x", np.float32),
+        ("velocity_y", np.float32),
+        ("velocity_z", np.float32),
+        ("yaw", np.float32),
+        ("yaw_rate", np.float32),
+        ("slope", np.float32),
+        ("hitch", np.float32),
+        ("travelled", np.float32),
+        ("present", np.float32),
+    ],
+    align=True,  # else kernels read each number byte by byte on CUDA
+)
+"""One actor at one instant.
+
+x, y, z: reference point on the road, world frame [m]; velocity_x, velocity_y, velocity_z: its
+velocity [m/s]; yaw: heading, counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate
+[rad/s]; slope: pitch of the road along the heading, positive up [rad]; hitch: heading of a trailer
+less that of its truck, 0 of all others [rad]; travelled: horizontal path length since the first
+sample [m]; present: 1 while the actor is in the world, else 0.
+
+32 bits keep positions to 0.03 mm and halve the memory that each world's step touches.
+"""
+
+
+class Lamp(IntFlag):
+    """What a vehicle signals."""
+
+    BRAKE = 1
+    """Its brake lamps are lit."""
+    LEFT = 2
+    """It is going to go left: its indicators on the left blink."""
+    RIGHT = 4
+    """The same on the right."""
+
+
+_DARK: Final = np.zeros((0, 0), np.uint8)
+
+
+class Motion(NamedTuple):
+    """Sampled motion of A actors, interpolated by kernels (`eyas.engine.traffic.interpolation`)."""
+
+    table: NDArray[np.void]
+    """Samples of dtype `SAMPLE`, shape (S, A), S at least 2."""
+    kind: NDArray[np.int32]
+    """Kind of each actor: index into `eyas.engine.targets.catalogue.KINDS`, shape (A,)."""
+    rate: float
+    """Samples per second [Hz]."""
+    first_time: float
+    """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
+    lamps: NDArray[np.uint8] = _DARK
+    """`Lamp` of each actor at each sample, shape (S, A), or (0, 0) where nobody signals."""
+
+
+class ActorState(NamedTuple):
+    """State of A actors in each of W worlds."""
+
+    position: NDArray[np.float64]
+    """Reference point on the road, for a vehicle the middle of its SUMO length, world frame [m],
+    shape (W, A, 3)."""
+    yaw: NDArray[np.float64]
+    """Heading, counter-clockwise from east [rad], shape (W, A)."""
+    slope: NDArray[np.float64]
+    """Pitch of the road along the heading, positive up [rad], shape (W, A)."""
+    speed: NDArray[np.float64]
+    """Horizontal speed [m/s], shape (W, A)."""
+    velocity: NDArray[np.float64]
+    """Change of `position` [m/s], shape (W, A, 3)."""
+    yaw_rate: NDArray[np.float64]
+    """[rad/s], shape (W, A)."""
+    hitch: NDArray[np.float64]
+    """Heading of a trailer less that of its truck [rad], shape (W, A); 0 of all others."""
+    travelled: NDArray[np.float64]
+    """Path length since the motion began [m], shape (W, A); it gives the rotation of wheels."""
+    present: NDArray[np.bool_]
+    """Whether the actor is in the world, shape (W, A)."""
+
+    @classmethod
+    def create(cls, worlds: int, actors: int) -> "ActorState":
+        """Return `actors` actors at the origin in each of `worlds` worlds."""
+        plane = (worlds, actors)
+        return cls(
+            position=np.zeros((*plane, 3)),
+            yaw=np.zeros(plane),
+            slope=np.zeros(plane),
+            speed=np.zeros(plane),
+            velocity=np.zeros((*plane, 3)),
+            yaw_rate=np.zeros(plane),
+            hitch=np.zeros(plane),
+            travelled=np.zeros(plane),
+            present=np.zeros(plane, np.bool_),
+        )
+
+    def first(self, worlds: int) -> "ActorState":
+        """Return the first worlds; the arrays are shared."""
+        return ActorState._make(array[:worlds] for array in self)
+
+
+class ActorView(NamedTuple):
+    """All A actors of a tracker's world at the instant that its pictures show."""
+
+    state: ActorState
+    """Of one world."""
+    before: ActorState
+    """A physics step of 2 ms earlier."""
+    model: NDArray[np.int32]
+    """Indices into `eyas.engine.targets.catalogue.MODELS`, shape (A,)."""
+    colour: NDArray[np.float32]
+    """sRGB, 0 to 1, shape (A, 3)."""
+
+
+def joined(motions: Sequence[Motion]) -> Motion:
+    """Return one motion with the actors of several, in order.
+
+    Args:
+        motions: At least one motion, all with the same rate, first time and number of samples.
+
+    Raises:
+        ValueError: Their samples are not at the same times.
+    """
+    first = motions[0]
+    if len(motions) == 1:
+        return first
+    for other in motions[1:]:
+        times = [(len(m.table), m.rate, m.first_time) for m in (first, other)]
+        if times[0] != times[1]:
+            raise ValueError(
+                "motions: samples, rate [Hz] and first time [s] are {} and {}; "
+                "allowed: the same in all".format(*times)
+            )
+    lamps = _DARK
+    if any(motion.lamps.size for motion in motions):
+        own = [
+            motion.lamps if motion.lamps.size else np.zeros(motion.table.shape, np.uint8)
+            for motion in motions
+        ]
+        lamps = np.concatenate(own, axis=1)
+    return Motion(
+        table=np.concatenate([motion.table for motion in motions], axis=1),
+        kind=np.concatenate([motion.kind for motion in motions]),
+        rate=first.rate,
+        first_time=first.first_time,
+        lamps=lamps,
+    )

@@ -1,0 +1,66 @@
+"""What a model of a person or robot is.
+
+Sizes, colours and speeds are those of the original's models in Webots. Model frame: x forward, y
+left, z up, origin on the ground below the middle.
+"""
+
+from dataclasses import dataclass
+
+from eyas.engine.targets.config import TargetName
+from eyas.engine.targets.habit import Habit
+from eyas.engine.targets.jointed.figure import Figure
+from eyas.engine.targets.kind import Colour, Model
+
+__all__ = ["JointedModel", "robot"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointedModel(Model):
+    """One model of a person or robot."""
+
+    figure: Figure
+    """How it is built and how it moves."""
+    habit: Habit
+    """How it moves by itself."""
+    colours: tuple[Colour, ...]
+    """Colours that it may have, sRGB."""
+    part_colours: tuple[Colour | None, ...] = ()
+    """Colours of its drawn parts, sRGB, in the order of `cycle.shapes_of`; None, or none at all:
+    the one that it has of `colours`."""
+
+
+def robot(
+    name: TargetName,
+    *,
+    size: tuple[float, float, float],
+    colour: Colour,
+    words: str,
+    motion: str,
+    habit: Habit,
+    figure: Figure,
+) -> JointedModel:
+    """Return a robot; its reference point is in the middle of its height.
+
+    Args:
+        name: The original's name.
+        size: Length, width and height without antennas [m].
+        colour: Its main colour.
+        words: What it is, "a white robot dog".
+        motion: What its habit is, in words.
+        habit: How it moves by itself.
+        figure: How it is built.
+    """
+    return JointedModel(
+        name=name.value,
+        typename=name.value,
+        kind=name.value,
+        size=size,
+        rise=size[2] / 2,
+        words=(words, f"{words} ({name.value})"),
+        motion=f"{motion}, {habit.speed:g} m/s",
+        speed=habit.speed,
+        stride=figure.period,
+        figure=figure,
+        habit=habit,
+        colours=(colour,),
+    )

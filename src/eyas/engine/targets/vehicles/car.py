@@ -1,0 +1,53 @@
+"""Cars, vans and buses as models of the catalogue."""
+
+from functools import partial
+
+from eyas.engine.targets.vehicles.variants import variants_of
+from eyas.engine.targets.vehicles.vehicle import VehicleModel, vehicle
+from eyas.engine.traffic.config import VehicleType
+from eyas.engine.world.cars.body import TRACK, body_levels
+from eyas.engine.world.cars.frame import Axle
+from eyas.engine.world.cars.shape import CarShape
+
+__all__ = ["car"]
+
+
+def car(
+    name: str,
+    kind: VehicleType = VehicleType.PASSENGER,
+    *,
+    size: tuple[float, float, float],
+    wheels: tuple[float, float, float],
+    mass: float,
+    words: tuple[str, ...],
+    shape: CarShape,
+    axles: tuple[Axle, ...] | None = None,
+) -> VehicleModel:
+    """Return a car, van or bus.
+
+    Args:
+        name: The original's name.
+        kind: SUMO's class.
+        size: Length, width with mirrors, and height [m].
+        wheels: Wheelbase, wheel radius and x of the front axle [m].
+        mass: Empty [kg].
+        words: See `Model.words`.
+        shape: Its lines.
+        axles: None: two with the wheels of a car.
+    """
+    wheelbase, radius, front = wheels
+    track = size[1] - TRACK
+    usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)
+
+    return vehicle(
+        name,
+        kind,
+        size=size,
+        wheelbase=wheelbase,
+        wheel_radius=radius,
+        axles=axles or usual,
+        mass=mass,
+        words=words,
+        body=partial(body_levels, shape),
+        variants=tuple(partial(body_levels, variant) for variant in variants_of(shape)),
+    )

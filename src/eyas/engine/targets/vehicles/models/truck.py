@@ -1,0 +1,12 @@
+"""A truck without a trailer."""
+
+from eyas.engine.targets.vehicles.heavy import truck
+
+__all__ = ["MODEL"]
+
+MODEL = truck(
+    "TruckSimple",
+    mass=7500.0,
+    words=("a {} truck", "a {} truck without a trailer"),
+    wheelbase=5.25,
+)

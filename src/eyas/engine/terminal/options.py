@@ -1,0 +1,107 @@
+"""Options that several commands share."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.settings.preset import DAT_MODES, TRAININGS, WORLDS
+
+__all__ = [
+    "POLICIES",
+    "SEVERAL",
+    "AsJson",
+    "ConfigFile",
+    "MapName",
+    "Overrides",
+    "Preset",
+    "Seed",
+    "Trust",
+    "Weather",
+    "chosen_file",
+    "gathered",
+]
+
+ConfigFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--config", help="Settings in JSON: native, or the DAT benchmark's env_config.json."
+    ),
+]
+Preset = Annotated[
+    str | None,
+    typer.Option(
+        "--preset",
+        help=f"Settings that come with Eyas: of the DAT benchmark ({', '.join(DAT_MODES)}), of "
+        f"harder or easier worlds ({', '.join(WORLDS)}), of trainings ({', '.join(TRAININGS)}).",
+    ),
+]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Change a setting; may be given several times."
+    ),
+]
+POLICIES = (
+    "random, hover, follow (an oracle), sighted, constant-velocity, road-graph, relay, servo, "
+    "gimbal-servo, attribute-servo, salient-servo, csrt, kcf, mosse, medianflow, nano, stay, "
+    "eyas, eyas-flown, eyas-words, fast"
+)
+"""The policies that come with Eyas, for help, which must not load what knows them; a test holds
+the two equal."""
+SEVERAL = "may be given several times"
+
+MapName = Annotated[
+    str | None,
+    typer.Option("--map", help="Name of the map, FILE.plan.json, or package.module:attribute."),
+]
+Weather = Annotated[
+    str | None,
+    typer.Option("--weather", help="Name of the weather, or package.module:attribute."),
+]
+Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
+UntilIdle = Annotated[
+    float | None,
+    typer.Option(
+        "--until-idle",
+        metavar="SECONDS",
+        min=1.0,
+        max=1e9,
+        help="End after this time without a client; by default never.",
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Trust = Annotated[
+    bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")
+]
+
+
+def chosen_file(config: Path | None, preset: str | None) -> Path | None:
+    """Return the file of settings that a user has chosen; None for the defaults.
+
+    Raises:
+        ConfigError: There is no such preset, or a file is given as well.
+    """
+    if preset is None:
+        return config
+    from eyas.engine.settings.preset import preset_file
+
+    if config is not None:
+        raise ConfigError(
+            "--preset and --config cannot be used together; change single settings with --set"
+        )
+    return preset_file(preset)
+
+
+def gathered(
+    overrides: list[str] | None,
+    map_name: str | None = None,
+    weather: str | None = None,
+    seed: int | None = None,
+) -> list[str]:
+    """Return all changes of settings as `key=value`; short options come last and so win."""
+    short = {"world.map": map_name, "world.weather": weather, "seed": seed}
+    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
+    return [*(overrides or []), *said]

@@ -1,0 +1,101 @@
+"""The vehicles of the traffic: the class of each, and when and where they drive."""
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import repeat
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.engine.core.rng import stream
+from eyas.engine.traffic.config import Demand, Mix, TrafficConfig, VehicleType
+from eyas.engine.traffic.demand import (
+    RoadLinks,
+    Route,
+    departures,
+    endless_walk,
+    lasting_edges,
+    random_trips,
+)
+
+__all__ = ["Departure", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
+
+Links = Mapping[VehicleType, RoadLinks]
+"""The roads, as each class of vehicles may use them."""
+
+
+class Departure(NamedTuple):
+    """A vehicle that enters the roads."""
+
+    time: float
+    """When it is due [s]."""
+    route: Route
+    vehicle_type: VehicleType
+
+
+Fleet = Callable[[Links], Iterator[Departure]]
+"""Function of the roads that yields the vehicles, the earliest first."""
+
+
+def simplest(vehicle_type: VehicleType | Mix) -> VehicleType | Mix:
+    """Return the one class of a mix of one class; else a mix whose shares sum to 1."""
+    if isinstance(vehicle_type, VehicleType):
+        return vehicle_type
+    total = sum(vehicle_type.shares.values())
+    shares = {name: share / total for name, share in vehicle_type.shares.items() if share}
+    if len(shares) == 1:
+        return next(iter(shares))
+    return Mix(**{name.value: round(share, 9) for name, share in shares.items()})
+
+
+def vehicle_types(config: TrafficConfig) -> tuple[VehicleType, ...]:
+    """Return the class of each actor: all alike, or by the shares of a mix, class by class.
+
+    Each class gets the whole part of its share of `max_vehicles`; those left go to the largest
+    remainders (Hamilton's method).
+    """
+    mix, count = config.vehicle_type, config.max_vehicles
+    if isinstance(mix, VehicleType):
+        return (mix,) * count
+    total = sum(mix.shares.values())
+    exact = {name: share / total * count for name, share in mix.shares.items()}
+    numbers = {name: int(wanted) for name, wanted in exact.items()}
+    left = count - sum(numbers.values())
+    for name in sorted(exact, key=lambda name: numbers[name] - exact[name])[:left]:
+        numbers[name] += 1
+    return tuple(name for name, number in numbers.items() for _ in range(number))
+
+
+def fleet_of(config: TrafficConfig, duration: float) -> Fleet:
+    """Return the vehicles that settings ask for.
+
+    Args:
+        config: Settings from `eyas.engine.traffic.record.resolved`.
+        duration: Time until which they enter and drive [s].
+    """
+    assert config.seed is not None
+    rng = stream(config.seed, "traffic")
+    actors = vehicle_types(config)
+
+    def keep_alive(links: Links) -> Iterator[Departure]:
+        edges = {name: lasting_edges(links[name]) for name in dict.fromkeys(actors)}
+        for name in actors:
+            walk = endless_walk(links[name], edges[name], duration * config.max_speed, rng)
+            yield Departure(0.0, walk, name)
+
+    def respawn(links: Links) -> Iterator[Departure]:
+        lengths = config.route_length
+        trips = {name: random_trips(links[name], lengths, rng) for name in dict.fromkeys(actors)}
+        classes = _shuffled(actors, rng)
+        for time, size in departures(config, duration):
+            for name in (next(classes) for _ in range(size)):
+                yield Departure(time, next(trips[name]), name)
+
+    return keep_alive if config.demand is Demand.KEEP_ALIVE else respawn
+
+
+def _shuffled(actors: tuple[VehicleType, ...], rng: np.random.Generator) -> Iterator[VehicleType]:
+    """Yield classes without end: all actors in a random order, again and again."""
+    if len(set(actors)) == 1:
+        yield from repeat(actors[0])
+    while True:
+        yield from (actors[k] for k in rng.permutation(len(actors)).tolist())

@@ -1,0 +1,162 @@
+"""Recording of traffic that SUMO simulates according to the settings."""
+
+from collections.abc import Callable
+from importlib.metadata import version
+
+import numpy as np
+
+from eyas.engine.state.roads import RoadGraph
+from eyas.engine.traffic.config import Demand, Drivers, Signals, TrafficConfig
+from eyas.engine.traffic.cover import Cover, cover_hash
+from eyas.engine.traffic.fleet import fleet_of, simplest
+from eyas.engine.traffic.network import graph_hash, network_xml
+from eyas.engine.traffic.recording import (
+    ANGLE_UNIT,
+    POSITION_UNIT,
+    Provenance,
+    Recording,
+    quantised,
+    restored,
+)
+from eyas.engine.traffic.smoothing import held
+from eyas.engine.traffic.sumo import RATE, Drive, drive, options
+from eyas.engine.traffic.sumo_install import sumo_version
+
+__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved", "roads_for"]
+
+WARM_UP = 60.0
+"""Simulated time before the recording begins, in which vehicles spread over the map [s]."""
+
+GROUP_SHARE = 3
+"""Least number of vehicles in a group for each tracker, as in the original."""
+
+
+def record(  # noqa: PLR0913  # everything a recording depends on
+    map_name: str,
+    map_seed: int,
+    graph: RoadGraph,
+    config: TrafficConfig,
+    duration: float,
+    seed: int,
+    progress: Callable[[float], None] | None = None,
+    *,
+    cover: Cover = (),
+) -> Recording:
+    """Return a new recording, the same for the same arguments and SUMO version.
+
+    Args:
+        map_name: Name of the map.
+        map_seed: Seed of the map.
+        graph: Roads of the map.
+        config: Settings of the traffic.
+        duration: Length of the recording [s].
+        seed: Seed of SUMO and of the routes.
+        progress: Called with the completed share, 0 to 1.
+        cover: The stretches of lanes in which drivers hide, where they do.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: The roads have no room for the requested traffic.
+    """
+    config = resolved(config, seed)
+    cover = cover if config.drivers is not Drivers.NORMAL else ()
+    origin = provenance(map_name, map_seed, graph_hash(graph), config, duration, cover)
+    span = (WARM_UP, WARM_UP + duration)
+    fleet = fleet_of(config, span[1])
+    raw = drive(roads_for(config, graph), config, fleet, cover, span, progress)
+    return _as_recording(raw, origin)
+
+
+def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
+    """Return SUMO's network file of a map's roads; who evades may turn round at junctions, and
+    there are traffic lights if they are to work.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    return network_xml(
+        graph,
+        turnarounds=config.drivers is Drivers.EVADING,
+        signals=config.signals is Signals.WORKING,
+    )
+
+
+def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConfig:
+    """Return the settings that affect SUMO, with all values filled in; others at their defaults.
+
+    Args:
+        config: The user's settings. Where they leave signals open, nobody obeys any.
+        seed: Seed of SUMO and of the routes.
+        trackers: Number of trackers in a world, which determines the least size of a group.
+    """
+    seen: dict[str, object] = {
+        name: getattr(config, name) for name in ("demand", "drivers", "max_vehicles", "max_speed")
+    }
+    seen |= {
+        "vehicle_type": simplest(config.vehicle_type),
+        "max_acceleration": config.max_acceleration,
+        "max_deceleration": config.max_deceleration,
+        "signals": config.signals or Signals.AMBER,
+        "seed": seed,
+    }
+    if config.demand is Demand.RESPAWN:
+        seen |= {
+            "group_size": max(config.group_size or GROUP_SHARE, GROUP_SHARE * trackers),
+            "group_interval": config.group_interval,
+            "route_length": config.route_length,
+            "route_count": config.route_count,
+        }
+    return TrafficConfig.model_validate(seen)
+
+
+def provenance(
+    map_name: str,
+    map_seed: int,
+    roads: str,
+    config: TrafficConfig,
+    duration: float,
+    cover: Cover = (),
+) -> Provenance:
+    """Return the provenance of a recording made by this version.
+
+    Args:
+        map_name: Name of the map.
+        map_seed: Seed of the map.
+        roads: Hash of its road graph.
+        config: Settings from `resolved`.
+        duration: Length of the recording [s].
+        cover: The stretches of lanes in which drivers hide.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    return Provenance(
+        map_name=map_name,
+        map_seed=map_seed,
+        graph_hash=roads,
+        config=config,
+        duration=duration,
+        warm_up=WARM_UP,
+        options=options(config),
+        cover=cover_hash(cover),
+        sumo_version=sumo_version(),
+        eyas_version=version("eyas"),
+    )
+
+
+def _as_recording(raw: Drive, origin: Provenance) -> Recording:
+    position = np.zeros_like(raw.position)
+    yaw = np.zeros_like(raw.yaw)
+    for actor in range(raw.present.shape[1]):
+        present = raw.present[:, actor]
+        position[:, actor] = held(raw.position[:, actor], present)
+        yaw[:, actor] = np.unwrap(held(raw.yaw[:, actor], present))
+    return Recording(
+        rate=float(RATE),
+        position=restored(quantised(position, POSITION_UNIT), POSITION_UNIT),
+        yaw=restored(quantised(yaw, ANGLE_UNIT), ANGLE_UNIT),
+        present=raw.present,
+        vehicle_types=raw.vehicle_types,
+        vehicle_length=raw.vehicle_length,
+        provenance=origin,
+    )

@@ -1,0 +1,59 @@
+"""Formats of `eyas export` among `video.writers`: written of the recording, when it is complete."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from eyas.engine.core.errors import UnknownNameError
+from eyas.engine.exports.registry import SETTING, WRITERS
+from eyas.engine.recordings.export import ExportOptions, export, exports_folder, formats_needs
+from eyas.engine.recordings.recording import load
+from eyas.engine.recordings.registry import FORMATS
+from eyas.engine.terminal.progress import frames_bar
+
+__all__ = ["formats_in", "write_formats", "writers_in"]
+
+
+def formats_in(names: Sequence[str]) -> tuple[str, ...]:
+    """Return those of the names in `video.writers` that are formats."""
+    return tuple(name for name in names if _is_format(name))
+
+
+def writers_in(names: Sequence[str]) -> tuple[str, ...]:
+    """Return the writers among these names, and those of whose files the formats are made.
+
+    Raises:
+        ConfigError: A name is neither that of a writer nor that of a format.
+    """
+    formats = formats_in(names)
+    known = (*WRITERS.names(), *FORMATS.names())
+    for name in names:
+        if ":" not in name and name not in known:
+            raise UnknownNameError(SETTING, name, known, others="package.module:attribute")
+    writers = [name for name in names if name not in formats]
+    needed = formats_needs(formats)
+    if "png" in writers:  # pictures of either kind will do
+        needed = [name for name in needed if name != "jpeg"]
+    return tuple(dict.fromkeys((*writers, *needed)))
+
+
+def write_formats(names: Sequence[str], folder: Path, *, quiet: bool) -> None:
+    """Write the formats among these names of a complete recording into its `exports`.
+
+    Raises:
+        OutputError: A format cannot be written; the recording itself is complete.
+        DataFileError: The recording has no frames.
+    """
+    formats = formats_in(names)
+    if not formats:
+        return
+    recording = load(folder)
+    for name in formats:
+        with frames_bar(f"writing {name}", recording.frame_count, quiet=quiet) as told:
+            target = exports_folder(folder, name, None)
+            export(recording, name, target, ExportOptions(resume=True), told)
+
+
+def _is_format(name: str) -> bool:
+    if ":" in name:
+        return hasattr(WRITERS.get(name), "needs")
+    return name in FORMATS.names()

@@ -1,0 +1,89 @@
+"""What is fixed to a car's body: mirrors, plates, the third brake lamp, rails, arches' walls."""
+
+import numpy as np
+
+from eyas.engine.mesh.panels import box_panels
+from eyas.engine.mesh.shell import Shell
+from eyas.engine.world.build.bodywork import COOLER, PLAIN, body_paint
+from eyas.engine.world.cars.bumpers import AHEAD
+from eyas.engine.world.cars.finishes import (
+    BRIGHT,
+    GLASS,
+    HIGH_BRAKE_LAMP,
+    PAINT,
+    PLATE,
+    TRIM,
+)
+from eyas.engine.world.cars.frame import Frame
+from eyas.engine.world.cars.shape import CarShape, arch_radius, height_at, sections
+from eyas.lanes import exact
+
+__all__ = ["add_trimmings"]
+
+
+def add_trimmings(shell: Shell, frame: Frame, shape: CarShape) -> None:
+    """Add what is fixed to a body of the finest level."""
+    _mirrors(shell, frame, shape)
+    for start, end, top in shape.pods:
+        under, over, *sides = box_panels((start, -0.8, top - 0.5), (end, 0.8, top), 0.06)
+        corners = COOLER.at([0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0])
+        shell.quads(over, body_paint("freight"), uvs=corners)
+        shell.quads([under, *sides], body_paint("freight"), uvs=[PLAIN] * 5)
+    _plates(shell, shape)
+    x = shape.rear_window[1]
+    z = height_at(shape.top, x)
+    shell.box((x - 0.03, -0.11, z - 0.07), (x + 0.1, 0.11, z - 0.002), HIGH_BRAKE_LAMP)
+    if shape.rack:
+        _rack(shell, frame, shape)
+    _arches(shell, frame, shape)
+
+
+def _mirrors(shell: Shell, frame: Frame, shape: CarShape) -> None:
+    half = frame.width / 2
+    x = shape.windscreen[1] - 0.42
+    z = height_at(shape.belt, x)
+    low, high = (x - 0.06, half - 0.24, z + 0.01), (x + 0.13, half, z + 0.19)
+    shell.box(low, high, PAINT, taper=0.015, both_sides=True)
+    y = half - 0.03, half - 0.21
+    glass = [(x - 0.072, y[0], z + 0.035), (x - 0.072, y[1], z + 0.035),
+             (x - 0.06, y[1], z + 0.17), (x - 0.06, y[0], z + 0.17)]  # fmt: skip
+    shell.quads(glass, GLASS, both_sides=True)
+
+
+def _plates(shell: Shell, shape: CarShape) -> None:
+    """Add number plates: in front on the bumper, behind above it."""
+    tail, nose = shape.top[0][0], shape.top[-1][0]
+    low, high = shape.clearance, (shape.belt[0][1], shape.belt[-1][1])
+    z = low + 0.26 * (high[1] - low)
+    shell.box((nose - 0.02, -0.26, z), (nose + 0.014, 0.26, z + 0.1), PLATE)
+    z = low + 0.64 * (high[0] - low)
+    shell.box((tail, -0.26, z), (tail + AHEAD + 0.02, 0.26, z + 0.12), PLATE)
+
+
+def _rack(shell: Shell, frame: Frame, shape: CarShape) -> None:
+    """Add rails along both edges of the roof."""
+    start, end = shape.rear_window[1] + 0.25, shape.windscreen[0] - 0.2
+    x = np.array([start, start + 0.12, 0.5 * (start + end), end - 0.12, end])
+    edge = sections(frame, shape, x, arches=True)[:, 6]
+    lift = np.array([-0.02, 0.045, 0.045, 0.045, -0.02])
+    path = edge + np.column_stack([0 * lift, 0 * lift + 0.015, lift])
+    shell.tube(path, (0.022,) * 5, BRIGHT, sides=4, both_sides=True)
+    most = max(z for _, z in shape.top) + 0.027
+    for share in (0.3, 0.72):  # bars across
+        bar = start + share * (end - start)
+        y = float(np.interp(bar, path[:, 0], path[:, 1]))
+        z = height_at(shape.top, bar) + 0.008
+        shell.box((bar - 0.035, -y, z), (bar + 0.035, y, min(z + 0.03, most)), BRIGHT)
+
+
+def _arches(shell: Shell, frame: Frame, shape: CarShape) -> None:
+    """Add the walls inside the wheel arches."""
+    for axle in frame.axles:
+        y = (axle.track - axle.width) / 2 - 0.02
+        reach = 1.1 * arch_radius(frame.wheel_radius)
+        angle = np.linspace(-0.3, np.pi + 0.3, 7)
+        rise = np.maximum(frame.wheel_radius + reach * exact.sin(angle), shape.clearance)
+        wall = np.column_stack([axle.x - reach * exact.cos(angle), np.full(7, y), rise])
+        fan = [[wall[0], wall[i], wall[i + 1]] for i in range(1, 6)]
+        shell.triangles(fan, TRIM)
+        shell.triangles(np.array(fan)[:, ::-1] * [1.0, -1.0, 1.0], TRIM)

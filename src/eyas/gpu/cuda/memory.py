@@ -1,0 +1,153 @@
+"""Arrays in the memory of a graphics processor, which other libraries can share."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.gpu.cuda.context import Context, Memory
+from eyas.gpu.cuda.dlpack import capsule_of
+from eyas.gpu.cuda.order import CudaEvent
+
+__all__ = ["CudaArray"]
+
+_LEGACY_STREAM = 1
+"""The legacy default stream, as `__cuda_array_interface__` and DLPack number it."""
+
+
+class CudaArray:
+    """A C-contiguous array in the memory of a graphics processor.
+
+    `torch.from_dlpack(array)` and `torch.as_tensor(array, device="cuda")` share its memory, and so
+    do rows, `array[first:last]`, and `reshape`. Nothing is read from it here: see
+    `CudaDevice.read`.
+
+    Attributes:
+        address: Of its first element, in the memory of the device.
+        shape: Its shape.
+        dtype: Type of its elements.
+        words: What `eyas.gpu.cuda.bundles` knows of it.
+    """
+
+    __slots__ = ("_stand_in", "address", "dtype", "memory", "shape", "words")
+
+    def __init__(
+        self, memory: Memory, address: int, shape: tuple[int, ...], dtype: np.dtype[Any]
+    ) -> None:
+        self.memory, self.address, self.shape, self.dtype = memory, address, shape, dtype
+        self._stand_in: NDArray[Any] | None = None
+        self.words: tuple[list[Any], list[object]] | None = None
+
+    @property
+    def context(self) -> Context:
+        """Where it is."""
+        return self.memory.context
+
+    @property
+    def ndim(self) -> int:
+        """Number of its axes."""
+        return len(self.shape)
+
+    @property
+    def size(self) -> int:
+        """Number of its elements."""
+        return math.prod(self.shape)
+
+    @property
+    def nbytes(self) -> int:
+        """Its size [bytes]."""
+        return self.size * self.dtype.itemsize
+
+    @property
+    def strides(self) -> tuple[int, ...]:
+        """Distances of neighbours along each axis [bytes]."""
+        return self.stand_in.strides
+
+    @property
+    def stand_in(self) -> NDArray[Any]:
+        """An array of numpy that says it is at the address, which is no address of this processor:
+        for numpy's arithmetic of shapes and for the layout of bundles; to read it is a crash.
+        """
+        if self._stand_in is None:
+            whole = np.asarray(_Place(self.address, self.shape, self.dtype.itemsize))
+            self._stand_in = whole.view(self.dtype)
+        return self._stand_in
+
+    def __len__(self) -> int:
+        return len(self.stand_in)
+
+    def __repr__(self) -> str:
+        return f"CudaArray({self.shape}, {self.dtype}, on {self.context.name})"
+
+    def __getitem__(self, rows: slice) -> "CudaArray":
+        if not isinstance(rows, slice) or rows.step not in (None, 1):
+            raise TypeError("an array on a graphics processor gives rows only: array[first:last]")
+        return self._like(self.stand_in[rows])
+
+    def __array__(self, *_: object, **__: object) -> NDArray[Any]:
+        raise TypeError(
+            "an array on a graphics processor is read by its device: device.read(array)"
+        )
+
+    def reshape(self, *shape: Any) -> "CudaArray":  # noqa: ANN401  # as numpy has it
+        """Return the same elements in another shape, given as to numpy's `reshape`."""
+        return self._like(self.stand_in.reshape(*shape))
+
+    def _like(self, view: NDArray[Any]) -> "CudaArray":
+        return CudaArray(self.memory, view.ctypes.data, view.shape, self.dtype)
+
+    @property
+    def __cuda_array_interface__(self) -> dict[str, Any]:
+        """See numba's documentation, "CUDA Array Interface (Version 3)"."""
+        return {
+            "shape": self.shape,
+            "typestr": self.dtype.str,
+            "descr": self.dtype.descr,
+            "data": (self.address if self.size else 0, False),
+            "strides": None,
+            "stream": _LEGACY_STREAM,
+            "version": 3,
+        }
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 2, self.context.ordinal  # kDLCUDA
+
+    def __dlpack__(
+        self,
+        *,
+        stream: int | None = None,
+        max_version: tuple[int, int] | None = None,
+        dl_device: tuple[int, int] | None = None,
+        copy: bool | None = None,
+    ) -> Any:  # noqa: ANN401  # a PyCapsule
+        """Return a capsule with a `DLManagedTensor`, see `dmlc/dlpack`.
+
+        Args:
+            stream: Where the receiver will work: that waits for what is being done here.
+            max_version: The latest version that the receiver reads; all read the first.
+            dl_device: Where it wants the array.
+            copy: Whether it wants a copy.
+
+        Raises:
+            BufferError: It wants what cannot be had.
+        """
+        del max_version
+        if copy or dl_device not in (None, self.__dlpack_device__()):
+            raise BufferError("an array on a graphics processor is shared as it is")
+        if stream not in (None, -1, _LEGACY_STREAM):
+            CudaEvent(self.context).holds(stream)
+        return capsule_of(self, self.__dlpack_device__())
+
+
+class _Place:
+    """Tells numpy of memory."""
+
+    def __init__(self, address: int, shape: Sequence[int], size: int) -> None:
+        self.__array_interface__ = {
+            "data": (address, False),
+            "shape": tuple(shape),
+            "typestr": f"|V{size}",
+            "version": 3,
+        }

@@ -1,0 +1,157 @@
+"""N trackers, each in a world of its own, whose state lies on a device."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.sim.assets import Assets
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.simulation import rules_of
+from eyas.engine.sim.step import Orders, StepSurroundings
+from eyas.engine.sim.stepper import step_kernels, step_state
+from eyas.engine.state.snapshot import Snapshot
+from eyas.engine.targets.kind import Looks
+from eyas.engine.task.done import DoneReason
+from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
+from eyas.engine.trackers.tracker import Tracker
+from eyas.gpu.device import Device
+from eyas.gpu.sim.episodes import HostEpisodes
+from eyas.gpu.sim.flight import FEW, START, Flown, Focal, Starts, flight_calls
+from eyas.gpu.sim.records import Mirrored, uploaded
+from eyas.gpu.sim.refusals import check_device
+
+__all__ = ["DeviceSimulation"]
+
+Chosen = NDArray[np.int64]
+
+
+class DeviceSimulation:
+    """Steps trackers on a device, to the same bytes as `eyas.engine.sim.simulation.Simulation`. Episodes
+    are drawn on the host, by the same code, and only they are uploaded.
+
+    Attributes:
+        config: The settings.
+        count: N.
+        device: The device.
+        assets: Map, traffic and renderer.
+        snapshot: The state, a `Snapshot` of arrays on the device.
+        looks: Models and colours of all actors in the N worlds, on the device.
+        held_focal: The `Focal` of the pictures, held by the device.
+        flown: How the trackers have done in the last action, on the device.
+        commands: Commands of the trackers, see `eyas.engine.trackers.tracker.Tracker.advance`, on the
+            device, shape (N, 4) or (N, 8).
+
+    Args:
+        config: The settings.
+        assets: Map, traffic and renderer.
+        tracker: The kind of the trackers.
+        count: N.
+        device: The device.
+        size: Height and width of the pictures [pixels], which may squeeze the camera's.
+        steps: Physics steps of a command.
+        repeat: Commands of an action.
+        gimbal: Whether commands turn the cameras, see `eyas.engine.trackers.gimbal_command`.
+
+    Raises:
+        ConfigError: Devices cannot do what a setting asks for.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        assets: Assets,
+        tracker: Tracker,
+        count: int,
+        device: Device,
+        *,
+        size: tuple[int, int],
+        steps: int,
+        repeat: int = 1,
+        gimbal: bool = False,
+    ) -> None:
+        check_device(config, assets, tracker)
+        self.config, self.count, self.device, self.assets = config, count, device, assets
+        host = self._host = HostEpisodes(config, assets, tracker, count, size)
+        self.snapshot: Snapshot = uploaded(device, host.snapshot)
+        self.looks: Looks = uploaded(device, host.worlds.looks)
+        memory = uploaded(device, host.memory)
+        drawn = host.sampled_of(host.memory), host.sampled_of(memory)
+        self._sampled = list(zip(*drawn, strict=True))
+        self.held_focal = device.held(Focal(device.zeros((count, 2), np.float64)))
+        around = StepSurroundings(assets.traffic.motion, assets.scene.terrain)
+        rules = rules_of(config, tracker)
+        state = device.held(step_state(config, tracker, self.snapshot, memory, around, rules))
+        orders = Orders.create(count)
+        if gimbal:
+            orders = orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
+            tracker = with_gimbal(tracker)
+        orders.steps[0] = steps
+        self._active = Mirrored(device, orders.active)
+        orders = uploaded(device, orders)._replace(active=self._active.array)
+        self.commands = orders.commands
+        self.flown: Flown = uploaded(device, _flown(count, repeat, config.reward.weight))
+        self._calls = flight_calls(step_kernels(config, tracker))
+        self._act = state, device.held(orders), device.held(self.flown)
+        self._starts: Starts = uploaded(device, _starts(count, assets.traffic.actors))
+        models, starts = device.held(host.episodes.models), device.held(self._starts)
+        self._begin = state, models, device.held(self.looks), self.held_focal, starts
+
+    def reseed_alone(self, trackers: NDArray[np.integer], seeds: NDArray[np.integer]) -> None:
+        """See `eyas.engine.sim.simulation.Simulation.reseed_alone`."""
+        self._host.episodes.reseed_alone(trackers, seeds)
+
+    @property
+    def seeds(self) -> NDArray[np.int64]:
+        """See `eyas.engine.sim.simulation.Simulation.seeds`."""
+        return self._host.episodes.seeds
+
+    def reset(self, trackers: Chosen) -> None:
+        """Begin a new episode of some trackers, shape (K,).
+
+        Raises:
+            SpawnError: One has no possible target.
+        """
+        rows = self._host.begin(trackers)
+        device, starts, looks = self.device, self._starts, self._host.worlds.looks
+        device.write(starts.length, np.array([len(trackers)], np.int64))
+        device.write(starts.row, rows)
+        device.write(starts.looks.model, looks.model[trackers])
+        device.write(starts.looks.colour, looks.colour[trackers])
+        for drawn, there in self._sampled:
+            for first, end in _runs(trackers):
+                device.write(there, drawn[first:end], first)
+        device.launch(self._calls.begin, len(trackers), *self._begin, block=FEW)
+
+    def advance(self, active: NDArray[np.bool_]) -> None:
+        """Let trackers follow their commands for an action, or until their episodes end; time
+        stands still for those that are not active, shape (N,). `flown` tells how they have done.
+        """
+        self._active.write(active)
+        self.device.launch(self._calls.act, self.count, *self._act, block=FEW)
+
+    def ended(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Return whose episodes the last action has terminated and truncated, on the host."""
+        reason = self.device.read(self.flown.reason)
+        at_limit = reason == DoneReason.STEP_LIMIT
+        return (reason > DoneReason.NONE) & ~at_limit, at_limit
+
+
+def _runs(trackers: Chosen) -> list[tuple[int, int]]:
+    """Return the first of each run of neighbours, and the end behind its last."""
+    breaks = np.flatnonzero(np.diff(trackers) != 1) + 1
+    return [(int(run[0]), int(run[-1]) + 1) for run in np.split(trackers, breaks)]
+
+
+def _flown(count: int, repeat: int, weight: float) -> Flown:
+    return Flown(
+        repeat=np.array([repeat], np.int64),
+        weight=np.array([weight], np.float64),
+        reward=np.zeros(count),
+        reason=np.zeros(count, np.int64),
+        terminated=np.zeros(count, np.uint8),
+        truncated=np.zeros(count, np.uint8),
+    )
+
+
+def _starts(count: int, actors: int) -> Starts:
+    looks = Looks(np.zeros((count, actors), np.int32), np.zeros((count, actors, 3), np.float32))
+    return Starts(np.zeros(1, np.int64), np.zeros(count, START), looks)

@@ -1,0 +1,135 @@
+"""Flat ground: lawn, asphalt, pavements. Each is cut out of the others, so nothing overlaps."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from eyas.engine.world.build.materials import material
+from eyas.engine.world.build.millimetres import rounded
+from eyas.lanes import exact
+from eyas.maps.plan.plan import Flat
+
+__all__ = [
+    "PAVEMENT_WIDTH",
+    "asphalt",
+    "lawn",
+    "pavement_area",
+    "verge_area",
+    "yards",
+]
+
+PAVEMENT_WIDTH = 2.6
+"""From the kerb to the lawn [m]."""
+
+_VERGE = 1.5
+"""Width of the pavement along the outer side of the outer streets [m]."""
+
+_YARDS = (
+    material("paving", (0.92, 0.92, 0.93)),
+    material("concrete", (0.95, 0.94, 0.92)),
+    material("clinker", (1.0, 0.98, 0.96)),
+)
+_GRASS = ((0.96, 0.97, 0.90), (0.97, 0.93, 0.80), (0.92, 0.96, 0.91), (0.84, 0.91, 0.83))
+"""Tints of slightly drier, dry, slightly lusher and lush grass."""
+_PATCHES = 34
+"""Number of dry or lush patches on the floor."""
+_PATCH = (12.0, 48.0)
+"""Mean radius of a patch [m]."""
+_FADE = 0.7
+"""Size of the inner part of a patch, whose tint is stronger, as a share of the patch."""
+
+
+def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:
+    """Return the pavements along the inner side of the kerbs of blocks.
+
+    Args:
+        blocks: Ground between kerbs [m].
+        cut: Driveways and other areas that interrupt pavements.
+    """
+    rings = [
+        shapely.difference(block, shapely.buffer(block, -PAVEMENT_WIDTH, join_style="mitre"))
+        for block in blocks
+    ]
+    return shapely.difference(shapely.union_all(rings), cut)
+
+
+def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> shapely.Geometry:
+    """Return the narrow pavements between outer streets and open land.
+
+    Args:
+        outside: Ground outside the outer streets [m].
+        paved: Asphalt [m].
+    """
+    beside = shapely.buffer(paved, _VERGE, quad_segs=4)
+    return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
+
+
+def asphalt(area: shapely.Geometry, *, light: bool = False) -> Flat:
+    """Return a road surface at z = 0 with its sides down to the floor."""
+    cover = material("asphalt_light" if light else "asphalt")
+    return Flat(area=area, z=0.0, cover=cover, sides=material("concrete"))
+
+
+def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> list[Flat]:
+    """Return the paving around buildings, level with the lawn.
+
+    Args:
+        areas: Paving of each building [m].
+        turn: Direction of the streets [rad].
+        rng: Random numbers for the choice of the paving.
+    """
+    kinds = rng.choice(len(_YARDS), len(areas)).tolist()
+    return [
+        Flat(area=area, cover=_YARDS[kind], turn=turn, cells="whole")
+        for area, kind in zip(areas, kinds, strict=True)
+    ]
+
+
+def lawn(
+    extent: shapely.Polygon,
+    covered: shapely.Geometry,
+    rng: np.random.Generator,
+    mown: shapely.Geometry,
+    turn: float,
+) -> list[Flat]:
+    """Return the floor where nothing else covers it, with dry and lush patches.
+
+    Args:
+        extent: The floor [m].
+        covered: Area that is not lawn [m].
+        rng: Random numbers of the lawn.
+        mown: Area mown in swaths [m].
+        turn: Direction of the swaths [rad].
+    """
+    rest = shapely.difference(extent, covered)
+    parts = []
+    # Where patches overlap, the stronger tint wins over the edge of a patch.
+    for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
+        parts.append((tint, shapely.intersection(rest, patch)))
+        rest = shapely.difference(rest, patch)
+    made = []
+    for tint, part in [((1.0, 1.0, 1.0), rest), *parts]:
+        inside, outside = shapely.intersection(part, mown), shapely.difference(part, mown)
+        made.append(Flat(area=inside, cover=material("lawn_mown", tint), turn=turn))
+        made.append(Flat(area=outside, cover=material("lawn", tint)))
+    return made
+
+
+def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:
+    """Return where each of the tints may be: edges of patches and what is inside of them [m]."""
+    west, south, east, north = extent.bounds
+    angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    ring = np.stack([1.5 * exact.cos(angle), 0.8 * exact.sin(angle)], axis=1)
+    inner: list[list[shapely.Polygon]] = [[], []]
+    outer: list[list[shapely.Polygon]] = [[], []]
+    for index in range(_PATCHES):
+        middle = rng.uniform([west, south], [east, north])
+        phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.06, 0.18, (3, 1))
+        waves = (size * exact.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+        outline = rng.uniform(*_PATCH) * (1 + waves)[:, None] * ring
+        outer[index % 2].append(shapely.Polygon(rounded(middle + outline)))
+        inner[index % 2].append(shapely.Polygon(rounded(middle + _FADE * outline)))
+    dry, lush = map(shapely.union_all, inner)
+    dry_edge, lush_edge = map(shapely.union_all, outer)
+    return [dry_edge, dry, lush_edge, lush]

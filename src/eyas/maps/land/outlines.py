@@ -1,0 +1,62 @@
+"""Natural outlines: shores, drifts and patches."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.engine.world.build.millimetres import rounded
+from eyas.lanes import exact
+
+__all__ = ["blob", "wavy"]
+
+Points = NDArray[np.float64]
+
+
+def blob(
+    middle: Points,
+    half: tuple[float, float],
+    turn: float,
+    rng: np.random.Generator,
+    corners: int = 40,
+) -> shapely.Polygon:
+    """Return an uneven ellipse.
+
+    Args:
+        middle: Its middle [m], shape (2,).
+        half: Half its length and width [m].
+        turn: Direction of its length, counter-clockwise from east [rad].
+        rng: Random numbers of the outline.
+        corners: Number of its corners.
+    """
+    angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
+    phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
+    waves = 1.0 + (size * exact.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)
+    # Between an ellipse and a rectangle: full ends.
+    around = np.stack([exact.cos(angle), exact.sin(angle)])
+    around = np.sign(around) * exact.power(np.abs(around), 0.75)
+    x, y = np.asarray(half)[:, None] * waves * around
+    cosine, sine = exact.cos(turn), exact.sin(turn)
+    return shapely.Polygon(
+        rounded(middle + np.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1))
+    )
+
+
+def wavy(shape: shapely.Polygon, depth: float, rng: np.random.Generator) -> shapely.Polygon:
+    """Return a shape whose outline wanders to both sides.
+
+    Args:
+        shape: The shape, with a smooth outline [m].
+        depth: Largest distance from the old outline [m].
+        rng: Random numbers of the outline.
+    """
+    ring = shapely.get_coordinates(shapely.segmentize(shapely.get_exterior_ring(shape), 5.0))[:-1]
+    along = np.linspace(0.0, 2 * np.pi, len(ring), endpoint=False)
+    phase, size = rng.uniform(0, 2 * np.pi, (6, 1)), rng.uniform(0.08, 0.25, (6, 1))
+    rate = np.array([[3], [5], [8], [11], [17], [23]])
+    offset = depth * (size * exact.sin(rate * along + phase)).sum(axis=0)
+    ahead = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    away = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
+    away /= np.linalg.norm(away, axis=1, keepdims=True)
+    outline = shapely.Polygon(rounded(ring + offset[:, None] * away))
+    valid = shapely.get_parts(shapely.make_valid(outline))
+    return max(valid, key=shapely.area)

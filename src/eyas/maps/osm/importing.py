@@ -1,0 +1,263 @@
+"""Import a map of OpenStreetMap: read it, make its streets, keep it, record its traffic."""
+
+import gzip
+import json
+import re
+import shlex
+import shutil
+import time
+from collections import Counter
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import shapely
+from rich.console import Console
+
+from eyas.engine.core.checked import flushed, sum_of
+from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, OutputError
+from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.rng import stream
+from eyas.engine.envs.registration import register_map
+from eyas.engine.state.roads import RoadGraph
+from eyas.engine.terminal.progress import sumo_progress
+from eyas.engine.traffic.library import record_canonical
+from eyas.engine.traffic.net_file import (
+    SumoNet,
+    crossing_lines,
+    pavement_area,
+    road_network,
+    signalled_edges,
+)
+from eyas.engine.traffic.network import graph_hash
+from eyas.engine.world.build.millimetres import snapped
+from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
+from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
+from eyas.engine.world.roads.areas import polygons_of
+from eyas.engine.world.roads.network_file import save_network
+from eyas.maps.osm.data import Bounds
+from eyas.maps.osm.features import Survey
+from eyas.maps.osm.houses import houses_of
+from eyas.maps.osm.land import add_land
+from eyas.maps.osm.network import osm_network
+from eyas.maps.osm.projection import Projection
+from eyas.maps.osm.reader import covered, read_osm
+from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.streets import street_file
+from eyas.maps.plan.file import write_plan
+from eyas.maps.plan.plan import MapPlan, Roads
+
+__all__ = ["ATTRIBUTION", "Report", "run"]
+
+ATTRIBUTION = """\
+© OpenStreetMap contributors
+
+This map is made of data of OpenStreetMap, which is available under the Open Database License
+(ODbL) 1.0: https://www.openstreetmap.org/copyright
+Pictures, films and data sets made from it must show this notice; a data base made from it must be
+offered under the same licence.
+"""
+
+_LARGEST = 6000.0
+"""Longest side of a map [m]."""
+_SMALLEST = 40.0
+_MARGIN = 30.0
+"""Floor beyond the imported area [m]."""
+
+
+@dataclass(slots=True)
+class Report:
+    """What an import has found and guessed."""
+
+    name: str
+    folder: Path
+    registered: bool
+    """Whether it is known by its name; otherwise by its folder."""
+    size: tuple[float, float] = (0.0, 0.0)
+    """Extent of the floor [m]."""
+    lanes: int = 0
+    signals: int = 0
+    """Programs of traffic lights."""
+    buildings: int = 0
+    trees: int = 0
+    guessed: Counter[str] = field(default_factory=Counter)
+    """Number of things without a tag, by what had to be guessed."""
+    odd: Counter[str] = field(default_factory=Counter)
+    """Number of values that made no sense, by tag."""
+    broken: Counter[str] = field(default_factory=Counter)
+    """Number of outlines that were mended or left out, by what was wrong."""
+    traffic: str = ""
+    """What was recorded, or why nothing was."""
+    seconds: float = 0.0
+
+    @property
+    def known_as(self) -> str:
+        """What commands and settings call the map."""
+        return self.name if self.registered else str(self.folder)
+
+    def lines(self) -> list[str]:
+        """Return the report for people."""
+        width, height = self.size
+        made = [
+            f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
+            f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
+            f"in {self.seconds:.0f} s",
+            f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
+        ]
+        for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
+                              ("mended or left out", self.broken)):  # fmt: skip
+            if counted:
+                parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
+                made.append(f"{word}: {parts}")
+        return [*made, self.traffic, "© OpenStreetMap contributors"]
+
+
+def run(
+    path: Path,
+    name: str | None,
+    *,
+    out: Path | None = None,
+    bounds: Bounds | None = None,
+    record: bool = True,
+    overwrite: bool = False,
+) -> Report:
+    """Import a file of OpenStreetMap.
+
+    Args:
+        path: The file: `.osm`, `.osm.gz` or `.osm.pbf`.
+        name: Name of the map; None: the file's.
+        out: Folder of the map; None: below the user's folder of maps.
+        bounds: Area to import, in degrees; None: all that the file covers.
+        record: Whether the traffic is recorded now; otherwise on first use.
+        overwrite: Whether a map of that name is replaced.
+
+    Raises:
+        EyasError: The file is damaged, or the map cannot be made or written.
+    """
+    begun = time.monotonic()
+    name = _name(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
+    folder = (out if out is not None else maps_folder() / name).absolute()
+    _check_free(folder, name, overwrite=overwrite, own=out is None)
+    report = Report(name, folder, registered=out is None)
+    data = read_osm(path)
+    limits = covered(data, bounds, str(path))
+    west, south, east, north = limits
+    projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
+    extent = _extent(projection, limits, str(path))
+    streets = street_file(data, limits, lambda key: report.odd.update([key]))
+    finished = osm_network(streets, projection.text, str(path))
+    graph, net = RoadGraph(name, 0, (), (), finished), SumoNet(finished)
+    network = road_network(net, graph_hash(graph))
+    shapes = Shapes(data, projection, extent, lambda what: report.broken.update([what]))
+    features = _features(shapes, net, report)
+    x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
+    report.size = (2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN)))
+    report.lanes, report.signals = len(network.lane_width), len(net.programs)
+    origin = Origin(
+        name, f"Imported from OpenStreetMap: {path.name}", path.name,
+        projection.longitude, projection.latitude, report.size,
+    )  # fmt: skip
+    with refusals(folder):
+        if folder.exists():
+            shutil.rmtree(folder)
+        folder.mkdir(parents=True)
+    write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
+    save_network(folder / NETWORK_FILE, network)
+    _write_plan(folder, origin, features)
+    if out is None:
+        register_map(name)
+    report.traffic = _recorded(graph, folder, record=record)
+    report.seconds = time.monotonic() - begun
+    return report
+
+
+def _write_plan(folder: Path, origin: Origin, features: Survey) -> None:
+    """Write the plan of a map, and where it comes from."""
+    plan = MapPlan(
+        name=origin.name,
+        title=origin.title,
+        attribution=ATTRIBUTION,
+        size=origin.size,
+        roads=Roads(file=ROADS_FILE),
+        survey=features,
+    )
+    write_plan(folder / PLAN_FILE, plan)
+    write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
+    kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
+    flushed(folder / name for name in kept)
+    origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
+    # Last, since a folder with this file is a map.
+    write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
+    MAPS.forget()
+
+
+def _name(text: str) -> str:
+    """Return a name that a map can have."""
+    name = re.sub(r"\W+", "-", text).strip("-")
+    if not name:
+        raise ConfigError(f"--name: {text!r} is not allowed; allowed: words joined by hyphens")
+    return name
+
+
+def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
+    if own and name in MAPS.built_in:
+        raise ConfigError(f"--name: {name!r} is a map of Eyas; choose another name")
+    if not folder.exists():
+        return
+    if not (folder / MAP_FILE).is_file() and (not folder.is_dir() or any(folder.iterdir())):
+        raise OutputError(f"{folder}: is there already, and no imported map; choose another place")
+    if not overwrite and (folder / MAP_FILE).is_file():
+        raise OutputError(f"{folder}: is there already; replace it with --overwrite")
+
+
+def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Polygon:
+    """Return the area of the map [m]."""
+    west, south, east, north = limits
+    corners = projection.metres([(west, south), (east, south), (east, north), (west, north)])
+    width, height = np.ptp(corners, axis=0)
+    if max(width, height) > _LARGEST:
+        raise DataFileError(
+            f"{source}: covers {width / 1000:.1f} x {height / 1000:.1f} km; at most "
+            f"{_LARGEST / 1000:g} km are imported: name a part with --bbox WEST,SOUTH,EAST,NORTH"
+        )
+    if min(width, height) < _SMALLEST:
+        raise DataFileError(
+            f"{source}: covers {width:.0f} x {height:.0f} m, too little for a map; allowed: "
+            f"at least {_SMALLEST:g} m"
+        )
+    return shapely.Polygon(corners)
+
+
+def _features(shapes: Shapes, net: SumoNet, report: Report) -> Survey:
+    """Return everything but the streets, and count what is not told."""
+
+    def odd(key: str) -> None:
+        report.odd[key] += 1
+
+    features = Survey(houses=houses_of(shapes, odd))
+    add_land(features, shapes, odd, stream(0, "imported tree rows"))
+    # Without the lines in which sidewalks of bridges meet others.
+    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(net))))
+    features.signals = signalled_edges(net)
+    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossing_lines(net).items()}
+    report.buildings, report.trees = len(features.houses), len(features.trees)
+    for house in features.houses:
+        report.guessed["heights"] += house.height is None and house.levels is None
+        report.guessed["roofs"] += not house.roof
+    report.guessed["heights of trees"] += sum(not tall for _, _, tall in features.trees)
+    report.guessed += Counter()  # drops what was never guessed
+    return features
+
+
+def _recorded(graph: RoadGraph, folder: Path, *, record: bool) -> str:
+    """Record the canonical traffic; return a sentence about it."""
+    if not record:
+        return "traffic: recorded on first use"
+    try:
+        with sumo_progress() as progress:
+            record_canonical(graph, folder / TRAFFIC_FILE, progress=progress)
+    except EyasError as error:
+        Console(stderr=True).print(f"no traffic recorded: {error}", markup=False, soft_wrap=True)
+        return "traffic: none recorded; try fewer vehicles with --set traffic.max_vehicles=10"
+    return "traffic: 40 cars for 21 minutes, recorded with SUMO; other traffic on first use"

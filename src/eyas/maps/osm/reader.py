@@ -1,0 +1,165 @@
+"""Reading of OpenStreetMap files: `.osm`, `.osm.gz` and `.osm.pbf`, told apart by their content."""
+
+import gzip
+import zlib
+from pathlib import Path
+from xml.etree import ElementTree
+
+from eyas.engine.core.errors import ConfigError, DataFileError
+from eyas.maps.osm.data import Bounds, OsmData, Relation, Tags, Way
+
+__all__ = ["covered", "read_osm"]
+
+_LARGEST = 400 << 20
+"""Largest file, packed and unpacked [bytes]; one of a dense square kilometre has about 6 MB."""
+
+
+def read_osm(path: Path) -> OsmData:
+    """Return the content of an OpenStreetMap file.
+
+    Raises:
+        DataFileError: The file is missing, too large, damaged, or of another kind.
+        MissingExtraError: It is a `.pbf` file, and pyosmium is not installed.
+    """
+    try:
+        if not path.is_file():
+            raise DataFileError(f"{path}: cannot read: there is no such file")
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            start = file.read(64)
+    except OSError as error:
+        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    if size > _LARGEST:
+        raise DataFileError(
+            f"{path}: larger than {_LARGEST >> 20} MiB; cut a part out of it first, for example "
+            "with `osmium extract --bbox WEST,SOUTH,EAST,NORTH`"
+        )
+    if b"OSMHeader" in start:
+        from eyas.maps.osm.pbf import read_pbf  # pyosmium, which is optional
+
+        data = read_pbf(path)
+    elif start.startswith(b"\x1f\x8b") or start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        data = _read_xml(path, compressed=start.startswith(b"\x1f\x8b"))
+    else:
+        raise DataFileError(f"{path}: not an OpenStreetMap file (.osm, .osm.gz or .osm.pbf)")
+    if not data.places:
+        raise DataFileError(f"{path}: has no nodes, so there is nothing to import")
+    return data
+
+
+def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
+    """Return the area to import: the one asked for, what the file covers, or where its streets are.
+
+    Raises:
+        ConfigError: The area asked for is empty, or has nothing of the file in it.
+        DataFileError: The file has no streets.
+    """
+    if asked is not None:
+        west, south, east, north = asked
+        if not (-180 <= west < east <= 180 and -80 <= south < north <= 80):
+            raise ConfigError(
+                f"--bbox: {asked} is not allowed; allowed: west, south, east and north in degrees"
+            )
+        if not any(west < x < east and south < y < north for x, y in data.places.values()):
+            raise ConfigError(f"--bbox: nothing of {source} lies within {asked}")
+        return asked
+    if data.bounds is not None:
+        return data.bounds
+    on_streets = [
+        data.places[node]
+        for way in data.ways.values()
+        if "highway" in way.tags
+        for node in way.nodes
+        if node in data.places
+    ]
+    if not on_streets:
+        raise DataFileError(f"{source}: has no streets (ways with the tag 'highway')")
+    x, y = zip(*on_streets, strict=True)
+    return min(x), min(y), max(x), max(y)
+
+
+def _read_xml(path: Path, *, compressed: bool) -> OsmData:
+    builder = _Builder(path)
+    parser = ElementTree.XMLParser(target=builder)
+    left = _LARGEST
+    try:
+        with gzip.open(path) if compressed else path.open("rb") as file:
+            while part := file.read(1 << 16):
+                left -= len(part)
+                if left < 0:
+                    raise DataFileError(f"{path}: larger than {_LARGEST >> 20} MiB when unpacked")
+                parser.feed(part)
+        parser.close()
+    except ElementTree.ParseError as error:
+        raise DataFileError(f"{path}: not a complete OpenStreetMap file: {error}") from error
+    except (OSError, EOFError, zlib.error) as error:
+        raise DataFileError(f"{path}: cannot read: {error}") from error
+    except (ValueError, LookupError) as error:  # the encoding may be unknown
+        raise DataFileError(f"{path}: not a readable OpenStreetMap file: {error!r}") from error
+    return builder.gathered
+
+
+class _Builder:
+    """Takes nodes, ways, relations and bounds one by one from a parser. The text in and between
+    elements, of which the format has none, is dropped: it would pile up in memory.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.gathered = OsmData()  # `data` would be called with the text
+        self._path = path
+        self._depth = 0
+        self._element: ElementTree.Element | None = None
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Begin an element."""
+        self._depth += 1
+        if self._depth == 1 and tag != "osm":
+            raise DataFileError(f"{self._path}: not an OpenStreetMap file: its content is <{tag}>")
+        if self._depth == 2 and tag in ("node", "way", "relation", "bounds"):
+            self._element = ElementTree.Element(tag, attributes)
+        elif self._element is not None:
+            ElementTree.SubElement(self._element, tag, attributes)
+
+    def end(self, tag: str) -> None:
+        """End an element."""
+        self._depth -= 1
+        if self._depth == 1 and self._element is not None:
+            _take(self._element, self.gathered)
+            self._element = None
+
+
+def _take(element: ElementTree.Element, data: OsmData) -> None:
+    """Add what an element tells to the data; deleted objects have no place or `visible="false"`."""
+    if element.tag == "bounds":
+        limits = [float(element.attrib[low]) for low in _LIMITS]
+        if not _on_earth(*limits[:2]) or not _on_earth(*limits[2:]):
+            raise ValueError(f"bounds {limits} are not on the earth")
+        data.bounds = (limits[0], limits[1], limits[2], limits[3])
+        return
+    if element.get("visible") == "false" or element.get("action") == "delete":
+        return
+    number = int(element.attrib["id"])
+    tags: Tags = {tag.attrib["k"]: tag.attrib["v"] for tag in element.iter("tag")}
+    if element.tag == "node":
+        place = float(element.attrib["lon"]), float(element.attrib["lat"])
+        if not _on_earth(*place):
+            raise ValueError(f"node {number} lies at {place}, not on the earth")
+        data.places[number] = place
+        if tags:
+            data.nodes[number] = tags
+    elif element.tag == "way":
+        line = tuple(int(node.attrib["ref"]) for node in element.iter("nd"))
+        data.ways[number] = Way(number, line, tags)
+    else:
+        members = tuple(
+            (one.attrib["type"], int(one.attrib["ref"]), one.get("role", ""))
+            for one in element.iter("member")
+        )
+        data.relations.append(Relation(number, members, tags))
+
+
+def _on_earth(longitude: float, latitude: float) -> bool:
+    return abs(longitude) <= 180.0 and abs(latitude) <= 90.0  # also not a number: it is not
+
+
+_LIMITS = ("minlon", "minlat", "maxlon", "maxlat")

@@ -1,0 +1,143 @@
+"""The streets of OpenStreetMap as a file of their own, cut to an area and made clean."""
+
+import re
+from collections.abc import Iterator
+from xml.sax.saxutils import quoteattr
+
+from eyas.maps.osm.data import Bounds, OsmData, Tags, Way
+from eyas.maps.osm.measures import Odd, number
+
+__all__ = ["is_street", "street_file"]
+
+_DRIVEN = re.compile(
+    r"(motorway|trunk|primary|secondary|tertiary)(_link)?|unclassified|residential|living_street"
+    r"|service|road"
+)
+_NO_STREETS = {"parking_aisle", "driveway", "drive-through", "emergency_access"}
+"""Kinds of `service` that lead to one building only."""
+
+_KEPT = (
+    "highway oneway lanes lanes:forward lanes:backward maxspeed junction access vehicle "
+    "motor_vehicle motorcar sidewalk sidewalk:left sidewalk:right sidewalk:both footway layer "
+    "turn:lanes turn:lanes:forward turn:lanes:backward width"
+).split()
+"""Tags of ways that netconvert uses."""
+
+_NOT_WALKED = ("motorway", "motorway_link", "living_street", "service")
+"""Streets that have no sidewalk unless it is mapped."""
+
+_WALKED_BESIDE = (21.0, 51.0)
+"""Usual streets with sidewalks are faster than the first and no faster than the second [km/h]."""
+
+_TURNS = ("type", "restriction", "except")
+"""Tags of turn restrictions that netconvert uses."""
+
+_SPEED = re.compile(r"\d{1,3}(\.\d+)?( ?(km/h|kmh|mph|knots))?")
+
+
+def street_file(data: OsmData, bounds: Bounds, odd: Odd) -> bytes:
+    """Return the streets for cars within an area, with signals and turn restrictions.
+
+    Args:
+        data: The content of the user's file.
+        bounds: The area; streets end at the last node within it.
+        odd: Told of tags whose values make no sense.
+    """
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6">']
+    pieces: list[tuple[int, tuple[int, ...], Tags]] = []
+    for way in data.ways.values():
+        if is_street(way.tags):
+            tags = _clean(way.tags, odd)
+            for k, nodes in enumerate(_inside(way, data, bounds)):
+                # The first piece keeps the number, so that restrictions still name it.
+                pieces.append((way.id if k == 0 else -way.id - k, nodes, tags))
+    used = dict.fromkeys(node for _, nodes, _ in pieces for node in nodes)
+    for node in used:
+        east, north = data.places[node]
+        said = data.nodes.get(node, {})
+        tags = {"highway": said["highway"]} if _is_signal(said) else {}
+        lines.append(f'<node id="{node}" lat="{north:.7f}" lon="{east:.7f}">{_xml(tags)}</node>')
+    for name, nodes, tags in pieces:
+        refs = "".join(f'<nd ref="{node}"/>' for node in nodes)
+        lines.append(f'<way id="{name}">{refs}{_xml(tags)}</way>')
+    lines += _restrictions(data, {name for name, _, _ in pieces}, used)
+    return "\n".join([*lines, "</osm>", ""]).encode()
+
+
+def is_street(tags: Tags) -> bool:
+    """Return whether a way is a street for cars."""
+    kind = tags.get("highway", "")
+    if not _DRIVEN.fullmatch(kind) or tags.get("area") == "yes":
+        return False
+    return not (kind == "service" and tags.get("service") in _NO_STREETS)
+
+
+def _is_signal(tags: Tags) -> bool:
+    return tags.get("highway") == "traffic_signals"
+
+
+def _clean(tags: Tags, odd: Odd) -> Tags:
+    """Return the tags that netconvert uses, without values that it would stumble over."""
+    kept = {key: tags[key] for key in _KEPT if key in tags}
+    for key in ("lanes", "lanes:forward", "lanes:backward"):
+        if key in kept:
+            count = number(kept, key, (1, 12), odd)
+            if count is None:
+                del kept[key]
+            else:
+                kept[key] = str(int(count))
+    speed = kept.get("maxspeed")
+    if speed is not None and not _SPEED.fullmatch(speed):
+        if speed not in ("none", "walk", "signals", "variable") and ":" not in speed:
+            odd("maxspeed")
+        del kept["maxspeed"]
+    kept.pop("width", None)
+    for key in [key for key in kept if key.startswith("sidewalk")]:
+        # One that is mapped by itself is made beside its street, like the others.
+        kept[key] = {"separate": "yes"}.get(kept[key], kept[key])
+    if not any(key.startswith("sidewalk") for key in kept) and _has_usual_sidewalk(kept):
+        one_way = kept.get("oneway", "no") != "no" or kept.get("junction") == "roundabout"
+        kept["sidewalk"] = "right" if one_way else "both"
+    return kept
+
+
+def _has_usual_sidewalk(tags: Tags) -> bool:
+    """Return whether streets of a kind and speed usually have sidewalks."""
+    if tags["highway"] in _NOT_WALKED:
+        return False
+    speed = re.match(r"(\d+(?:\.\d+)?)(?: ?(\w+))?", tags.get("maxspeed", "50"))
+    assert speed is not None  # as other values are left out
+    unit = {"mph": 1.609, "knots": 1.852}.get(speed[2] or "", 1.0)
+    return _WALKED_BESIDE[0] < float(speed[1]) * unit <= _WALKED_BESIDE[1]
+
+
+def _inside(way: Way, data: OsmData, bounds: Bounds) -> Iterator[tuple[int, ...]]:
+    """Yield the parts of a way within an area, each of two nodes or more."""
+    west, south, east, north = bounds
+    piece: list[int] = []
+    for node in (*way.nodes, None):
+        place = data.places.get(node) if node is not None else None
+        if place and west <= place[0] <= east and south <= place[1] <= north:
+            if not piece or piece[-1] != node:
+                piece.append(node)  # type: ignore[arg-type]  # it has a place
+        else:
+            if len(piece) >= 2:
+                yield tuple(piece)
+            piece = []
+
+
+def _restrictions(data: OsmData, ways: set[int], nodes: dict[int, None]) -> Iterator[str]:
+    for relation in data.relations:
+        kinds = {"way": ways, "node": nodes}
+        known = all(ref in kinds.get(kind, ()) for kind, ref, _ in relation.members)
+        if relation.tags.get("type") == "restriction" and known:
+            members = "".join(
+                f'<member type="{kind}" ref="{ref}" role={quoteattr(role)}/>'
+                for kind, ref, role in relation.members
+            )
+            tags = {key: text for key, text in relation.tags.items() if key in _TURNS}
+            yield f'<relation id="{relation.id}">{members}{_xml(tags)}</relation>'
+
+
+def _xml(tags: Tags) -> str:
+    return "".join(f"<tag k={quoteattr(k)} v={quoteattr(v)}/>" for k, v in tags.items())

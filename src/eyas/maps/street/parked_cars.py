@@ -1,0 +1,217 @@
+"""Cars that never leave their car parks: part of the scene, not of the traffic."""
+
+from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.engine.mesh.assembly import concatenate, transformed
+from eyas.engine.state.mesh import Material, Mesh, Surface
+from eyas.engine.world.build.scene_builder import Levels
+from eyas.engine.world.cars.body import body_levels
+from eyas.engine.world.cars.wheels import wheel_levels
+from eyas.lanes import exact
+from eyas.maps.cars.types import TYPES, CarType
+
+__all__ = ["CARS", "KINDS", "VARIANTS", "ParkedKind", "parked_car", "parked_taxi", "solid_size"]
+
+_COLOURS = {
+    "white": (0.92, 0.92, 0.91),
+    "black": (0.09, 0.09, 0.10),
+    "grey": (0.34, 0.36, 0.39),
+    "silver": (0.62, 0.64, 0.66),
+    "blue": (0.12, 0.22, 0.42),
+    "red": (0.52, 0.10, 0.10),
+    "green": (0.16, 0.28, 0.22),
+    "beige": (0.74, 0.70, 0.60),
+}
+
+
+class ParkedKind(NamedTuple):
+    """A car as it stands there."""
+
+    type: str
+    """A name in `eyas.maps.cars.types.TYPES`."""
+    colour: str
+    """Of the paint."""
+    look: str = ""
+    """What it has: `sunroof`, `worn`, `rack`, `dark` bumpers; `covered` by a tarpaulin; none."""
+    steer: float = 0.0
+    """Angle of the front wheels, to the left [rad]."""
+    rims: int = 0
+    """Design of its wheel discs."""
+
+
+KINDS: tuple[ParkedKind, ...] = (
+    ParkedKind("compact", "white", rims=1),
+    ParkedKind("compact", "black", "sunroof", 0.22),
+    ParkedKind("compact", "grey", "worn", rims=2),
+    ParkedKind("compact", "silver", "dark", rims=2),
+    ParkedKind("compact", "white", "sunroof", -0.2),
+    ParkedKind("compact", "blue", rims=3),
+    ParkedKind("estate", "grey", "rack", rims=1),
+    ParkedKind("compact", "silver", "covered"),
+    ParkedKind("small", "white", "dark", rims=2),
+    ParkedKind("small", "red", rims=3),
+    ParkedKind("small", "grey", steer=0.25),
+    ParkedKind("small", "black", "worn", rims=2),
+    ParkedKind("small", "white", rims=1),
+    ParkedKind("small", "blue", "sunroof"),
+    ParkedKind("saloon", "black", "sunroof", rims=1),
+    ParkedKind("saloon", "silver", "worn", -0.22),
+    ParkedKind("saloon", "white", rims=3),
+    ParkedKind("estate", "black", "rack", rims=3),
+    ParkedKind("compact", "blue", "sunroof", rims=1),
+    ParkedKind("crossover", "white", "rack", rims=1),
+    ParkedKind("crossover", "grey", "sunroof", 0.2),
+    ParkedKind("crossover", "red", "dark", rims=3),
+    ParkedKind("off-road", "black", "rack", rims=1),
+    ParkedKind("off-road", "grey", "sunroof"),
+    ParkedKind("mini", "white", rims=2),
+    ParkedKind("mini", "green", steer=-0.25, rims=2),
+    ParkedKind("people carrier", "blue", "rack"),
+    ParkedKind("people carrier", "beige", "worn", rims=2),
+    ParkedKind("delivery van", "white", "worn", rims=2),
+    ParkedKind("minibus", "grey", rims=2),
+    ParkedKind("minibus", "white", "worn", 0.2, 2),
+    ParkedKind("pickup", "black", rims=3),
+)
+"""All kinds; each is as frequent as another.
+
+Types: of the cars registered in Germany, 25 % are compact, 19 % small, 13 % of the middle class
+(Kraftfahrt-Bundesamt, 1 January 2020) and 10 % sport utility vehicles (the same, 2021); estates are
+counted there among the compact and the middle class, and the shares of the others are guesses.
+Paint: of those built in 2020 for Europe, the Middle East and Africa, 28 % were white, 76 % white,
+black, grey or silver, and 11 % blue (BASF Color Report 2020)."""
+
+VARIANTS = len(KINDS)
+"""Number of kinds of cars."""
+CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
+"""Names of these kinds."""
+
+_TAXI = ParkedKind("saloon", "taxi", rims=1)
+_YELLOW = (0.93, 0.70, 0.08)
+_TARPAULIN = Material(tint=(0.47, 0.48, 0.49))
+
+_UNDERSIDE = 0.45
+"""What faces down below this height is not drawn [m]."""
+
+_AGED = 0.97
+"""Factor on the tints of all that is not paint: materials of the traffic bear no snow."""
+
+_UNLIT = {Surface.LAMP, *range(Surface.TAIL_LAMP, len(Surface))}
+"""Surfaces that are matt on a car without anybody in it."""
+
+
+def parked_car(variant: int) -> Levels:
+    """Return a car, the finest level of detail first.
+
+    It stands on the origin and faces along x; lengths are in metres.
+
+    Args:
+        variant: Index in `KINDS`.
+    """
+    return _levels(KINDS[variant])
+
+
+def parked_taxi() -> Levels:
+    """Return a yellow taxi, as `parked_car` does."""
+    return _levels(_TAXI)
+
+
+def solid_size(variant: int) -> tuple[float, float, float]:
+    """Return length, width and height of the solid shape of a kind [m]."""
+    car = TYPES[KINDS[variant].type]
+    return car.length, car.width - 0.08, car.height
+
+
+def _levels(kind: ParkedKind) -> Levels:
+    car = TYPES[kind.type]
+    wheels = wheel_levels(car.wheel_radius, car.axles[0].width, 0.0, kind.rims)
+    fine, middle, coarse = _bodies(car, kind)
+    return (
+        _painted(concatenate([_above(fine), *_wheels(car, wheels[0], kind.steer)]), kind),
+        _painted(concatenate([middle, *_wheels(car, wheels[1], kind.steer)]), kind),
+        _painted(coarse, kind),
+    )
+
+
+def _bodies(car: CarType, kind: ParkedKind) -> Levels:
+    style = kind.look if kind.look in ("sunroof", "worn") else ""
+    shape = replace(
+        car.shape,
+        bodywork=_bodywork(car.shape.bodywork, style),
+        rack=kind.look == "rack",
+        dark_bumpers=car.shape.dark_bumpers or kind.look == "dark",
+    )
+    return body_levels(shape, car)
+
+
+def _bodywork(base: str, style: str) -> str:
+    return f"{base}_{style}" if style and (base, style) != ("van", "sunroof") else base
+
+
+def _wheels(car: CarType, wheel: Mesh, steer: float) -> list[Mesh]:
+    made = []
+    for axle in car.axles:
+        turn = steer if axle.steered else 0.0
+        cosine, sine = exact.cos(turn), exact.sin(turn)
+        for side in (0.5, -0.5):
+            place = (axle.x, side * axle.track, car.wheel_radius)
+            rows = (cosine, -sine, 0.0), (sine, cosine, 0.0), (0.0, 0.0, 1.0)
+            pose = np.array([[*row, at] for row, at in zip(rows, place, strict=True)])
+            made.append(transformed(_outer(wheel, side), pose))
+    return made
+
+
+def _outer(wheel: Mesh, side: float) -> Mesh:
+    """Return a wheel without the side that faces the middle of the car, where nobody looks."""
+    y = side * wheel.positions[wheel.triangles, 1].astype(np.float64).mean(axis=1)
+    return _some(wheel, y > 0.5 * float(y.min()))
+
+
+def _above(body: Mesh) -> Mesh:
+    """Return a body without its underside, which is never seen."""
+    corners = body.positions[body.triangles].astype(np.float64)
+    face = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    below = corners[..., 2].max(axis=1) < _UNDERSIDE
+    return _some(body, ~below | (face[:, 2] > -0.7 * np.sqrt(exact.dot(face, face))))
+
+
+def _some(mesh: Mesh, shown: NDArray[np.bool_]) -> Mesh:
+    """Return some triangles of a mesh, and their corners."""
+    triangles = mesh.triangles[shown]
+    used, inverse = np.unique(triangles, return_inverse=True)
+    return replace(
+        mesh,
+        positions=mesh.positions[used],
+        normals=mesh.normals[used],
+        uvs=mesh.uvs[used],
+        triangles=inverse.reshape(-1, 3).astype(np.int32),
+        materials=mesh.materials[shown],
+    )
+
+
+def _painted(mesh: Mesh, kind: ParkedKind) -> Mesh:
+    """Return a mesh in the colour of a kind, with its lamps off."""
+    colour = _YELLOW if kind.colour == "taxi" else _COLOURS[kind.colour]
+    if kind.look == "covered":
+        return replace(mesh, palette=tuple(_covered(m) for m in mesh.palette))
+    return replace(mesh, palette=tuple(_finish(m, colour) for m in mesh.palette))
+
+
+@cache
+def _finish(material: Material, colour: tuple[float, float, float]) -> Material:
+    factors = colour if material.surface is Surface.PAINT else (_AGED,) * 3
+    red, green, blue = (t * f for t, f in zip(material.tint, factors, strict=True))
+    if material.surface in _UNLIT:
+        return Material(tint=(red, green, blue))
+    return replace(material, tint=(red, green, blue))
+
+
+def _covered(material: Material) -> Material:
+    """Return a tarpaulin instead of paint, panes and lamps."""
+    shown = {Surface.PAINT, Surface.GLASS, *_UNLIT}
+    return _TARPAULIN if material.surface in shown else _finish(material, (1.0, 1.0, 1.0))

@@ -1,0 +1,127 @@
+"""`eyas traffic`."""
+
+import json
+import re
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.terminal.options import (
+    AsJson,
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Trust,
+    chosen_file,
+    gathered,
+)
+
+__all__ = ["app"]
+
+app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
+
+_MOST = 10_000
+"""Largest number of seeds at once."""
+
+
+@app.callback()
+def _group() -> None: ...
+
+
+@app.command()
+def record(  # noqa: PLR0913  # one parameter for each option
+    map_name: MapName = None,
+    map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
+    seed: Annotated[
+        int | None, typer.Option("--traffic-seed", help="Seed of SUMO and of the routes.")
+    ] = None,
+    duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
+    vehicle_type: Annotated[
+        str | None,
+        typer.Option(
+            "--type",
+            help="passenger, bus, truck, trailer or motorcycle; or shares of several, such as "
+            """'{"passenger": 0.8, "bus": 0.2}'.""",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str | None,
+        typer.Option("--traffic-seeds", help="Several, such as 1-8 or 3,5,9: a file for each."),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=1, help="Processes for several seeds; default: all cores."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File to write; with --traffic-seeds the folder.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files.")] = False,
+    config: ConfigFile = None,
+    preset: Preset = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+    canonical: Annotated[
+        bool,
+        typer.Option(
+            "--canonical",
+            help="Regenerate the files that ship with the map: its roads and its recordings.",
+        ),
+    ] = False,
+) -> None:
+    """Record traffic; use it with --set traffic.recording=FILE."""
+    from eyas.dat.settings.messages import originals_named
+    from eyas.engine.settings.file import load_settings
+    from eyas.maps.traffic.recording import run, run_canonical
+
+    short = {"world.seed": map_seed, "traffic.seed": seed, "traffic.vehicle_type": vehicle_type}
+    said = [f"{key}={value}" for key, value in short.items() if value is not None]
+    file, overrides = chosen_file(config, preset), [*gathered(set_, map_name), *said]
+    settings = load_settings(file, overrides, trust=trust)
+    many = _numbers(seeds) if seeds is not None else ()
+    with originals_named(settings):
+        if canonical:
+            run_canonical(settings.world)
+            return
+        run(
+            *(settings.world, settings.traffic, duration, out),
+            seeds=many,
+            workers=workers,
+            overwrite=overwrite,
+        )
+
+
+@app.command()
+def info(
+    file: Annotated[Path, typer.Argument(help="A recording of traffic.")],
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """Print what is in a recording: its map and settings, vehicles, speeds, lasting tracks."""
+    from eyas.maps.traffic.about import about, lines_of
+
+    said = about(file)
+    if as_json:
+        typer.echo(json.dumps(asdict(said), indent=1))
+        return
+    for line in lines_of(said):
+        typer.echo(line)
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    """Return the numbers of a list such as `1-4,9`.
+
+    Raises:
+        ConfigError: It is not such a list, or too long.
+    """
+    ends = [re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", part.strip()) for part in text.split(",")]
+    spans = [range(int(one[1]), int(one[2] or one[1]) + 1) for one in ends if one]
+    if all(ends) and all(spans) and sum(map(len, spans)) <= _MOST:
+        return tuple(dict.fromkeys(number for span in spans for number in span))
+    raise ConfigError(
+        f"--traffic-seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, "
+        "such as 1-8 or 3,5,9"
+    )

@@ -1,0 +1,153 @@
+"""The drone that an autopilot outside flies, by the outputs to its motors."""
+
+import logging
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.core.rng import stream
+from eyas.engine.sim.simulation import Simulation
+from eyas.engine.state.draw import Picture
+from eyas.engine.trackers.driven import WEIGHT
+from eyas.robotics.mavlink.config import MavlinkConfig
+from eyas.robotics.mavlink.endpoint import parsed_address
+from eyas.robotics.mavlink.frames import Geodesy, Vector
+from eyas.robotics.mavlink.places import standing_places
+from eyas.robotics.mavlink.readings import Instant, Readings
+from eyas.robotics.mavlink.telemetry import pressure
+from eyas.robotics.mavlink.video import Stream, VideoSender
+
+__all__ = ["MOTORS", "DrivenDrone", "Sensed"]
+
+_LOG = logging.getLogger("eyas")
+
+MOTORS = (0, 2, 1, 3)
+"""The motor that turns each rotor: front right, front left, rear left, rear right. PX4's and
+ArduPilot's quadrotors of the form X have the same: 1 front right and 2 rear left turn
+counter-clockwise, 3 front left and 4 rear right clockwise; so do the original's rotors."""
+
+_ACCELEROMETER, _GYROSCOPE, _COMPASS, _PRESSURE = 0.02, 0.001, 0.002, 0.02
+"""Largest noise: [m/s^2], [rad/s], [gauss], [hPa]; our choice, as small sensors have."""
+_PITCH = 0.5
+"""Of the camera, positive down [rad]."""
+_RESTING = 250
+"""Physics steps in which it comes to rest on its feet before time begins."""
+
+
+class Sensed(NamedTuple):
+    """What inertial sensors, compass and barometer read, forward-right-down."""
+
+    acceleration: Vector
+    """[m/s^2]; at rest about (0, 0, -9.81)."""
+    rates: Vector
+    """[rad/s]"""
+    field: Vector
+    """[gauss]"""
+    pressure: float
+    """[hPa]"""
+
+
+class DrivenDrone:
+    """One drone, and its sensors.
+
+    Attributes:
+        now: Time since it has begun [s].
+        instant: What it knows of itself now.
+
+    Args:
+        simulation: One tracker, made with `driven_drone`.
+        config: Its settings.
+    """
+
+    def __init__(self, simulation: Simulation, config: MavlinkConfig) -> None:
+        self._simulation, self._config = simulation, config
+        geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
+        self._readings = Readings(simulation, geodesy)
+        self._most = 0.25 * config.hil.thrust_to_weight * WEIGHT
+        camera = simulation.config.camera
+        self._picture = Picture.create(1, camera.height, camera.width)
+        self._video: VideoSender | None = None
+        if config.video:
+            place = parsed_address(config.video, "mavlink.video")
+            how = camera.height, camera.width, config.picture_rate, config.video_quality
+            self._video = VideoSender(Stream(place, *how), 1)
+        simulation.reset()
+        self._place = standing_places(simulation)
+        self.begin()
+        self._told = False
+
+    def close(self) -> None:
+        """End the thread of the video."""
+        if self._video is not None:
+            self._video.close()
+
+    def begin(self) -> None:
+        """Stand where it stands at first, at time 0, in the traffic of then."""
+        simulation = self._simulation
+        simulation.reseed(simulation.config.seed)
+        simulation.rewind()
+        simulation.reset()
+        simulation.start_at(np.arange(1), self._place, np.full(1, _PITCH))
+        simulation.advance(np.zeros((1, 4)), _RESTING)
+        self._ticks, self._picture_due = 0, 0.0
+        self._rng = stream(simulation.config.seed, "autopilot")
+        self._renew()
+
+    def step(self, outputs: Sequence[float], steps: int) -> None:
+        """Fly.
+
+        Args:
+            outputs: Of the first four motors, 0 to 1; a rotor's rate is proportional to its output,
+                its thrust to the square of that.
+            steps: Physics steps of 2 ms.
+        """
+        shares = [outputs[motor] for motor in MOTORS]
+        held = [min(max(share, 0.0), 1.0) if math.isfinite(share) else 0.0 for share in shares]
+        thrusts = [self._most * share * share for share in held]
+        self._simulation.advance(np.array([thrusts]), steps)
+        self._ticks += steps
+        self._renew()
+        if self._simulation.steps_left <= 0 and not self._told:
+            self._told = True
+            _LOG.info("the traffic has reached its end, and stands still")
+        if self._video is not None and self.now >= self._picture_due:
+            self._picture_due += 1.0 / self._config.picture_rate
+            self._simulation.view.draw(np.zeros(1, np.int32), self._picture)
+            assert self._picture.rgb is not None
+            self._video.send(self._picture.rgb[0], self.now)
+
+    def _renew(self) -> None:
+        self.now = self._ticks * PHYSICS_STEP
+        self._readings.renew()
+        home = self._place[0, :3].tolist()
+        self.instant = Instant(self._readings, 0, (home[0], home[1], home[2]), self.now)
+
+    def sensed(self) -> Sensed:
+        """Return what sensors read now, with their noise."""
+        at = self.instant
+        felt, turn = at.imu()
+        return Sensed(
+            self._noisy(felt, _ACCELEROMETER),
+            self._noisy(turn, _GYROSCOPE),
+            self._noisy(at.magnetic(), _COMPASS),
+            self._noisy((pressure(at.global_place[2]), 0.0, 0.0), _PRESSURE)[0],
+        )
+
+    def _noisy(self, vector: Vector, most: float) -> Vector:
+        """Return three readings with even noise, which is the same on every processor."""
+        scale = most * self._config.hil.noise
+        a, b, c = (2.0 * self._rng.random(3) - 1.0).tolist()
+        return vector[0] + scale * a, vector[1] + scale * b, vector[2] + scale * c
+
+    def home(self) -> tuple[float, float, float]:
+        """Return latitude, longitude [degrees] and altitude [m] of where it stands at first."""
+        home = self._place[0, :3].tolist()
+        return self.instant.global_of((home[0], home[1], home[2]))
+
+    def height(self) -> float:
+        """Return its height over the ground below [m], not below 0."""
+        body = self.instant.body
+        return max(body.position[2] - body.ground, 0.0)

@@ -1,0 +1,21 @@
+import sys
+from pathlib import Path
+
+import pytest
+
+from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+
+@pytest.fixture(scope="session")
+def fly():
+    """Flies a policy in four episodes; `fly("hover", latency="40")`."""
+
+    def flown(policy, episodes=1, **changes):
+        plan = EvaluationPlan(policy=policy, episodes=episodes, **changes)
+        return [
+            record for part in batches(plan) for ended in fly_batch(plan, part) for record in ended
+        ]
+
+    return flown

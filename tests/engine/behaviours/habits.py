@@ -1,0 +1,6 @@
+"""How each object of the original moves by itself, from the catalogue."""
+
+from eyas.engine.targets.catalogue import KINDS
+from eyas.engine.targets.config import TargetName
+
+HABITS = {kind.name: kind.habit for kind in KINDS if kind.habit and kind.name in [*TargetName]}

@@ -1,0 +1,131 @@
+"""A map, and who walks on it, has the same bytes on a processor with other instructions.
+
+The other processor is this one, in a process of its own in which numpy, BLAS and the C library are
+told to do without its newer instructions: their sines, logarithms and products of matrices then
+differ in the last bits.
+"""
+
+import dataclasses
+import os
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.engine.core.rng import stream
+from eyas.engine.sim.assets import load_assets
+from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.crowd import crowd_of
+from eyas.maps.buildings.facades import mesh_of
+from eyas.maps.citystreet import CITYSTREET
+from eyas.maps.citystreet.layout import lay_out
+from eyas.maps.desert import DESERT, DESERT_BARE
+from eyas.maps.desert.layout import lay_out as plan_of_dunes
+from eyas.maps.plan.build import build_scene
+from eyas.maps.plants.shrubs import PLANTS
+from eyas.maps.plants.trees import street_tree_levels
+
+
+def of_the_plan():
+    plan = lay_out(CITYSTREET.shipped_network(), 0)
+    rng = stream(0, "test")
+    plants = [street_tree_levels(rng, 0), *(make(rng) for make in PLANTS.values())]
+    return plan, [mesh_of(building) for building in plan.buildings[:20]], plants
+
+
+def of_the_desert():
+    network = DESERT.shipped_network()
+    return plan_of_dunes(network, 0), build_scene(DESERT_BARE.plan(network, 0), network)
+
+
+def of_the_scene():
+    network = CITYSTREET.shipped_network()
+    return build_scene(CITYSTREET.plan(network, 0), network)
+
+
+def of_the_people():
+    """The ways of pedestrians, and those of the vehicles that they let pass."""
+    config = SimConfig()
+    traffic = load_assets(config.world, config.traffic, 1, crowd_of(config)).traffic
+    table = traffic.motion.table
+    return [np.ascontiguousarray(table[name]) for name in table.dtype.names]
+
+
+def of_the_processor():
+    return [float(value) for value in np.exp(np.linspace(0.0, 9.0, 9999))]
+
+
+MAKERS = {
+    "plan": of_the_plan,
+    "desert": of_the_desert,
+    "scene": of_the_scene,
+    "people": of_the_people,
+    "processor": of_the_processor,
+}
+NEWER = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+
+
+def elsewhere(name):
+    """Return what a maker makes on the other processor."""
+    other = {
+        "NPY_DISABLE_CPU_FEATURES": " ".join(NEWER),
+        "OPENBLAS_CORETYPE": "Nehalem",
+        "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F",
+    }
+    run = subprocess.run(
+        [sys.executable, "-W", "ignore", __file__, name],
+        env=os.environ | other,
+        capture_output=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr.decode()
+    return pickle.loads(run.stdout)
+
+
+def differences(here, there, path=""):
+    """Yield where two things differ at all."""
+    if dataclasses.is_dataclass(here):
+        for field in dataclasses.fields(here):
+            name = field.name
+            yield from differences(getattr(here, name), getattr(there, name), f"{path}.{name}")
+    elif isinstance(here, (list, tuple)) and len(here) == len(there):
+        for index, (one, other) in enumerate(zip(here, there, strict=True)):
+            yield from differences(one, other, f"{path}[{index}]")
+    elif isinstance(here, shapely.Geometry):
+        if shapely.to_wkb(here) != shapely.to_wkb(there):
+            yield path
+    elif isinstance(here, np.ndarray) and here.dtype != object:
+        if here.shape != there.shape or here.tobytes() != there.tobytes():
+            yield path
+    elif isinstance(here, np.ndarray):
+        yield from differences(here.tolist(), there.tolist(), path)
+    elif here != there:
+        yield path
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["plan", "desert", pytest.param("scene", marks=pytest.mark.slow)])
+def test_a_map_is_the_same_on_another_processor(name):
+    assert list(differences(MAKERS[name](), elsewhere(name))) == []
+
+
+@pytest.mark.slow
+def test_people_walk_the_same_ways_on_another_processor(tmp_path, monkeypatch):
+    here = MAKERS["people"]()
+    # With nothing in the cache: it would hold what this processor has made.
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    assert list(differences(here, elsewhere("people"))) == []
+
+
+@pytest.mark.skipif(not NEWER, reason="this processor has no newer instructions to do without")
+def test_the_other_processor_computes_other_last_bits():
+    here, there = np.array(of_the_processor()), np.array(elsewhere("processor"))
+    assert (here != there).any()
+    np.testing.assert_allclose(here, there, rtol=1e-12)
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(pickle.dumps(MAKERS[sys.argv[1]]()))
