@@ -31,7 +31,7 @@ from eyas.benchmark.result import RESULT, cell, load_run
 from eyas.benchmark.rows import rows_of
 from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated
-from eyas.engine.policies.table import open_policy
+from eyas.benchmark.policies.table import open_policy
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import flights, lessons, training

@@ -162,7 +162,7 @@ import numpy as np
 import torch
 from eyas import EyasVectorEnv
 from eyas.gpu.cuda import code
-from eyas.gpu.device import HostDevice
+from eyas.lanes.device import HostDevice
 from eyas.lanes.held import Held
 
 code.ARCHIVE = Path("none")  # what is in the package already is made anew

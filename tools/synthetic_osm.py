@@ -25,7 +25,7 @@ from osm_as_found import add_defects, add_shops, as_found
 from osm_every_tag import add_quarter
 from shapely import affinity
 
-from eyas.maps.osm.projection import Projection
+from eyas.engine.world.projection import Projection
 
 ORIGIN = Projection(13.4, 52.5)
 _SHOPS = 16_000

@@ -19,17 +19,17 @@ from typing import TYPE_CHECKING, Any
 from eyas.engine.envs.registration import register as _register
 
 if TYPE_CHECKING:
+    from eyas.benchmark.api import evaluate as evaluate
+    from eyas.benchmark.api import list_policies as list_policies
+    from eyas.benchmark.box_trackers import BoxTracker as BoxTracker
     from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
-    from eyas.datasets.tracking.box_trackers import BoxTracker as BoxTracker
-    from eyas.engine.api import evaluate as evaluate
+    from eyas.datasets.api import make_dataset as make_dataset
+    from eyas.datasets.api import track as track
     from eyas.engine.api import export as export
     from eyas.engine.api import make as make
     from eyas.engine.api import make_config as make_config
-    from eyas.engine.api import make_dataset as make_dataset
     from eyas.engine.api import make_vec as make_vec
     from eyas.engine.api import record as record
-    from eyas.engine.api import track as track
-    from eyas.engine.api import train as train
     from eyas.engine.core.clock import PHYSICS_STEP as PHYSICS_STEP
     from eyas.engine.core.config import updated as updated
     from eyas.engine.core.errors import ActionError as ActionError
@@ -64,7 +64,6 @@ if TYPE_CHECKING:
     from eyas.engine.mesh.shell import Shell as Shell
     from eyas.engine.names import list_formats as list_formats
     from eyas.engine.names import list_maps as list_maps
-    from eyas.engine.names import list_policies as list_policies
     from eyas.engine.names import list_presets as list_presets
     from eyas.engine.names import list_targets as list_targets
     from eyas.engine.names import list_weathers as list_weathers
@@ -117,6 +116,7 @@ if TYPE_CHECKING:
     from eyas.engine.world.weather import Season as Season
     from eyas.engine.world.weather import Weather as Weather
     from eyas.lanes import kernel as kernel
+    from eyas.learning.api import train as train
     from eyas.maps.land.mounds import Mound as Mound
     from eyas.maps.osm.features import Survey as Survey
     from eyas.maps.plan.file import read_plan as read_plan
@@ -133,19 +133,39 @@ build_id: str
 and seed are the same to the bit."""
 
 _PLACES = {
+    "benchmark.api": (
+        "evaluate",
+        "list_policies",
+    ),
+    "benchmark.box_trackers": ("BoxTracker",),
+    "dat.legacy_observation": ("LegacyObservation",),
+    "datasets.api": (
+        "make_dataset",
+        "track",
+    ),
+    "engine.api": (
+        "export",
+        "make",
+        "make_config",
+        "make_vec",
+        "record",
+    ),
     "engine.core.clock": ("PHYSICS_STEP",),
     "engine.core.config": ("updated",),
     "engine.core.errors": (
-        *("ActionError", "ConfigError", "DataFileError", "EyasError", "MissingExtraError"),
-        *("OutputError", "SpawnError", "UnknownNameError"),
+        "ActionError",
+        "ConfigError",
+        "DataFileError",
+        "EyasError",
+        "MissingExtraError",
+        "OutputError",
+        "SpawnError",
+        "UnknownNameError",
     ),
     "engine.core.files": ("write_atomic",),
     "engine.core.frames": ("rotate",),
     "engine.custom.own": ("Ride",),
-    "engine.recordings.format": ("Format",),
-    "engine.recordings.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
     "engine.envs.keys": ("hover_action",),
-    "dat.legacy_observation": ("LegacyObservation",),
     "engine.envs.lerobot": ("make_lerobot_env",),
     "engine.envs.observation": ("Observation",),
     "engine.envs.pettingzoo": ("EyasParallelEnv",),
@@ -153,51 +173,110 @@ _PLACES = {
     "engine.envs.sb3": ("EyasVecEnv",),
     "engine.envs.tracking_env": ("TrackingEnv",),
     "engine.envs.vector_env": ("EyasVectorEnv",),
-    "datasets.tracking.box_trackers": ("BoxTracker",),
-    "engine.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
-    "engine.policies.steering": ("towards",),
     "engine.exports.frame": ("Frame",),
-    "engine.exports.label": ("label_schema", "read_labels"),
+    "engine.exports.label": (
+        "label_schema",
+        "read_labels",
+    ),
     "engine.exports.writer": (
-        *("Episode", "EpisodeWriter", "Files", "Gather", "Run", "Summary", "Writer"),
+        "Episode",
+        "EpisodeWriter",
+        "Files",
+        "Gather",
+        "Run",
+        "Summary",
+        "Writer",
     ),
-    "lanes": ("kernel",),
     "engine.mesh.shell": ("Shell",),
-    "engine.api": (
-        *("evaluate", "export", "make", "make_config", "make_dataset", "make_vec"),
-        *("record", "track", "train"),
-    ),
     "engine.names": (
-        *("list_formats", "list_maps", "list_policies", "list_presets", "list_targets"),
+        "list_formats",
+        "list_maps",
+        "list_presets",
+        "list_targets",
         "list_weathers",
+    ),
+    "engine.policies.policy": (
+        "Decision",
+        "Policy",
+        "PolicyInput",
+        "Start",
+    ),
+    "engine.policies.steering": ("towards",),
+    "engine.recordings.format": ("Format",),
+    "engine.recordings.recording": (
+        "RecordedEpisode",
+        "RecordedFrame",
+        "Recording",
+        "load",
     ),
     "engine.settings.config": ("EyasConfig",),
     "engine.settings.file": ("load_settings",),
     "engine.sim.build": ("build_simulation",),
     "engine.sim.config": ("SimConfig",),
-    "engine.sim.flights.path": ("FlightScene", "FlightSketch"),
-    "engine.sim.simulation": ("Simulation", "StepResult"),
-    "engine.sim.worlds": ("each_alone", "together"),
+    "engine.sim.flights.path": (
+        "FlightScene",
+        "FlightSketch",
+    ),
+    "engine.sim.simulation": (
+        "Simulation",
+        "StepResult",
+    ),
+    "engine.sim.worlds": (
+        "each_alone",
+        "together",
+    ),
     "engine.state.draw": ("Picture",),
-    "engine.state.mesh": ("Material", "Mesh"),
-    "engine.state.roads": ("RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode"),
-    "engine.state.scene": ("ObjectClass", "Scene"),
-    "engine.state.snapshot": ("CameraState", "Snapshot", "TrackerState"),
+    "engine.state.mesh": (
+        "Material",
+        "Mesh",
+    ),
+    "engine.state.roads": (
+        "RoadEdge",
+        "RoadGraph",
+        "RoadNetwork",
+        "RoadNode",
+    ),
+    "engine.state.scene": (
+        "ObjectClass",
+        "Scene",
+    ),
+    "engine.state.snapshot": (
+        "CameraState",
+        "Snapshot",
+        "TrackerState",
+    ),
     "engine.state.terrain": ("Terrain",),
     "engine.targets.grammar.attributes": ("ATTRIBUTES",),
-    "engine.task.packets": ("BasicPacket", "InputPacket", "RewardPacket"),
+    "engine.task.packets": (
+        "BasicPacket",
+        "InputPacket",
+        "RewardPacket",
+    ),
     "engine.task.radar_packet": ("RadarPacket",),
     "engine.task.step_line": ("StepLine",),
     "engine.task.terms": ("RewardTerm",),
     "engine.trackers.config": ("TrackerConfig",),
     "engine.trackers.flown": ("flown_drone",),
     "engine.trackers.tracker": ("Tracker",),
-    "maps.land.mounds": ("Mound",),
     "engine.world.maps": ("MapRecipe",),
+    "engine.world.weather": (
+        "CLEAR_DAY",
+        "DAY",
+        "Season",
+        "Weather",
+    ),
+    "lanes": ("kernel",),
+    "learning.api": ("train",),
+    "maps.land.mounds": ("Mound",),
     "maps.osm.features": ("Survey",),
-    "maps.plan.file": ("read_plan", "write_plan"),
-    "maps.plan.plan": ("Hills", "MapPlan"),
-    "engine.world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
+    "maps.plan.file": (
+        "read_plan",
+        "write_plan",
+    ),
+    "maps.plan.plan": (
+        "Hills",
+        "MapPlan",
+    ),
 }
 """Where the public names are. A test holds them equal to the imports above, which type checkers and
 editors read."""

@@ -14,9 +14,9 @@ from eyas.benchmark.entry import EntryClass, entry_class
 from eyas.benchmark.envelope import ENVELOPE
 from eyas.benchmark.plan import EvaluationPlan, check
 from eyas.benchmark.policies.apart import receive, send
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.run import run
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.policies.table import open_policy
 
 HERE = Path(__file__).parent
 

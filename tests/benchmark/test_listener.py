@@ -6,8 +6,8 @@ import pytest
 from eyas.benchmark.policies.listener.candidates import Candidates
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES, Detections
 from eyas.benchmark.policies.listener.judge import judged
+from eyas.benchmark.policies.table import open_policy
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.policies.table import open_policy
 from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 

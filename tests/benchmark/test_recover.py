@@ -20,12 +20,12 @@ from eyas.benchmark.losses import (
 from eyas.benchmark.plots import draw_plots
 from eyas.benchmark.policies.predictors import ConstantVelocity
 from eyas.benchmark.policies.sighted import SightOracle
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.protocols import PROTOCOLS
 from eyas.benchmark.recovery import RecoveryScenario, followed, recovery_figures
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.policies.policy import Decision
 from eyas.engine.policies.sight import visible_shares
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.env import EnvConfig
 
 VILLAGE = Place("village", "day", "SUMO_VEHICLE")

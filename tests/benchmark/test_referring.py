@@ -10,13 +10,12 @@ from eyas.benchmark.episode_batch import EpisodeBatch, episode_groups
 from eyas.benchmark.flight import BatchFlight
 from eyas.benchmark.look_alikes import CASES, COLOURS, case_of
 from eyas.benchmark.neighbours import CLOSE, COMPANY
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.protocols import PROTOCOLS
 from eyas.benchmark.protocols.crowd import switches
 from eyas.benchmark.protocols.referring import ReferringScenario
-from eyas.benchmark.scenario import Told
-from eyas.engine.policies.policy import PolicyInput, Start
+from eyas.engine.policies.policy import Instruction, PolicyInput, Start
 from eyas.engine.policies.sight import subjects
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.targets.colour_names import COLOUR_NAMES, colour_distances
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES, attributes_of
@@ -233,7 +232,9 @@ def test_a_network_may_have_the_attributes_as_an_input(tmp_path):
     assert policy.told == {"attributes"}
     claims = [None, Claim(BodyWord.CAR), Claim(BodyWord.CAR, "red")]
     said = np.stack([attributes_of(claim) for claim in claims])
-    policy.begin(Start(np.arange(3), lambda: np.zeros((3, 4), np.int32), Told(("",) * 3, said)))
+    policy.begin(
+        Start(np.arange(3), lambda: np.zeros((3, 4), np.int32), Instruction(("",) * 3, said))
+    )
     picture = np.zeros((3, 3, 12, 16), np.uint8)
     sight = PolicyInput(picture, np.ones(3, np.bool_), None, None, None)
     assert policy.act(sight).actions.tolist() == [6, 6, 2]

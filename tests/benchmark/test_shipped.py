@@ -4,8 +4,8 @@ import pytest
 
 from eyas.benchmark.entry import entry_class
 from eyas.benchmark.policies.shipped import TRAINED, card_of, file_of, shipped_names
+from eyas.benchmark.policies.table import fingerprint, open_policy
 from eyas.engine.core.errors import EyasError
-from eyas.engine.policies.table import fingerprint, open_policy
 from eyas.engine.settings.preset import PRESETS
 
 

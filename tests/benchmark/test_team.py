@@ -13,11 +13,11 @@ from eyas.benchmark.messages import MESSAGE, Radio
 from eyas.benchmark.meter import LOOK
 from eyas.benchmark.plan import EvaluationPlan, batches, check, fly_batch
 from eyas.benchmark.policies.simple import Hover
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.protocols import PROTOCOLS
 from eyas.benchmark.team import SEARCH_LIMIT, TeamScenario
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import Decision
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.env import EnvConfig
 
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")

@@ -9,6 +9,7 @@ from eyas.benchmark.delay import delay_from
 from eyas.benchmark.entry import EntryClass, entry_class
 from eyas.benchmark.episode import Place
 from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, LAGS, PAST, Course
 from eyas.benchmark.policies.tracker.detector import Clue, Detector
 from eyas.benchmark.policies.tracker.ground import Ground
@@ -18,7 +19,6 @@ from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.protocols import protocol_named
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import PolicyInput, Start, env_config
-from eyas.engine.policies.table import open_policy
 
 ROWS = np.arange(2)
 STEP = np.full(2, 0.032)

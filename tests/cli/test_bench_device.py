@@ -8,7 +8,7 @@ import pytest
 from eyas.cli.bench.device import ON_DEVICES, measure_on_device
 from eyas.cli.bench.pictures import PictureBatch
 from eyas.cli.main import main
-from eyas.gpu.device import HostDevice
+from eyas.lanes.device import HostDevice
 
 
 @pytest.mark.slow

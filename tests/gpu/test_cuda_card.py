@@ -12,8 +12,8 @@ import pytest
 from eyas.gpu.cuda import CudaError, cuda_device, gpu_line
 from eyas.gpu.cuda.code import Ptx
 from eyas.gpu.cuda.kernels import function_of
-from eyas.gpu.device import HostDevice
 from eyas.lanes import claim, parallel
+from eyas.lanes.device import HostDevice
 from eyas.lanes.elementary import (
     acos,
     asin,

@@ -21,9 +21,9 @@ from eyas.gpu.cuda.code import Ptx, archive_of
 from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.driver import VARIABLE, driver
 from eyas.gpu.cuda.kernels import function_of
-from eyas.gpu.device import HostDevice
 from eyas.lanes import Held, parallel
 from eyas.lanes.calls import _ENTRY
+from eyas.lanes.device import HostDevice
 from eyas.lanes.entry import entry_address
 from eyas.lanes.folder import read_trusted, write_trusted
 

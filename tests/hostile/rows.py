@@ -176,7 +176,7 @@ def _plan_gz(folder, chance, most):
 def _map_json(folder, chance, most):
     from dataclasses import asdict
 
-    from eyas.engine.world.maps.files import Origin, origin_of
+    from eyas.maps.files import Origin, origin_of
 
     path = folder / "map.json"
     origin = Origin("own", "Own", "own.osm", 8.5, 47.4, (300.0, 300.0), checksums={"a": "0" * 64})
@@ -195,7 +195,7 @@ dir="s"/><tlLogic id="t" type="static" offset="5"><phase duration="30" state="G"
 def _roads(folder, chance, most):
     from eyas.engine.traffic.net_file import SumoNet, road_network
     from eyas.engine.traffic.signals import signal_plan
-    from eyas.engine.world.maps import files
+    from eyas.maps import files
 
     limited(files, "_LARGEST_ROADS")
     path = folder / "roads.net.xml"
@@ -286,9 +286,9 @@ OSM = """<osm version="0.6"><bounds minlat="48.1" minlon="11.5" maxlat="48.102" 
 
 @row("osm")
 def _osm(folder, chance, most):
+    from eyas.engine.world.projection import Projection
     from eyas.maps.osm import reader
     from eyas.maps.osm.houses import houses_of
-    from eyas.maps.osm.projection import Projection
     from eyas.maps.osm.reader import covered, read_osm
     from eyas.maps.osm.rings import Shapes
     from eyas.maps.osm.streets import street_file

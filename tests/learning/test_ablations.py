@@ -10,12 +10,12 @@ import pytest
 from eyas.benchmark.delay import delay_from
 from eyas.benchmark.episode import Place
 from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, Course
 from eyas.benchmark.policies.tracker.detector import Detector
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.benchmark.protocols import protocol_named
-from eyas.engine.policies.table import open_policy
 from eyas.learning.tracking import flights, lessons, training
 from eyas.learning.tracking.pilots import Oracle
 from eyas.learning.tracking.samples import GROUP, Samples

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from eyas.benchmark.delay import delay_from
 from eyas.benchmark.episode import Place
 from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
 from eyas.benchmark.policies.tracker.detector import OUTPUTS
 from eyas.benchmark.policies.tracker.metadata import OBSERVED
@@ -21,7 +22,6 @@ from eyas.cli.app import app
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.policies.policy import env_config
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import driving, flights, lessons, samples

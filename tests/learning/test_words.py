@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 from eyas.benchmark.policies.listener.detector import NAMES, OUTPUTS, STRIDE, VehicleDetector
 from eyas.benchmark.policies.shipped import file_of
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.metadata import OBSERVED
 from eyas.cli.app import app
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.policies.policy import env_config
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.engine.targets.colour_names import COLOUR_NAMES

@@ -34,11 +34,11 @@ from eyas.engine.traffic.signals import Aspect
 from eyas.engine.video.folder import open_folder
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
-from eyas.engine.world.maps.files import MAP_FILE, MAP_FILES, ROADS_FILE, origin_of
+from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.network_file import load_network, save_network
+from eyas.maps.files import MAP_FILE, MAP_FILES, ROADS_FILE, origin_of
 from eyas.maps.osm import houses, importing, land, streets
 from eyas.maps.osm.features import Survey
-from eyas.maps.osm.projection import Projection
 from eyas.maps.osm.reader import read_osm
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.plan.build import build_scene

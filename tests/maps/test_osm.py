@@ -12,12 +12,12 @@ import shapely
 
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.engine.core.installed import install_command
-from eyas.engine.world.maps.files import MAP_FILES
+from eyas.engine.world.projection import Projection
+from eyas.maps.files import MAP_FILES
 from eyas.maps.osm.features import Area, House, Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
 from eyas.maps.osm.measures import colour, length, number
-from eyas.maps.osm.projection import Projection
 from eyas.maps.osm.reader import covered, read_osm
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import street_file

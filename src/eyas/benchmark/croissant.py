@@ -6,7 +6,7 @@ from typing import Any
 
 from eyas.benchmark.plan import Stamp
 from eyas.benchmark.record import EpisodeRecord
-from eyas.datasets.croissant import CONFORMS_TO, CONTEXT
+from eyas.engine.recordings.croissant import CONFORMS_TO, CONTEXT
 
 __all__ = ["croissant"]
 

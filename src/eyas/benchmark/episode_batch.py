@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.episode import EpisodeSpec
 from eyas.benchmark.protocol import Protocol
-from eyas.benchmark.scenario import Told
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.envs.observation import Observation, Observer
+from eyas.engine.policies.policy import Instruction
 from eyas.engine.policies.sight import SIZE, subjects, visible_shares
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
@@ -119,7 +119,7 @@ class EpisodeBatch:
                 observer.look(mine, begun[rows], self.covered[rows])
                 observer.copy_to(self.observations, group.rows)
 
-    def tell(self, told: Told | None) -> None:
+    def tell(self, told: Instruction | None) -> None:
         """Tell policies their targets in words; None: nothing, as in protocols without words."""
         for group, observer in zip(self.groups, self._observers, strict=True):
             count = len(group.rows)

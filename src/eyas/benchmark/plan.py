@@ -16,6 +16,7 @@ from eyas.benchmark.entry import Entry, entry_of
 from eyas.benchmark.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.benchmark.flight import BatchFlight, Watcher
 from eyas.benchmark.policies.apart import open_apart, runs_code
+from eyas.benchmark.policies.table import BUILT_IN, ORACLES, fingerprint, open_policy
 from eyas.benchmark.protocol import Protocol
 from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.record import EpisodeRecord
@@ -25,7 +26,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.policies.policy import Policy
-from eyas.engine.policies.table import BUILT_IN, ORACLES, fingerprint, open_policy
 from eyas.engine.world.maps import MAPS
 
 __all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "opened", "stamp"]

@@ -1,22 +1,13 @@
 """What happens in a protocol's flights beside the flights: covered cameras, words, own figures."""
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Scenario", "Told"]
+from eyas.engine.policies.policy import Instruction
+
+__all__ = ["Scenario"]
 
 Mask = NDArray[np.bool_]
-
-
-class Told(NamedTuple):
-    """What N policies are told of their targets at the start."""
-
-    words: tuple[str, ...]
-    """A phrase for each."""
-    attributes: NDArray[np.float32]
-    """What the phrase says, as numbers, shape (N, A)."""
 
 
 class Scenario:
@@ -29,7 +20,7 @@ class Scenario:
     def __init__(self, count: int) -> None:
         self._nobody = np.zeros(count, np.bool_)
 
-    def told(self) -> Told | None:
+    def told(self) -> Instruction | None:
         """Return what policies are told at the start; None: no words."""
         return None
 

@@ -10,21 +10,12 @@ from typing import Annotated, Any
 import typer
 import typer.core
 
-from eyas.benchmark import commands as evaluate
-from eyas.benchmark.reproduce import command as reproduce
-from eyas.cli import runs, tools
-from eyas.cli.about import about
-from eyas.cli.completion import completion
 from eyas.cli.switches import as_switches
-from eyas.cli.targets import commands as targets
-from eyas.datasets import commands as data
 from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
+from eyas.engine.core.registry import Registry
 from eyas.engine.core.scratch import remove_left_scratch
 from eyas.engine.terminal.said import lacks_memory, say
-from eyas.maps import commands as maps
-from eyas.maps.traffic import commands as traffic
-from eyas.robotics import commands as drone
 
 __all__ = ["app", "run"]
 
@@ -55,31 +46,28 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-app.command("demo")(runs.demo)
-app.command("video")(runs.video)
-app.command("export")(data.export)
-app.command("track")(data.track)
-app.command("train")(runs.train)
-app.command("run")(runs.run)
-app.command("serve")(runs.serve)
-app.command("webots-shim")(tools.webots_shim)
-app.command("bench")(tools.bench)
-app.command("verify")(tools.verify)
-app.command("doctor")(tools.doctor)
-app.command("about")(about)
-app.command("completion")(completion)
-app.command("evaluate")(evaluate.evaluate)
-app.command("compare")(evaluate.compare)
-app.add_typer(evaluate.leaderboard, name="leaderboard")
-app.command("reproduce")(reproduce.reproduce)
-app.add_typer(tools.cache_app, name="cache")
-app.add_typer(tools.config_app, name="config")
-app.add_typer(data.dataset_app, name="dataset")
-app.add_typer(drone.app, name="drone")
-app.add_typer(maps.app, name="maps")
-app.add_typer(tools.policies_app, name="policies")
-app.add_typer(targets.app, name="targets")
-app.add_typer(traffic.app, name="traffic")
+
+COMMANDS: Registry[Any] = Registry("command", object, group="eyas.commands")
+"""Functions and groups of functions (`typer.Typer`) by the names of their commands."""
+
+_FIRST = (
+    *("demo", "video", "export", "track", "train", "run", "serve", "evaluate", "compare"),
+    *("leaderboard", "reproduce", "policies", "dataset", "targets", "maps", "traffic"),
+)
+"""The order of the commands in the help; all others follow."""
+
+
+def _add_commands() -> None:
+    names = COMMANDS.names()
+    for name in (*(name for name in _FIRST if name in names), *sorted({*names} - {*_FIRST})):
+        found = COMMANDS.get(name)
+        if isinstance(found, typer.Typer):
+            app.add_typer(found, name=name)
+        else:
+            app.command(name)(found)
+
+
+_add_commands()
 
 
 def _print_version(value: bool) -> None:  # typer's callback

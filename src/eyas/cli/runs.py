@@ -1,4 +1,4 @@
-"""What runs for long: `eyas demo`, `video`, `train`, `serve`, and `run`, which is one of them."""
+"""What runs for long: `eyas video`, `serve`, and `run`, which is one of those or of other houses."""
 
 import json
 import logging
@@ -30,61 +30,7 @@ from eyas.engine.terminal.said import say
 if TYPE_CHECKING:
     from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["demo", "run", "serve", "train", "video"]
-
-
-def demo(  # noqa: PLR0913  # one parameter for each option
-    config: ConfigFile = None,
-    preset: Preset = None,
-    map_name: MapName = None,
-    weather: Weather = None,
-    seed: Seed = None,
-    set_: Overrides = None,
-    trust: Trust = False,
-    policy: Annotated[
-        str | None,
-        typer.Option(
-            "--policy",
-            help=f"A policy that may fly, too: {POLICIES}, a file, or package.module:name.",
-        ),
-    ] = None,
-    host: Annotated[
-        str,
-        typer.Option("--host", help="Address to serve; others than loopback ask for a token."),
-    ] = "127.0.0.1",
-    port: Annotated[
-        int, typer.Option("--port", min=0, max=65535, help="Port to serve; 0: any.")
-    ] = 8720,
-    browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
-    ] = True,
-    headless: Annotated[
-        bool, typer.Option("--headless", help="Print the reward of a hovering drone instead.")
-    ] = False,
-    seconds: Annotated[
-        float | None,
-        typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
-    ] = None,
-) -> None:
-    """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
-    from eyas.engine.settings.file import load_settings
-
-    if seconds is not None and not headless:
-        raise ConfigError("--seconds: only with --headless")
-    overrides = gathered(set_, map_name, weather, seed)
-    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
-    if config is not None:
-        from eyas.dat.settings.of_a_run import of_a_run
-
-        settings = of_a_run(settings)
-    from eyas.demo import run as demo  # after all checks
-
-    listening = None if headless else demo.listen(host, port)
-    session = demo.session_of(settings, policy)
-    if listening is None:
-        demo.run_headless(session, seconds or 10.0, typer.echo)
-    else:
-        demo.run_browser(session, host, listening, browser=browser, say=typer.echo)
+__all__ = ["run", "serve", "video"]
 
 
 def video(  # noqa: PLR0913  # one parameter for each option
@@ -135,7 +81,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
         overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if config is not None:
-        from eyas.dat.settings.of_a_run import of_a_run
+        from eyas.engine.settings.dialect import of_a_run
         from eyas.engine.video.folder import recorded_seed
 
         settings = of_a_run(settings, recorded_seed(out) if resume else None)
@@ -147,78 +93,6 @@ def video(  # noqa: PLR0913  # one parameter for each option
     )
 
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)
-
-
-def train(  # noqa: PLR0913  # one parameter for each option
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder to write to; by default runs/train, runs/train-2, ..."),
-    ] = None,
-    config: ConfigFile = None,
-    preset: Preset = None,
-    map_name: MapName = None,
-    weather: Weather = None,
-    seed: Seed = None,
-    set_: Overrides = None,
-    trust: Trust = False,
-    method: Annotated[
-        str | None,
-        typer.Option(
-            "--method", help="How to teach: ppo, dagger, dagger+ppo or tracker (train.method)."
-        ),
-    ] = None,
-    steps: Annotated[
-        int | None,
-        typer.Option(
-            "--steps",
-            min=1,
-            help="Decisions of the whole run (of a tracker: pictures that it is taught with); "
-            "stages keep their shares of it.",
-        ),
-    ] = None,
-    device: Annotated[
-        str | None,
-        typer.Option(
-            "--device",
-            help="Where to fly and learn: cuda, cuda:1, ... (train.device); by default here.",
-        ),
-    ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
-    ray: Annotated[
-        bool,
-        typer.Option("--ray", help="Spread the shards over a Ray cluster (extra cluster)."),
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-) -> None:
-    """Teach a network to track, and write it as an ONNX file."""
-    from eyas.engine.settings.file import load_settings
-
-    preset = preset or (None if config else "fast")
-    overrides = gathered(set_, map_name, weather, seed)
-    if method is not None:
-        overrides.append(f"train.method={json.dumps(method)}")
-    if device is not None:
-        overrides.append(f"train.device={json.dumps(device)}")
-    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
-    if steps is not None:
-        from eyas.engine.core.config import updated
-
-        settings = updated(settings, {"train": settings.train.scaled(steps)})
-    from eyas.learning.run import run
-
-    policy = run(
-        settings, out or _default_folder(resume=resume), resume=resume, quiet=quiet, ray=ray
-    )
-    if not quiet:
-        typer.echo(f"{policy}")
-
-
-def _default_folder(*, resume: bool) -> Path:
-    """Return the next numbered folder that is free, or the last that is not, to resume it."""
-    taken, number = None, 1
-    while (folder := Path(f"runs/train-{number}" if number > 1 else "runs/train")).exists():
-        taken, number = folder, number + 1
-    return taken if resume and taken is not None else folder
 
 
 def serve(  # noqa: PLR0913  # one parameter for each option
@@ -360,12 +234,16 @@ def run(  # noqa: PLR0913  # one parameter for each option
     overrides = gathered(set_, map_name, weather, seed)
     settings = quietly(partial(load_settings, config, overrides, trust=trust))
     if settings.mode is Mode.DEMO:
+        from eyas.demo.commands import demo
+
         _announce("demo")
         demo(config, set_=overrides, trust=trust, headless=headless)
     elif settings.mode is Mode.VIDEO:
         _announce("video")
         video(out or Path("runs/video"), config, set_=overrides, trust=trust)
     elif settings.original is None:
+        from eyas.learning.commands import train
+
         _announce("train")
         train(out, config, set_=overrides, trust=trust)
     else:

@@ -1,9 +1,8 @@
-"""What there is besides runs: bench, verify, doctor, config, cache, policies, webots-shim."""
+"""What there is besides runs: bench, verify, doctor, config, cache."""
 
 import json
-import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,7 +13,6 @@ from eyas.engine.terminal.options import (
     MapName,
     Overrides,
     Preset,
-    UntilIdle,
     chosen_file,
     gathered,
 )
@@ -24,7 +22,7 @@ if TYPE_CHECKING:
     from eyas.engine.settings.config import EyasConfig
 
 
-__all__ = ["bench", "cache_app", "config_app", "doctor", "policies_app", "verify", "webots_shim"]
+__all__ = ["bench", "cache_app", "config_app", "doctor", "verify"]
 
 
 def bench(
@@ -99,7 +97,7 @@ def show_config(
     ] = False,
 ) -> None:
     """Check the settings, and print all of them as JSON."""
-    from eyas.dat.settings.messages import originals_named
+    from eyas.engine.settings.dialect import originals_named
     from eyas.engine.settings.file import load_settings
     from eyas.engine.settings.trust import code_of
     from eyas.engine.world.maps import MAPS
@@ -189,79 +187,3 @@ def warm_cache(
     from eyas.cli.cache import run_warm
 
     run_warm(map_name or (), weather or ())
-
-
-policies_app = typer.Typer(
-    help="Tell of the policies that Eyas brings along.", no_args_is_help=True
-)
-
-
-@policies_app.callback()
-def _policies_group() -> None: ...
-
-
-@policies_app.command("list")
-def list_policies(*, as_json: AsJson = False) -> None:
-    """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
-    from eyas.benchmark.policies.shipped import card_of, shipped_names
-    from eyas.benchmark.reproduce.tables import flown_of
-    from eyas.engine.policies.table import BUILT_IN
-
-    if as_json:
-        listed: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
-        for name in shipped_names():
-            figures = [
-                {"table": table, **one.model_dump(mode="json"), "build_id": build}
-                for table, rows in flown_of(name).items()
-                for _, one, build in rows
-            ]
-            said = card_of(name).model_dump(mode="json")
-            listed.append({"name": name, **said, "figures": figures})
-        typer.echo(json.dumps(listed, indent=1))
-        return
-    for name in BUILT_IN:
-        typer.echo(f"{name} (built in)")
-    for name in shipped_names():
-        card = card_of(name)
-        typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
-    typer.echo("What a trained policy reaches: eyas policies card NAME")
-
-
-@policies_app.command("card")
-def policy_card(
-    name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],
-) -> None:
-    """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
-    from eyas.benchmark.policies.shipped import shipped_names
-    from eyas.benchmark.reproduce.model_card import model_card
-    from eyas.engine.core.errors import UnknownNameError
-
-    if name not in shipped_names():
-        raise UnknownNameError("NAME", name, shipped_names())
-    typer.echo(model_card(name))
-
-
-def webots_shim(
-    install: Annotated[
-        Path,
-        typer.Option("--install", help="Folder to write the program into, to be put in PATH."),
-    ],
-    root: Annotated[
-        Path | None,
-        typer.Option(
-            "--root",
-            help="Folder of the DAT benchmark; default: the one above the world file, or above the "
-            "folder where the program is started.",
-        ),
-    ] = None,
-    until_idle: UntilIdle = None,
-    set_: Overrides = None,
-) -> None:
-    """Install a program named webots that starts 'eyas serve', for programs that start Webots."""
-    from eyas.dat.serve.stand_in import install as write
-    from eyas.engine.settings.file import load_settings
-
-    load_settings(None, set_ or ())  # a mistake is told now
-    path = write(install, root, set_ or (), until_idle)
-    typer.echo(f"{path}: starts Eyas in the place of Webots where its folder comes first in PATH:")
-    typer.echo(f'export PATH="{path.parent.resolve()}{os.pathsep}$PATH"')

@@ -13,10 +13,10 @@ __all__ = ["main"]
 def main() -> None:
     """Serve the world that the arguments name, as `eyas serve` does; all else is ignored."""
     _listen_early(sys.argv[1:])
-    from eyas.cli.main import main as eyas
+    from eyas.engine.core.doors import first_brought
 
     sys.argv = [sys.argv[0], *_arguments(sys.argv[1:])]
-    eyas()
+    first_brought("eyas.command_line")()
 
 
 def _listen_early(words: Sequence[str]) -> None:

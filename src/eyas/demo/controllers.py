@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.benchmark.policies.table import open_policy
 from eyas.demo.flight import DemoFlight
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
 from eyas.engine.core.errors import ConfigError
@@ -14,7 +15,6 @@ from eyas.engine.envs.actions import make_actions
 from eyas.engine.envs.observation import Observer
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.policies.sight import subjects, visible_shares
-from eyas.engine.policies.table import open_policy
 
 __all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
 

@@ -13,8 +13,8 @@ from urllib.parse import SplitResult, parse_qs, urlsplit
 import numpy as np
 from websockets.http11 import Request
 
-from eyas.dat.settings.adapter import to_legacy
 from eyas.demo.session import Session
+from eyas.engine.settings.dialect import spoken
 
 __all__ = ["Gate", "is_loopback", "own_file", "page_file", "path_of", "query_of"]
 
@@ -51,7 +51,7 @@ def own_file(path: str, session: Session) -> File | None:
     if path == "/map.json":
         return "application/json", json.dumps(_streets(session)).encode()
     if path == "/env_config.json":
-        text = json.dumps(to_legacy(session.flight.config), indent=4)
+        text = json.dumps(spoken(path).content_of(session.flight.config), indent=4)
         return "application/json", f"{text}\n".encode()
     return None
 

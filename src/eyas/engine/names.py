@@ -6,7 +6,6 @@ Light, as shells ask for them whenever one is opened: nothing of a simulation is
 __all__ = [
     "list_formats",
     "list_maps",
-    "list_policies",
     "list_presets",
     "list_targets",
     "list_weathers",
@@ -43,14 +42,6 @@ def list_targets() -> tuple[str, ...]:
     from eyas.engine.targets.config import TargetName
 
     return tuple(str(name) for name in TargetName)
-
-
-def list_policies() -> tuple[str, ...]:
-    """Return the names of the policies that Eyas brings along."""
-    from eyas.benchmark.policies.shipped import shipped_names
-    from eyas.engine.policies.table import BUILT_IN
-
-    return (*BUILT_IN, *shipped_names())
 
 
 def list_presets() -> tuple[str, ...]:

@@ -54,7 +54,7 @@ def ptx_of(
         name: Of the entry. It takes the address of the table of pointers, the number of the first
             worker, and how many there are; threads beyond the last worker do nothing.
         processor: LLVM's name of the oldest graphics processor to serve.
-        threads: Threads that are one worker, see `eyas.gpu.device.Device.launch`.
+        threads: Threads that are one worker, see `eyas.lanes.device.Device.launch`.
     """
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()

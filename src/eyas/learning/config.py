@@ -1,16 +1,20 @@
 """Settings of learning."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from enum import StrEnum
-from typing import Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
 from eyas.engine.core.allowed import Said
 from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.settings.section import Changes, Section
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.simple_maps import simple_world
+
+if TYPE_CHECKING:
+    from eyas.engine.settings.config import EngineConfig
 
 __all__ = [
     "LESSON",
@@ -159,6 +163,15 @@ class TrackerTraining(Config):
         """Pictures in all lessons, with those that come more than once."""
         return LESSON * sum(each.steps for each in self.rounds)
 
+    def variants(self, config: "EngineConfig") -> Iterator[tuple[str, Changes]]:
+        """Yield what the stages change, see `Section`."""
+        for at, stage in enumerate(self.stages):
+            yield f"stages.{at}", stage.changes(config.world)
+
+    def alone(self) -> Self:
+        """Return the section without stages."""
+        return self.model_copy(update={"stages": ()})
+
     def scaled(self, total: int) -> dict[str, Any]:
         """Return the changes with `total` pictures in all lessons: each round with its share of
         steps and flights, at least 1 where there were any, and the traffic with its share.
@@ -209,8 +222,10 @@ class WordsTraining(Config):
         return max(round(total / self.block_pictures), 1)
 
 
-class TrainConfig(Config):
+class TrainConfig(Section):
     """How a network is taught; see `Method`."""
+
+    section = "train"
 
     method: Method = Method.PPO
     """By rewards, by a teacher, or first by a teacher."""
@@ -296,6 +311,15 @@ class TrainConfig(Config):
     def run_decisions(self) -> int:
         """Decisions of all stages."""
         return sum(map(self.updates_of, self.stages)) * self.update_decisions
+
+    def variants(self, config: "EngineConfig") -> Iterator[tuple[str, Changes]]:
+        """Yield what the stages change, see `Section`."""
+        for at, stage in enumerate(self.stages):
+            yield f"stages.{at}", stage.changes(config.world)
+
+    def alone(self) -> Self:
+        """Return the section without stages."""
+        return self.model_copy(update={"stages": ()})
 
     def scaled(self, total: int) -> dict[str, Any]:
         """Return the changes that make it a run of `total` decisions, or pictures in lessons."""

@@ -18,6 +18,7 @@ from eyas.engine.policies.policy import Decision, PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.world.maps import MAPS
+from eyas.learning.config import TrainConfig
 from eyas.learning.network import TrackingNetwork
 
 __all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "evaluation_episodes"]
@@ -79,7 +80,7 @@ def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol
     Raises:
         UnknownNameError: There is no such protocol, or no such weather on the map.
     """
-    asked, world = config.train.evaluation, config.world
+    asked, world = TrainConfig.of(config).evaluation, config.world
     protocol = protocol_named(asked.protocol, "train.evaluation.protocol")
     weathers = asked.weathers or (world.weather,)
     for weather in weathers:

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from eyas.engine.envs.vector_env import EyasVectorEnv
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import Method
+from eyas.learning.config import Method, TrainConfig
 from eyas.learning.devices import torch_device
 from eyas.learning.network import TrackingNetwork
 from eyas.learning.teacher import Teacher
@@ -76,8 +76,8 @@ class Roller:
     """
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
-        count = config.train.environments // config.train.shards
-        taught = config.train.method is not Method.PPO
+        count = TrainConfig.of(config).environments // TrainConfig.of(config).shards
+        taught = TrainConfig.of(config).method is not Method.PPO
         self._teacher = Teacher(config, count) if taught else None
         self.env = EyasVectorEnv(
             count,
@@ -85,12 +85,12 @@ class Roller:
             autoreset_mode=AutoresetMode.SAME_STEP,
             copy=False,
             measures=taught,
-            device=config.train.device,
+            device=TrainConfig.of(config).device,
         )
         self.finished = Finished()
         self._network = network
-        self._config = config.train
-        self._device = torch_device(config.train.device)
+        self._config = TrainConfig.of(config)
+        self._device = torch_device(TrainConfig.of(config).device)
         self._data = self._new_rollout(count)
         self._picture = torch.zeros(0)
         self._state = torch.zeros(count, network.shape.state, device=self._device)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from eyas.engine.core.errors import ConfigError, MissingExtraError
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import Method
+from eyas.learning.config import Method, TrainConfig
 
 __all__ = ["run"]
 
@@ -29,12 +29,14 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     except ModuleNotFoundError as error:
         raise MissingExtraError("training", "train") from error
     say = (lambda _: None) if quiet else _say
-    if config.train.method in (Method.TRACKER, Method.WORDS):
+    if TrainConfig.of(config).method in (Method.TRACKER, Method.WORDS):
         return _of_pictures(config, folder, resume=resume, say=say, ray=ray)
     if not ray:
         return train(config, folder, resume=resume, say=say)
-    if config.train.device is not None:
-        raise ConfigError(f"train.device: '{config.train.device}' is not there with --ray")
+    if TrainConfig.of(config).device is not None:
+        raise ConfigError(
+            f"train.device: '{TrainConfig.of(config).device}' is not there with --ray"
+        )
     from eyas.learning.shards import on_ray
 
     with on_ray() as make_shards:
@@ -48,13 +50,13 @@ def _of_pictures(
     from eyas.learning.tracking.training import train as train_tracker
     from eyas.learning.words.training import train as train_listener
 
-    tracks = config.train.method is Method.TRACKER
+    tracks = TrainConfig.of(config).method is Method.TRACKER
     name = "tracker" if tracks else "listener"
     if ray:
         raise ConfigError(f"--ray: not allowed for a {name}: it is taught in one process")
-    if config.train.device is not None:
+    if TrainConfig.of(config).device is not None:
         raise ConfigError(
-            f"train.device: '{config.train.device}' is not allowed for a {name}: it is taught on "
+            f"train.device: '{TrainConfig.of(config).device}' is not allowed for a {name}: it is taught on "
             "this processor"
         )
     train = train_tracker if tracks else train_listener

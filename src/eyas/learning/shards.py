@@ -13,6 +13,7 @@ from eyas.benchmark.fliers import connected, one_line
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads
+from eyas.learning.config import TrainConfig
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Finished, Roller, Rollout
 
@@ -67,8 +68,8 @@ class LocalShards:
     """Shards in threads of this process."""
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
-        self._rollers = [Roller(config, network) for _ in range(config.train.shards)]
-        self._threads = TorchThreads(config.train.shards)
+        self._rollers = [Roller(config, network) for _ in range(TrainConfig.of(config).shards)]
+        self._threads = TorchThreads(TrainConfig.of(config).shards)
 
     def begin(self, streams: Sequence[np.random.Generator]) -> None:
         """See `Shards.begin`."""
@@ -122,10 +123,10 @@ class RayShards:
     """
 
     def __init__(self, ray: Any, config: EyasConfig, network: TrackingNetwork) -> None:  # noqa: ANN401
-        _check_cores(int(ray.cluster_resources().get("CPU", 0)), config.train.shards)
+        _check_cores(int(ray.cluster_resources().get("CPU", 0)), TrainConfig.of(config).shards)
         self._ray, self._config, self._network = ray, config, network
         self._worker = ray.remote(num_cpus=1)(_Worker)
-        self._workers = [self._started() for _ in range(config.train.shards)]
+        self._workers = [self._started() for _ in range(TrainConfig.of(config).shards)]
         self._streams: Sequence[np.random.Generator] = ()
         self._rolls: list[tuple[Any, float | None]] = []  # weights and `guided`, since it began
         self._finished = [Finished() for _ in self._workers]
@@ -190,7 +191,7 @@ class _Worker:
         limit_threads(1)
         torch.set_num_threads(1)
         self._config = config
-        self._network = TrackingNetwork(shape, channels_last=config.train.channels_last)
+        self._network = TrackingNetwork(shape, channels_last=TrainConfig.of(config).channels_last)
         self._roller: Roller | None = None
         self._streams: np.random.Generator | None = None
 

@@ -10,7 +10,7 @@ from eyas.benchmark.policies.sighted import Clue, SightOracle
 from eyas.engine.envs.batch import Truth
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import TeacherKind
+from eyas.learning.config import TeacherKind, TrainConfig
 
 __all__ = ["Teacher"]
 
@@ -36,7 +36,7 @@ class Teacher:
 
     def __init__(self, config: EyasConfig, count: int) -> None:
         changes = config.env.model_dump(include={"action_repeat", "speeds"})
-        learned = config.train.imitation
+        learned = TrainConfig.of(config).imitation
         self._oracle = _ORACLES[learned.teacher](changes, ConstantVelocity())
         self._fade = learned.fade
         self._all, self._nobody = np.ones(count, np.bool_), np.zeros(count, np.bool_)

@@ -18,7 +18,7 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import ActionKind, ObservationPart
 from eyas.learning import dagger, ppo
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
-from eyas.learning.config import Method, Stage
+from eyas.learning.config import Method, Stage, TrainConfig
 from eyas.learning.devices import torch_device
 from eyas.learning.export import export
 from eyas.learning.monitoring import (
@@ -68,8 +68,11 @@ def train(
     """
     run = _Run(config, RunFolder(folder), say, make_shards)
     run.files.begin(config, resume=resume)
-    for number, stage in enumerate(config.train.stages):
-        updates, each = config.train.updates_of(stage), config.train.update_decisions
+    for number, stage in enumerate(TrainConfig.of(config).stages):
+        updates, each = (
+            TrainConfig.of(config).updates_of(stage),
+            TrainConfig.of(config).update_decisions,
+        )
         if updates * each != stage.total_timesteps:
             say(
                 f"stage {number}: {stage.total_timesteps:,} decisions are rounded up to "
@@ -77,13 +80,15 @@ def train(
             )
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
-    if run.progress.stage < len(config.train.stages):  # environments take a while to be made
+    if run.progress.stage < len(
+        TrainConfig.of(config).stages
+    ):  # environments take a while to be made
         left, each = (
-            config.train.run_decisions - run.progress.decisions,
-            config.train.update_decisions,
+            TrainConfig.of(config).run_decisions - run.progress.decisions,
+            TrainConfig.of(config).update_decisions,
         )
-        say(f"{left:,} decisions by {config.train.method}, in updates of {each:,}")
-    while run.progress.stage < len(config.train.stages):
+        say(f"{left:,} decisions by {TrainConfig.of(config).method}, in updates of {each:,}")
+    while run.progress.stage < len(TrainConfig.of(config).stages):
         run.stage()
     return run.files.policy
 
@@ -98,25 +103,25 @@ class _Run:
         self._make_shards = make_shards
         _refuse_later_errors(config)
         # Before the network is made, because it sets PyTorch's threads.
-        self._threads = TorchThreads(config.train.parts)
-        layout = config.train.channels_last
+        self._threads = TorchThreads(TrainConfig.of(config).parts)
+        layout = TrainConfig.of(config).channels_last
         self.network = TrackingNetwork(_shape(config), channels_last=layout)
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
-        if config.train.begin_from is not None:
-            RunFolder(Path(config.train.begin_from)).load_network(self.network)
-        self.network.to(torch_device(config.train.device))
-        rate = config.train.learning_rate
+        if TrainConfig.of(config).begin_from is not None:
+            RunFolder(Path(TrainConfig.of(config).begin_from)).load_network(self.network)
+        self.network.to(torch_device(TrainConfig.of(config).device))
+        rate = TrainConfig.of(config).learning_rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = TrainingProgress()
         self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
-        self._total = config.train.run_decisions
+        self._total = TrainConfig.of(config).run_decisions
         self._told = -math.inf
         """When it was last told how it goes [s]."""
 
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
-        stage = self.config.train.stages[self.progress.stage]
+        stage = TrainConfig.of(self.config).stages[self.progress.stage]
         settings = updated(self.config, stage.changes(self.config.world))
         shards = self._make_shards(settings, self.network)
         done = self.progress.stage_decisions >= stage.total_timesteps
@@ -131,7 +136,7 @@ class _Run:
 
     def _block(self, shards: Shards, stage: Stage) -> bool:
         """Do a block of updates; return whether the stage is done."""
-        config, progress, start = self.config.train, self.progress, time.monotonic()
+        config, progress, start = TrainConfig.of(self.config), self.progress, time.monotonic()
         rng = stream(self.config.seed, "learning", progress.block)
         shards.begin(rng.spawn(config.shards))
         generator = torch.Generator().manual_seed(int(rng.integers(2**62)))
@@ -155,7 +160,7 @@ class _Run:
 
     def _evaluated(self, stage: Stage) -> EvaluationScores:
         """Return the scores after a block: of an evaluation, if it is time for one."""
-        every = self.config.train.evaluation.every
+        every = TrainConfig.of(self.config).evaluation.every
         stage_done = self.progress.stage_decisions >= stage.total_timesteps
         if every and (self.progress.block % every == 0 or stage_done):
             return evaluated(self.network, self.config)
@@ -163,15 +168,19 @@ class _Run:
 
     def _updates(self, stage: Stage) -> int:
         """Return the updates of the next block, all of one method."""
-        config, progress = self.config.train, self.progress
+        config, progress = TrainConfig.of(self.config), self.progress
         left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
         taught = (config.taught_decisions - progress.decisions) // config.update_decisions
         return min(left, config.updates_per_block, taught if taught > 0 else left)
 
     def _teaching(self, generator: torch.Generator, updates: int) -> Callable[[Shards], Columns]:
         """Return what does an update of the next block, and returns columns of the curve."""
-        config, network, optimiser = self.config.train, self.network, self.optimiser
-        threads, progress, imitation = self._threads, self.progress, self.config.train.imitation
+        config, network, optimiser = TrainConfig.of(self.config), self.network, self.optimiser
+        threads, progress, imitation = (
+            self._threads,
+            self.progress,
+            TrainConfig.of(self.config).imitation,
+        )
         buffer = dagger.Buffer(min(-(-imitation.buffer // config.update_decisions), updates))
 
         def by_rewards(shards: Shards) -> Columns:
@@ -189,7 +198,7 @@ class _Run:
         return by_teacher if progress.decisions < config.taught_decisions else by_rewards
 
     def _set_rate(self) -> None:
-        config, done = self.config.train, self.progress.decisions
+        config, done = TrainConfig.of(self.config), self.progress.decisions
         rate, total = config.learning_rate, self._total
         if done < config.taught_decisions:
             rate, total = config.imitation.learning_rate, config.taught_decisions
@@ -199,7 +208,7 @@ class _Run:
     def _row(self, shards: list[Finished], columns: Columns) -> Columns:
         """Return the curve's row of a block; all rows of a run have the same columns."""
         names = dict.fromkeys(ppo.Losses._fields)
-        if self.config.train.method is not Method.PPO:
+        if TrainConfig.of(self.config).method is not Method.PPO:
             names = dict.fromkeys((*dagger.ImitationLosses._fields, *names))
         returns = [each for finished in shards for each in finished.returns]
         lengths = [each for finished in shards for each in finished.lengths]
@@ -246,9 +255,9 @@ def _refuse_later_errors(config: EyasConfig) -> None:
     """
     evaluation_episodes(config)
     _refuse_test_seeds(config, "")
-    for number, stage in enumerate(config.train.stages):
+    for number, stage in enumerate(TrainConfig.of(config).stages):
         changed = updated(config, stage.changes(config.world))
-        if changed.train != config.train:
+        if TrainConfig.of(changed) != TrainConfig.of(config):
             raise ConfigError(
                 f"train.stages.{number}.settings.train: not allowed: all stages learn alike"
             )
@@ -291,6 +300,6 @@ def _shape(config: EyasConfig) -> NetworkShape:
     assert shape is not None
     if min(shape[1:]) < 20:
         raise ConfigError("env.observation: too small to be trained: at least 20x20 pixels")
-    train = config.train
+    train = TrainConfig.of(config)
     channels, height, width = shape
     return NetworkShape(channels, height, width, train.hidden, train.memory)

@@ -56,7 +56,7 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
             for endpoint in endpoints:
                 endpoint.send(datagram)
 
-        settings = config.mavlink
+        settings = MavlinkConfig.of(config)
         fleet = Fleet(build_simulation(config, together(settings.vehicles)), settings, send)
         stack.callback(fleet.close)
         _LOG.info("flying %s: %s", _named(settings), ", ".join(addresses))

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from eyas.benchmark.entry import entry_of
+from eyas.benchmark.policies.table import open_policy
 from eyas.datasets.motion import action_names, motion_of
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.exports.label import label_schema, read_labels
-from eyas.engine.policies.table import open_policy
 from eyas.engine.recordings.recording import load
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.video import run as video

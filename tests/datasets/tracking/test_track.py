@@ -100,7 +100,7 @@ def test_any_number_of_processes_and_an_interruption_give_the_same_bytes(folder,
 @pytest.mark.slow
 def test_the_order_of_episodes_changes_no_box_of_opencv(folder):
     pytest.importorskip("cv2")
-    from eyas.datasets.tracking.box_trackers import box_tracker
+    from eyas.benchmark.box_trackers import box_tracker
     from eyas.datasets.tracking.one_pass import track_episode
 
     episodes = list(load(folder))
@@ -227,7 +227,7 @@ def test_truth_is_inside_the_picture(folder):
 
 def test_opencv_trackers_follow_a_moving_square(tmp_path):
     pytest.importorskip("cv2")
-    from eyas.datasets.tracking.box_trackers import box_tracker
+    from eyas.benchmark.box_trackers import box_tracker
 
     ground = np.random.default_rng(0).integers(0, 255, (120, 160, 3), dtype=np.uint8) // 4
     square = np.random.default_rng(1).integers(128, 255, (24, 24, 3), dtype=np.uint8)

@@ -17,9 +17,9 @@ from eyas.engine.state.draw import DrawList, Picture
 from eyas.engine.state.lighting import LightState
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.world.weather import AUTUMN, CLEAR_DAY, CLEAR_NIGHT, DUST, FOG, RAIN, WINTER_DAY
-from eyas.gpu.device import HostDevice
 from eyas.gpu.render import stages
 from eyas.gpu.render.read_back import ReadBackRenderer
+from eyas.lanes.device import HostDevice
 
 from .on_devices import EVERYTHING, differences
 from .small_city import car_parts, city_scene, city_traffic, floor, looking, scene_of, tower

@@ -25,11 +25,11 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.trackers.drone import DRONE
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.gpu.cuda import code
-from eyas.gpu.device import HostDevice
 from eyas.gpu.ptx import ptx_of
 from eyas.gpu.render.read_back import ReadBackRenderer
 from eyas.lanes import ParallelCall
 from eyas.lanes.container import unpacked
+from eyas.lanes.device import HostDevice
 
 from .on_devices import EVERYTHING
 from .small_city import car_parts, city_scene, city_traffic, looking

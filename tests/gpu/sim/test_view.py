@@ -11,7 +11,6 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.trackers.kinds import tracker_of
-from eyas.gpu.device import HostDevice
 from eyas.gpu.ptx import ptx_of
 from eyas.gpu.render.device_views import StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
@@ -20,6 +19,7 @@ from eyas.gpu.sim.signals import shown_part, signal_times
 from eyas.gpu.sim.simulation import DeviceSimulation
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes import interpreted
+from eyas.lanes.device import HostDevice
 
 SIZE = (30, 44)
 SHORT = {"done": {"total_steps": 200, "grace_steps": 0, "no_reward_steps": 80}}

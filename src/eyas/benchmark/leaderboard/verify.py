@@ -20,11 +20,11 @@ from eyas.benchmark.leaderboard.mark import MARK, Mark, content_hash, signed
 from eyas.benchmark.leaderboard.submission import complete_run, folders_in
 from eyas.benchmark.plan import EvaluationPlan, Stamp, batches, fly_batch, opened, stamp
 from eyas.benchmark.policies.shipped import shipped_names
+from eyas.benchmark.policies.table import BUILT_IN, FILES
 from eyas.benchmark.record import EpisodeRecord
 from eyas.benchmark.result import EPISODES
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import read_limited, write_atomic
-from eyas.engine.policies.table import BUILT_IN, FILES
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.settings.trust import code_of
 

@@ -157,7 +157,7 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
     except ImportError as error:
         raise ConfigError(f"--policy: '{path}' cannot be imported: {error}") from error
     if hasattr(found, "begin") and hasattr(found, "update"):
-        from eyas.datasets.tracking.boxes import pilot
+        from eyas.benchmark.policies.boxes import pilot
 
         return pilot(path, changes)
     made = inspect.isclass(found)

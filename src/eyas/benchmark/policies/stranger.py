@@ -13,11 +13,10 @@ import numpy as np
 
 from eyas.benchmark.policies.apart import Array, receive, send
 from eyas.benchmark.policies.each import no_action
-from eyas.benchmark.scenario import Told
+from eyas.benchmark.policies.table import open_policy
 from eyas.engine.core.errors import ActionError, EyasError
 from eyas.engine.envs.actions import make_actions
-from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, Start
-from eyas.engine.policies.table import open_policy
+from eyas.engine.policies.policy import Decision, Failure, Instruction, Policy, PolicyInput, Start
 
 __all__ = ["main"]
 
@@ -80,7 +79,7 @@ class _Answers:
     ) -> tuple[Mapping[str, Any], list[Array]]:
         if "begin" in head:
             words = head["words"]
-            told = None if words is None else Told(tuple(words), arrays[2])
+            told = None if words is None else Instruction(tuple(words), arrays[2])
             self._latest = {}
             self._policy.begin(Start(arrays[0], lambda: arrays[1], told))
             return {}, []

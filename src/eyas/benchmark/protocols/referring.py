@@ -21,10 +21,11 @@ from eyas.benchmark.look_alikes import (
 )
 from eyas.benchmark.meter import LOOK
 from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.scenario import Scenario, Told
+from eyas.benchmark.scenario import Scenario
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import SpawnError
+from eyas.engine.policies.policy import Instruction
 from eyas.engine.policies.sight import nearest_to_middle, visible_shares
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.sim.simulation import Simulation
@@ -132,13 +133,13 @@ class ReferringScenario(Scenario):
         self._nearest = np.full((batch.count, protocol.steps // LOOK), -1, np.int64)
         """Whom each follows at each look; -1: nobody is in the picture."""
 
-    def told(self) -> Told:
+    def told(self) -> Instruction:
         """Return the words of each episode's variant."""
         phrases: list[Phrase] = [
             self._starts[row].phrases[variant] for row, variant in enumerate(self._variant)
         ]
         attributes = np.stack([phrase.attributes for phrase in phrases])
-        return Told(tuple(phrase.words for phrase in phrases), attributes)
+        return Instruction(tuple(phrase.words for phrase in phrases), attributes)
 
     def measure(self, step: int, active: NDArray[np.bool_]) -> None:
         """Find out whom the active flights follow, at every look."""

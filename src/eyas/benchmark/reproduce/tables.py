@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 from eyas.benchmark.plan import EvaluationPlan
 from eyas.benchmark.policies.shipped import shipped_names
+from eyas.benchmark.policies.table import fingerprint
 from eyas.benchmark.setting_out import AT_REST, AT_SPEED
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import UnknownNameError
-from eyas.engine.policies.table import fingerprint
 
 __all__ = [
     "TABLES",

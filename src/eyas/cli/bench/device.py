@@ -20,8 +20,8 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.engine.world.config import WorldConfig
-from eyas.gpu.device import Device
 from eyas.gpu.render.read_back import ReadBackRenderer, UploadedViews
+from eyas.lanes.device import Device
 
 __all__ = [
     "ON_DEVICES",

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from eyas.dat.wire.config import WireConfig
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import EyasError
 from eyas.engine.settings.config import EyasConfig
@@ -68,7 +69,7 @@ def _differences(
 
 def _ours(config: EyasConfig) -> dict[str, Any]:
     """Return the values of the server by the original's keys."""
-    wire, done = config.wire, config.done
+    wire, done = WireConfig.of(config), config.done
     return {
         "Tracker_Def": config.tracker.original_name,
         "Control_Frequence": config.control.frequency,

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 from eyas.dat.serve.agreement import tell_disagreements
 from eyas.dat.serve.source import SettingsSource
 from eyas.dat.settings.adapter import save_legacy
-from eyas.dat.settings.messages import originals_named
 from eyas.dat.settings.start_time import AGENT_STEPS, started_later
+from eyas.dat.wire.config import WireConfig
 from eyas.dat.wire.exchange import SETTINGS_FILE, Exchange
 from eyas.dat.wire.server import Server, Service
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.files import refusals
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import originals_named
 from eyas.engine.world.maps import MAPS
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class _Desk:
 
 def _service(config: EyasConfig) -> Service:
     return Service(
-        config.wire, config.tracker.original_name, partial(_crew, config), config.verbose
+        WireConfig.of(config), config.tracker.original_name, partial(_crew, config), config.verbose
     )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.dat.settings.adapter import legacy_key_of
+from eyas.dat.wire.config import WireConfig
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import EyasError
 from eyas.engine.settings.config import EyasConfig
@@ -41,7 +42,7 @@ class SettingsSource:
         # The file may have changed since it was read.
         self._seen: Signature = None
         self._peeked: Signature = None
-        self._place = (config.wire.address, config.wire.port)
+        self._place = (WireConfig.of(config).address, WireConfig.of(config).port)
 
     def read(self) -> EyasConfig:
         """Return the settings as they are now, and tell in a line how they differ from the last.
@@ -67,7 +68,7 @@ class SettingsSource:
         signature = self._signature()
         if self._load is not None and signature != self._peeked:
             with suppress(EyasError):  # written just now; told when agents announce themselves
-                wire = quietly(self._load).wire
+                wire = WireConfig.of(quietly(self._load))
                 self._place, self._peeked = (wire.address, wire.port), signature
         return self._place
 

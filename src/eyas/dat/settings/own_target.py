@@ -69,7 +69,10 @@ def _found(name: str, folders: Sequence[Path]) -> dict[str, Any] | None:
     if not re.fullmatch(r"\w[\w .+-]{0,99}", name):
         return None
     for folder in folders:
-        shapes = [folder / f"{name}{ending}" for ending in (".proto", *ENDINGS)]
+        shapes = [
+            folder / f"{name}{ending}"
+            for ending in sorted(ENDINGS, key=lambda ending: ending != ".proto")
+        ]
         shape = next((path for path in shapes if path.is_file()), None)
         track = folder / f"{name}{_TRAJECTORY}"
         made: dict[str, Any] = {} if shape is None else {"mesh": str(shape)}

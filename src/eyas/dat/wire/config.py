@@ -4,13 +4,15 @@ from typing import Annotated
 
 from pydantic import Field
 
-from eyas.engine.core.config import Config
+from eyas.engine.settings.section import Section
 
 __all__ = ["WireConfig"]
 
 
-class WireConfig(Config):
+class WireConfig(Section):
     """Settings of `eyas serve`, the server for the original's protocol."""
+
+    section = "wire"
 
     address: Annotated[str, Field(min_length=1)] = "127.0.0.1"
     """Network address to listen on; `0.0.0.0` lets other machines announce agents."""

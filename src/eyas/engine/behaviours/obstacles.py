@@ -10,7 +10,6 @@ from eyas.engine.state.scene import Fixtures, ObjectClass, Scene
 from eyas.engine.state.terrain import Terrain, reliefs
 from eyas.engine.world.roads.areas import corridors, split_on_grid
 from eyas.lanes import exact
-from eyas.maps.street.clutter import CLUTTER
 
 __all__ = ["GroundObstacles"]
 
@@ -19,6 +18,12 @@ _STEP: Final = 0.3
 
 _HEAD: Final = 2.2
 """Height above the ground over which nothing is in the way [m]."""
+
+_CLUTTER: Final = frozenset(
+    "litter,fallen leaves,drain,road sign,bus stop,cabinet,planter,rubbish,wheeled bins,shop board,"
+    "cafe table,crates,bicycle rack,trampoline,washing line,garden pool,logs,letter box".split(",")
+)
+"""Names of kinds of things, without their numbers, that stand where people do not walk along."""
 
 _STEEP: Final = 0.5
 """Largest rise within a cell of the relief, per metre of its side."""
@@ -139,7 +144,7 @@ def _fixtures(fixtures: Fixtures, *, as_placed: bool) -> NDArray[np.object_]:
     """
     shapes: list[shapely.Geometry] = []
     for number, levels in enumerate(fixtures.levels):
-        if fixtures.names and fixtures.names[number] in CLUTTER:
+        if fixtures.names and fixtures.names[number].rstrip(" 0123456789") in _CLUTTER:
             continue
         pose = fixtures.pose[fixtures.prototype == number].astype(np.float64)
         scale = np.ones(len(pose))

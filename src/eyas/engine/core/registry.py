@@ -6,8 +6,10 @@ user-defined object needs no entry in a table. An object is imported when it is 
 
 from collections.abc import Mapping
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
 
+from eyas.engine.core.doors import brought, first_brought
 from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.core.own_code import imported
 
@@ -42,28 +44,30 @@ class Registry(Generic[T]):
     """Objects of one kind by name: built-in, from installed packages, and user-defined.
 
     Attributes:
-        built_in: Names of the built-in objects, in the order of the table.
+        built_in: Names of the objects of the engine and of the houses, in the order of the table.
 
     Args:
         setting: The setting that names an object, for messages; for example `world.map`.
         kind: Class of the objects, or a protocol that can be checked at run time.
-        built_in: The built-in objects, each as `package.module:attribute`.
-        group: Entry point group with which installed packages add objects; None: they cannot.
-        files: Objects that are made of files; None: there are none.
+        built_in: The engine's own objects, each as `package.module:attribute`.
+        group: Group of the doors of houses (`eyas.engine.core.doors`) and of the entry points with
+            which installed packages add objects; None: nobody else can.
+        files: Group of the doors of houses with objects that are made of files (`Found`).
     """
 
     def __init__(  # one argument for each place where objects are found
         self,
         setting: str,
         kind: type[T],
-        built_in: Mapping[str, str],
+        built_in: Mapping[str, str] = MappingProxyType({}),
         *,
         group: str | None = None,
-        files: Found[T] | None = None,
+        files: str | None = None,
     ) -> None:
-        self.built_in = tuple(built_in)
-        self._setting, self._kind, self._group, self._files = setting, kind, group, files
-        self._table: dict[str, T | str] = dict(built_in)
+        table = {**built_in, **(brought(group) if group else {})}
+        self.built_in = tuple(table)
+        self._setting, self._kind, self._group, self._file_group = setting, kind, group, files
+        self._table: dict[str, T | str] = dict(table)
         self._loaded: dict[str, T] = {}
 
     def register(self, name: str, what: T | str) -> None:
@@ -92,7 +96,7 @@ class Registry(Generic[T]):
         Raises:
             ConfigError: Two packages use the same name.
         """
-        names = (*self._table, *self._installed(), *self._of_files())
+        names = (*self._table, *self._installed(), *self.of_files())
         return tuple(dict.fromkeys(names))
 
     def get(self, name: str) -> T:
@@ -122,12 +126,19 @@ class Registry(Generic[T]):
             return name
         installed = self._installed()
         if name not in installed:
-            known = (*self._table, *installed, *self._of_files())
+            known = (*self._table, *installed, *self.of_files())
             others = f"{self._files.form} or {OWN}" if self._files else OWN
             raise UnknownNameError(self._setting, name, known, others=others)
         return installed[name]
 
-    def _of_files(self) -> tuple[str, ...]:
+    @cached_property
+    def _files(self) -> Found[T] | None:
+        """What is made of files; asked for late, as it may need the table itself."""
+        found: Found[T] | None = first_brought(self._file_group) if self._file_group else None
+        return found
+
+    def of_files(self) -> tuple[str, ...]:
+        """Return the names of the objects that are made of files."""
         return self._files.names() if self._files else ()
 
     def _installed(self) -> dict[str, str]:

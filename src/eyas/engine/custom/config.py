@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.core.doors import brought
 from eyas.engine.targets.habit import Behaviour
 
 __all__ = ["ENDINGS", "MESHES", "CustomConfig"]
@@ -13,7 +14,7 @@ __all__ = ["ENDINGS", "MESHES", "CustomConfig"]
 MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")
 """Endings of the mesh files that can be read."""
 
-ENDINGS = (*MESHES, ".proto")
+ENDINGS = (*MESHES, *brought("eyas.mesh_files"))
 """Endings of the files of shapes that can be read."""
 
 Text = Annotated[str, Field(min_length=1)]

@@ -3,7 +3,7 @@
 import io
 import logging
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.dat.proto_file import Part, read_proto
+from eyas.engine.core.doors import brought_object
 from eyas.engine.core.errors import DataFileError, EyasError, MissingExtraError
 from eyas.engine.core.files import read_limited, user_path
 from eyas.engine.custom.config import ENDINGS, MESHES, CustomConfig
@@ -83,6 +83,20 @@ def loaded(config: CustomConfig) -> Triangles:
     return placed(read_mesh(path), up, config.turn, config.scale)
 
 
+Part = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
+"""Points [m], shape (V, 3), triangles, shape (T, 3), and sRGB of each, shape (T, 3)."""
+
+Reader = Callable[[Path, Callable[[Path], Part]], tuple[list[Part], str]]
+"""Takes a path, and what reads the mesh files that it names; returns the parts, and a line about
+what was left out."""
+
+
+def reader_of(ending: str) -> Reader | None:
+    """Return what a house brings to read files of an ending (group `eyas.mesh_files`)."""
+    found: Reader | None = brought_object("eyas.mesh_files", ending)
+    return found
+
+
 def read_mesh(path: Path) -> Triangles:
     """Return the triangles of a file, in its own unit and axes.
 
@@ -99,9 +113,9 @@ def read_mesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: holds no triangles: the file is empty")
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
-    if path.suffix.lower() == ".proto":
-        read, left_out = read_proto(path, _mesh_of_proto)
-        return replace(_joined([Triangles(*part) for part in read]), left_out=left_out)
+    if (read := reader_of(path.suffix.lower())) is not None:
+        parts, left_out = read(path, _part_of)
+        return replace(_joined([Triangles(*part) for part in parts]), left_out=left_out)
     return _from_trimesh(path)
 
 
@@ -139,8 +153,8 @@ def _quiet(library: str) -> Iterator[None]:
         log.disabled = before
 
 
-def _mesh_of_proto(path: Path) -> Part:
-    """Return points, corners and colours of the mesh file that a PROTO names.
+def _part_of(path: Path) -> Part:
+    """Return points, corners and colours of a mesh file that another file names.
 
     Raises:
         DataFileError: As from `read_mesh`.

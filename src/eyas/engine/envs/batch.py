@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from eyas.dat.settings.messages import originals_named
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.memento import Memento, recall, remember
@@ -25,6 +24,7 @@ from eyas.engine.envs.observation import Observer
 from eyas.engine.envs.trained_with import describe
 from eyas.engine.render.renderer import CpuRenderer
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import originals_named
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.episode_sampling import ModelTable, SamplingRules

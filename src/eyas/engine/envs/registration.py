@@ -20,9 +20,8 @@ def register() -> None:
     if "gymnasium" in sys.modules:
         # Only now: until a program that has just begun handles Ctrl-C, it should do little.
         from eyas.engine.world.maps import MAPS
-        from eyas.engine.world.maps.files import MAP_FILES
 
-        for name in (*MAPS.built_in, *MAP_FILES.names()):
+        for name in (*MAPS.built_in, *MAPS.of_files()):
             register_map(name)
     elif not any(isinstance(finder, _Registrar) for finder in sys.meta_path):
         sys.meta_path.insert(0, _Registrar())

@@ -10,6 +10,7 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 from numpy.typing import NDArray
 
+from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.rng import checked_seed
 from eyas.engine.envs.batch import Outcome, Truth
@@ -20,8 +21,7 @@ from eyas.engine.envs.notebook import LONGEST_STRIP, strip_html
 from eyas.engine.envs.observation import Observation
 from eyas.engine.envs.sub_env import SubEnv
 from eyas.engine.settings.config import EyasConfig
-from eyas.gpu.device import Device
-from eyas.gpu.envs.envs import DeviceEnvs
+from eyas.lanes.device import Device
 
 __all__ = ["EyasVectorEnv"]
 
@@ -77,12 +77,15 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = chosen_settings(config, **choices)
-        self._there: DeviceEnvs | None = None
+        self._there: Any = None  # environments on a device, which a house brings
         self._here: MixedBatch | None = None
         if device is None:
             self._here = MixedBatch(self.config, num_envs, measures=measures)
         else:
-            self._there = DeviceEnvs(self.config, num_envs, device, measures=measures)
+            elsewhere = first_brought("eyas.devices")
+            if elsewhere is None:
+                raise ConfigError(f"device: '{device}': no house here computes on devices")
+            self._there = elsewhere(self.config, num_envs, device, measures=measures)
         self.num_envs = num_envs
         self.render_mode = render_mode
         envs = self._there or self._batch
@@ -183,7 +186,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def _step_there(
         self,
-        envs: DeviceEnvs,
+        envs: Any,
         actions: Any,  # noqa: ANN401  # as in Gymnasium
         out: Observation | None,
     ) -> Stepped:

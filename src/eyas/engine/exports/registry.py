@@ -34,10 +34,6 @@ WRITERS: Registry[type[Any]] = Registry(
         "sensors": "eyas.engine.exports.table:SensorWriter",
         "lidar": "eyas.engine.exports.table:LidarWriter",
         "events": "eyas.engine.exports.events:EventWriter",
-        "scene": "eyas.maps.exports.gltf.flight:SceneWriter",
-        "openscenario": "eyas.maps.exports.scenario:ScenarioWriter",
-        "rosbag": "eyas.robotics.ros.bag:RosbagWriter",
-        "rosbag-mcap": "eyas.robotics.ros.bag:RosbagMcapWriter",
     },
     group="eyas.writers",
 )

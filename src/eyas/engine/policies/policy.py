@@ -9,7 +9,6 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.scenario import Told
 from eyas.engine.core.config import shown, updated
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.envs.observation import Observation
@@ -21,6 +20,7 @@ __all__ = [
     "BLIND",
     "Decision",
     "Failure",
+    "Instruction",
     "Policy",
     "PolicyFailedError",
     "PolicyInput",
@@ -37,6 +37,13 @@ def _all_open(row: int, places: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.ones(len(places), np.bool_)
 
 
+class Instruction(NamedTuple):
+    """Descriptions of N targets in words, given to policies at the start."""
+
+    words: tuple[str, ...]  # a phrase for each
+    attributes: NDArray[np.float32]  # what the phrase says, as numbers, shape (N, A)
+
+
 class Start(NamedTuple):
     """The start of N episodes."""
 
@@ -46,7 +53,7 @@ class Start(NamedTuple):
     """Returns the true box of each target in its first picture, visible or hidden: left, top,
     right, bottom, the last two exclusive [pixels]; all 0 if it is outside, or if the protocol does
     not tell it, shape (N, 4)."""
-    told: Told | None = None
+    told: Instruction | None = None
     """What is told in words; None where the protocol has no words."""
     roads: Callable[[], list[RoadNetwork]] = list
     """Returns the roads around each drone, N, one object for those on the same map: for oracles."""

@@ -1,24 +1,23 @@
-"""The root of all settings: those of the simulation and those of each mode and interface."""
+"""The root of all settings: those of the engine, and the sections that houses bring."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from enum import StrEnum
-from typing import Any, Self
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Self
 
-from pydantic import model_validator
+from pydantic import Field, create_model, model_validator
 
-from eyas.dat.wire.config import WireConfig
 from eyas.engine.core.config import updated
+from eyas.engine.core.doors import brought
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.env import EnvConfig
+from eyas.engine.settings.section import Changes, Section
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.sim.config import SimConfig
-from eyas.learning.config import TrainConfig
-from eyas.robotics.mavlink.config import MavlinkConfig
 
-__all__ = ["EyasConfig", "Mode", "variants"]
+__all__ = ["EngineConfig", "EyasConfig", "Mode", "variants"]
 
 Value = bool | int | float | str | tuple[float, ...]
-"""Value of one of the original's keys."""
 
 
 class Mode(StrEnum):
@@ -29,12 +28,8 @@ class Mode(StrEnum):
     TRAIN = "train"
 
 
-class EyasConfig(SimConfig):
-    """All settings of a run.
-
-    A new mode or environment has its settings in a `config.py` beside its code, which imports
-    only settings, and one line here.
-    """
+class EngineConfig(SimConfig):
+    """Settings of the simulation, of environments and of recordings."""
 
     mode: Mode = Mode.VIDEO
     """Intended use of the configuration."""
@@ -44,13 +39,8 @@ class EyasConfig(SimConfig):
     `eyas.steps`."""
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
-    train: TrainConfig = TrainConfig()
-    wire: WireConfig = WireConfig()
-    mavlink: MavlinkConfig = MavlinkConfig()
-    original: dict[str, Value] | None = None
-    """Values of the original's `env_config.json` that no other setting holds, such as those whose
-    switch is off: they are written back with it. None if the settings do not come from such a
-    file."""
+    if TYPE_CHECKING:
+        original: dict[str, Value] | None  # a field of the whole, below: last in files
 
     @model_validator(mode="after")
     def _gimbal_there(self) -> Self:
@@ -67,26 +57,60 @@ class EyasConfig(SimConfig):
         return self
 
 
-def variants(config: EyasConfig) -> Iterator[tuple[str, EyasConfig]]:
-    """Yield the settings of each kind of a mixture and each stage of a curriculum, by their path.
+_ORIGINAL = (
+    "Values of the original's `env_config.json` that no other setting holds, such as those whose "
+    "switch is off: they are written back with it. None if the settings do not come from such a "
+    "file."
+)
 
-    Mixture and curriculum themselves are left out of them.
+
+def _sections() -> dict[str, Any]:
+    """Return the fields of the sections by name."""
+    fields: dict[str, Any] = {}
+    for name, place in brought("eyas.settings").items():
+        module, _, attribute = place.partition(":")
+        section = getattr(import_module(module), attribute)
+        fields[name] = (section, section())
+    return fields
+
+
+if TYPE_CHECKING:
+
+    class EyasConfig(EngineConfig):
+        """All settings of a run: `EngineConfig`, and a `Section` of each house."""
+else:
+    EyasConfig = create_model(
+        "EyasConfig",
+        __base__=EngineConfig,
+        __module__=__name__,
+        __doc__="All settings of a run.",
+        **_sections(),
+        original=(dict[str, Value] | None, Field(None, description=_ORIGINAL)),
+    )
+
+
+def variants(config: EngineConfig) -> Iterator[tuple[str, "EyasConfig"]]:
+    """Yield the settings of each kind of a mixture and of each variant of a section, by their path.
+
+    Mixture and variants themselves are left out of them.
 
     Raises:
         ConfigError: Some of them are wrong: one line.
     """
-    parts: list[tuple[str, Mapping[str, Any]]] = [
-        *((f"env.mixture.{at}", part.settings) for at, part in enumerate(config.env.mixture)),
-        *(
-            (f"train.stages.{at}", stage.changes(config.world))
-            for at, stage in enumerate(config.train.stages)
-        ),
+    assert isinstance(config, EyasConfig)
+    every = (getattr(config, name) for name in type(config).model_fields)
+    sections = [part for part in every if isinstance(part, Section)]
+    parts: list[tuple[str, Changes]] = [
+        (f"env.mixture.{at}", part.settings) for at, part in enumerate(config.env.mixture)
     ]
+    for section in sections:
+        of_section = section.variants(config)
+        parts += ((f"{section.section}.{path}", changes) for path, changes in of_section)
     if not any(settings for _, settings in parts):
         return
     env = config.env.model_copy(update={"mixture": ()})
-    train = config.train.model_copy(update={"stages": ()})
-    common = config.model_copy(update={"env": env, "train": train})
+    alone: dict[str, Any] = {section.section: section.alone() for section in sections}
+    common = config.model_copy(update={"env": env, **alone})
     for path, settings in parts:
         try:
             variant = updated(common, settings)

@@ -8,14 +8,12 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from eyas.dat.settings.adapter import check_original, from_legacy, is_legacy, with_legacy
-from eyas.dat.settings.messages import named_path
-from eyas.dat.settings.own_target import CUSTOM, own_target_folders, with_own_target
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
 from eyas.engine.core.config import group_of, updated, validated
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import dialect, named_path, spoken
 from eyas.engine.settings.trust import refuse_code
 
 __all__ = ["SCHEMA_KEY", "load_settings", "parsed_override", "read_settings", "save_settings"]
@@ -29,9 +27,6 @@ SCHEMA_KEY = "$schema"
 
 _LARGEST = 16 << 20
 """Largest file of settings [bytes]."""
-
-_CLIENT_KEY = "Benchmark"
-"""The one group of the `config.json` of the original's client."""
 
 
 def load_settings(
@@ -58,18 +53,17 @@ def load_settings(
         ConfigError: A key or a value is wrong, or the file names code without being trusted.
     """
     config = (base or EyasConfig()) if path is None else _loaded(path)
-    folders = own_target_folders(path)
     pairs = [parsed_override(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
         for keys, value in group:
             _put(changes, keys, value)
         if capital:
-            changes, own = with_own_target(changes, folders)
-            config = _with_custom(with_legacy(config, changes), own)
+            config = spoken(f"--set {next(iter(changes))}").changed(config, changes, path)
         else:
             config = updated(config, changes)
-    check_original(config)
+    if config.original is not None:
+        spoken("original").check(config)
     if path is not None and not trust:
         refuse_code(path, config, {text for _, value in pairs for text in _texts(value)})
     _tell_surprises(config)
@@ -79,25 +73,15 @@ def load_settings(
 def _loaded(path: Path) -> EyasConfig:
     """Return the settings of a file; errors as from `load_settings`."""
     values = read_settings(path)
-    if _CLIENT_KEY in values:
-        raise DataFileError(
-            f"{path}: the settings of the original's client, not of its simulator; give its "
-            "Webots_Simulation/traffic_project/config/env_config.json (the speeds of actions are "
-            "env.speeds here)"
-        )
-    if not is_legacy(values):
-        config = validated(EyasConfig, values)
-        try:
-            "".join(_texts(values)).encode()
-        except UnicodeEncodeError as error:
-            raise DataFileError(f"{path}: half a character of UTF-16: {error}") from error
-        return config
-    values, own = with_own_target(values, own_target_folders(path))
-    return _with_custom(from_legacy(values), own)
-
-
-def _with_custom(config: EyasConfig, custom: Nested | None) -> EyasConfig:
-    return config if custom is None else updated(config, {CUSTOM: custom})
+    other = dialect()
+    if other is not None and other.is_spoken(values):
+        return other.read(values, path)
+    config = validated(EyasConfig, values)
+    try:
+        "".join(_texts(values)).encode()
+    except UnicodeEncodeError as error:
+        raise DataFileError(f"{path}: half a character of UTF-16: {error}") from error
+    return config
 
 
 def save_settings(config: EyasConfig, path: Path) -> None:

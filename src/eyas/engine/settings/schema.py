@@ -57,8 +57,13 @@ def _parts(annotation: Any) -> Iterator[Any]:  # noqa: ANN401  # a type
 
 def field_texts(group: type[Config]) -> dict[str, str]:
     """Return the docstring of each field, on one line."""
-    above = [base for base in group.__mro__ if base is not Config and issubclass(base, Config)]
-    return {name: text for base in reversed(above) for name, text in _own(base).items()}
+    described = {
+        name: field.description for name, field in group.model_fields.items() if field.description
+    }
+    for base in reversed(group.__mro__):
+        if issubclass(base, Config) and base not in (Config, EyasConfig):
+            described |= _own(base)
+    return described
 
 
 def _own(group: type[Config]) -> dict[str, str]:

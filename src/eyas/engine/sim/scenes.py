@@ -27,6 +27,7 @@ from eyas.engine.targets.kind import Kind as TargetKind
 from eyas.engine.targets.rig import part_library
 from eyas.engine.traffic.network import build_network
 from eyas.engine.world.maps import MAPS
+from eyas.engine.world.maps.planner import planner
 from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.street.signals import lens_levels
 from eyas.engine.world.weather import Season
@@ -81,11 +82,8 @@ def _scene(map_name: str, seed: int, season: Season) -> Scene:
 
 
 def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
-    from eyas.maps.plan.build import build_scene  # not needed where the scene is kept
-    from eyas.maps.plan.file import plan_of
-
     _LOG.info("building the map '%s', once", name)
-    return build_scene(plan_of(text.tobytes()), network, season)
+    return planner().build(text.tobytes(), network, season)
 
 
 @lru_cache(maxsize=4)
@@ -99,16 +97,14 @@ def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
     make, data = partial(_planned, recipe, network, seed), recipe.data_hash()
     if data is None:
         return make()
-    return cached(
-        Kind.PLAN, make, (recipe.plan, recipe.name, data, seed, network), of=NDArray[np.uint8]
-    )
+    makers = recipe.plan, planner().complete, planner().text_of  # doors hide them from `make`
+    inputs = (*makers, recipe.name, data, seed, network)
+    return cached(Kind.PLAN, make, inputs, of=NDArray[np.uint8])
 
 
 def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
-    from eyas.maps.plan.file import text_of
-
     plan = recipe.complete_plan(network, seed)
-    return np.frombuffer(text_of(plan).encode(), np.uint8)
+    return np.frombuffer(planner().text_of(plan).encode(), np.uint8)
 
 
 @lru_cache(maxsize=4)
@@ -119,7 +115,8 @@ def _origin(map_name: str, seed: int, season: Season) -> tuple[object, ...] | No
     """
     if MAPS.get(map_name).data_hash() is None:
         return None
-    return _built, _text_of(map_name, seed), season.value, load_network(map_name, seed)
+    makers = _built, planner().build
+    return *makers, _text_of(map_name, seed), season.value, load_network(map_name, seed)
 
 
 @lru_cache(maxsize=4)

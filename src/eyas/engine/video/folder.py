@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.dat.settings.adapter import save_legacy
 from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import read_json
@@ -21,6 +20,7 @@ from eyas.engine.exports.checksums import CHECKSUMS, GROWING
 from eyas.engine.exports.registry import WRITERS, chosen_writers
 from eyas.engine.exports.writer import Episode, Files, Run, joined
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import dialect
 from eyas.engine.settings.file import read_settings, save_settings
 from eyas.engine.video.episode import RecordedPaths, paths_below
 from eyas.engine.video.formats import writers_in
@@ -29,7 +29,7 @@ from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE
 
 __all__ = ["VideoFolder", "check_folder", "open_folder", "recorded_seed"]
 
-SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
+SETTINGS = "config.json"
 
 ORIGIN = "version.json"
 """Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
@@ -43,7 +43,9 @@ STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
 _NOT_PICTURED = ("learning", "mavlink", "wire")
 """Rooms that have no part in a recording."""
 
-_OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
+_OF_DIALECT = (found.file,) if (found := dialect()) else ()
+
+_OWN = (SETTINGS, *_OF_DIALECT, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
 
 _FIRST = frozenset((ORIGIN, ATTRIBUTION_FILE))
 """Files that are written before the settings: a folder that has no others was broken off there, and
@@ -176,7 +178,9 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     if notice:
         write_atomic(path / ATTRIBUTION_FILE, notice.encode())
     save_settings(config, path / SETTINGS)
-    save_legacy(config, path / LEGACY_SETTINGS)
+    other = dialect()
+    if other is not None:
+        other.save(config, path / other.file)
     return folder
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import physics_steps
+from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ActionError, ConfigError
 from eyas.engine.core.rng import stream
 from eyas.engine.envs.actions import command_width, make_actions, turn_rates
@@ -14,7 +15,6 @@ from eyas.engine.envs.observation import Observation, Observer
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.policies.policy import Failure, Policy, PolicyInput, Start
 from eyas.engine.policies.sight import subjects, visible_shares
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.roads import RoadNetwork
@@ -45,6 +45,9 @@ class PolicyPilot:
         changes = config.env.model_dump(
             mode="json", exclude_defaults=True, exclude={"mixture", "log_folder"}
         )
+        open_policy = first_brought("eyas.policy_opener")
+        if open_policy is None:
+            raise ConfigError(f"video.policy: {name!r}: no house here brings policies")
         self._policies: list[Policy] = [open_policy(name, changes) for _ in range(sim.count)]
         env = self._policies[0].env
         self._env, self._observer = env, Observer(env.observation, sim)

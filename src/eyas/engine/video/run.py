@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.dat.settings.messages import originals_named
-from eyas.dat.settings.start_time import CHANNEL_STEPS, started_later
 from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.exports.registry import chosen_writers
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import originals_named, spoken
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.worlds import together
@@ -64,7 +63,9 @@ def run(
         chosen_writers(writers_in(config.video.writers))
         check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
-        flown = started_later(config, CHANNEL_STEPS * config.video.channels)
+        flown = config
+        if config.original is not None:
+            flown = spoken("original").started(config, config.video.channels)
         sim = _built(flown)
     with closing(sim):
         with originals_named(config):

@@ -59,7 +59,7 @@ def ptx_code(
         call: The kernel.
         types: Bundles of these kinds.
         kinds: The kinds, see `eyas.lanes.held.Held`.
-        threads: See `eyas.gpu.device.Device.launch`.
+        threads: See `eyas.lanes.device.Device.launch`.
     """
     function = call.function
     name = code_name(function.__qualname__.rpartition(".")[2], identity(function))

@@ -32,7 +32,7 @@ _SPARE = 4096
 
 
 class CudaDevice:
-    """A graphics processor of NVIDIA; see `eyas.gpu.device.Device`, and `cuda_device`.
+    """A graphics processor of NVIDIA; see `eyas.lanes.device.Device`, and `cuda_device`.
 
     Several threads may use it.
 

@@ -49,7 +49,7 @@ class Functions:
     def function(
         self, call: ParallelCall, bundles: tuple[CudaBundle, ...], threads: int
     ) -> Function:
-        """Return a kernel for bundles of these kinds; see `eyas.gpu.device.Device.launch`."""
+        """Return a kernel for bundles of these kinds; see `eyas.lanes.device.Device.launch`."""
         kinds = tuple([bundle.kind for bundle in bundles])
         known = self._of_call.get(call)
         found = None if known is None else known.get((kinds, threads))

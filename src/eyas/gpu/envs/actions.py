@@ -17,9 +17,9 @@ from eyas.engine.envs.actions import (
     turn_commands,
 )
 from eyas.engine.envs.mixed_batch import array_of
-from eyas.gpu.device import Device
 from eyas.gpu.envs.tensors import is_tensor, torch_of
 from eyas.lanes import parallel
+from eyas.lanes.device import Device
 
 __all__ = ["DeviceActions"]
 

@@ -5,9 +5,9 @@ import re
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.renderer import CpuRenderer
 from eyas.engine.state.draw import Renderer
-from eyas.gpu.device import Device, HostDevice
 from eyas.gpu.render.device_views import DeviceDrawer, StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
+from eyas.lanes.device import Device, HostDevice
 
 __all__ = ["device_of", "drawer_of"]
 

@@ -6,16 +6,15 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.dat.settings.messages import originals_named
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.envs.actions import make_actions
 from eyas.engine.envs.batch import Seeds, Truth
 from eyas.engine.envs.trained_with import describe
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.dialect import originals_named
 from eyas.engine.sim.build import assets_of, tracker_in
 from eyas.engine.sim.worlds import each_alone
-from eyas.gpu.device import Device
 from eyas.gpu.envs.actions import DeviceActions
 from eyas.gpu.envs.devices import device_of, drawer_of
 from eyas.gpu.envs.observation import DeviceObserver
@@ -23,6 +22,7 @@ from eyas.gpu.envs.tensors import as_bool, copied, tensor_of
 from eyas.gpu.sim.records import downloaded
 from eyas.gpu.sim.simulation import DeviceSimulation
 from eyas.gpu.sim.view import DeviceView
+from eyas.lanes.device import Device
 
 __all__ = ["DeviceEnvs"]
 

@@ -11,7 +11,6 @@ from eyas.engine.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.engine.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.state.draw import DrawStage
-from eyas.gpu.device import Device
 from eyas.gpu.render.stages import (
     Shares,
     cast_lights,
@@ -23,6 +22,7 @@ from eyas.gpu.render.stages import (
     tell_facts,
 )
 from eyas.lanes import ParallelCall
+from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
 
 __all__ = ["DeviceRenderer", "PictureSize"]

@@ -10,13 +10,13 @@ from eyas.engine.render.kernels.bundles import Geometry, Job, Light, Movers, Out
 from eyas.engine.render.outputs import NO_OUTPUT
 from eyas.engine.render.renderer import GRIDS
 from eyas.engine.state.lighting import LightState
-from eyas.gpu.device import Device
 from eyas.gpu.render.device import DeviceRenderer, PictureSize
+from eyas.lanes.device import Device
 
 __all__ = ["DeviceDrawer", "DeviceViews", "StagedDrawer"]
 
 Array = Any
-"""An `eyas.gpu.device.DeviceArray`."""
+"""An `eyas.lanes.device.DeviceArray`."""
 
 
 class DeviceViews(NamedTuple):

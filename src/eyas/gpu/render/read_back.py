@@ -19,8 +19,8 @@ from eyas.engine.render.outputs import (
 from eyas.engine.render.renderer import GRIDS, CpuRenderer
 from eyas.engine.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.engine.state.lighting import LightState
-from eyas.gpu.device import Device
 from eyas.gpu.render.device import DeviceRenderer, PictureSize
+from eyas.lanes.device import Device
 
 __all__ = ["ReadBackRenderer", "UploadedViews"]
 

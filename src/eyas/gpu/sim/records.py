@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.gpu.device import Device
+from eyas.lanes.device import Device
 
 __all__ = ["Mirrored", "arrays_of", "downloaded", "uploaded"]
 

@@ -13,11 +13,11 @@ from eyas.engine.targets.kind import Looks
 from eyas.engine.task.done import DoneReason
 from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
-from eyas.gpu.device import Device
 from eyas.gpu.sim.episodes import HostEpisodes
 from eyas.gpu.sim.flight import FEW, START, Flown, Focal, Starts, flight_calls
 from eyas.gpu.sim.records import Mirrored, uploaded
 from eyas.gpu.sim.refusals import check_device
+from eyas.lanes.device import Device
 
 __all__ = ["DeviceSimulation"]
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.engine.core.build import Build, this_build
@@ -22,12 +23,11 @@ from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.rng import stream
-from eyas.engine.policies.table import open_policy
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, readable
-from eyas.learning.config import TrackerTraining
+from eyas.learning.config import TrackerTraining, TrainConfig
 from eyas.learning.tracking.driving import Drives, driven
 from eyas.learning.tracking.export import export
 from eyas.learning.tracking.flights import Pilot, flown
@@ -100,7 +100,7 @@ def _refuse_unlike(config: EyasConfig) -> None:
             f"env.observation: {seen.width}x{seen.height} is not allowed: a tracker sees pictures "
             "of 4 to 3 whose width is a multiple of 16, such as 80x60"
         )
-    if config.train.begin_from is not None:
+    if TrainConfig.of(config).begin_from is not None:
         raise ConfigError("train.begin_from: not allowed for a tracker: it begins anew")
 
 
@@ -121,7 +121,7 @@ class _Run:
     """A run and how far it has come."""
 
     def __init__(self, config: EyasConfig, folder: Path, say: Say) -> None:
-        self.training: TrackerTraining = config.train.tracker
+        self.training: TrackerTraining = TrainConfig.of(config).tracker
         self._config, self._folder, self._say = config, folder, say
         self._begun = time.process_time()
         torch.set_num_threads(1)

@@ -15,7 +15,7 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
-from eyas.learning.config import WordsTraining
+from eyas.learning.config import TrainConfig, WordsTraining
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import Loss, lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
@@ -50,7 +50,7 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
         EyasError: A setting is wrong, or the folder; one line.
     """
     _refuse_unlike(config)
-    files, training = RunFolder(folder), config.train.words
+    files, training = RunFolder(folder), TrainConfig.of(config).words
     files.begin(config, resume=resume)
     torch.set_num_threads(1)
     torch.manual_seed(config.seed)
@@ -79,7 +79,7 @@ def _taught(
     block: int,
 ) -> Iterator[Loss]:
     """Teach a block; yield how wrong the network is in each step in which pictures are new."""
-    training = config.train.words
+    training = TrainConfig.of(config).words
     rng = stream(config.seed, "lessons of words", block)
     steps = training.passes * (training.scenes // _PICTURES)
     total, step = steps * training.blocks, steps * block
@@ -135,5 +135,5 @@ def _refuse_unlike(config: EyasConfig) -> None:
                 f"{name}: not allowed here: a listener's pictures have both maps and all weathers; "
                 "besides preset 'eyas-words' only seed and train.words can be chosen"
             )
-    if config.train.begin_from is not None:
+    if TrainConfig.of(config).begin_from is not None:
         raise ConfigError("train.begin_from: not allowed for a listener: it begins anew")

@@ -32,16 +32,16 @@ from eyas.engine.traffic.net_file import (
 from eyas.engine.traffic.network import graph_hash
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.maps import MAPS
-from eyas.engine.world.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
+from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
+from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
 from eyas.maps.osm.data import Bounds
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
 from eyas.maps.osm.network import osm_network
-from eyas.maps.osm.projection import Projection
 from eyas.maps.osm.reader import covered, read_osm
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import street_file

@@ -6,9 +6,9 @@ import numpy as np
 import shapely
 
 from eyas.engine.world.build.millimetres import snapped
+from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.maps.osm.data import OsmData, Relation, Tags, Way
-from eyas.maps.osm.projection import Projection
 
 __all__ = ["Shapes"]
 

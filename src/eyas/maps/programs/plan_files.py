@@ -21,9 +21,9 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.traffic.net_file import SumoNet, road_network
 from eyas.engine.world.maps import MAPS
-from eyas.engine.world.maps.files import roads_in
 from eyas.engine.world.maps.place import projection_of
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
+from eyas.maps.files import roads_in
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
 from eyas.maps.programs.info import street_lines

@@ -73,7 +73,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     ] = False,
 ) -> None:
     """Record traffic; use it with --set traffic.recording=FILE."""
-    from eyas.dat.settings.messages import originals_named
+    from eyas.engine.settings.dialect import originals_named
     from eyas.engine.settings.file import load_settings
     from eyas.maps.traffic.recording import run, run_canonical
 

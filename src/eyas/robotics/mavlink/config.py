@@ -5,14 +5,16 @@ from typing import Annotated
 from pydantic import Field
 
 from eyas.engine.core.allowed import Said
-from eyas.engine.core.config import Config
+from eyas.engine.settings.section import Section
 from eyas.robotics.mavlink.hil.config import HilConfig
 
 __all__ = ["MavlinkConfig"]
 
 
-class MavlinkConfig(Config):
+class MavlinkConfig(Section):
     """Settings of `eyas serve --mavlink`."""
+
+    section = "mavlink"
 
     vehicles: Annotated[int, Field(ge=1, le=64)] = 1
     """Number of vehicles, in one world."""

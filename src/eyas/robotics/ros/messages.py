@@ -17,7 +17,7 @@ from eyas.engine.sensors.mount import turn_of
 from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.place import projection_of
-from eyas.maps.osm.projection import Projection
+from eyas.engine.world.projection import Projection
 from eyas.robotics.ros.geometry import (
     OPTICAL,
     STILL,

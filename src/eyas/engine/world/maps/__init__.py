@@ -7,7 +7,6 @@ by the path of its file.
 """
 
 from eyas.engine.core.registry import Registry
-from eyas.engine.world.maps.files import MAP_FILES
 from eyas.engine.world.maps.recipe import MapRecipe
 
 __all__ = ["MAPS", "MapRecipe"]
@@ -15,24 +14,6 @@ __all__ = ["MAPS", "MapRecipe"]
 MAPS: Registry[MapRecipe] = Registry(
     "world.map",
     MapRecipe,
-    {
-        "citystreet": "eyas.maps.citystreet:CITYSTREET",
-        "downtown": "eyas.maps.downtown:DOWNTOWN",
-        "lake": "eyas.maps.lake:LAKE",
-        "village": "eyas.maps.village:VILLAGE",
-        "village-bare": "eyas.maps.village:VILLAGE_BARE",
-        "desert": "eyas.maps.desert:DESERT",
-        "desert-bare": "eyas.maps.desert:DESERT_BARE",
-        "farmland": "eyas.maps.farmland:FARMLAND",
-        "farmland-bare": "eyas.maps.farmland:FARMLAND_BARE",
-        "simpleway-grass": "eyas.maps.simpleway:GRASS",
-        "simpleway-clinker": "eyas.maps.simpleway:CLINKER",
-        "simpleway-desert": "eyas.maps.simpleway:DESERT",
-        "simpleway-farm": "eyas.maps.simpleway:FARM",
-        "simpleway-lake": "eyas.maps.simpleway:LAKE",
-        "simpleway-village": "eyas.maps.simpleway:VILLAGE",
-        "simpleway-city": "eyas.maps.simpleway:CITY",
-    },
     group="eyas.maps",
-    files=MAP_FILES,
+    files="eyas.map_files",
 )

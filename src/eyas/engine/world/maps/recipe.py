@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from eyas.engine.core.checked import require_sum
 from eyas.engine.core.errors import ConfigError, UnknownNameError
@@ -14,11 +14,11 @@ from eyas.engine.core.program import definitions_in
 from eyas.engine.core.registry import OWN
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.state.lighting import Lighting
+from eyas.engine.world.maps.planner import planner
 from eyas.engine.world.weather import WEATHERS, Season, Weather, unchanged
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
-    from eyas.maps.plan.plan import MapPlan
 
 __all__ = [
     "ATTRIBUTION_FILE",
@@ -119,7 +119,7 @@ class MapRecipe:
     """Name for people, a few words."""
     roads: Callable[[int], "RoadGraph"]
     """Returns the roads of a seed; seed 0 is the canonical map."""
-    plan: Callable[["RoadNetwork", int], "MapPlan"]
+    plan: Callable[["RoadNetwork", int], Any]
     """Returns the plan of all else around the processed roads of the same seed; what it leaves
     open is decided by `complete_plan`."""
     weather: Callable[[Weather], Weather] = unchanged
@@ -134,6 +134,8 @@ class MapRecipe:
     """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
     (`traffic*.npz`), and a change of its code or data rebuilds the scene. None: nothing is shipped,
     and the scene is not cached between runs."""
+    origin: tuple[float, float] | None = None
+    """Longitude and latitude of the middle of the map [degrees]; None: it lies nowhere on earth."""
     home: Path | None = None
     """Folder of an imported map, which is not a package. It holds the same files."""
     checksums: Mapping[str, str] = field(default_factory=dict)
@@ -223,11 +225,9 @@ class MapRecipe:
         file = self.shipped(ATTRIBUTION_FILE)
         return file.read_text(encoding="utf-8") if file is not None else self.notice
 
-    def complete_plan(self, network: "RoadNetwork", seed: int) -> "MapPlan":
+    def complete_plan(self, network: "RoadNetwork", seed: int) -> Any:  # noqa: ANN401  # a plan
         """Return the plan of a seed, with all that it leaves open decided."""
-        from eyas.maps.towns.completed import completed
-
-        return completed(self.plan(network, seed), network)
+        return planner().complete(self.plan(network, seed), network)
 
     def shipped_network(self, seed: int = 0) -> "RoadNetwork | None":
         """Return the processed roads of a seed that come with the package, if there are any.

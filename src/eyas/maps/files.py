@@ -152,6 +152,7 @@ def _recipe(folder: Path) -> MapRecipe:
             title=origin.title,
             roads=partial(_roads, folder / ROADS_FILE, origin.name, sums=origin.checksums),
             plan=partial(_plan, folder / PLAN_FILE, sums=origin.checksums),
+            origin=(origin.longitude, origin.latitude),
             home=folder,
             checksums=origin.checksums,
         )

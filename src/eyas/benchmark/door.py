@@ -1,0 +1,21 @@
+"""The door of this house, see `eyas.engine.core.doors`."""
+
+from eyas.engine.core.doors import House
+
+__all__ = ["HOUSE"]
+
+HOUSE = House(
+    results=True,
+    brings={
+        "eyas.policy_opener": {
+            "open_policy": "eyas.benchmark.policies.table:open_policy",
+        },
+        "eyas.commands": {
+            "evaluate": "eyas.benchmark.commands:evaluate",
+            "compare": "eyas.benchmark.commands:compare",
+            "leaderboard": "eyas.benchmark.commands:leaderboard",
+            "reproduce": "eyas.benchmark.reproduce.command:reproduce",
+            "policies": "eyas.benchmark.policies.commands:app",
+        },
+    },
+)

@@ -1,0 +1,27 @@
+"""The door of this house, see `eyas.engine.core.doors`."""
+
+from eyas.engine.core.doors import House
+
+__all__ = ["HOUSE"]
+
+HOUSE = House(
+    results=False,
+    brings={
+        "eyas.commands": {
+            "video": "eyas.cli.runs:video",
+            "run": "eyas.cli.runs:run",
+            "serve": "eyas.cli.runs:serve",
+            "targets": "eyas.cli.targets.commands:app",
+            "config": "eyas.cli.tools:config_app",
+            "cache": "eyas.cli.tools:cache_app",
+            "bench": "eyas.cli.tools:bench",
+            "verify": "eyas.cli.tools:verify",
+            "doctor": "eyas.cli.tools:doctor",
+            "about": "eyas.cli.about:about",
+            "completion": "eyas.cli.completion:completion",
+        },
+        "eyas.command_line": {
+            "eyas": "eyas.cli.main:main",
+        },
+    },
+)

@@ -1,0 +1,26 @@
+"""The door of this house, see `eyas.engine.core.doors`."""
+
+from eyas.engine.core.doors import House
+
+__all__ = ["HOUSE"]
+
+HOUSE = House(
+    results=True,
+    brings={
+        "eyas.settings": {
+            "wire": "eyas.dat.wire.config:WireConfig",
+        },
+        "eyas.dialects": {
+            "dat": "eyas.dat.settings.dialect:DAT",
+        },
+        "eyas.mesh_files": {
+            ".proto": "eyas.dat.proto_file:read_proto",
+        },
+        "eyas.map_formats": {
+            "webots": "eyas.dat.webots.project:write_webots",
+        },
+        "eyas.commands": {
+            "webots-shim": "eyas.dat.commands:webots_shim",
+        },
+    },
+)

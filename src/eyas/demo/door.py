@@ -1,0 +1,14 @@
+"""The door of this house, see `eyas.engine.core.doors`."""
+
+from eyas.engine.core.doors import House
+
+__all__ = ["HOUSE"]
+
+HOUSE = House(
+    results=False,
+    brings={
+        "eyas.commands": {
+            "demo": "eyas.demo.commands:demo",
+        },
+    },
+)

@@ -1,0 +1,72 @@
+"""The doors of the houses: what each folder of `eyas` brings to the engine, by name.
+
+A house that brings something has a module `door.py` with one record, `HOUSE`. Doors are found by
+looking into the folder of the package, so that the engine works where a house is not there, and
+never imports one: a door names modules, and they are imported when somebody asks for what is in
+them. Packages of others bring the same by entry points, in a group of the same name.
+"""
+
+import pkgutil
+from collections.abc import Mapping
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from types import MappingProxyType
+from typing import Any, Final, NamedTuple
+
+__all__ = ["STREET", "House", "brought", "brought_object", "first_brought", "houses"]
+
+STREET: Final = (
+    *("lanes", "engine", "maps", "gpu", "benchmark", "datasets", "learning", "robotics", "dat"),
+    *("demo", "cli"),
+)
+"""The houses in the order in which what they bring is listed: the order of maps in messages and of
+sections in files of settings."""
+
+
+class House(NamedTuple):
+    """A house."""
+
+    results: bool  # True if a change of it can change a result: it is part of the build's id
+    brings: Mapping[str, Mapping[str, str]] = MappingProxyType({})
+    # by group: `package.module:attribute` by name, in the order in which they are listed
+
+
+@cache
+def houses() -> dict[str, House]:
+    """Return the houses that are there, by name, in the order of the street."""
+    import eyas
+
+    found = {each.name for each in pkgutil.iter_modules(eyas.__path__) if each.ispkg}
+    ordered = [*(name for name in STREET if name in found), *sorted(found - {*STREET})]
+    return {name: _house(name) for name in ordered}
+
+
+def _house(name: str) -> House:
+    if find_spec(f"eyas.{name}.door") is None:  # `lanes`, which imports nothing of Eyas
+        return House(results=True)
+    house: House = import_module(f"eyas.{name}.door").HOUSE
+    return house
+
+
+@cache
+def brought(group: str) -> dict[str, str]:
+    """Return what the houses bring to a group, by name: `package.module:attribute`."""
+    return {
+        name: place
+        for house in houses().values()
+        for name, place in house.brings.get(group, {}).items()
+    }
+
+
+def brought_object(group: str, name: str) -> Any:  # noqa: ANN401  # each group has its own kind
+    """Return the object that a house brings to a group under a name; None if there is none."""
+    if name not in brought(group):
+        return None
+    module, _, attribute = brought(group)[name].partition(":")
+    return getattr(import_module(module), attribute)
+
+
+def first_brought(group: str) -> Any:  # noqa: ANN401  # each group has its own kind
+    """Return the one object of a group that has room for one; None if no house brings it."""
+    return next((brought_object(group, name) for name in brought(group)), None)

@@ -1,0 +1,17 @@
+"""The door of this house, see `eyas.engine.core.doors`."""
+
+from eyas.engine.core.doors import House
+
+__all__ = ["HOUSE"]
+
+HOUSE = House(
+    results=True,
+    brings={
+        "eyas.settings": {
+            "train": "eyas.learning.config:TrainConfig",
+        },
+        "eyas.commands": {
+            "train": "eyas.learning.commands:train",
+        },
+    },
+)
