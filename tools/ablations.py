@@ -21,6 +21,7 @@ import numpy as np
 
 import eyas
 from eyas.benchmark.comparison import differences
+from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker import tracker as flying
 from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
@@ -31,7 +32,6 @@ from eyas.benchmark.result import RESULT, cell, load_run
 from eyas.benchmark.rows import rows_of
 from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated
-from eyas.benchmark.policies.table import open_policy
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import flights, lessons, training

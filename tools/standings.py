@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from eyas.benchmark.entry import EntryClass, entry_class
-from eyas.benchmark.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
 from eyas.benchmark.policies.table import open_policy
+from eyas.benchmark.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
 
 __all__ = ["standings"]
 

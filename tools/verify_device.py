@@ -48,9 +48,9 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.world.config import WorldConfig
 from eyas.gpu.cuda import CudaError, cuda_device, gpu_line
-from eyas.lanes.device import Device, HostDevice
 from eyas.gpu.render.read_back import ReadBackRenderer
 from eyas.lanes import exact
+from eyas.lanes.device import Device, HostDevice
 
 CHECKSUMS = Path(__file__).with_name("device_checksums.json")
 

@@ -15,12 +15,12 @@ pytest.importorskip("torch")
 import torch
 
 from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
-from eyas.cli.runs import _default_folder
 from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.learning.checkpoint import RunFolder
+from eyas.learning.commands import _default_folder
 from eyas.learning.shards import TorchThreads
 from eyas.learning.trainer import train
 

@@ -5,6 +5,10 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import Scene
 from eyas.maps.citystreet import CITYSTREET
 
+from ..kit.frames import episode, frame, run
+
+__all__ = ["episode", "frame", "run"]
+
 
 @pytest.fixture(scope="session")
 def network() -> RoadNetwork:

@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from ..kit.frames import episode, frame, run
+
 common = pytest.importorskip("pymavlink.dialects.v20.common", reason="needs pymavlink")
 
 from eyas.engine.core.config import updated
@@ -15,6 +17,8 @@ from eyas.robotics.serve_mavlink import AS_FLOWN
 
 SMALL = {"camera": {"width": 96, "height": 54}, "start": {"velocity": "rest"}}
 GCS, OTHER = (255, 190), (254, 190)
+
+__all__ = ["episode", "frame", "run"]
 
 
 BUILT = {}

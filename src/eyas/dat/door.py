@@ -17,7 +17,7 @@ HOUSE = House(
             ".proto": "eyas.dat.proto_file:read_proto",
         },
         "eyas.map_formats": {
-            "webots": "eyas.dat.webots.project:write_webots",
+            "webots": "eyas.dat.webots.project:WEBOTS",
         },
         "eyas.commands": {
             "webots-shim": "eyas.dat.commands:webots_shim",

@@ -196,10 +196,10 @@ def export_map(  # noqa: PLR0913  # each option is a parameter
     ] = None,
 ) -> None:
     """Write a map for other programs: shapes, roads, or a plan."""
-    from eyas.maps.programs.export import ExportOptions, export, format_named
+    from eyas.maps.programs.export import ExportOptions, export
 
     options = ExportOptions(name, seed, detail, lamps, cell, weather, hour)
-    for line in export(format_named(kind), out, options):
+    for line in export(kind, out, options):
         typer.echo(line)
 
 

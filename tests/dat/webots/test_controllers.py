@@ -36,7 +36,7 @@ from eyas.engine.traffic.sumo_install import sumo_binary
 from .conftest import MAP, WORLD
 from .stand_in import Supervisor, World
 
-TESTS = Path(__file__).parents[2]
+TESTS = Path(__file__).parents[1]
 _spec = importlib.util.spec_from_file_location("webots_client", TESTS / "wire" / "client.py")
 client = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(client)
@@ -57,7 +57,7 @@ def numbers(line):
 
 def test_rewards_are_the_original_s():
     """Vectors that its compiled code has given, see spec/behaviour.md, 19."""
-    with (TESTS / "task" / "data" / "reward_vectors.csv").open() as file:
+    with (TESTS.parent / "kit" / "reward_vectors.csv").open() as file:
         rows = list(csv.DictReader(file))
     for row in rows:
         value = {key: float(text) for key, text in row.items()}

@@ -14,7 +14,7 @@ import pytest
 from eyas.engine.settings.preset import preset_file
 
 HERE = Path(__file__).parent
-PAGE = (HERE.parents[1] / "docs" / "coming-from-dat.md").read_text()
+PAGE = (HERE.parents[2] / "docs" / "coming-from-dat.md").read_text()
 SHELL = next(
     block for block in re.findall(r"```sh\n(.*?)```", PAGE, re.S) if "webots-shim" in block
 )

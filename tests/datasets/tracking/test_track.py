@@ -46,7 +46,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(autouse=True)
 def own(monkeypatch):
-    monkeypatch.syspath_prepend(str(Path(__file__).parent.parent / "evaluation"))
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[2] / "benchmark"))
 
 
 def scored(folder, out, tracker, **options):

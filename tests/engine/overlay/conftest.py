@@ -1,3 +1,3 @@
-from ..render.conftest import drawn, images, renderer_of
+from ...kit.renderers import city, drawn, images, renderer_of
 
-__all__ = ["drawn", "images", "renderer_of"]
+__all__ = ["city", "drawn", "images", "renderer_of"]

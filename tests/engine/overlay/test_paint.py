@@ -12,7 +12,7 @@ from eyas.engine.state.draw import DrawList, Picture
 from eyas.engine.state.terrain import Plane
 from eyas.engine.task.ground import on_plane
 
-from ..render.small_city import GROUND, TOWER, floor, looking, scene_of, tower
+from ...kit.small_city import GROUND, TOWER, floor, looking, scene_of, tower
 
 SIZE = (96, 128)
 FOV = 1.0

@@ -7,7 +7,7 @@ from eyas.engine.render import jobs
 from eyas.engine.state.draw import DrawList, Picture
 from eyas.engine.state.scene import ACTOR_OBJECT, Scene
 
-from .small_city import car_parts, looking
+from ...kit.small_city import car_parts, looking
 
 SIZE = (60, 84)
 COUNT = 8

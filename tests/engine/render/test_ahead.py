@@ -8,7 +8,7 @@ import pytest
 from eyas.engine.render import ahead
 from eyas.engine.render.kernels.draw import draw_views
 
-from .small_city import looking
+from ...kit.small_city import looking
 
 
 def test_drawing_nothing_compiles_what_drawing_a_city_needs(city, drawn, monkeypatch):

@@ -15,7 +15,7 @@ from eyas.engine.world.build.materials import material
 from eyas.maps.land.facets import relief, surface_of, terrain_of
 from eyas.maps.land.mounds import Mound
 
-from .small_city import (
+from ...kit.small_city import (
     DAY,
     GROUND,
     TOWER,

@@ -9,7 +9,7 @@ from eyas.engine.mesh.flat import quads
 from eyas.engine.state.mesh import Material
 from eyas.engine.state.scene import ObjectClass
 
-from .small_city import DAY, looking, scene_of, trees_at
+from ...kit.small_city import DAY, looking, scene_of, trees_at
 
 BARE = dataclasses.replace(DAY, fog_density=0.0)
 LITTER = dataclasses.replace(BARE, litter=1.0)

@@ -6,7 +6,7 @@ import pytest
 from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT, ObjectClass
 
-from .small_city import (
+from ...kit.small_city import (
     GROUND,
     TOWER,
     TREE_OBJECT,

@@ -12,7 +12,7 @@ from eyas.engine.state.draw import Views
 from eyas.engine.state.lighting import LightState
 from eyas.engine.state.scene import Lamps
 
-from .small_city import DAY, car_parts, city_scene, looking
+from ...kit.small_city import DAY, car_parts, city_scene, looking
 
 SUBJECT = (1 << 16) + 2
 

@@ -27,7 +27,7 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import Held, kernel
 
-from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
+from ...kit.small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
 
 
 @kernel
@@ -184,7 +184,7 @@ def test_triangles_without_area_are_left_out(images):
 
 
 def test_an_empty_scene_can_be_drawn(images, renderer_of, drawn):
-    from .small_city import looking
+    from ...kit.small_city import looking
 
     picture = drawn(renderer_of(scene_of([], [])), looking([(0.0, 0.0, 5.0)]))
     assert (picture.object_id == -1).all()

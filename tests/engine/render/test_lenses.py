@@ -22,7 +22,7 @@ from eyas.engine.render import jobs
 from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT, ObjectClass
 
-from .small_city import GROUND, TOWER, car_parts, floor, looking, scene_of, tower
+from ...kit.small_city import GROUND, TOWER, car_parts, floor, looking, scene_of, tower
 
 SIZE = 240, 320
 LENSES = {

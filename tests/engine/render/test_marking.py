@@ -7,7 +7,7 @@ from eyas.engine.render.kernels.surface.shade import painted_share
 from eyas.engine.state.mesh import MARGIN
 from eyas.lanes import kernel
 
-from .small_city import DAY, GROUND, LINE, ROAD, floor, looking, scene_of, with_line
+from ...kit.small_city import DAY, GROUND, LINE, ROAD, floor, looking, scene_of, with_line
 
 f4 = np.float32
 

@@ -14,7 +14,16 @@ from eyas.engine.state.draw import DrawList
 from eyas.engine.state.mesh import Material
 from eyas.engine.state.scene import ObjectClass
 
-from .small_city import DAY, car_parts, city_scene, looking, put_car, scene_of, tower, trees_at
+from ...kit.small_city import (
+    DAY,
+    car_parts,
+    city_scene,
+    looking,
+    put_car,
+    scene_of,
+    tower,
+    trees_at,
+)
 
 CLEAR = dataclasses.replace(DAY, fog_density=0.0, fog_colour=(0.6, 0.6, 0.6))
 MISTY = dataclasses.replace(CLEAR, mist=1.0 / 40.0, mist_depth=6.0)

@@ -15,7 +15,7 @@ from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.config import WorldConfig
 
-from .small_city import DAY, car_parts, city_scene, floor, looking, put_car, scene_of, tower
+from ...kit.small_city import DAY, car_parts, city_scene, floor, looking, put_car, scene_of, tower
 
 DARK = dataclasses.replace(
     DAY,

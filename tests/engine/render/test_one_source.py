@@ -20,8 +20,8 @@ from eyas.engine.world.weather import (
 )
 from eyas.lanes import address_of, compiled
 
+from ...kit.small_city import car_parts, city_scene, city_traffic, looking, with_line
 from .one_pixel import shade_pixel
-from .small_city import car_parts, city_scene, city_traffic, looking, with_line
 
 SIZE = (100, 203)
 MOON = NIGHT.light(2.5, 0.75)

@@ -14,7 +14,7 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import SceneBuilder
 
-from .small_city import car_parts, floor, looking
+from ...kit.small_city import car_parts, floor, looking
 
 HEIGHT, WIDTH = 120, 160
 FIELD = 1.0

@@ -20,7 +20,7 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
 from eyas.engine.world.build.materials import material
 
-from .small_city import (
+from ...kit.small_city import (
     DAY,
     GROUND,
     TOWER,

@@ -7,7 +7,7 @@ import pytest
 
 from eyas.engine.state.draw import DrawList
 
-from .small_city import DAY, city_scene, floor, looking, scene_of
+from ...kit.small_city import DAY, city_scene, floor, looking, scene_of
 
 CLEAR = dataclasses.replace(DAY, fog_density=0.0)
 SMOKY = dataclasses.replace(CLEAR, smoke=3)

@@ -14,7 +14,7 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.scene import Lamps, ObjectClass
 from eyas.engine.world.build.materials import material
 
-from .small_city import DAY, city_scene, looking, scene_of
+from ...kit.small_city import DAY, city_scene, looking, scene_of
 
 DRY = dataclasses.replace(
     DAY, fog_density=0.0, sun_colour=(0.0, 0.0, 0.0), zenith_colour=(0.3, 0.3, 0.3)

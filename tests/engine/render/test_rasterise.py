@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import material
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, lane_numbers, splat
 
-from .small_city import looking, scene_of
+from ...kit.small_city import looking, scene_of
 
 SIDE = 40
 

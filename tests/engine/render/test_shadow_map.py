@@ -14,7 +14,7 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.state.scene import Fixtures
 
-from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, untiled
+from ...kit.small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, untiled
 
 SUN = np.array(DAY.sun_direction)
 SOUTH = (0.0, -math.sqrt(0.5), math.sqrt(0.5))

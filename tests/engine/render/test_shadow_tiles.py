@@ -16,7 +16,7 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.world.build.materials import material
 from eyas.lanes import compiled
 
-from .small_city import DAY, GROUND, TOWER, city_scene, floor, scene_of, tower, untiled
+from ...kit.small_city import DAY, GROUND, TOWER, city_scene, floor, scene_of, tower, untiled
 
 TOWERS = ((20, 6, 9), (-14, -4, 30), (55, 20, 3), (-50, -55, 12), (45, -60, 21), (-40, 50, 6))
 """East, north and height of some towers [m]."""

@@ -13,7 +13,7 @@ from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.state.draw import DrawList, PartLibrary
 from eyas.engine.state.mesh import Material
 
-from .small_city import (
+from ...kit.small_city import (
     DAY,
     GROUND,
     TOWER,

@@ -14,7 +14,7 @@ from eyas.engine.state.lighting import Horizon, LightState
 from eyas.lanes import kernel
 from eyas.maps.citystreet import CITYSTREET
 
-from .small_city import DAY, GROUND, floor, looking, scene_of
+from ...kit.small_city import DAY, GROUND, floor, looking, scene_of
 
 SUN = (-0.45, 0.45, 0.7713624)
 AWAY = np.arctan2(-0.45, 0.45)

@@ -18,7 +18,7 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.build.materials import material
 from eyas.maps.plants.trees import street_tree_levels
 
-from .small_city import DAY, city_scene, looking, scene_of, trees_at
+from ...kit.small_city import DAY, city_scene, looking, scene_of, trees_at
 
 SNOW = dataclasses.replace(DAY, snow=1.0, fog_density=0.0)
 FALLING = dataclasses.replace(SNOW, flakes=0.5)

@@ -8,7 +8,7 @@ from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.world.build.materials import material
 
-from .small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
+from ...kit.small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
 
 SIZE = (96, 128)
 

@@ -17,7 +17,7 @@ from eyas.engine.world.build.materials import TEXTURES
 from eyas.lanes import kernel
 from eyas.lanes.vector import lane, splat
 
-from .small_city import DAY, GROUND, looking, scene_of
+from ...kit.small_city import DAY, GROUND, looking, scene_of
 
 
 @pytest.fixture(scope="module")

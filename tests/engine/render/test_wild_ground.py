@@ -10,7 +10,7 @@ from eyas.engine.render.textures.land import sand
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Surface
 
-from .small_city import DAY, looking, scene_of
+from ...kit.small_city import DAY, looking, scene_of
 
 
 def slope(surface, rise, texture="lawn"):

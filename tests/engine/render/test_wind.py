@@ -14,7 +14,7 @@ from eyas.engine.state.draw import PartLibrary, Views
 from eyas.engine.state.lighting import LightState
 from eyas.engine.state.mesh import Material
 
-from .small_city import DAY, city_scene, floor, looking, scene_of, trees_at
+from ...kit.small_city import DAY, city_scene, floor, looking, scene_of, trees_at
 
 CALM = dataclasses.replace(DAY, fog_density=0.0)
 WINDY = dataclasses.replace(CALM, windy=1.0)

@@ -17,7 +17,7 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.trackers.wind_field import UNIT, WindField, wind_among
 from eyas.lanes import interpreted
 
-from ..trackers.flight import Drones, held
+from ...kit.flight import Drones, held
 
 SIDE, HIGH = 30, 20.0
 BLOCK = slice(13, 17)

@@ -17,7 +17,7 @@ FIELD = 0.7854
 """The field of view of the original's camera."""
 
 LEVEL = Plane(0.0, 0.0, FLOOR, 0.0, 0.0)
-VECTORS = Path(__file__).parent / "data" / "reward_vectors.csv"
+VECTORS = Path(__file__).parents[2] / "kit" / "reward_vectors.csv"
 
 # Camera, yaw, pitch, target, view range, centre, share, continuous reward.
 REGULAR = [

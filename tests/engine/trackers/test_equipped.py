@@ -14,7 +14,7 @@ from eyas.engine.trackers.equipment import MOUNTED, Part, loaded
 from eyas.engine.trackers.ground_effect import ground_effect
 from eyas.lanes import interpreted
 
-from .flight import FLOWN, Drones, held
+from ...kit.flight import FLOWN, Drones, held
 
 OFF = TrackerConfig(supervised=False, off_centre=True)
 

@@ -14,7 +14,7 @@ import pytest
 
 from eyas.engine.trackers.config import TrackerConfig
 
-from .flight import Drones, held
+from ...kit.flight import Drones, held
 
 MASS, INERTIA, ARM, KAPPA = 3.0069, np.diag([0.0341171, 0.0363089, 0.0627386]), 0.22978, 0.02
 UP = np.array([0.0, 0.0, 1.0])

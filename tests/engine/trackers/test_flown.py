@@ -8,7 +8,7 @@ import pytest
 from eyas.engine.trackers.airframe import ORIGINAL
 from eyas.engine.trackers.config import TrackerConfig
 
-from .flight import FLOWN, Drones, held
+from ...kit.flight import FLOWN, Drones, held
 
 LIMIT = math.pi / 5
 AS_THERE = TrackerConfig(supervised=False, flight="original")

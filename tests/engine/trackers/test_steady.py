@@ -8,7 +8,7 @@ import pytest
 from eyas.engine.trackers.airframe import ORIGINAL
 from eyas.engine.trackers.config import TrackerConfig
 
-from .flight import FLOWN, Drones, held
+from ...kit.flight import FLOWN, Drones, held
 
 POSES = np.array([[0.0, 0.0, 20.0, 0.4, 1.0], [5.0, 0.0, 30.0, -2.5, 0.7]])
 VELOCITIES = np.array([[9.0, -4.0], [0.0, 13.0]])

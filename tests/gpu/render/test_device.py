@@ -21,8 +21,8 @@ from eyas.gpu.render import stages
 from eyas.gpu.render.read_back import ReadBackRenderer
 from eyas.lanes.device import HostDevice
 
-from .on_devices import EVERYTHING, differences
-from .small_city import car_parts, city_scene, city_traffic, floor, looking, scene_of, tower
+from ...kit.on_devices import EVERYTHING, differences
+from ...kit.small_city import car_parts, city_scene, city_traffic, floor, looking, scene_of, tower
 
 WEATHERS = {
     **{"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER_DAY},

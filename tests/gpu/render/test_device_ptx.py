@@ -31,8 +31,8 @@ from eyas.lanes import ParallelCall
 from eyas.lanes.container import unpacked
 from eyas.lanes.device import HostDevice
 
-from .on_devices import EVERYTHING
-from .small_city import car_parts, city_scene, city_traffic, looking
+from ...kit.on_devices import EVERYTHING
+from ...kit.small_city import car_parts, city_scene, city_traffic, looking
 
 QUICK = ("look_for_clusters", "fill_triangles")
 STAGES = [name for name in stages.__all__ if isinstance(getattr(stages, name), ParallelCall)]

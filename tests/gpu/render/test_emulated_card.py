@@ -18,8 +18,8 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.world.config import WorldConfig
 from eyas.gpu.cuda import CudaError, cuda_device
 
-from .on_devices import EVERYTHING, differences
-from .small_city import looking
+from ...kit.on_devices import EVERYTHING, differences
+from ...kit.small_city import looking
 from .test_device import at_instant
 
 INSTANT = 300.0

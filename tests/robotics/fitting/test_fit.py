@@ -11,7 +11,7 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.robotics.fitting.fit import fit
 from eyas.robotics.fitting.log import read_log
 
-from ...trackers.flight import Drones
+from ...kit.flight import Drones
 
 GRAVITY = 9.81
 NAMES = (

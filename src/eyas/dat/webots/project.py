@@ -30,9 +30,10 @@ from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
+from eyas.maps.programs.export import ExportOptions, MapFormat
 from eyas.maps.programs.roads import sumo_files_of
 
-__all__ = ["Condition", "run"]
+__all__ = ["WEBOTS", "Condition", "run"]
 
 _PROJECT = Path("Webots_Simulation", "traffic_project")
 _PREFIX = "eyas.dat.webots.controllers."
@@ -163,3 +164,11 @@ def _settings(name: str, weather: str) -> dict[str, bytes]:
     given["World_Path"] = _world_of(name, weather)
     text = json.dumps(given, indent=2).encode() + b"\n"
     return {f"config/{file}.json": text for file in ("env_config", "env_config_backup")}
+
+
+def _written(path: Path, options: ExportOptions) -> Iterator[str]:
+    condition = Condition(options.weather, options.hour)
+    yield from map(str, run(options.name, options.seed, path, options.detail, condition))
+
+
+WEBOTS = MapFormat("-webots", _written)  # a folder: a project of Webots, laid out as the original's

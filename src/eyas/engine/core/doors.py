@@ -7,6 +7,7 @@ them. Packages of others bring the same by entry points, in a group of the same 
 """
 
 import pkgutil
+import sys
 from collections.abc import Mapping
 from functools import cache
 from importlib import import_module
@@ -35,9 +36,7 @@ class House(NamedTuple):
 @cache
 def houses() -> dict[str, House]:
     """Return the houses that are there, by name, in the order of the street."""
-    import eyas
-
-    found = {each.name for each in pkgutil.iter_modules(eyas.__path__) if each.ispkg}
+    found = {each.name for each in pkgutil.iter_modules(sys.modules["eyas"].__path__) if each.ispkg}
     ordered = [*(name for name in STREET if name in found), *sorted(found - {*STREET})]
     return {name: _house(name) for name in ordered}
 

@@ -1,41 +1,16 @@
-"""A map for other programs: the formats of `eyas maps export`."""
+"""A map for other programs: the formats of `eyas maps export`.
 
-from collections.abc import Iterator
-from enum import StrEnum
+Each format loads its own libraries.
+"""
+
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from eyas.engine.core.errors import UnknownNameError
+from eyas.engine.core.registry import Registry
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["ExportOptions", "MapFormat", "export", "format_named"]
-
-
-class MapFormat(StrEnum):
-    """The formats."""
-
-    GLTF = "gltf"
-    """Shapes, textures and lamps as one binary glTF file."""
-    USD = "usd"
-    """The same as OpenUSD, with classes and colliders."""
-    OPENDRIVE = "opendrive"
-    """Roads and traffic lights as OpenDRIVE."""
-    SUMO = "sumo"
-    """A folder: roads and traffic for SUMO."""
-    GEOJSON = "geojson"
-    """A folder: streets, buildings and rasters."""
-    WEBOTS = "webots"
-    """A folder: a project of Webots, laid out as the original's."""
-
-
-_ENDINGS = {
-    MapFormat.GLTF: ".glb",
-    MapFormat.USD: ".usdc",
-    MapFormat.OPENDRIVE: ".xodr",
-    MapFormat.SUMO: "-sumo",
-    MapFormat.GEOJSON: "-geojson",
-    MapFormat.WEBOTS: "-webots",
-}
+__all__ = ["MAP_FORMATS", "ExportOptions", "MapFormat", "export"]
 
 
 class ExportOptions(NamedTuple):
@@ -57,56 +32,74 @@ class ExportOptions(NamedTuple):
     """Its hour, 0 to 24; None: the weather's own."""
 
 
-def format_named(name: str) -> MapFormat:
-    """Return a format by its name.
+class MapFormat(NamedTuple):
+    """A format."""
 
-    Raises:
-        UnknownNameError: There is no such format.
-    """
-    if name not in list(MapFormat):
-        raise UnknownNameError("--format", name, list(MapFormat))
-    return MapFormat(name)
+    ending: str  # of the name of a file or folder that the user does not name
+    write: Callable[[Path, ExportOptions], Iterator[str]]  # yields what was written, a line each
 
 
-def export(kind: MapFormat, out: Path | None, options: ExportOptions) -> Iterator[str]:
+def export(name: str, out: Path | None, options: ExportOptions) -> Iterator[str]:
     """Write a map in a format; yield what was written, a line each.
 
     Args:
-        kind: The format.
+        name: The format.
         out: The file or folder; None: one in the present folder that is named after the map.
         options: What is exported.
 
     Raises:
-        EyasError: The map cannot be built, an extra is missing, or a file cannot be written.
+        EyasError: There is no such format, the map cannot be built, an extra is missing, or a file
+            cannot be written.
     """
-    path = out or Path(f"{MAPS.get(options.name).name}{_ENDINGS[kind]}")
-    name, seed = options.name, options.seed
-    # Each format loads its own libraries.
-    if kind is MapFormat.GLTF:
-        from eyas.maps.programs.gltf import run as write_gltf
+    form = MAP_FORMATS.get(name)
+    yield from form.write(out or Path(f"{MAPS.get(options.name).name}{form.ending}"), options)
 
-        triangles = write_gltf(name, seed, path, options.detail, lamps=options.lamps)
-        yield f"{path}: {triangles} triangles"
-    elif kind is MapFormat.USD:
-        from eyas.maps.programs.usd import run as write_usd
 
-        yield f"{path}: {write_usd(name, seed, path, options.detail)} triangles"
-    elif kind is MapFormat.OPENDRIVE:
-        from eyas.maps.programs.roads import write_opendrive
+def _gltf(path: Path, options: ExportOptions) -> Iterator[str]:
+    from eyas.maps.programs.gltf import run
 
-        write_opendrive(name, seed, path)
-        yield str(path)
-    elif kind is MapFormat.SUMO:
-        from eyas.maps.programs.roads import write_sumo
+    triangles = run(options.name, options.seed, path, options.detail, lamps=options.lamps)
+    yield f"{path}: {triangles} triangles"
 
-        yield from map(str, write_sumo(name, seed, path))
-    elif kind is MapFormat.WEBOTS:
-        from eyas.dat.webots.project import Condition
-        from eyas.dat.webots.project import run as write_webots
 
-        condition = Condition(options.weather, options.hour)
-        yield from map(str, write_webots(name, seed, path, options.detail, condition))
-    else:
-        from eyas.maps.programs.plan_files import write_layers
+def _usd(path: Path, options: ExportOptions) -> Iterator[str]:
+    from eyas.maps.programs.usd import run
 
-        yield from map(str, write_layers(name, seed, path, options.cell))
+    yield f"{path}: {run(options.name, options.seed, path, options.detail)} triangles"
+
+
+def _opendrive(path: Path, options: ExportOptions) -> Iterator[str]:
+    from eyas.maps.programs.roads import write_opendrive
+
+    write_opendrive(options.name, options.seed, path)
+    yield str(path)
+
+
+def _sumo(path: Path, options: ExportOptions) -> Iterator[str]:
+    from eyas.maps.programs.roads import write_sumo
+
+    yield from map(str, write_sumo(options.name, options.seed, path))
+
+
+def _geojson(path: Path, options: ExportOptions) -> Iterator[str]:
+    from eyas.maps.programs.plan_files import write_layers
+
+    yield from map(str, write_layers(options.name, options.seed, path, options.cell))
+
+
+GLTF = MapFormat(".glb", _gltf)  # shapes, textures and lamps as one binary file
+USD = MapFormat(".usdc", _usd)  # the same as OpenUSD, with classes and colliders
+OPENDRIVE = MapFormat(".xodr", _opendrive)  # roads and traffic lights
+SUMO = MapFormat("-sumo", _sumo)  # a folder: roads and traffic
+GEOJSON = MapFormat("-geojson", _geojson)  # a folder: streets, buildings and rasters
+
+MAP_FORMATS: Registry[MapFormat] = Registry(
+    "--format",
+    MapFormat,
+    {
+        name: f"{__name__}:{name.upper()}"
+        for name in ("gltf", "usd", "opendrive", "sumo", "geojson")
+    },
+    group="eyas.map_formats",
+)
+"""All formats; a user's own is found by its path, `my_package.module:FORMAT`."""

@@ -15,7 +15,7 @@ from eyas.engine.sim.worlds import ALONE, each_alone, largest_world, together
 from eyas.engine.traffic import library
 from eyas.engine.world.config import WorldConfig
 
-MANUAL = Path(__file__).parents[2] / "settings" / "data" / "manual_example.json"
+MANUAL = Path(__file__).parent / "settings" / "data" / "manual_example.json"
 
 
 @pytest.fixture(autouse=True)
