@@ -10,6 +10,10 @@ HOUSE = House(
         "eyas.settings": {
             "wire": "eyas.dat.wire.config:WireConfig",
         },
+        "eyas.presets": {
+            "dat-eval": "eyas.dat:presets/dat-eval.json",
+            "dat-train": "eyas.dat:presets/dat-train.json",
+        },
         "eyas.dialects": {
             "dat": "eyas.dat.settings.dialect:DAT",
         },

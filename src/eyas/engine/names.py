@@ -48,4 +48,4 @@ def list_presets() -> tuple[str, ...]:
     """Return the names of the settings that Eyas brings along."""
     from eyas.engine.settings.preset import PRESETS
 
-    return PRESETS
+    return tuple(PRESETS)

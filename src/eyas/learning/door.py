@@ -10,6 +10,12 @@ HOUSE = House(
         "eyas.settings": {
             "train": "eyas.learning.config:TrainConfig",
         },
+        "eyas.presets": {
+            "eyas": "eyas.learning:presets/eyas.json",
+            "eyas-words": "eyas.learning:presets/eyas-words.json",
+            "fast": "eyas.learning:presets/fast.json",
+            "paper": "eyas.learning:presets/paper.json",
+        },
         "eyas.commands": {
             "train": "eyas.learning.commands:train",
         },

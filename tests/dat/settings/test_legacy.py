@@ -26,7 +26,8 @@ FILES = ("manual_example", "recommended", "shipped")
 
 
 def read(name):
-    return json.loads((DATA / f"{name}.json").read_text())
+    kit = Path(__file__).parents[2] / "kit" / "original_settings.json"
+    return json.loads((kit if name == "shipped" else DATA / f"{name}.json").read_text())
 
 
 def flat(values):

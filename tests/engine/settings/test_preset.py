@@ -29,15 +29,15 @@ def test_an_environment_runs_with_each(name):
 
 
 def test_every_file_is_a_preset():
-    found = {path.stem for path in preset_file("easy").parent.iterdir()}
-    assert found == set(PRESETS)
+    beside = {path for name in PRESETS for path in preset_file(name).parent.iterdir()}
+    assert beside == {preset_file(name) for name in PRESETS}
 
 
 @pytest.mark.parametrize("name", ["dat-train", "dat-eval"])
 def test_those_of_the_original_are_files_that_it_loads(name):
     values = json.loads(preset_file(name).read_text())
     assert is_legacy(values)
-    shipped = Path(__file__).parent / "data" / "shipped.json"
+    shipped = Path(__file__).parents[2] / "kit" / "original_settings.json"
     assert flat(values).keys() == flat(json.loads(shipped.read_text())).keys()
 
 

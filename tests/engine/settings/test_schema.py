@@ -10,7 +10,7 @@ import pytest
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import DAT_MODES, PRESETS, preset_file
+from eyas.engine.settings.preset import PRESETS, preset_file
 from eyas.engine.settings.schema import config_schema
 
 
@@ -23,7 +23,7 @@ def check():
 
 def test_the_defaults_and_the_presets_fit(check):
     check(json.loads(EyasConfig().model_dump_json()))
-    for name in set(PRESETS) - set(DAT_MODES):  # those are in the original's format
+    for name in set(PRESETS) - {"dat-eval", "dat-train"}:  # those are in the original's format
         check(json.loads(preset_file(name).read_text()))
 
 

@@ -3,21 +3,17 @@
 from importlib.resources import files
 from pathlib import Path
 
+from eyas.engine.core.doors import brought
 from eyas.engine.core.errors import UnknownNameError
 
-__all__ = ["DAT_MODES", "PRESETS", "TRAININGS", "WORLDS", "preset_file"]
+__all__ = ["PRESETS", "preset_file"]
 
-DAT_MODES = ("dat-eval", "dat-train")
-"""The modes of the DAT benchmark."""
-
-WORLDS = ("easy", "flown", "lively", "noisy")
-"""Worlds that are easier or harder than the default; in one, a flight controller flies."""
-
-TRAININGS = ("eyas", "eyas-words", "fast", "paper")
-"""How the policies that come with Eyas were trained, and a published training."""
-
-PRESETS = (*DAT_MODES, *WORLDS, *TRAININGS)
-"""Names of all presets; docs/configuration.md says what each is for."""
+PRESETS = {
+    **{name: f"{__package__}:presets/{name}.json" for name in ("easy", "flown", "lively", "noisy")},
+    **brought("eyas.presets"),
+}
+"""Files of all presets, `package:path`; docs/configuration.md says what each is for. The engine's
+own are worlds that are easier or harder than the default; in one, a flight controller flies."""
 
 
 def preset_file(name: str) -> Path:
@@ -27,5 +23,6 @@ def preset_file(name: str) -> Path:
         UnknownNameError: There is no such preset.
     """
     if name not in PRESETS:
-        raise UnknownNameError("preset", name, PRESETS)
-    return Path(str(files("eyas.engine.settings"))) / "presets" / f"{name}.json"
+        raise UnknownNameError("preset", name, tuple(PRESETS))
+    package, _, path = PRESETS[name].partition(":")
+    return Path(str(files(package))) / path

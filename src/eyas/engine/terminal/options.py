@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.settings.preset import DAT_MODES, TRAININGS, WORLDS
+from eyas.engine.settings.preset import PRESETS
 
 __all__ = [
     "POLICIES",
@@ -34,8 +34,7 @@ Preset = Annotated[
     str | None,
     typer.Option(
         "--preset",
-        help=f"Settings that come with Eyas: of the DAT benchmark ({', '.join(DAT_MODES)}), of "
-        f"harder or easier worlds ({', '.join(WORLDS)}), of trainings ({', '.join(TRAININGS)}).",
+        help=f"Settings that come with Eyas, for worlds and trainings: {', '.join(PRESETS)}.",
     ),
 ]
 Overrides = Annotated[
