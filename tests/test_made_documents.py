@@ -17,7 +17,7 @@ NAMING = [
 ]
 """Pages that name files of the code."""
 ELSEWHERE = {
-    *(".venv/bin", "definitions/", "core/definitions.json", "eyas/_src", "eyas.json", "eyas.onnx"),
+    *(".venv/bin", "definitions/", "eyas/_src", "eyas.json", "eyas.onnx"),
     *("eyas.steps", "eyas.formats", "eyas.writers", "eyas.weathers", "eyas.maps"),
 }
 """What these texts name that is no file or name of the code: loggers, groups of entry points, what

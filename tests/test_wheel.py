@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from eyas.engine.core.definitions import INDEX as DEFINITIONS
+from eyas.lanes.syntax import INDEX as SYNTAX
+
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src"
 
@@ -84,8 +87,38 @@ def test_the_wheel_has_every_file_of_the_package_and_no_other(wheel):
     assert {Path(name).name for name in sources} >= {"network.npz", "traffic.npz", "defaults.json"}
     with zipfile.ZipFile(wheel) as archive:
         packed = {name for name in archive.namelist() if not name.endswith("/")}
-    assert {name for name in packed if ".dist-info/" not in name} == sources
+    indexes = {name for name in packed if name.endswith(".eyi")}
+    assert indexes == {"eyas/core/definitions.eyi", "eyas/lanes/syntax.eyi"}
+    assert {name for name in packed - indexes if ".dist-info/" not in name} == sources
     assert any(name.endswith("/LICENSE") for name in packed - sources)
+
+
+def test_the_wheel_brings_what_a_clone_makes(wheel):
+    texts = [path.read_bytes() for path in SOURCE.rglob("*.py")]
+    with zipfile.ZipFile(wheel) as archive:
+        for index in (DEFINITIONS, SYNTAX):
+            name = index.shipped.relative_to(SOURCE).as_posix()
+            own = texts if index is DEFINITIONS else [text for text in texts if b"kernel" in text]
+            assert archive.read(name) == index.content(own), name
+
+
+def test_from_the_wheel_nothing_is_read_from_texts(programs, tmp_path):
+    program = """
+from eyas.engine.core.build import this_build
+from eyas.engine.core.definitions import INDEX as DEFINITIONS
+from eyas.engine.core.program import code_of
+from eyas.lanes.identity import identity
+from eyas.lanes.syntax import INDEX as SYNTAX
+from eyas.engine.render.kernels.draw import draw_views
+from eyas.engine.sim import scenes
+for index in (DEFINITIONS, SYNTAX):
+    index._read = None
+print(this_build().world, code_of(scenes._packed), identity(draw_views.function))
+"""
+    here = done(
+        sys.executable, "-c", program.replace("index._read = None", "pass"), folder=tmp_path
+    )
+    assert done(programs / "python", "-I", "-c", program, folder=tmp_path) == here
 
 
 def test_the_wheel_is_no_larger_than_a_release_may_be(wheel):

@@ -1,5 +1,5 @@
 """Make what ships in the package: machine code (`eyas.lanes.shipped`), modules of functions
-(`eyas.lanes.modules`), PTX (`eyas.gpu.cuda.code`), and digests of syntax (`eyas.lanes.syntax`).
+(`eyas.lanes.modules`), and PTX (`eyas.gpu.cuda.code`).
 
     python tools/ship_kernels.py              # some minutes; commit what it changes
     python tools/ship_kernels.py --check      # is the code in the package that of these sources?
@@ -21,13 +21,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import eyas
-from eyas.engine.core import program
 from eyas.engine.sim.step import step_of
 from eyas.engine.trackers.drone import DRONE
 from eyas.gpu.cuda import code as ptx
 from eyas.lanes import CompiledCall, modules
 from eyas.lanes.folder import read_trusted
-from eyas.lanes.identity import language_files, language_hash
+from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import (
     ARCHIVE,
@@ -37,7 +36,6 @@ from eyas.lanes.shipped import (
     archive_of,
     read_archive,
 )
-from eyas.lanes.syntax import INDEX, index_of
 
 USES_ALL = """
 import tempfile
@@ -201,8 +199,6 @@ envs.reset(seed=1)
 """A program that uses the kernels of environments on a graphics processor, with usual settings."""
 
 
-PACKAGE = Path(eyas.__file__).parent
-
 FOR_DEVICES = ("eyas.gpu.render.stages", "eyas.gpu.sim.", "eyas.gpu.envs.")
 """Rooms of kernels that run on graphics processors; they ship as PTX."""
 
@@ -216,8 +212,6 @@ def main() -> None:
     if options.check:
         raise SystemExit(missing(read_archive(ARCHIVE)) or not_wide() or compiled())
     options.out.mkdir(parents=True, exist_ok=True)
-    (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
-    program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
     with tempfile.TemporaryDirectory() as cache:
         variables = {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
         use_all(cache, variables)
@@ -233,12 +227,6 @@ def main() -> None:
         use_all(cache, {}, USES_DEVICE)
         (options.out / ptx.ARCHIVE.name).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
     raise SystemExit(missing(codes))
-
-
-def files_of_kernels() -> list[Path]:
-    """Return the files of the package that may hold kernels, and those of their language."""
-    every = PACKAGE.rglob("*.py")
-    return sorted({*language_files(), *(path for path in every if b"kernel" in path.read_bytes())})
 
 
 def compiled() -> str | None:

@@ -12,13 +12,14 @@ from eyas.benchmark import films as evaluation_films
 from eyas.benchmark.comparison import differences, text_of
 from eyas.benchmark.films import chosen_flights
 from eyas.benchmark.leaderboard import page as leaderboard
-from eyas.benchmark.plan import EvaluationPlan, batches
+from eyas.benchmark.plan import _NOT_FLOWN, EvaluationPlan, batches
 from eyas.benchmark.protocols import PROTOCOLS
 from eyas.benchmark.record import read_records
 from eyas.benchmark.result import FEW_SEEDS, NO_INTERVALS, load_run, table
 from eyas.benchmark.rows import rows_of, thirds
 from eyas.benchmark.run import run
 from eyas.cli.app import app
+from eyas.engine.core.build import this_build
 from eyas.engine.core.errors import EyasError
 
 
@@ -369,3 +370,7 @@ def test_the_comparison_says_how_many_episodes_would_tell(folder):
     )
     assert line.startswith("tsr: the two are not told apart; about 3,200 paired")
     assert "cr: no difference in 8" in text_of(differences(hover, changed, PAPER), PAPER.rank)
+
+
+def test_what_has_no_part_in_an_evaluation_are_rooms_of_the_build():
+    assert this_build().rooms.keys() >= {*_NOT_FLOWN}

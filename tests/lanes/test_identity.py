@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 import eyas
-from eyas.lanes import kernel, syntax
+from eyas.lanes import kernel
 from eyas.lanes.identity import LANGUAGE, identity, language_files
-from eyas.lanes.syntax import index_of, syntax_of
 
 ROOT = Path(eyas.__file__).parent
 
@@ -138,14 +137,3 @@ def test_users_kernels_are_known_by_what_they_say(tmp_path, monkeypatch):
         made.__module__ = "mine"
         told.append(identity(kernel(made)))
     assert told[0] == told[1] != told[2]
-
-
-def test_files_that_are_in_the_index_are_not_parsed(tmp_path, monkeypatch):
-    path = ROOT / "task" / "reward.py"
-    parsed = syntax_of.__wrapped__(path)
-    index = tmp_path / "syntax.json"
-    index.write_text(index_of([path]))
-    monkeypatch.setattr("eyas.lanes.syntax.INDEX", index)
-    monkeypatch.setattr("eyas.lanes.syntax._parsed", lambda text: pytest.fail("parsed"))
-    monkeypatch.setattr("eyas.lanes.syntax._index", syntax._index.__wrapped__)
-    assert syntax_of.__wrapped__(path) == parsed

@@ -137,7 +137,7 @@ def test_code_that_someone_else_may_have_written_is_not_run(folder, compiled, ch
     assert doubled() == 2.0
     assert len(compiled) == 2
     assert f"{file}: " in caplog.text
-    assert "machine code is not run; so it is compiled anew" in caplog.text
+    assert "files are not used; so it is made anew" in caplog.text
 
 
 def test_what_is_written_can_be_changed_by_its_user_only(folder, compiled):

@@ -114,7 +114,7 @@ def test_a_damaged_module_is_told_and_it_and_its_callers_are_made_anew(
     file.write_bytes(damage(file.read_bytes()))
     assert compiled() == (4.0, ["both", "ordered", "work"])
     assert {record.getMessage() for record in caplog.records} == {
-        f"{file}: damaged or unreadable, so it is compiled anew"
+        f"{file}: damaged or unreadable, so it is made anew"
     }
     assert compiled() == (4.0, [])
 

@@ -133,10 +133,16 @@ def test_what_draws_has_code_of_its_own_where_there_is_avx_512(
     assert shipped.shipped_code(name).needs == code.needs
 
 
+def names_in(archive) -> set[str]:
+    """Return what an archive holds, though it may be older than the language of kernels."""
+    (_, table), _ = unpacked(archive.read_bytes())
+    return {name for name, *_ in table}
+
+
 def test_all_that_draws_ships_for_avx_512():
-    names = {name for name in read_archive(shipped.ARCHIVE) if name.startswith("draw_views-")}
+    names = {name for name in names_in(shipped.ARCHIVE) if name.startswith("draw_views-")}
     assert names
-    assert set(read_archive(shipped.WIDE_ARCHIVE)) == names
+    assert names_in(shipped.WIDE_ARCHIVE) == names
 
 
 def test_on_other_machines_kernels_are_compiled(ships, compiled, machine):
@@ -175,8 +181,8 @@ def test_what_a_card_draws_with_ships():
 def test_machine_code_names_no_file_of_the_machine_that_made_it():
     """numba would put the path of a file beside each exception that may be raised in it."""
     folder = shipped.ARCHIVE.parent
-    codes = [bytes(c.code) for c in read_archive(shipped.ARCHIVE).values()]
-    codes += [bytes(c.code) for c in read_archive(shipped.WIDE_ARCHIVE).values()]
+    archives = (shipped.ARCHIVE, shipped.WIDE_ARCHIVE)
+    codes = [bytes(piece) for one in archives for piece in unpacked(one.read_bytes()).pieces]
     for packed in (*folder.glob("*.xz"), *folder.glob("*.eyp")):
         _, pieces = unpacked(lzma.decompress(packed.read_bytes()))
         bitcode = packed.suffix == ".xz"

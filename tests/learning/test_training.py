@@ -19,7 +19,7 @@ from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.checkpoint import RunFolder
+from eyas.learning.checkpoint import _NOT_LEARNED, RunFolder
 from eyas.learning.commands import _default_folder
 from eyas.learning.shards import TorchThreads
 from eyas.learning.trainer import train
@@ -323,3 +323,7 @@ def test_a_network_with_memory_learns_too(tmp_path):
     train(config, tmp_path / "run", say=quiet)
     saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)
     assert saved["network"]["memory.weight_hh"].shape == (48, 16)
+
+
+def test_what_has_no_part_in_learning_are_rooms_of_the_build():
+    assert this_build().rooms.keys() >= {*_NOT_LEARNED}

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eyas.lanes.syntax import syntax_of
+from eyas.lanes.syntax import INDEX, syntax_of
 
 __all__ = ["LANGUAGE", "identity", "language_files", "language_hash"]
 
@@ -42,12 +42,15 @@ def language_files() -> list[Path]:
 def language_hash() -> str:
     """Return a digest of the language of kernels, the name of the folder of compiled ones."""
     said = [f"{file.name}:{syntax_of(file)[''].digest}" for file in language_files()]
+    INDEX.keep()
     return sha256("\n".join(said).encode()).hexdigest()[:16]
 
 
 def identity(function: Callable[..., Any]) -> str:
     """Return a text that identifies what a function computes, kernel or not."""
-    return sha256("\n".join(_Closure(function).told()).encode()).hexdigest()
+    told = "\n".join(_Closure(function).told())
+    INDEX.keep()
+    return sha256(told.encode()).hexdigest()
 
 
 class _Closure:

@@ -5,7 +5,6 @@ versions of Python, which is why it is not made of bytecode.
 """
 
 import ast
-import json
 import threading
 from collections.abc import Iterator
 from functools import cache
@@ -13,11 +12,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["INDEX", "Written", "index_of", "syntax_of", "tree_of"]
+from eyas.lanes.text_index import TextIndex
 
-INDEX = Path(__file__).parent / "shipped" / "syntax.json"
-"""What `syntax_of` returns of the files of the package, by digests of their text: parsing takes
-some milliseconds for each file. Files that are not in it, as they were edited, are parsed."""
+__all__ = ["INDEX", "Written", "syntax_of", "tree_of"]
 
 _LEFT_OUT = frozenset(
     ("annotation", "returns", "decorator_list", "ctx", "type_comment", "type_params", "kind")
@@ -43,29 +40,8 @@ def syntax_of(path: Path) -> dict[str, Written]:
         OSError: The file cannot be read.
         SyntaxError: It is no Python.
     """
-    text = path.read_bytes()
-    known = _index().get(_digest(text))
-    if known is not None:
-        return {name: Written(digest, tuple(names)) for name, (digest, names) in known.items()}
-    return _parsed(text)
-
-
-def index_of(paths: list[Path]) -> str:
-    """Return the content of `INDEX` for some files."""
-    found = {}
-    for path in paths:
-        text = path.read_bytes()
-        found[_digest(text)] = _parsed(text)
-    return json.dumps(found, separators=(",", ":"), sort_keys=True) + "\n"
-
-
-@cache
-def _index() -> dict[str, dict[str, tuple[str, list[str]]]]:
-    try:
-        known: dict[str, dict[str, tuple[str, list[str]]]] = json.loads(INDEX.read_bytes())
-    except (OSError, ValueError):
-        return {}
-    return known
+    known = INDEX.of(path.read_bytes())
+    return {name: Written(digest, tuple(names)) for name, (digest, names) in known.items()}
 
 
 def tree_of(text: bytes | str, mode: str = "exec") -> ast.AST:
@@ -152,3 +128,7 @@ def _without_docstring(node: ast.AST, body: object) -> object:
 
 def _digest(text: bytes) -> str:
     return sha256(text).hexdigest()[:24]
+
+
+INDEX = TextIndex(Path(__file__), _parsed)
+"""The syntax of files."""

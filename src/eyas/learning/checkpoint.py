@@ -21,7 +21,7 @@ __all__ = ["RunFolder", "TrainingProgress", "readable"]
 
 Row = dict[str, float]
 
-_NOT_LEARNED = ("exports", "mavlink", "engine/video", "overlay", "wire")
+_NOT_LEARNED = ("robotics", "engine/exports", "engine/overlay", "engine/video")
 """Rooms that have no part in a training run."""
 
 

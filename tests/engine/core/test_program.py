@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.engine.core.build import this_build
+from eyas.engine.core import build as builds
+from eyas.engine.core.build import WORLD, this_build
 from eyas.engine.core.program import UnknownCodeError, closure_of, code_of, definitions_in
 from eyas.lanes import jit
 
@@ -31,9 +32,13 @@ SILENT = [
     ("engine/render/kernels/surface/shade.py", "SHARP = f4(0.004)", "# a why\nSHARP = f4(0.004)"),
     ("cli/main.py", '"""', '"""Another text. '),
     ("cli/app.py", "import typer", "import typer as typer"),
+    ("sim/README.md", "", "What only people read.\n"),
 ]
 EDITS = {
     "silent": SILENT,
+    "demo": [("demo/server.py", "\nfrom", "\nNEW = 1\nfrom")],
+    "film": [("engine/video/folder.py", "\nfrom", "\nNEW = 1\nfrom")],
+    "data": [("settings/legacy/defaults.json", "1", "2")],
     "reward": [("engine/task/reward.py", "_FARTHEST = 1e12", "_FARTHEST = 1e11")],
     "ambient": [("engine/render/bake/ambient.py", "_LOWEST = 1.5", "_LOWEST = 15.0")],
     "texture": [("engine/render/textures/plants.py", "(46.0, 60.0, 28.0)", "(47.0, 60.0, 28.0)")],
@@ -81,6 +86,9 @@ VEHICLES = {f"kind {name}" for name in ("passenger", "bus", "truck", "trailer", 
     ("edit", "rooms", "things"),
     [
         ("silent", set(), set()),
+        ("demo", set(), set()),
+        ("film", {"engine/video"}, set()),
+        ("data", {"settings"}, set()),
         ("reward", {"task"}, set()),
         ("ambient", {"render"}, {"ambient"}),
         ("texture", {"render"}, {"textures"}),
@@ -183,6 +191,12 @@ PARTS = {
         def by_name(name):
             return imported(PLACES[name])
     """,
+    "foreign.py": """
+        from eyas.lanes.exact import length
+        from .numbers import OTHER
+        def reach(at):
+            return OTHER * length(at)
+    """,
     "typed.py": """
         from typing import TYPE_CHECKING
         if TYPE_CHECKING:
@@ -229,6 +243,12 @@ def test_a_closure_holds_what_a_definition_refers_to(parts, module, name, reache
     assert own == reached
 
 
+def test_a_closure_holds_code_of_a_foreign_package_and_of_eyas(parts):
+    found = closure_of(f"{parts}.foreign", "reach")
+    assert found >= {(f"{parts}.numbers", "OTHER"), ("eyas.lanes.exact", "length")}
+    assert (parts, "") not in found
+
+
 def test_kernels_stand_for_their_function_and_partials_for_theirs():
     def local(x):
         return x
@@ -262,3 +282,63 @@ def test_the_build_names_what_differs():
     assert eyas.build_id == build.id
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
         _ = eyas.nothing
+
+
+def test_what_makes_an_episode_are_rooms_of_the_build():
+    assert this_build().rooms.keys() >= WORLD
+
+
+STREET = {
+    "engine/__init__.py": "ENGINE = 1",
+    "engine/door.py": "RESULTS = True",
+    "engine/sim/__init__.py": "",
+    "engine/sim/deep/step.py": "STEP = 0.01",
+    "engine/sim/table.json": "[1]",
+    "engine/state/__init__.py": "",
+    "maps/__init__.py": "",
+    "maps/towns/plan.py": "TREES = 3",
+}
+"""A street of two houses."""
+
+
+@pytest.fixture
+def street(tmp_path, monkeypatch):
+    """Return what makes the build of a street in which some files are others."""
+    monkeypatch.setattr(builds, "_ROOT", tmp_path)
+
+    def built(changes):
+        for name, text in (STREET | changes).items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(text)
+        houses = {house: tmp_path / house for house in ("engine", "maps")}
+        monkeypatch.setattr(builds, "houses_of_results", lambda: houses)
+        return this_build.__wrapped__()
+
+    return built
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "differs"),
+    [
+        ("engine/sim/deep/step.py", "STEP = 0.01  # [s]", ""),
+        ("engine/README.md", "A page.", ""),
+        ("engine/sim/deep/step.py", "STEP = 0.02", "engine/sim"),
+        ("engine/sim/table.json", "[2]", "engine/sim"),
+        ("engine/state/new.py", "NEW = 1", "engine/state"),
+        ("engine/door.py", "RESULTS = False", "engine"),
+        ("maps/towns/plan.py", "TREES = 4", "maps"),
+        ("demo/page.py", "PAGE = 2", ""),
+    ],
+)
+def test_a_build_names_houses_and_rooms_of_the_engine(street, file, text, differs):
+    before, after = street({}), street({file: text})
+    assert [*before.rooms] == ["engine", "engine/sim", "engine/state", "maps"]
+    assert before.difference(after) == differs
+    assert (before.id == after.id) == (differs == "")
+
+
+def test_a_house_without_part_in_a_matter_is_left_out_with_all_its_rooms(street):
+    before, after = street({}), street({"engine/sim/table.json": "[2]"})
+    assert before.id_without(("engine",)) == after.id_without(("engine",))
+    assert before.difference(after, without=("engine",)) == ""
+    assert before.id_without(("engine/state", "maps")) != after.id_without(("engine/state", "maps"))

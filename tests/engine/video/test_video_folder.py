@@ -9,7 +9,7 @@ from eyas.engine.core.build import this_build
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
-from eyas.engine.video.folder import open_folder
+from eyas.engine.video.folder import _NOT_PICTURED, open_folder
 
 CONFIG = EyasConfig()
 OTHER = EyasConfig(video=VideoConfig(fps=50.0))
@@ -247,3 +247,7 @@ def test_a_version_of_any_content_is_one_line(tmp_path, content):
     with pytest.raises(OutputError, match="recorded by Eyas") as caught:
         open_folder(path, CONFIG, overwrite=False, resume=True)
     assert len(str(caught.value)) < 400
+
+
+def test_what_has_no_part_in_a_recording_are_rooms_of_the_build():
+    assert this_build().rooms.keys() >= {*_NOT_PICTURED}

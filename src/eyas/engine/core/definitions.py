@@ -9,12 +9,13 @@ refers to what it names, as in tables of what is imported late.
 import ast
 import re
 from collections.abc import Iterable, Iterator
-from hashlib import sha256
+from pathlib import Path
 from typing import NamedTuple, cast
 
 from eyas.lanes.syntax import tree_of
+from eyas.lanes.text_index import TextIndex, digest_of
 
-__all__ = ["Definition", "digest_of", "read_definitions"]
+__all__ = ["INDEX", "Definition", "read_definitions"]
 
 _PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")
 
@@ -26,11 +27,6 @@ class Definition(NamedTuple):
     """Of what it says; empty: the name is imported."""
     refers: tuple[str, ...]
     """Other names of the module, `name`, and of others, `package.module:name.attribute`."""
-
-
-def digest_of(text: str | bytes) -> str:
-    """Return a digest of a text, 32 hexadecimal digits."""
-    return sha256(text.encode() if isinstance(text, str) else text).hexdigest()[:32]
 
 
 def read_definitions(text: bytes) -> dict[str, Definition]:
@@ -235,3 +231,7 @@ def _say(node: object, words: list[str], *, fields: bool) -> None:
         words.append(")")
     else:
         words.append(repr(node))
+
+
+INDEX = TextIndex(Path(__file__), read_definitions)
+"""The definitions in files."""

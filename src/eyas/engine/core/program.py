@@ -12,44 +12,35 @@ one dependency too many costs seconds, a missing one a wrong result.
 """
 
 import functools
-import json
 import sys
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eyas.engine.core.cache.entries import write_whole
-from eyas.engine.core.cache.folder import Kind
-from eyas.engine.core.definitions import Definition, digest_of, read_definitions
-from eyas.lanes.folder import cache_folder
+from eyas.engine.core.definitions import INDEX, Definition
 from eyas.lanes.identity import language_hash
+from eyas.lanes.text_index import digest_of
 
 __all__ = [
-    "INDEX",
     "Place",
     "UnknownCodeError",
     "closure_of",
     "code_of",
     "definitions_in",
     "definitions_of",
-    "index_of",
 ]
 
-INDEX = Path(__file__).with_name("definitions.json")
-"""The definitions in the files of the package, by digests of their text: reading them from the text
-takes some milliseconds for each file. Those of files that were edited are kept in the cache."""
+_OWN = __name__.partition(".")[0]
+"""The package, which is followed from everywhere."""
 
-_APART = (
-    "eyas.engine.core.cache",
-    "eyas.engine.core.errors",
-    "eyas.engine.core.own_code",
-    "eyas.engine.core.program",
-)
+_ROOM = __name__.rpartition(".")[0]
+
+_APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)
 """Modules that keep, refuse or find things, and decide no value; not followed."""
 
-_COMPILER = ("eyas.lanes",)
+_COMPILER = (language_hash.__module__.rpartition(".")[0],)
+_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64", "small_arrays"))
 """Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
 
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}
@@ -89,6 +80,7 @@ def _code(module: str, name: str) -> str:
             said.append(f"language of kernels {language_hash()}")
         else:
             said.append(f"{at}:{what} {definitions_of(at)[what].digest}")
+    INDEX.keep()
     return digest_of("\n".join(filter(None, said)))
 
 
@@ -156,10 +148,10 @@ def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
         chain: Name and attributes, `exact.length`.
         package: See `_references`.
     """
-    if module.partition(".")[0] not in ("eyas", package):
+    if module.partition(".")[0] not in (_OWN, package):
         return ((module.partition(".")[0], ""),)
-    if _lies_in(module, _COMPILER):
-        return (("eyas", _LANGUAGE),)
+    if _lies_in(module, _COMPILER) and not _lies_in(module, _COMPUTING):
+        return ((_OWN, _LANGUAGE),)
     first, _, rest = chain.partition(".")
     inner = f"{module}.{first}"
     known = definitions_of(module)
@@ -230,43 +222,11 @@ def definitions_of(module: str) -> dict[str, Definition]:
 
 
 def definitions_in(text: bytes) -> dict[str, Definition]:
-    """Return the definitions in the text of a file, from the package or the cache if possible."""
-    digest = digest_of(text)
-    kept = cache_folder() / Kind.DEFINITIONS / f"eyas-{digest}.json"
-    try:
-        return _as_definitions(json.loads(_index().get(digest) or kept.read_bytes()))
-    except (OSError, ValueError, TypeError, AttributeError):
-        found = dict(sorted(read_definitions(text).items()))
-    with suppress(OSError):  # whoever keeps what was made tells of it
-        write_whole(kept, [json.dumps(found).encode()])
-    return found
+    """Return the definitions in the text of a file, by name.
 
-
-def _as_definitions(known: Any) -> dict[str, Definition]:  # noqa: ANN401  # JSON
-    # In the same order wherever they come from: builds are digests of them.
-    ordered = sorted(known.items())
-    return {name: Definition(digest, tuple(refers)) for name, (digest, refers) in ordered}
-
-
-def index_of(paths: Iterable[Path]) -> str:
-    """Return the content of `INDEX` for some files: JSON with a line for each."""
-    found = {digest_of(text): read_definitions(text) for text in map(Path.read_bytes, paths)}
-    lines = [
-        f'"{digest}":{json.dumps(said, separators=(",", ":"), sort_keys=True)}'
-        for digest, said in sorted(found.items())
-    ]
-    return "{\n" + ",\n".join(lines) + "\n}\n"
-
-
-@cache
-def _index() -> dict[str, bytes]:
-    """Return what `INDEX` says of each file, by the digest of its text.
-
-    It stays JSON until it is asked for: a process needs a part of 200,000 names, which take 13 MiB.
+    Raises:
+        SyntaxError: The text is not of Python.
+        ValueError: It has a null byte.
     """
-    try:
-        lines = INDEX.read_bytes().splitlines()
-    except OSError:
-        return {}
-    told = (line.rstrip(b",").partition(b":") for line in lines)
-    return {digest.decode("ascii", "replace").strip('"'): said for digest, _, said in told if said}
+    known = INDEX.of(text)
+    return {name: Definition(digest, tuple(refers)) for name, (digest, refers) in known.items()}

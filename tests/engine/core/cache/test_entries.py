@@ -113,7 +113,7 @@ def test_all_kinds_are_counted_and_removed(tmp_path):
     }
     files |= {
         put(tmp_path, f"traffic/citystreet-0-{KEY}.npz"),
-        put(tmp_path, f"definitions/eyas-{KEY}.json"),
+        put(tmp_path, f"definitions/eyas-{KEY}.eyi"),
         kernels(tmp_path, KEY[:16], age=1.0),
     }
     found = entries(tmp_path)

@@ -19,6 +19,7 @@ from stat import S_ISDIR, S_ISREG
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.files import PART_SUFFIX
 from eyas.lanes.folder import kernel_folder, made_folder
+from eyas.lanes.text_index import FOLDER, SUFFIX
 
 __all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 
@@ -32,14 +33,14 @@ _PARTS_LAST = _DAY
 
 _ARRAYS = r"eyas-[0-9a-f]{32}\.npy"
 _RECORDING = r".+-\d+-[0-9a-f]{32}\.npz"
-_DEFINITIONS = r"eyas-[0-9a-f]{32}\.json"
-_PARTS = rf"\.(?:{_ARRAYS}|{_RECORDING}|{_DEFINITIONS})\.[0-9a-f]{{16}}{re.escape(PART_SUFFIX)}"
+_DEFINITIONS = rf"eyas-[0-9a-f]{{32}}{re.escape(SUFFIX)}(\.tmp\.[0-9a-f]{{16}})?"
+_PARTS = rf"\.(?:{_ARRAYS}|{_RECORDING})\.[0-9a-f]{{16}}{re.escape(PART_SUFFIX)}"
 
 _FORMS = (
     *((kind, kind.value, _ARRAYS) for kind in Kind),
     (Kind.TRAFFIC, "traffic", _RECORDING),
     (Kind.KERNELS, "kernels", r"[0-9a-f]{16}"),
-    (Kind.DEFINITIONS, "definitions", _DEFINITIONS),
+    (Kind.DEFINITIONS, FOLDER, _DEFINITIONS),
 )
 """Kinds, their folders, and the forms of the names in them."""
 

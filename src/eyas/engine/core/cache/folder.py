@@ -2,7 +2,7 @@
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.engine.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
-    <folder>/definitions/eyas-<key>.json       what source files say, see `eyas.engine.core.program`
+    <folder>/definitions/eyas-<key>.eyi        what source files say, see `eyas.lanes.text_index`
     <folder>/kernels/<key>/                    compiled kernels, see `eyas.lanes.machine_code`
 
 The modification time of an entry is the time of its last use.
