@@ -7,7 +7,7 @@
     eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
 
 `make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
-`Policy`, `RewardTerm`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
+`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
 
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from eyas.engine.core.errors import UnknownNameError as UnknownNameError
     from eyas.engine.core.files import write_atomic as write_atomic
     from eyas.engine.core.frames import rotate as rotate
+    from eyas.engine.core.frames import rotate_back as rotate_back
     from eyas.engine.custom.own import Ride as Ride
     from eyas.engine.envs.keys import hover_action as hover_action
     from eyas.engine.envs.lerobot import make_lerobot_env as make_lerobot_env
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
     from eyas.engine.recordings.recording import RecordedFrame as RecordedFrame
     from eyas.engine.recordings.recording import Recording as Recording
     from eyas.engine.recordings.recording import load as load
+    from eyas.engine.sensors.sensor import Sensor as Sensor
     from eyas.engine.settings.config import EyasConfig as EyasConfig
     from eyas.engine.settings.file import load_settings as load_settings
     from eyas.engine.sim.build import build_simulation as build_simulation
@@ -140,7 +142,7 @@ _PLACES = {
         *("OutputError", "SpawnError", "UnknownNameError"),
     ),
     "engine.core.files": ("write_atomic",),
-    "engine.core.frames": ("rotate",),
+    "engine.core.frames": ("rotate", "rotate_back"),
     "engine.custom.own": ("Ride",),
     "engine.recordings.format": ("Format",),
     "engine.recordings.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
@@ -171,6 +173,7 @@ _PLACES = {
         *("list_formats", "list_maps", "list_policies", "list_presets", "list_targets"),
         "list_weathers",
     ),
+    "sensors.sensor": ("Sensor",),
     "engine.settings.config": ("EyasConfig",),
     "engine.settings.file": ("load_settings",),
     "engine.sim.build": ("build_simulation",),
