@@ -7,7 +7,7 @@
     eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
 
 `make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
-`Policy`, `RewardTerm`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
+`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
 
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from eyas.engine.core.errors import UnknownNameError as UnknownNameError
     from eyas.engine.core.files import write_atomic as write_atomic
     from eyas.engine.core.frames import rotate as rotate
+    from eyas.engine.core.frames import rotate_back as rotate_back
     from eyas.engine.custom.own import Ride as Ride
     from eyas.engine.envs.keys import hover_action as hover_action
     from eyas.engine.envs.lerobot import make_lerobot_env as make_lerobot_env
@@ -77,6 +78,7 @@ if TYPE_CHECKING:
     from eyas.engine.recordings.recording import RecordedFrame as RecordedFrame
     from eyas.engine.recordings.recording import Recording as Recording
     from eyas.engine.recordings.recording import load as load
+    from eyas.engine.sensors.sensor import Sensor as Sensor
     from eyas.engine.settings.config import EyasConfig as EyasConfig
     from eyas.engine.settings.file import load_settings as load_settings
     from eyas.engine.sim.build import build_simulation as build_simulation
@@ -133,155 +135,72 @@ build_id: str
 and seed are the same to the bit."""
 
 _PLACES = {
-    "benchmark.api": (
-        "evaluate",
-        "list_policies",
-    ),
-    "benchmark.box_trackers": ("BoxTracker",),
-    "dat.legacy_observation": ("LegacyObservation",),
-    "datasets.api": (
-        "make_dataset",
-        "track",
-    ),
-    "engine.api": (
-        "export",
-        "make",
-        "make_config",
-        "make_vec",
-        "record",
-    ),
-    "engine.core.clock": ("PHYSICS_STEP",),
-    "engine.core.config": ("updated",),
+    "benchmark.api": "evaluate list_policies",
+    "benchmark.box_trackers": "BoxTracker",
+    "dat.legacy_observation": "LegacyObservation",
+    "datasets.api": "make_dataset track",
+    "engine.api": "export make make_config make_vec record",
+    "engine.core.clock": "PHYSICS_STEP",
+    "engine.core.config": "updated",
     "engine.core.errors": (
-        "ActionError",
-        "ConfigError",
-        "DataFileError",
-        "EyasError",
-        "MissingExtraError",
-        "OutputError",
-        "SpawnError",
-        "UnknownNameError",
+        "ActionError ConfigError DataFileError EyasError MissingExtraError OutputError "
+        "SpawnError UnknownNameError"
     ),
-    "engine.core.files": ("write_atomic",),
-    "engine.core.frames": ("rotate",),
-    "engine.custom.own": ("Ride",),
-    "engine.envs.keys": ("hover_action",),
-    "engine.envs.lerobot": ("make_lerobot_env",),
-    "engine.envs.observation": ("Observation",),
-    "engine.envs.pettingzoo": ("EyasParallelEnv",),
-    "engine.envs.registration": ("register_map",),
-    "engine.envs.sb3": ("EyasVecEnv",),
-    "engine.envs.tracking_env": ("TrackingEnv",),
-    "engine.envs.vector_env": ("EyasVectorEnv",),
-    "engine.exports.frame": ("Frame",),
-    "engine.exports.label": (
-        "label_schema",
-        "read_labels",
-    ),
-    "engine.exports.writer": (
-        "Episode",
-        "EpisodeWriter",
-        "Files",
-        "Gather",
-        "Run",
-        "Summary",
-        "Writer",
-    ),
-    "engine.mesh.shell": ("Shell",),
-    "engine.names": (
-        "list_formats",
-        "list_maps",
-        "list_presets",
-        "list_targets",
-        "list_weathers",
-    ),
-    "engine.policies.policy": (
-        "Decision",
-        "Policy",
-        "PolicyInput",
-        "Start",
-    ),
-    "engine.policies.steering": ("towards",),
-    "engine.recordings.format": ("Format",),
-    "engine.recordings.recording": (
-        "RecordedEpisode",
-        "RecordedFrame",
-        "Recording",
-        "load",
-    ),
-    "engine.settings.config": ("EyasConfig",),
-    "engine.settings.file": ("load_settings",),
-    "engine.sim.build": ("build_simulation",),
-    "engine.sim.config": ("SimConfig",),
-    "engine.sim.flights.path": (
-        "FlightScene",
-        "FlightSketch",
-    ),
-    "engine.sim.simulation": (
-        "Simulation",
-        "StepResult",
-    ),
-    "engine.sim.worlds": (
-        "each_alone",
-        "together",
-    ),
-    "engine.state.draw": ("Picture",),
-    "engine.state.mesh": (
-        "Material",
-        "Mesh",
-    ),
-    "engine.state.roads": (
-        "RoadEdge",
-        "RoadGraph",
-        "RoadNetwork",
-        "RoadNode",
-    ),
-    "engine.state.scene": (
-        "ObjectClass",
-        "Scene",
-    ),
-    "engine.state.snapshot": (
-        "CameraState",
-        "Snapshot",
-        "TrackerState",
-    ),
-    "engine.state.terrain": ("Terrain",),
-    "engine.targets.grammar.attributes": ("ATTRIBUTES",),
-    "engine.task.packets": (
-        "BasicPacket",
-        "InputPacket",
-        "RewardPacket",
-    ),
-    "engine.task.radar_packet": ("RadarPacket",),
-    "engine.task.step_line": ("StepLine",),
-    "engine.task.terms": ("RewardTerm",),
-    "engine.trackers.config": ("TrackerConfig",),
-    "engine.trackers.flown": ("flown_drone",),
-    "engine.trackers.tracker": ("Tracker",),
-    "engine.world.maps": ("MapRecipe",),
-    "engine.world.weather": (
-        "CLEAR_DAY",
-        "DAY",
-        "Season",
-        "Weather",
-    ),
-    "lanes": ("kernel",),
-    "learning.api": ("train",),
-    "maps.land.mounds": ("Mound",),
-    "maps.osm.features": ("Survey",),
-    "maps.plan.file": (
-        "read_plan",
-        "write_plan",
-    ),
-    "maps.plan.plan": (
-        "Hills",
-        "MapPlan",
-    ),
+    "engine.core.files": "write_atomic",
+    "engine.core.frames": "rotate rotate_back",
+    "engine.custom.own": "Ride",
+    "engine.envs.keys": "hover_action",
+    "engine.envs.lerobot": "make_lerobot_env",
+    "engine.envs.observation": "Observation",
+    "engine.envs.pettingzoo": "EyasParallelEnv",
+    "engine.envs.registration": "register_map",
+    "engine.envs.sb3": "EyasVecEnv",
+    "engine.envs.tracking_env": "TrackingEnv",
+    "engine.envs.vector_env": "EyasVectorEnv",
+    "engine.exports.frame": "Frame",
+    "engine.exports.label": "label_schema read_labels",
+    "engine.exports.writer": "Episode EpisodeWriter Files Gather Run Summary Writer",
+    "engine.mesh.shell": "Shell",
+    "engine.names": "list_formats list_maps list_presets list_targets list_weathers",
+    "engine.policies.policy": "Decision Policy PolicyInput Start",
+    "engine.policies.steering": "towards",
+    "engine.recordings.format": "Format",
+    "engine.recordings.recording": "RecordedEpisode RecordedFrame Recording load",
+    "engine.sensors.sensor": "Sensor",
+    "engine.settings.config": "EyasConfig",
+    "engine.settings.file": "load_settings",
+    "engine.sim.build": "build_simulation",
+    "engine.sim.config": "SimConfig",
+    "engine.sim.flights.path": "FlightScene FlightSketch",
+    "engine.sim.simulation": "Simulation StepResult",
+    "engine.sim.worlds": "each_alone together",
+    "engine.state.draw": "Picture",
+    "engine.state.mesh": "Material Mesh",
+    "engine.state.roads": "RoadEdge RoadGraph RoadNetwork RoadNode",
+    "engine.state.scene": "ObjectClass Scene",
+    "engine.state.snapshot": "CameraState Snapshot TrackerState",
+    "engine.state.terrain": "Terrain",
+    "engine.targets.grammar.attributes": "ATTRIBUTES",
+    "engine.task.packets": "BasicPacket InputPacket RewardPacket",
+    "engine.task.radar_packet": "RadarPacket",
+    "engine.task.step_line": "StepLine",
+    "engine.task.terms": "RewardTerm",
+    "engine.trackers.config": "TrackerConfig",
+    "engine.trackers.flown": "flown_drone",
+    "engine.trackers.tracker": "Tracker",
+    "engine.world.maps": "MapRecipe",
+    "engine.world.weather": "CLEAR_DAY DAY Season Weather",
+    "lanes": "kernel",
+    "learning.api": "train",
+    "maps.land.mounds": "Mound",
+    "maps.osm.features": "Survey",
+    "maps.plan.file": "read_plan write_plan",
+    "maps.plan.plan": "Hills MapPlan",
 }
 """Where the public names are. A test holds them equal to the imports above, which type checkers and
 editors read."""
 
-_MODULE_OF = {name: f"eyas.{module}" for module, names in _PLACES.items() for name in names}
+_MODULE_OF = {name: f"eyas.{module}" for module, names in _PLACES.items() for name in names.split()}
 
 __all__ = ["__version__", "build_id", *_MODULE_OF]  # texts
 

@@ -27,6 +27,7 @@ from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture
+from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.serve_mavlink import AS_FLOWN
 
 from .values import ABSURD, HUGE_WHOLE, NOT_FINITE, json_contents, mutated
@@ -66,7 +67,7 @@ def places():
 
 @pytest.fixture(scope="module")
 def simulation():
-    return build_simulation(updated(AS_FLOWN, SMALL), together(1))
+    return build_simulation(equipped(updated(AS_FLOWN, SMALL), AS_FLOWN.mavlink), together(1))
 
 
 def is_sound(simulation):
@@ -158,7 +159,7 @@ def driven():
     from eyas.robotics.mavlink.hil.drone import DrivenDrone
 
     config = updated(AS_FLOWN, SMALL | {"tracker": {"supervised": False, "ground_contact": True}})
-    tracker = driven_drone(config.tracker)
+    config, tracker = equipped(config, config.mavlink), driven_drone(config.tracker)
     return DrivenDrone(build_simulation(config, together(1), tracker=tracker), config.mavlink)
 
 

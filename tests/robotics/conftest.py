@@ -12,6 +12,7 @@ common = pytest.importorskip("pymavlink.dialects.v20.common", reason="needs pyma
 from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together
+from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.mavlink.fleet import Fleet
 from eyas.robotics.serve_mavlink import AS_FLOWN
 
@@ -39,7 +40,7 @@ class Bench:
 
     def __init__(self, vehicles=1, **settings):
         config = updated(AS_FLOWN, SMALL | settings)
-        self.simulation = simulation_of(config, vehicles)
+        self.simulation = simulation_of(equipped(config, config.mavlink), vehicles)
         self._datagrams = []
         self.fleet = Fleet(self.simulation, config.mavlink, self._datagrams.append)
         self.fly(0.1)

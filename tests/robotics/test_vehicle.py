@@ -382,3 +382,26 @@ def test_all_components_tell_that_it_follows_as_mavsdks_follow_me_wants(bench):
     assert {at: mode for at, mode in modes().items() if at != 1} == {100: (0, 0), 154: (0, 0)}
     assert bench.command("DO_SET_MODE", 1, 4, 8) == 0
     assert modes() == dict.fromkeys((1, 100, 154), (1, 4 << 16 | 8 << 24))
+
+
+def test_compass_and_barometer_are_sensors_of_the_table(make_bench):
+    field = {"sensor": "compass", "settings": {"east": 0.0, "north": 0.4, "up": 0.1}}
+    bench = make_bench(sensors={"further": [field, {"sensor": "barometer", "bias": 5.0}]})
+    bench.taken()
+    bench.fly(0.1)
+    told = [m for m in bench.taken() if m.get_type() == "HIGHRES_IMU"][-1]
+    yaw = float(bench.simulation.snapshot.trackers.euler[0, 2])
+    ahead, left = math.cos(yaw), math.sin(yaw)
+    assert (told.xmag, told.ymag) == pytest.approx((0.4 * left, -0.4 * ahead), abs=0.005)
+    assert told.zmag == pytest.approx(-0.1, abs=0.005)
+    (read,) = bench.simulation.readings()["pressure"][0].tolist()
+    assert told.abs_pressure == pytest.approx(read)
+    usual = make_bench()
+    usual.taken()
+    usual.fly(0.1)
+    exact = [m for m in usual.taken() if m.get_type() == "HIGHRES_IMU"][-1]
+    assert exact.abs_pressure == pytest.approx(1013.25 * (1 - 2.25577e-5 * 488) ** 5.25588, abs=0.2)
+    assert abs(told.abs_pressure - exact.abs_pressure) > 0.2
+    usual.fly_up(20.0)
+    high = [m for m in usual.taken() if m.get_type() == "HIGHRES_IMU"][-1]
+    assert exact.abs_pressure - high.abs_pressure == pytest.approx(20.0 * 0.114, abs=0.1)

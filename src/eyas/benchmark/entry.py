@@ -65,7 +65,7 @@ def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
         return EntryClass.PRIVILEGED
     if "box" in policy.told:
         return EntryClass.BOX
-    if _WORDS & (policy.told | {part.value for part in parts}):
+    if _WORDS & (policy.told | {str(part) for part in parts}):
         return EntryClass.WORDS
     return EntryClass.PIXELS
 

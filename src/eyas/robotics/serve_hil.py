@@ -51,11 +51,13 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
         from eyas.engine.sim.build import build_simulation, in_one_wind
         from eyas.engine.sim.worlds import together
         from eyas.engine.trackers.driven import driven_drone
+        from eyas.robotics.mavlink.equipment import equipped
         from eyas.robotics.mavlink.hil.ardupilot import ArduPilot
         from eyas.robotics.mavlink.hil.drone import DrivenDrone
         from eyas.robotics.mavlink.hil.px4 import Px4
 
         tracker = driven_drone(in_one_wind(config))
+        config = equipped(config, MavlinkConfig.of(config), noisy=True)
         simulation = build_simulation(config, together(1), tracker=tracker)
         drone = DrivenDrone(simulation, MavlinkConfig.of(config))
         stack.callback(drone.close)

@@ -49,6 +49,7 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
         # Slow to import, so only when all else is right.
         from eyas.engine.sim.build import build_simulation
         from eyas.engine.sim.worlds import together
+        from eyas.robotics.mavlink.equipment import equipped
         from eyas.robotics.mavlink.fleet import Fleet
         from eyas.robotics.mavlink.loop import fly
 
@@ -57,6 +58,7 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
                 endpoint.send(datagram)
 
         settings = MavlinkConfig.of(config)
+        config = equipped(config, settings)
         fleet = Fleet(build_simulation(config, together(settings.vehicles)), settings, send)
         stack.callback(fleet.close)
         _LOG.info("flying %s: %s", _named(settings), ", ".join(addresses))

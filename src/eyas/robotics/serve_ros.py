@@ -141,14 +141,11 @@ def run(config: EyasConfig, domain: int) -> None:
     """
     from eyas.engine.exports.writer import Run
     from eyas.robotics.ros.dds import Bus
-    from eyas.robotics.ros.messages import TOPICS, Messages
+    from eyas.robotics.ros.messages import Messages
     from eyas.robotics.ros.types import message_types
 
     MAPS.get(config.world.map).light(config.world.weather)  # raises before anything is built
     types = message_types("--ros")
-    # What the drone is told comes from others here.
-    told = {name: kind for name, kind in TOPICS.items() if name not in HEARD}
-    bus = Bus(domain, types, told)
     video = config.video
     about = Run(
         folder=Path(),
@@ -158,12 +155,16 @@ def run(config: EyasConfig, domain: int) -> None:
         jpeg_quality=video.jpeg_quality,
         depth_unit=video.depth_unit,
     )
+    messages = Messages(types, about)
+    # What the drone is told comes from others here.
+    told = {name: kind for name, kind in messages.topics.items() if name not in HEARD}
+    bus = Bus(domain, types, told)
 
     # Slow to import, so only when all else is right.
     from eyas.engine.sim.build import build_simulation
     from eyas.engine.sim.worlds import together
 
-    bridge = Bridge(build_simulation(config, together(1)), config, bus, Messages(types, about))
+    bridge = Bridge(build_simulation(config, together(1)), config, bus, messages)
     _LOG.info("on the air in domain %d: %s; hears %s", domain, ", ".join(told), ", ".join(HEARD))
     pace = Pace(1.0)
     while True:

@@ -1,10 +1,13 @@
 """Pictures without loss, as other libraries read them."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 
 from eyas.engine.exports.registry import WRITERS
 from eyas.engine.exports.writer import Summary
+from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
 
 
@@ -86,3 +89,9 @@ def test_readings_have_the_names_of_packets(run, episode, frame):
     header, first = (episode.folder / "sensors.csv").read_text().splitlines()
     row = dict(zip(header.split(","), first.split(","), strict=True))
     assert (row["yaw"], row["rotor_1"], row["rotor_4"]) == ("18", "500", "503")
+    further = run.config.model_copy(update={"sensors": SensorsConfig(further=["barometer"])})
+    run = replace(run, config=further)
+    written("sensors", run, episode, replace(told[0], signals={"pressure": np.array([957.0])}))
+    header, first = (episode.folder / "sensors.csv").read_text().splitlines()
+    row = dict(zip(header.split(","), first.split(","), strict=True))
+    assert (row["yaw"], row["pressure"], row["rotor_1"]) == ("18", "957", "500")

@@ -7,8 +7,11 @@ import pytest
 
 from eyas.engine.sensors.config import CameraErrors, ReadingConfig, SensorsConfig
 from eyas.engine.sensors.grain import Grain
-from eyas.engine.sensors.readings import READ_COLUMNS, Readings, has_errors
+from eyas.engine.sensors.readings import Readings, must_read
+from eyas.engine.sensors.table import fitted_sensors
 from eyas.engine.state.snapshot import Snapshot
+from eyas.engine.state.terrain import Terrain
+from eyas.engine.task.packet_rows import SENSOR_COUNT
 
 POSITION, VELOCITY, FELT, TURN, QUATERNION, EULER = (
     slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12), slice(12, 16), slice(16, 19),
@@ -21,7 +24,8 @@ class Flight:
 
     def __init__(self, count=1, seed=0, **errors):
         self.snapshot = Snapshot.create(count)
-        self.readings = Readings(SensorsConfig(**errors), self.snapshot, np.ones(count, np.bool_))
+        fitted, active = fitted_sensors(SensorsConfig(**errors)), np.ones(count, np.bool_)
+        self.readings = Readings(fitted, self.snapshot, Terrain.flat(0.0), active)
         for tracker in range(count):
             self.readings.begin(tracker, np.random.default_rng((seed, tracker)))
         self.readings.advance()
@@ -38,9 +42,12 @@ class Flight:
 
 
 def test_without_errors_the_truth_is_read():
-    assert not has_errors(SensorsConfig())
-    assert not has_errors(SensorsConfig(camera=CameraErrors(noise=3.0)))
-    assert all(has_errors(SensorsConfig(**{f: ReadingConfig(noise=1.0)})) for f in FIELDS)
+    def read(**errors):
+        return must_read(fitted_sensors(SensorsConfig(**errors)))
+
+    assert not read()
+    assert not read(camera=CameraErrors(noise=3.0))
+    assert all(read(**{field: ReadingConfig(noise=1.0)}) for field in FIELDS)
     rows = Flight().fly(20)[:, 0]
     assert rows[:, 0].tolist() == list(range(21))
     assert rows[:, 8] == pytest.approx(9.81)
@@ -56,7 +63,7 @@ def test_noise_is_normal_of_its_deviation_and_in_its_columns_only(field, columns
         Flight(20, **{field: ReadingConfig(noise=deviation)}).fly(150) for deviation in (0.0, 0.02)
     )
     error = noisy - clean
-    others = np.ones(READ_COLUMNS, np.bool_)
+    others = np.ones(SENSOR_COUNT, np.bool_)
     others[columns] = False
     if field == "imu":
         others[QUATERNION] = False
@@ -74,7 +81,7 @@ def test_noise_is_normal_of_its_deviation_and_in_its_columns_only(field, columns
 
 
 def test_a_quaternion_says_what_the_euler_angles_say():
-    rows = Flight(4, imu=ReadingConfig(noise=0.3)).fly(20).reshape(-1, READ_COLUMNS)
+    rows = Flight(4, imu=ReadingConfig(noise=0.3)).fly(20).reshape(-1, SENSOR_COUNT)
     w, x, y, z = rows[:, QUATERNION].T
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(2 * (w * y - z * x))

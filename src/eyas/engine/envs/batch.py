@@ -23,6 +23,7 @@ from eyas.engine.envs.information import Info, information
 from eyas.engine.envs.observation import Observer
 from eyas.engine.envs.trained_with import describe
 from eyas.engine.render.renderer import CpuRenderer
+from eyas.engine.sensors.table import Fitted
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import originals_named
 from eyas.engine.sim.assets import Assets
@@ -49,7 +50,7 @@ __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
-_TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
+_TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)
 """To the addresses of arrays, which stay."""

@@ -5,6 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import MODELS
@@ -19,8 +21,7 @@ Floats = NDArray[np.float64]
 Info = dict[str, Any]
 Mask = NDArray[np.bool_]
 
-_SENSORS = tuple(BASIC_COLUMNS)[1:-2]
-"""Parts of the basic packet: all but its step count, its reward and its end."""
+_SENSORS = tuple(name for sensor in ORIGINAL for name in sensor.parts)
 
 _WHOLE = ("camera_width", "camera_height", "target_direction")
 """Parts of the reward packet that are whole numbers."""
@@ -40,6 +41,7 @@ def information(simulation: Simulation) -> Info:
 
     - the sensors of the basic packet: `position` and `velocity` (GPS), `orientation` and `euler`
       (IMU), `angular_velocity` (gyroscope), `felt_acceleration` (accelerometer);
+    - what further sensors read, by the names of their parts (`Sensor.parts`);
     - the reward packet (both: `eyas.engine.task.packets`), with the type of the target as an index into
       `eyas.engine.targets.catalogue.MODELS`;
     - as numbers of `eyas.engine.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
@@ -84,6 +86,12 @@ def information(simulation: Simulation) -> Info:
         info["iso"] = exposure.iso.copy()
     if simulation.config.camera.events.enabled:
         info["events"] = _events(simulation)
+    for name, values in simulation.readings().items():
+        if name in info:
+            raise ConfigError(
+                f"sensors.further: {name!r} is not allowed as the name of a reading: `info` has one"
+            )
+        info[name] = values
     return info | simulation.told()
 
 

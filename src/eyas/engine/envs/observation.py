@@ -7,10 +7,11 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.envs.information import sensor_state
 from eyas.engine.sensors.config import CameraConfig, ColourLayout
 from eyas.engine.sensors.stack import FrameStack
+from eyas.engine.sensors.table import Fitted, fitted_sensors
 from eyas.engine.settings.env import ObservationConfig, ObservationPart
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.simulation import Simulation
@@ -19,7 +20,7 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES
 from eyas.engine.targets.grammar.naming import Phrase, phrase_about
 from eyas.engine.targets.grammar.wording import CHARACTERS, LONGEST
-from eyas.engine.task.packet_rows import SENSOR_COLUMNS
+from eyas.engine.task.packet_rows import SENSOR_COUNT
 from eyas.engine.task.privileged import PRIVILEGED, fill_privileged
 
 __all__ = ["Observation", "Observer", "observation_space"]
@@ -28,7 +29,6 @@ Array = NDArray[Any]
 Observation = Array | dict[str, Any]
 """An array; of several parts a dictionary of arrays, with a text, or a tuple of texts, as words."""
 
-_SENSORS = SENSOR_COLUMNS.stop - SENSOR_COLUMNS.start
 _Parts = ObservationPart
 
 
@@ -42,6 +42,7 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
     Raises:
         ConfigError: The agent is to observe a sensor that it does not have, or words alone.
     """
+    sensors_in(config, sim)
     lidar, cameras = sim.lidar, len(sim.cameras)
     if _Parts.CAMERAS in config.parts and cameras == 0:
         raise ConfigError(
@@ -58,13 +59,28 @@ def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Sp
     if set(config.parts) == {_Parts.WORDS}:
         raise ConfigError("env.observation.parts: 'words' alone is not allowed: add another part")
     spaces: dict[str, gymnasium.Space[Any]] = {
-        part.value: _space(part, config, sim) for part in dict.fromkeys(config.parts)
+        str(part): _space(part, config, sim) for part in dict.fromkeys(config.parts)
     }
     return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
 
 
+def sensors_in(config: ObservationConfig, sim: SimConfig) -> dict[str, Fitted]:
+    """Return the single sensors that an agent observes, by name.
+
+    Raises:
+        ConfigError: There is no such part or sensor.
+    """
+    names = [part for part in config.parts if part not in set(_Parts)]
+    fitted = {each.sensor.name: each for each in fitted_sensors(sim.sensors)} if names else {}
+    for name in names:
+        if name not in fitted:
+            known = (*map(str, _Parts), *fitted)
+            raise UnknownNameError("env.observation.parts", name, known)
+    return {name: fitted[name] for name in names}
+
+
 def _space(
-    part: ObservationPart, config: ObservationConfig, sim: SimConfig
+    part: str, config: ObservationConfig, sim: SimConfig
 ) -> gymnasium.spaces.Box | gymnasium.spaces.Text:
     lidar, size = sim.lidar, (config.height, config.width)
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
@@ -80,7 +96,7 @@ def _space(
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
         case _Parts.SENSORS | _Parts.PRIVILEGED:
-            count = _SENSORS if part is _Parts.SENSORS else PRIVILEGED
+            count = SENSOR_COUNT if part is _Parts.SENSORS else PRIVILEGED
             return gymnasium.spaces.Box(-np.inf, np.inf, (count,), np.float32)
         case _Parts.LIDAR:
             return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
@@ -91,6 +107,8 @@ def _space(
             return gymnasium.spaces.Text(LONGEST, min_length=0, charset=CHARACTERS)
         case _Parts.ATTRIBUTES:
             return gymnasium.spaces.Box(0.0, 1.0, (len(ATTRIBUTES),), np.float32)
+    width = sensors_in(config, sim)[part].sensor.width
+    return gymnasium.spaces.Box(-np.inf, np.inf, (width,), np.float32)
 
 
 def _event_shape(config: ObservationConfig, camera: CameraConfig) -> tuple[int, int, int]:
@@ -145,7 +163,8 @@ class Observer:
         self.visible = np.zeros(count)
         self._draws = bool(wanted & {_Parts.IMAGE, _Parts.DEPTH, _Parts.CLASSES})
         self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
-        self._latest: dict[ObservationPart, Array] = {}
+        self._latest: dict[str, Array] = {}
+        self._single = sensors_in(config, sim)
         self._words: list[str] | None = None
         for part in config.parts:
             space = _space(part, config, sim)
@@ -190,6 +209,8 @@ class Observer:
             self._latest[_Parts.CAMERAS][:, row] = stack.images
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
+        for name, sensor in self._single.items():
+            self._latest[name][:] = self._simulation.view.readings(sensor)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
             seen = self._simulation.view
             assert seen.lidar is not None  # its space says so
@@ -282,7 +303,7 @@ class Observer:
     def one(self, tracker: int) -> Observation:
         """Return a copy of the latest observation of a tracker."""
         copies: dict[str, Any] = {
-            part.value: array[tracker].copy() for part, array in self._latest.items()
+            str(part): array[tracker].copy() for part, array in self._latest.items()
         }
         if self._words is not None:
             copies[_Parts.WORDS.value] = self._words[tracker]

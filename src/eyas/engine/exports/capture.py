@@ -1,6 +1,6 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -77,6 +77,8 @@ class Moment(NamedTuple):
     """See `Frame.rotors`; nothing changes it later."""
     traffic: ActorView | None = None
     """See `Frame.traffic`; nothing changes it later."""
+    signals: Mapping[str, Floats] = {}
+    """See `Frame.signals`; nothing changes it later."""
     words: str = ""
     """The target in words that nothing else in view shares."""
     parked: Sequence[SeenParked] = ()
@@ -128,7 +130,8 @@ def moment_of(
     rotors = None if asked is None else asked[tracker]
     traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
     words = seen.words(tracker, picture.aspect, actors) if "words" in wanted else ""
-    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, words, parked)
+    signals = {name: values[tracker] for name, values in seen.further_readings().items()}
+    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, signals, words, parked)
 
 
 def _kept(actors: ActorView) -> ActorView:
@@ -185,6 +188,7 @@ def frame_of(
         normal=None if picture.normal is None else picture.normal[view].copy(),
         lidar=moment.lidar,
         sensors=moment.sensors,
+        signals=moment.signals,
         rotors=moment.rotors,
         parts=moment.parts,
         clean=moment.clean,

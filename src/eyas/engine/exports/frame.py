@@ -1,6 +1,7 @@
 """A frame: all data that writers get about one picture of one tracker."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -265,6 +266,9 @@ class Frame:
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.engine.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
+    signals: Mapping[str, Floats] = field(default_factory=dict)
+    """What further sensors tell (`sensors.further`), with their errors, by the names of
+    `Sensor.parts`, each of shape (width,)."""
     rotors: Floats | None = None
     """Rates that the tracker asks of its rotors, front right, front left, rear left, rear right
     [rad/s], shape (4,); None: it does not tell."""

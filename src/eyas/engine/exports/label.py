@@ -94,6 +94,10 @@ COEFFICIENTS = Type(
     "4 or 5 numbers",
     {"type": "array", "items": NUMBER.schema, "minItems": 4, "maxItems": 5},
 )
+SIGNALS = Type(
+    "lists of numbers by name",
+    {"type": "object", "additionalProperties": {"type": "array", "items": NUMBER.schema}},
+)
 PAIR = _array("2 numbers", NUMBER.schema, 2)
 COMMAND = Type("4 numbers, or null", {**EXTENT.schema, "type": ["array", "null"]})
 CORNERS = _array("8 points", VECTOR.schema, 8)
@@ -301,6 +305,10 @@ FIELDS = (
                unit="s", left_out=True),
     LabelField("iso", NUMBER, "Speed of the picture (ISO 12232); only with `camera.imager`.",
                lambda f, e: f.exposure and rounded(f.exposure[1]), left_out=True),
+    LabelField("signals", SIGNALS, "What further sensors tell (`sensors.further`), with their "
+               "errors, by name; only of trackers that have some.",
+               lambda f, e: {name: rounded_list(each) for name, each in f.signals.items()},
+               left_out=True),
 )  # fmt: skip
 """All fields, in the order of the file."""
 

@@ -72,6 +72,10 @@ def _core(schema: Mapping[str, Any]) -> CoreSchema:
                 min_length=schema.get("minItems"),
                 max_length=schema.get("maxItems"),
             )
+    if "properties" not in schema:
+        return core_schema.dict_schema(
+            core_schema.str_schema(strict=True), _core(schema["additionalProperties"])
+        )
     fields = {
         key: core_schema.typed_dict_field(_core(of), required=key in schema["required"])
         for key, of in schema["properties"].items()

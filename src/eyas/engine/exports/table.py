@@ -11,8 +11,7 @@ from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.exports.frame import Floats, Frame
 from eyas.engine.exports.writer import Episode, Files, Gather, Run, Summary, Writer
-from eyas.engine.task.packet_rows import SENSOR_COLUMNS
-from eyas.engine.task.packets import BASIC_FIELDS
+from eyas.engine.sensors.table import fitted_sensors
 
 __all__ = ["ROTOR_COLUMNS", "LidarWriter", "SensorWriter"]
 
@@ -88,21 +87,27 @@ class LidarWriter(TableWriter):
 
 
 class SensorWriter(TableWriter):
-    """`sensors.csv`: what GPS, accelerometer, gyroscope and IMU tell, with their errors; and what a
-    tracker asks of its rotors, if it tells (`tracker.tells_rotors`).
+    """`sensors.csv`: what GPS, accelerometer, gyroscope and IMU tell, with their errors; then what
+    further sensors tell (`sensors.further`), and what a tracker asks of its rotors, if it tells
+    (`tracker.tells_rotors`).
+
+    Args:
+        run: The recording.
     """
 
     table = "sensors.csv"
     files = Files(episode=(table,))
 
+    def __init__(self, run: Run) -> None:
+        fitted = fitted_sensors(run.config.sensors)
+        self._fields = [column for each in fitted for column in each.sensor.columns]
+
     def numbers(self, frame: Frame) -> Floats:
         """Return the readings."""
         assert frame.sensors is not None
-        if frame.rotors is None:
-            return frame.sensors
-        return np.concatenate([frame.sensors, frame.rotors])
+        rotors = () if frame.rotors is None else frame.rotors
+        return np.concatenate([frame.sensors, *frame.signals.values(), rotors])
 
     def names(self, count: int) -> Sequence[str]:
         """Return their names, as in packets."""
-        fields = BASIC_FIELDS[SENSOR_COLUMNS]
-        return fields if count == len(fields) else (*fields, *ROTOR_COLUMNS)
+        return self._fields if count == len(self._fields) else (*self._fields, *ROTOR_COLUMNS)

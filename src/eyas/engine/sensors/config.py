@@ -3,10 +3,11 @@
 import re
 from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
+from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, bounds, within
 from eyas.engine.sensors.camera.dirt import DirtConfig
@@ -26,6 +27,7 @@ __all__ = [
     "ColourLayout",
     "Colours",
     "FurtherCameraConfig",
+    "FurtherSensorConfig",
     "LidarConfig",
     "MountConfig",
     "ReadingConfig",
@@ -238,6 +240,23 @@ class ReadingConfig(Config):
     """Probability that a reading is missing, so that the last one is told again."""
 
 
+class FurtherSensorConfig(ReadingConfig):
+    """A sensor that a tracker has beside the original's, and its errors: `{"sensor": "compass",
+    "noise": 0.0012}`, or its name alone.
+    """
+
+    named_by: ClassVar[str] = "sensor"
+    sensor: Annotated[str, Field(min_length=1), NAMES_CODE]
+    """`compass`, `barometer`, or one of your own, `package.module:attribute`."""
+    settings: dict[str, Annotated[float, Field(ge=-1e12, le=1e12)]] = Field(default_factory=dict)
+    """Values of the sensor's own settings."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, given: Any) -> Any:  # noqa: ANN401  # whatever is given
+        return {cls.named_by: given} if isinstance(given, str) else given
+
+
 class CameraErrors(ReadingConfig):
     """Errors of the camera; by default there is a picture of each physics step, without noise."""
 
@@ -249,7 +268,7 @@ class CameraErrors(ReadingConfig):
 
 
 class SensorsConfig(Config):
-    """Errors of the sensors; by default none has any."""
+    """Errors of the sensors, by default none, and further sensors."""
 
     gps_position: ReadingConfig = ReadingConfig()
     """GPS: position [m]."""
@@ -263,16 +282,5 @@ class SensorsConfig(Config):
     """Attitude: Euler angles [rad], and the same as a quaternion."""
     camera: CameraErrors = CameraErrors()
     """Pictures."""
-
-    @property
-    def readings(self) -> tuple[ReadingConfig, ...]:
-        """The errors of the sensors whose readings are numbers, in the order of their columns in
-        the basic packet.
-        """
-        return (
-            self.gps_position,
-            self.gps_velocity,
-            self.accelerometer,
-            self.gyroscope,
-            self.imu,
-        )
+    further: tuple[FurtherSensorConfig, ...] = ()
+    """Sensors that trackers have besides, in the table `eyas.engine.sensors.table` or of your own."""

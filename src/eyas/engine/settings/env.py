@@ -131,11 +131,18 @@ class ObservationPart(StrEnum):
     """What no sensor tells: the true motion of the target, 16 numbers, float32."""
 
 
+AnyPart = Annotated[
+    ObservationPart | Annotated[str, Field(min_length=1)], Field(union_mode="left_to_right")
+]
+"""A part, or the name of a sensor in `sensors.further` or of the original's."""
+
+
 class ObservationConfig(Config):
     """What an agent sees."""
 
-    parts: Annotated[tuple[ObservationPart, ...], Field(min_length=1)] = (ObservationPart.IMAGE,)
-    """The parts; of one, the observation is its array, of several, a dictionary of arrays."""
+    parts: Annotated[tuple[AnyPart, ...], Field(min_length=1)] = (ObservationPart.IMAGE,)
+    """The parts, and names of single sensors, whose readings they are; of one, the observation is
+    its array, of several, a dictionary of arrays."""
     width: Annotated[int, Field(ge=8, le=8192)] = 84
     """Of picture, depth and classes [pixels]; they show the camera's whole view, squeezed if their
     shape is another."""

@@ -339,6 +339,10 @@ class Simulation:
         """
         return self._present.packets()
 
+    def readings(self) -> dict[str, Floats]:
+        """Return copies of what the further sensors read, see `View.further_readings`."""
+        return self._present.further_readings()
+
     def classes_of(self, objects: NDArray[np.integer]) -> NDArray[np.int64]:
         """Return the `ObjectClass` of objects, or `DRONE_CLASS`; -1 for the id -1, shape (K,).
 

@@ -24,7 +24,7 @@ from eyas.engine.task.packets import (
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["SENSOR_COLUMNS", "PacketRows", "fill_basic"]
+__all__ = ["SENSOR_COLUMNS", "SENSOR_COUNT", "PacketRows", "fill_basic"]
 
 _STEP_COUNT = first_column(BASIC_COLUMNS, "step_count")
 _POSITION = first_column(BASIC_COLUMNS, "position")
@@ -38,6 +38,7 @@ _DONE = first_column(BASIC_COLUMNS, "done")
 
 SENSOR_COLUMNS = slice(_POSITION, _REWARD)
 """Columns of the basic packet that the sensors measure."""
+SENSOR_COUNT = _REWARD - _POSITION
 
 _WIDTH = first_column(REWARD_COLUMNS, "camera_width")
 _HEIGHT = first_column(REWARD_COLUMNS, "camera_height")

@@ -20,6 +20,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.task.direction import TargetDirection
 
 __all__ = [
@@ -50,11 +51,12 @@ def _columns_of(widths: Mapping[str, int]) -> Columns:
 
 BASIC_COLUMNS = _columns_of(
     {
-        **{"step_count": 1, "position": 3, "velocity": 3, "felt_acceleration": 3},
-        **{"angular_velocity": 3, "orientation": 4, "euler": 3, "reward": 1, "done": 1},
+        "step_count": 1,
+        **{name: len(each) for sensor in ORIGINAL for name, each in sensor.parts.items()},
+        **{"reward": 1, "done": 1},
     }
 )
-"""Columns of a basic packet by the names of `BasicPacket`."""
+"""Columns of a basic packet by the names of `BasicPacket`: it is a selection of sensors."""
 
 REWARD_COLUMNS = _columns_of(
     {
@@ -95,12 +97,7 @@ INPUT_FIELDS = ("forward", "left", "up", "turn_rate", "reset")
 
 BASIC_FIELDS = (
     "step_count",
-    *_named("position", "xyz"),
-    *_named("velocity", "xyz"),
-    *_named("felt_acceleration", "xyz"),
-    *_named("angular_velocity", "xyz"),
-    *_named("orientation", "wxyz"),
-    *("roll", "pitch", "yaw"),
+    *(column for sensor in ORIGINAL for column in sensor.columns),
     "reward",
     "done",
 )

@@ -158,16 +158,16 @@ class DeviceObserver:
         told = {}
         for part, shared in self._told[final].items():
             own = out[part] if isinstance(out, Mapping) else out
-            told[part.value] = copied(shared, own)
+            told[str(part)] = copied(shared, own)
         return told if len(told) > 1 else next(iter(told.values()))
 
-    def _new(self) -> dict[ObservationPart, Any]:
+    def _new(self) -> dict[str, Any]:
         """Return an array on the device for each part."""
         space, count = self.space, self._simulation.count
         boxes = space.spaces if isinstance(space, gymnasium.spaces.Dict) else {}
         arrays = {}
         for part in self._parts:
-            box = boxes.get(part.value, space)
+            box = boxes.get(str(part), space)
             assert box.shape is not None
             assert box.dtype is not None
             arrays[part] = self._device.zeros((count, *box.shape), box.dtype)

@@ -44,7 +44,8 @@ def _sensed(config: SimConfig) -> Refused:
             yield f"camera.{name}: a value of its own", f"{getattr(usual, name)!r}"
     for name in SensorsConfig.model_fields:
         if getattr(config.sensors, name) != getattr(SensorsConfig(), name):
-            yield f"sensors.{name}: an error, a rate or a delay", "none"
+            what = "a sensor" if name == "further" else "an error, a rate or a delay"
+            yield f"sensors.{name}: {what}", "none"
     if config.cameras:
         yield f"cameras: {', '.join(camera.name for camera in config.cameras)}", "none"
     if config.lidar.enabled:

@@ -7,10 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.frames import rotate_back
+from eyas.engine.sensors.inertial import accelerometer
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.task.packets import BASIC_COLUMNS
 from eyas.lanes import interpreted
+from eyas.robotics.mavlink.equipment import FIELD, PRESSURE, Quantity, part_of
 from eyas.robotics.mavlink.frames import (
     Geodesy,
     Quaternion,
@@ -25,33 +27,43 @@ from eyas.robotics.mavlink.pilot import Body
 
 __all__ = ["Instant", "Readings"]
 
+_accelerometer = interpreted(accelerometer)
 _rotate_back = interpreted(rotate_back)
-
-_FIELD = (0.2145, 0.0106, 0.4297)
-"""Of the earth about Zurich, north, east, down [gauss]."""
 
 
 class Readings:
     """Reads a simulation for its vehicles.
 
     Args:
-        simulation: The trackers are the vehicles.
+        simulation: The trackers are the vehicles, `equipped`.
         geodesy: Where the origin of the world is.
     """
 
     def __init__(self, simulation: Simulation, geodesy: Geodesy) -> None:
         self.simulation, self.geodesy = simulation, geodesy
         self._sensed: NDArray[np.float64] | None = None
+        self._further: dict[str, NDArray[np.float64]] | None = None
+        sensors = simulation.config.sensors
+        self._parts = {each: part_of(sensors, each) for each in (FIELD, PRESSURE)}
 
     def renew(self) -> None:
         """Forget what was sensed before the last step."""
-        self._sensed = None
+        self._sensed = self._further = None
 
     def sensed(self, vehicle: int) -> NDArray[np.float64]:
         """Return what the sensors of a vehicle read: its basic packet, shape (22,)."""
         if self._sensed is None:
             self._sensed = self.simulation.packets()[0]
         row: NDArray[np.float64] = self._sensed[vehicle]
+        return row
+
+    def measured(self, vehicle: int, quantity: Quantity) -> NDArray[np.float64]:
+        """Return what a vehicle's sensor of a quantity reads, shape (width,)."""
+        if self._further is None:
+            self._further = self.simulation.readings()
+        part = self._parts[quantity]
+        assert part is not None  # they are equipped
+        row: NDArray[np.float64] = self._further[part][vehicle]
         return row
 
     def ground(self, east: float, north: float) -> float:
@@ -186,15 +198,17 @@ class Instant:
         felt, turn = BASIC_COLUMNS["felt_acceleration"], BASIC_COLUMNS["angular_velocity"]
         return to_frd(row[felt]), to_frd(row[turn])
 
+    def felt(self) -> Vector:
+        """Return what an exact accelerometer would read, forward-right-down [m/s^2]."""
+        return to_frd(_accelerometer(self._trackers, self._vehicle))
+
     def magnetic(self) -> Vector:
-        """Return the field of the earth, forward-right-down [gauss]."""
-        w, x, y, z = self.attitude
-        n, e, d = _FIELD
-        return (
-            (1 - 2 * (y * y + z * z)) * n + 2 * (x * y + w * z) * e + 2 * (x * z - w * y) * d,
-            2 * (x * y - w * z) * n + (1 - 2 * (x * x + z * z)) * e + 2 * (y * z + w * x) * d,
-            2 * (x * z + w * y) * n + 2 * (y * z - w * x) * e + (1 - 2 * (x * x + y * y)) * d,
-        )
+        """Return the field that the compass reads, forward-right-down [gauss]."""
+        return to_frd(self._readings.measured(self._vehicle, FIELD))
+
+    def pressure(self) -> float:
+        """Return what the barometer reads [hPa]."""
+        return float(self._readings.measured(self._vehicle, PRESSURE)[0])
 
     def camera(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return place [m], shape (3,), and rotation, shape (3, 3), of the camera, world frame."""

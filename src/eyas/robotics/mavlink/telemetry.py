@@ -10,7 +10,7 @@ from eyas.robotics.mavlink.modes import Mode
 from eyas.robotics.mavlink.pilot import Pilot
 from eyas.robotics.mavlink.readings import Instant
 
-__all__ = ["RATES", "Telemetry", "degrees_e7", "pressure"]
+__all__ = ["RATES", "Telemetry", "degrees_e7"]
 
 RATES = {
     "heartbeat": 1.0,
@@ -237,7 +237,7 @@ class Telemetry:
         }
 
     def highres_imu(self) -> Fields:
-        """What the inertial sensors read, with their errors; compass and pressure are true."""
+        """What the inertial sensors, compass and barometer read, with their errors."""
         at = self._now()
         felt, turn = at.imu()
         axes = {
@@ -248,7 +248,7 @@ class Telemetry:
         named = {f"{axis[-1]}{axis[:-1]}": value for axis, value in axes.items()}
         altitude = at.global_place[2]
         return {
-            **{"time_usec": at.microseconds, **named, "abs_pressure": pressure(altitude)},
+            **{"time_usec": at.microseconds, **named, "abs_pressure": at.pressure()},
             **{"diff_pressure": 0.0, "pressure_alt": altitude, "temperature": 15.0},
             "fields_updated": 0x1BFF,  # all but the difference of pressures
         }
@@ -290,14 +290,3 @@ def _one(make: Callable[[], Fields]) -> Callable[[], Iterable[Fields]]:
 
 def _speeds(at: Instant) -> dict[str, Any]:
     return dict(zip(("rollspeed", "pitchspeed", "yawspeed"), at.rates, strict=True))
-
-
-def pressure(altitude: float) -> float:
-    """Return the pressure of the International Standard Atmosphere, 1013.25 (1 - 2.25577e-5
-    altitude)^5.25588, by the first five terms of its series [hPa]: good to 0.02 up to 2,000 m.
-    """
-    total = term = 1013.25
-    for order in range(4):
-        term *= -2.25577e-5 * altitude * (5.25588 - order) / (order + 1)
-        total += term
-    return total

@@ -8,7 +8,7 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.exports.frame import Frame
 from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
-from eyas.robotics.ros.messages import TOPICS, Messages, nanoseconds
+from eyas.robotics.ros.messages import Messages, nanoseconds
 from eyas.robotics.ros.storage import McapStorage, SqliteStorage, Storage, Topic, described_bag
 from eyas.robotics.ros.types import message_types
 
@@ -77,7 +77,7 @@ class _Bag(EpisodeWriter):
         self, path: Path, storage: type[Storage], types: "Typestore", messages: Messages
     ) -> None:
         self._path, self._types, self._messages = path, types, messages
-        self._topics = [_topic(types, name) for name in TOPICS]
+        self._topics = [_topic(types, *topic) for topic in messages.topics.items()]
         self._number = {topic.name: number for number, topic in enumerate(self._topics)}
         self._storage = storage(path, self._topics)
         self._frames = 0
@@ -106,7 +106,6 @@ class _Bag(EpisodeWriter):
             self._storage.abandon()
 
 
-def _topic(types: "Typestore", name: str) -> Topic:
-    type_ = TOPICS[name]
+def _topic(types: "Typestore", name: str, type_: str) -> Topic:
     definition, _ = types.generate_msgdef(type_, ros_version=2)
     return Topic(name, type_, definition, types.hash_rihs01(type_), latched=name == "/tf_static")

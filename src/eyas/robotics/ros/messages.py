@@ -14,6 +14,7 @@ from eyas.engine.exports.writer import Run
 from eyas.engine.sensors.config import ReadingConfig
 from eyas.engine.sensors.lidar import CAR_MOUNT, MOUNT
 from eyas.engine.sensors.mount import turn_of
+from eyas.engine.sensors.table import further_sensors
 from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.place import projection_of
@@ -54,7 +55,28 @@ TOPICS = {
     "/target/detections_2d": "vision_msgs/msg/Detection2DArray",
     "/target/odom": "nav_msgs/msg/Odometry",
 }
-"""All topics and the types of their messages."""
+"""The topics of every recording, and the types of their messages."""
+
+
+class _Quantity(NamedTuple):
+    """The message for numbers in a unit."""
+
+    type: str
+    field: str
+    width: int
+    scale: float
+    """What ROS has for 1 of the unit."""
+
+
+_QUANTITIES = {
+    "T": _Quantity("sensor_msgs/msg/MagneticField", "magnetic_field", 3, 1.0),
+    "gauss": _Quantity("sensor_msgs/msg/MagneticField", "magnetic_field", 3, 1e-4),
+    "Pa": _Quantity("sensor_msgs/msg/FluidPressure", "fluid_pressure", 1, 1.0),
+    "hPa": _Quantity("sensor_msgs/msg/FluidPressure", "fluid_pressure", 1, 100.0),
+    "°C": _Quantity("sensor_msgs/msg/Temperature", "temperature", 1, 1.0),
+    "lx": _Quantity("sensor_msgs/msg/Illuminance", "illuminance", 1, 1.0),
+}
+"""Messages of further sensors by `Sensor.unit`."""
 
 NOWHERE = Projection(longitude=8.545594, latitude=47.397742)
 """Where maps that lie nowhere have their middle: the usual home of PX4's simulators, in Zurich."""
@@ -86,6 +108,10 @@ class _Stamp(NamedTuple):
 class Messages:
     """Makes the messages of the frames of a recording.
 
+    Attributes:
+        topics: All topics and the types of their messages: those of further sensors, for which
+            there is a message, have the sensors' names.
+
     Args:
         types: The types of messages, see `message_types`.
         run: The recording.
@@ -98,6 +124,13 @@ class Messages:
         self._turned, self._turning = _covariance(errors.imu), _covariance(errors.gyroscope)
         self._felt = _covariance(errors.accelerometer)
         self._placed = _covariance(errors.gps_position)
+        self._further: dict[str, tuple[_Quantity, str, Floats]] = {}
+        for fitted in further_sensors(errors):
+            sensor, quantity = fitted.sensor, _QUANTITIES.get(fitted.sensor.unit)
+            if quantity and len(sensor.parts) == 1 and sensor.width == quantity.width:
+                covariance = quantity.scale * quantity.scale * _covariance(fitted.errors)
+                self._further[f"/{sensor.name}"] = quantity, min(sensor.parts), covariance
+        self.topics = TOPICS | {name: each[0].type for name, each in self._further.items()}
         car = config.tracker.kind is TrackerKind.CAR
         mount = config.lidar.mount or (CAR_MOUNT if car else MOUNT)
         self._laser = Pose(np.array([mount.x, mount.y, mount.z]), turn_of(mount))
@@ -119,6 +152,9 @@ class Messages:
         yield "/tf", self._transforms(stamp, moving)
         yield "/odom", self._own_odometry(frame, stamp, body)
         yield from self._measured(frame, stamp)
+        for topic, (quantity, part, covariance) in self._further.items():
+            value = quantity.scale * frame.signals[part]
+            yield topic, self._reading(quantity, stamp, value, covariance)
         yield from self._pictured(frame, stamp)
         if frame.lidar is not None:
             yield "/scan", self._scan(frame.lidar, stamp)
@@ -238,6 +274,17 @@ class Messages:
                 position_covariance_type=_DIAGONAL_KNOWN if self._placed.any() else _UNKNOWN,
             ),
         )
+
+    def _reading(
+        self, quantity: _Quantity, stamp: _Stamp, value: Floats, covariance: Floats
+    ) -> Message:
+        """Return what a further sensor tells."""
+        header, field = self._header(stamp, "base_link"), quantity.field
+        if quantity.width == 3:
+            told = {field: self._vector(value), f"{field}_covariance": covariance}
+        else:
+            told = {field: float(value[0]), "variance": float(covariance[0])}
+        return self._make(quantity.type, header=header, **told)
 
     def _pictured(self, frame: Frame, stamp: _Stamp) -> Iterator[tuple[str, Message]]:
         assert frame.rgb is not None

@@ -15,7 +15,8 @@ from eyas.engine.sensors.camera.event_sensor import EventSensors
 from eyas.engine.sensors.grain import Grain
 from eyas.engine.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.engine.sensors.obstacles import Obstacles, obstacles_of
-from eyas.engine.sensors.readings import Readings, has_errors
+from eyas.engine.sensors.readings import Readings, must_read
+from eyas.engine.sensors.table import fitted_sensors
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.views.further_camera import FurtherOptics
@@ -38,7 +39,8 @@ class SensorSuite:
 
     Attributes:
         lidar: None if it is off.
-        readings: None if the sensors have no errors.
+        fitted: The sensors whose readings are numbers.
+        readings: None if these are only the original's, without errors.
         grain: None if the camera has no noise.
         optics: What is modelled of the camera beyond a pinhole.
         further: The cameras that trackers have beside that one.
@@ -83,8 +85,9 @@ class SensorSuite:
                 latest = round(bounds(config.control.observation_latency_steps)[1])
                 mount = CAR_MOUNT if config.tracker.kind is TrackerKind.CAR else MOUNT
                 self.lidar = Lidar(config.lidar, snapshot, obstacles, active, latest, mount)
-        if has_errors(config.sensors):
-            self.readings = Readings(config.sensors, snapshot, active)
+        self.fitted = fitted_sensors(config.sensors)
+        if must_read(self.fitted):
+            self.readings = Readings(self.fitted, snapshot, assets.scene.terrain, active)
         self.grain = Grain.of(config.sensors.camera, len(active))
         size = config.camera.height, config.camera.width
         self.events = EventSensors.of(config.camera.events, size, len(active))
@@ -99,7 +102,7 @@ class SensorSuite:
 
     @property
     def told(self) -> NDArray[np.float64] | None:
-        """What sensors with errors read, see `Readings`; None if none has errors."""
+        """What sensors read, see `Readings`; None if packets hold the same."""
         return None if self.readings is None else self.readings.told
 
     def begin(self, trackers: Sequence[int], key_of: Callable[[int], EpisodeKey]) -> None:

@@ -9,6 +9,8 @@ from eyas.engine.core.lens import Lens
 from eyas.engine.sensors.camera.event_sensor import EventSensors
 from eyas.engine.sensors.camera.exposure import ExposureState
 from eyas.engine.sensors.lidar import Lidar
+from eyas.engine.sensors.original import ORIGINAL
+from eyas.engine.sensors.table import Fitted
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.light import LightChanges
@@ -24,7 +26,7 @@ from eyas.engine.sim.worlds import Worlds
 from eyas.engine.state.draw import DrawStage, MovingParts, Picture
 from eyas.engine.state.motion import ActorView
 from eyas.engine.targets.grammar.in_view import InView
-from eyas.engine.task.packet_rows import SENSOR_COLUMNS, PacketRows
+from eyas.engine.task.packet_rows import SENSOR_COLUMNS, SENSOR_COUNT, PacketRows
 from eyas.engine.task.rules import Rules
 
 __all__ = ["View"]
@@ -127,8 +129,26 @@ class View:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
         basic, reward = self._packets.now()
         if self.state.told is not None:
-            basic[:, SENSOR_COLUMNS] = self.state.told
+            basic[:, SENSOR_COLUMNS] = self.state.told[:, :SENSOR_COUNT]
         return basic, reward
+
+    def readings(self, fitted: Fitted) -> Floats:
+        """Return a copy of what a sensor of each tracker reads, shape (N, width)."""
+        if self.state.told is not None:
+            return self.state.told[:, fitted.columns].copy()
+        return self._packets.now()[0][:, SENSOR_COLUMNS][:, fitted.columns]
+
+    def further_readings(self) -> dict[str, Floats]:
+        """Return copies of what the further sensors read by the names of their parts, each of shape
+        (N, width).
+        """
+        told = self.state.told
+        return {
+            name: told[:, columns].copy()
+            for fitted in self._sensors.fitted[len(ORIGINAL) :]
+            for name, columns in fitted.sensor.slices(fitted.first).items()
+            if told is not None  # it is where there are such sensors
+        }
 
     def actors(self, tracker: int, later: int = 0) -> ActorView:
         """Return the actors around a tracker at the instant that its pictures show.

@@ -96,13 +96,14 @@ class ArduPilot:
         return b"\n" + json.dumps(self._told(), separators=(",", ":")).encode() + b"\n"
 
     def _told(self) -> dict[str, Any]:
-        at, sensed = self._drone.instant, self._drone.sensed()
+        at = self._drone.instant
+        felt, turn = at.imu()
         _, x, y, _ = at.attitude
         upright = 1.0 - 2.0 * (x * x + y * y)
         reach = self._drone.height() / upright if upright > 0.1 else _FAR
         return {
             "timestamp": self._drone.now,
-            "imu": {"gyro": sensed.rates, "accel_body": sensed.acceleration},
+            "imu": {"gyro": turn, "accel_body": felt},
             "position": at.local,
             "attitude": at.angles,
             "quaternion": at.attitude,

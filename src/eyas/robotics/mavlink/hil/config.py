@@ -18,6 +18,3 @@ class HilConfig(Config):
     """Thrust of all rotors at full output over the drone's weight."""
     speed: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
     """Most simulated seconds in a second; 0: as many as autopilot and machine can."""
-    noise: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
-    """How noisy inertial sensors, compass and pressure are, relative to `Noise`, beside the errors
-    of `sensors`. PX4 takes sensors for broken whose readings stay the same."""

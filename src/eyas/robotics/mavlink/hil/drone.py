@@ -3,24 +3,21 @@
 import logging
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.rng import stream
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
 from eyas.engine.trackers.driven import WEIGHT
 from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.endpoint import parsed_address
-from eyas.robotics.mavlink.frames import Geodesy, Vector
+from eyas.robotics.mavlink.frames import Geodesy
 from eyas.robotics.mavlink.places import standing_places
 from eyas.robotics.mavlink.readings import Instant, Readings
-from eyas.robotics.mavlink.telemetry import pressure
 from eyas.robotics.mavlink.video import Stream, VideoSender
 
-__all__ = ["MOTORS", "DrivenDrone", "Sensed"]
+__all__ = ["MOTORS", "DrivenDrone"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -29,25 +26,10 @@ MOTORS = (0, 2, 1, 3)
 ArduPilot's quadrotors of the form X have the same: 1 front right and 2 rear left turn
 counter-clockwise, 3 front left and 4 rear right clockwise; so do the original's rotors."""
 
-_ACCELEROMETER, _GYROSCOPE, _COMPASS, _PRESSURE = 0.02, 0.001, 0.002, 0.02
-"""Largest noise: [m/s^2], [rad/s], [gauss], [hPa]; our choice, as small sensors have."""
 _PITCH = 0.5
 """Of the camera, positive down [rad]."""
 _RESTING = 250
 """Physics steps in which it comes to rest on its feet before time begins."""
-
-
-class Sensed(NamedTuple):
-    """What inertial sensors, compass and barometer read, forward-right-down."""
-
-    acceleration: Vector
-    """[m/s^2]; at rest about (0, 0, -9.81)."""
-    rates: Vector
-    """[rad/s]"""
-    field: Vector
-    """[gauss]"""
-    pressure: float
-    """[hPa]"""
 
 
 class DrivenDrone:
@@ -58,7 +40,7 @@ class DrivenDrone:
         instant: What it knows of itself now.
 
     Args:
-        simulation: One tracker, made with `driven_drone`.
+        simulation: One tracker, made with `driven_drone`, and `equipped`.
         config: Its settings.
     """
 
@@ -93,7 +75,6 @@ class DrivenDrone:
         simulation.start_at(np.arange(1), self._place, np.full(1, _PITCH))
         simulation.advance(np.zeros((1, 4)), _RESTING)
         self._ticks, self._picture_due = 0, 0.0
-        self._rng = stream(simulation.config.seed, "autopilot")
         self._renew()
 
     def step(self, outputs: Sequence[float], steps: int) -> None:
@@ -124,23 +105,6 @@ class DrivenDrone:
         self._readings.renew()
         home = self._place[0, :3].tolist()
         self.instant = Instant(self._readings, 0, (home[0], home[1], home[2]), self.now)
-
-    def sensed(self) -> Sensed:
-        """Return what sensors read now, with their noise."""
-        at = self.instant
-        felt, turn = at.imu()
-        return Sensed(
-            self._noisy(felt, _ACCELEROMETER),
-            self._noisy(turn, _GYROSCOPE),
-            self._noisy(at.magnetic(), _COMPASS),
-            self._noisy((pressure(at.global_place[2]), 0.0, 0.0), _PRESSURE)[0],
-        )
-
-    def _noisy(self, vector: Vector, most: float) -> Vector:
-        """Return three readings with even noise, which is the same on every processor."""
-        scale = most * self._config.hil.noise
-        a, b, c = (2.0 * self._rng.random(3) - 1.0).tolist()
-        return vector[0] + scale * a, vector[1] + scale * b, vector[2] + scale * c
 
     def home(self) -> tuple[float, float, float]:
         """Return latitude, longitude [degrees] and altitude [m] of where it stands at first."""

@@ -105,8 +105,9 @@ class Px4:
         return self._drone.instant.microseconds + 4_000
 
     def _sensor(self, number: int) -> dict[str, Any]:
-        sensed, altitude = self._drone.sensed(), self._drone.instant.global_place[2]
-        parts = {"acc": sensed.acceleration, "gyro": sensed.rates, "mag": sensed.field}
+        at = self._drone.instant
+        felt, turn = at.imu()
+        parts = {"acc": felt, "gyro": turn, "mag": at.magnetic()}
         axes = {
             f"{axis}{name}": value
             for name, vector in parts.items()
@@ -114,8 +115,8 @@ class Px4:
         }
         slow = _COMPASS | _BAROMETER if number % _SLOW == 0 else 0
         return {
-            **{"time_usec": self._microseconds, **axes, "abs_pressure": sensed.pressure},
-            **{"diff_pressure": 0.0, "pressure_alt": altitude, "temperature": 15.0},
+            **{"time_usec": self._microseconds, **axes, "abs_pressure": at.pressure()},
+            **{"diff_pressure": 0.0, "pressure_alt": at.global_place[2], "temperature": 15.0},
             **{"fields_updated": _INERTIAL | slow, "id": 0},
         }
 
@@ -139,7 +140,7 @@ class Px4:
         at = self._drone.instant
         latitude, longitude, altitude = at.global_place
         vx, vy, vz = (round(100.0 * part) for part in at.velocity)
-        xacc, yacc, zacc = (round(part * 1e3 / _STANDARD_GRAVITY) for part in at.imu()[0])
+        xacc, yacc, zacc = (round(part * 1e3 / _STANDARD_GRAVITY) for part in at.felt())
         roll, pitch, yaw = at.rates
         return {
             **{"time_usec": self._microseconds, "attitude_quaternion": at.attitude},
