@@ -4,10 +4,10 @@
     eyas.record({"video": {"total_time": 2.0}})        # labelled pictures and videos
     eyas.load("runs/video")                            # read them: episodes, frames, arrays
     eyas.evaluate("follow", map="village")             # figures of a policy
-    eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
+    eyas.list_maps()                                   # _weathers, _policies, _protocols, ...
 
 `make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
-`Policy`, `RewardTerm`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
+`Policy`, `RewardTerm`, `Tracker`, `Algorithm`, `Weather`, `MapPlan` and `Ride`.
 
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from eyas.engine.envs.registration import register as _register
 
 if TYPE_CHECKING:
+    from eyas.benchmark.protocols import protocol_named as protocol_named
     from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
     from eyas.datasets.tracking.box_trackers import BoxTracker as BoxTracker
     from eyas.engine.api import evaluate as evaluate
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from eyas.engine.api import track as track
     from eyas.engine.api import train as train
     from eyas.engine.core.clock import PHYSICS_STEP as PHYSICS_STEP
+    from eyas.engine.core.config import Config as Config
     from eyas.engine.core.config import updated as updated
     from eyas.engine.core.errors import ActionError as ActionError
     from eyas.engine.core.errors import ConfigError as ConfigError
@@ -66,6 +68,7 @@ if TYPE_CHECKING:
     from eyas.engine.names import list_maps as list_maps
     from eyas.engine.names import list_policies as list_policies
     from eyas.engine.names import list_presets as list_presets
+    from eyas.engine.names import list_protocols as list_protocols
     from eyas.engine.names import list_targets as list_targets
     from eyas.engine.names import list_weathers as list_weathers
     from eyas.engine.policies.policy import Decision as Decision
@@ -117,6 +120,8 @@ if TYPE_CHECKING:
     from eyas.engine.world.weather import Season as Season
     from eyas.engine.world.weather import Weather as Weather
     from eyas.lanes import kernel as kernel
+    from eyas.learning.algorithm import Algorithm as Algorithm
+    from eyas.learning.rollout import Rollout as Rollout
     from eyas.maps.land.mounds import Mound as Mound
     from eyas.maps.osm.features import Survey as Survey
     from eyas.maps.plan.file import read_plan as read_plan
@@ -134,7 +139,7 @@ and seed are the same to the bit."""
 
 _PLACES = {
     "engine.core.clock": ("PHYSICS_STEP",),
-    "engine.core.config": ("updated",),
+    "engine.core.config": ("Config", "updated"),
     "engine.core.errors": (
         *("ActionError", "ConfigError", "DataFileError", "EyasError", "MissingExtraError"),
         *("OutputError", "SpawnError", "UnknownNameError"),
@@ -155,6 +160,7 @@ _PLACES = {
     "engine.envs.vector_env": ("EyasVectorEnv",),
     "datasets.tracking.box_trackers": ("BoxTracker",),
     "engine.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
+    "benchmark.protocols": ("protocol_named",),
     "engine.policies.steering": ("towards",),
     "engine.exports.frame": ("Frame",),
     "engine.exports.label": ("label_schema", "read_labels"),
@@ -162,14 +168,16 @@ _PLACES = {
         *("Episode", "EpisodeWriter", "Files", "Gather", "Run", "Summary", "Writer"),
     ),
     "lanes": ("kernel",),
+    "learning.algorithm": ("Algorithm",),
+    "learning.rollout": ("Rollout",),
     "engine.mesh.shell": ("Shell",),
     "engine.api": (
         *("evaluate", "export", "make", "make_config", "make_dataset", "make_vec"),
         *("record", "track", "train"),
     ),
     "engine.names": (
-        *("list_formats", "list_maps", "list_policies", "list_presets", "list_targets"),
-        "list_weathers",
+        *("list_formats", "list_maps", "list_policies", "list_presets", "list_protocols"),
+        *("list_targets", "list_weathers"),
     ),
     "engine.settings.config": ("EyasConfig",),
     "engine.settings.file": ("load_settings",),

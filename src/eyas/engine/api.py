@@ -224,7 +224,7 @@ def evaluate(
 
     Args:
         policy: A name of `list_policies()`, a file, or `package.module:name`.
-        protocol: `paper`, `long`, `search` or `distractor`.
+        protocol: A name of `list_protocols()`, or `package.module:NAME`.
         out: The folder; by default `runs/evaluation/<policy>-<protocol>`.
         resume: Whether an evaluation in the folder is continued.
         overwrite: Whether one in the folder is deleted first.

@@ -8,6 +8,7 @@ __all__ = [
     "list_maps",
     "list_policies",
     "list_presets",
+    "list_protocols",
     "list_targets",
     "list_weathers",
 ]
@@ -46,11 +47,10 @@ def list_targets() -> tuple[str, ...]:
 
 
 def list_policies() -> tuple[str, ...]:
-    """Return the names of the policies that Eyas brings along."""
-    from eyas.benchmark.policies.shipped import shipped_names
-    from eyas.engine.policies.table import BUILT_IN
+    """Return the names of the policies: of Eyas, and of packages that are installed."""
+    from eyas.engine.policies.table import policy_names
 
-    return (*BUILT_IN, *shipped_names())
+    return policy_names()
 
 
 def list_presets() -> tuple[str, ...]:
@@ -58,3 +58,10 @@ def list_presets() -> tuple[str, ...]:
     from eyas.engine.settings.preset import PRESETS
 
     return PRESETS
+
+
+def list_protocols() -> tuple[str, ...]:
+    """Return the names of the protocols: of Eyas, and of packages that are installed."""
+    from eyas.benchmark.protocols import PROTOCOLS
+
+    return PROTOCOLS.names()
