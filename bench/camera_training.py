@@ -82,7 +82,7 @@ def write_settings(folder: Path) -> None:
     settings = json.loads(preset_file("fast").read_text())
     settings["train"] = {
         "environments": 64,
-        "minibatches": 8,
+        "ppo": {"minibatches": 8},
         "evaluation": {"every": 0},
         "stages": [{"total_timesteps": DECISIONS}],
     }

@@ -19,6 +19,7 @@ NAMING = [
 ELSEWHERE = {
     *(".venv/bin", "definitions/", "eyas/_src", "eyas.json", "eyas.onnx"),
     *("eyas.steps", "eyas.formats", "eyas.writers", "eyas.weathers", "eyas.maps"),
+    *("eyas.algorithms", "eyas.policies", "eyas.protocols"),
 }
 """What these texts name that is no file or name of the code: loggers, groups of entry points, what
 another build has or a user makes."""

@@ -19,7 +19,6 @@ from eyas import __version__
 from eyas.benchmark.policies.shipped import TRAINED, Card
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
-from eyas.learning.config import Method
 
 _FLOWN = "eyas-flown"
 """The tracker for flown drones, of the same run as `eyas`."""
@@ -53,9 +52,9 @@ def main() -> None:
 def of_method(config: EyasConfig, curve: Path) -> dict[str, Any]:
     """Return the number of decisions, and the class of entry, by the method of training."""
     match config.train.method:
-        case Method.TRACKER:
+        case "tracker":
             return {"decisions": config.train.tracker.pictures, "entry_class": "box"}
-        case Method.WORDS:
+        case "words":
             return {"decisions": config.train.words.pictures, "entry_class": "text+pixels"}
     with curve.open() as file:
         return {"decisions": int(list(csv.DictReader(file))[-1]["decisions"])}

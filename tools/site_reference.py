@@ -19,20 +19,23 @@ NAMES: dict[str, tuple[str, ...]] = {
     "What the commands do": (
         *("make", "make_vec", "make_config", "record", "load", "export", "evaluate", "track"),
         *("train", "make_dataset", "list_formats", "list_maps", "list_policies", "list_presets"),
-        *("list_targets", "list_weathers"),
+        *("list_protocols", "list_targets", "list_weathers"),
     ),
     "Environments": (
         *("TrackingEnv", "EyasVectorEnv", "EyasVecEnv", "EyasParallelEnv", "Observation"),
         "register_map",
     ),
-    "Settings": ("EyasConfig", "SimConfig", "TrackerConfig", "load_settings", "updated"),
+    "Settings": (
+        *("Config", "EyasConfig", "SimConfig", "TrackerConfig", "load_settings", "updated"),
+    ),
+    "Learning": ("Algorithm", "Rollout"),
     "Recordings": (
         *("Recording", "RecordedEpisode", "RecordedFrame", "read_labels", "label_schema"),
         *("Writer", "EpisodeWriter", "Run", "Episode", "Frame", "Files", "Format", "Gather"),
         *("Summary", "FlightScene", "FlightSketch", "write_atomic"),
     ),
     "Policies and trackers": (
-        *("Policy", "PolicyInput", "Decision", "Start", "BoxTracker", "Tracker"),
+        *("Policy", "PolicyInput", "Decision", "Start", "BoxTracker", "Tracker", "protocol_named"),
     ),
     "Rewards and the state": (
         *("RewardTerm", "Snapshot", "TrackerState", "CameraState", "StepResult", "Picture"),

@@ -4,10 +4,10 @@
     eyas.record({"video": {"total_time": 2.0}})        # labelled pictures and videos
     eyas.load("runs/video")                            # read them: episodes, frames, arrays
     eyas.evaluate("follow", map="village")             # figures of a policy
-    eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
+    eyas.list_maps()                                   # _weathers, _policies, _protocols, ...
 
 `make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
-`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
+`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Algorithm`, `Weather`, `MapPlan` and `Ride`.
 
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
@@ -21,7 +21,9 @@ from eyas.engine.envs.registration import register as _register
 if TYPE_CHECKING:
     from eyas.benchmark.api import evaluate as evaluate
     from eyas.benchmark.api import list_policies as list_policies
+    from eyas.benchmark.api import list_protocols as list_protocols
     from eyas.benchmark.box_trackers import BoxTracker as BoxTracker
+    from eyas.benchmark.protocols import protocol_named as protocol_named
     from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
     from eyas.datasets.api import make_dataset as make_dataset
     from eyas.datasets.api import track as track
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from eyas.engine.api import make_vec as make_vec
     from eyas.engine.api import record as record
     from eyas.engine.core.clock import PHYSICS_STEP as PHYSICS_STEP
+    from eyas.engine.core.config import Config as Config
     from eyas.engine.core.config import updated as updated
     from eyas.engine.core.errors import ActionError as ActionError
     from eyas.engine.core.errors import ConfigError as ConfigError
@@ -118,7 +121,9 @@ if TYPE_CHECKING:
     from eyas.engine.world.weather import Season as Season
     from eyas.engine.world.weather import Weather as Weather
     from eyas.lanes import kernel as kernel
+    from eyas.learning.algorithm import Algorithm as Algorithm
     from eyas.learning.api import train as train
+    from eyas.learning.rollout import Rollout as Rollout
     from eyas.maps.land.mounds import Mound as Mound
     from eyas.maps.osm.features import Survey as Survey
     from eyas.maps.plan.file import read_plan as read_plan
@@ -135,13 +140,14 @@ build_id: str
 and seed are the same to the bit."""
 
 _PLACES = {
-    "benchmark.api": "evaluate list_policies",
+    "benchmark.api": "evaluate list_policies list_protocols",
     "benchmark.box_trackers": "BoxTracker",
+    "benchmark.protocols": "protocol_named",
     "dat.legacy_observation": "LegacyObservation",
     "datasets.api": "make_dataset track",
     "engine.api": "export make make_config make_vec record",
     "engine.core.clock": "PHYSICS_STEP",
-    "engine.core.config": "updated",
+    "engine.core.config": "Config updated",
     "engine.core.errors": (
         "ActionError ConfigError DataFileError EyasError MissingExtraError OutputError "
         "SpawnError UnknownNameError"
@@ -191,7 +197,9 @@ _PLACES = {
     "engine.world.maps": "MapRecipe",
     "engine.world.weather": "CLEAR_DAY DAY Season Weather",
     "lanes": "kernel",
+    "learning.algorithm": "Algorithm",
     "learning.api": "train",
+    "learning.rollout": "Rollout",
     "maps.land.mounds": "Mound",
     "maps.osm.features": "Survey",
     "maps.plan.file": "read_plan write_plan",

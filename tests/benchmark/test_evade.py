@@ -16,7 +16,7 @@ HOME = Place("citystreet", "day", "SUMO_VEHICLE")
 
 @pytest.fixture(scope="module")
 def evade():
-    protocol = PROTOCOLS["evade"]
+    protocol = PROTOCOLS.get("evade")
     return protocol, protocol.choose([HOME], protocol, 2, 1_000_000)
 
 

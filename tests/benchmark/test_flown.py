@@ -17,7 +17,7 @@ from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.settings.env import EnvConfig
 
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")
-FLOWN = PROTOCOLS["flown"]
+FLOWN = PROTOCOLS.get("flown")
 SEED = 60_000_000
 
 

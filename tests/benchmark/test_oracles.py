@@ -35,7 +35,7 @@ def test_an_oracle_that_does_not_see_the_target_knows_nothing_of_it(name, kind):
 
     def actions(shift):
         policy = open_policy(name, {"actions": kind})
-        batch = EpisodeBatch(specs(5, 6), PROTOCOLS["paper"], policy.env)
+        batch = EpisodeBatch(specs(5, 6), PROTOCOLS.get("paper"), policy.env)
         every, nobody = np.ones(2, np.bool_), np.zeros(2, np.bool_)
         policy.begin(Start(np.array([5, 6]), lambda: np.zeros((2, 4), np.int32), None, batch.roads))
 

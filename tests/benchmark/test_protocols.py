@@ -18,13 +18,13 @@ HOME = [Place("citystreet", "day", "SUMO_VEHICLE")]
 
 
 def starts(name, count=2):
-    protocol = PROTOCOLS[name]
+    protocol = PROTOCOLS.get(name)
     episodes = episodes_of(HOME, protocol.directions, count)
     return episodes, episode_groups(episodes, protocol, EnvConfig())
 
 
 def test_more_episodes_include_the_fewer():
-    directions = PROTOCOLS["paper"].directions
+    directions = PROTOCOLS.get("paper").directions
     few, many = episodes_of(HOME, directions, 2), episodes_of(HOME, directions, 5)
     assert many[: len(few)] == few
     assert len({episode.name for episode in many}) == len(many)
@@ -53,11 +53,11 @@ def test_a_search_starts_with_the_target_out_of_view():
 
 def test_what_can_be_seen_in_a_search_is_measured_above_the_target():
     episodes, _ = starts("search", 1)
-    assert max(clear_shares(episodes, PROTOCOLS["search"])) > 0.5
+    assert max(clear_shares(episodes, PROTOCOLS.get("search"))) > 0.5
 
 
 def test_distractors_look_like_the_target_and_one_is_beside_it():
-    protocol = PROTOCOLS["distractor"]
+    protocol = PROTOCOLS.get("distractor")
     episodes = with_neighbours(HOME, protocol, 2, 5)
     assert len(episodes) == 8
     for group in episode_groups(episodes, protocol, EnvConfig()):
@@ -68,7 +68,7 @@ def test_distractors_look_like_the_target_and_one_is_beside_it():
             away = np.linalg.norm(actors.position[0, :, :2] - targets.position[tracker, :2], axis=1)
             assert np.sort(away)[1] <= NEAR
     other = episode_groups(
-        episodes_of(HOME, protocol.directions, 1), PROTOCOLS["long"], EnvConfig()
+        episodes_of(HOME, protocol.directions, 1), PROTOCOLS.get("long"), EnvConfig()
     )
     _, models = other[0].simulation.actors_around(0)
     assert len(set(models.tolist())) > 1
@@ -82,15 +82,15 @@ def test_the_rules_are_those_that_results_were_published_with():
         "search": "dff78dbdabcd",
         "distractor": "ceacbf328466",
     }
-    assert {name: PROTOCOLS[name].hash for name in hashes} == hashes
+    assert {name: PROTOCOLS.get(name).hash for name in hashes} == hashes
 
 
 def test_a_flown_drone_flies_as_in_the_original_unless_told_and_its_results_are_apart():
-    flown = PROTOCOLS["paper"].changed({"tracker": {"supervised": False}})
+    flown = PROTOCOLS.get("paper").changed({"tracker": {"supervised": False}})
     assert flown.settings.tracker.flight == "original"
     assert not flown.settings.tracker.off_centre  # as when the first results were published
     mended = flown.changed({"tracker": {"flight": "mended"}})
-    assert len({PROTOCOLS["paper"].hash, flown.hash, mended.hash}) == 3
+    assert len({PROTOCOLS.get("paper").hash, flown.hash, mended.hash}) == 3
 
 
 @pytest.mark.parametrize(
@@ -105,7 +105,7 @@ def test_a_flown_drone_flies_as_in_the_original_unless_told_and_its_results_are_
     ],
 )
 def test_a_setting_without_effect_is_no_other_protocol(changes):
-    assert PROTOCOLS["paper"].changed(changes).hash == PROTOCOLS["paper"].hash
+    assert PROTOCOLS.get("paper").changed(changes).hash == PROTOCOLS.get("paper").hash
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_a_setting_without_effect_is_no_other_protocol(changes):
     ],
 )
 def test_a_setting_with_an_effect_is_another_protocol(changes):
-    assert PROTOCOLS["paper"].changed(changes).hash != PROTOCOLS["paper"].hash
+    assert PROTOCOLS.get("paper").changed(changes).hash != PROTOCOLS.get("paper").hash
 
 
 class Lens(CameraConfig):
@@ -134,7 +134,7 @@ class Later(EyasConfig):
 
 @pytest.mark.parametrize(("distortion", "same"), [(None, True), (0.1, False)])
 def test_a_setting_that_comes_with_a_default_is_no_other_protocol(distortion, same):
-    paper = PROTOCOLS["paper"]
+    paper = PROTOCOLS.get("paper")
     camera = Lens(**paper.settings.camera.model_dump(), distortion=distortion)
     others = {name: getattr(paper.settings, name) for name in EyasConfig.model_fields}
     new = replace(paper)

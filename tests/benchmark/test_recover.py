@@ -37,13 +37,13 @@ SHORT = {"done": {"total_steps": 12_000}}
 
 @pytest.fixture(scope="module")
 def things():
-    protocol = PROTOCOLS["recover"]
+    protocol = PROTOCOLS.get("recover")
     return protocol, protocol.choose([VILLAGE], protocol, 1, SEED)
 
 
 @pytest.fixture(scope="module")
 def covers():
-    protocol = PROTOCOLS["recover-camera"]
+    protocol = PROTOCOLS.get("recover-camera")
     return protocol, protocol.choose([HOME], protocol, 1, SEED)
 
 
@@ -211,7 +211,7 @@ def test_records_repeat_however_episodes_are_batched(covers):
 
 
 def test_a_map_without_cover_is_refused_in_words():
-    protocol = PROTOCOLS["recover"]
+    protocol = PROTOCOLS.get("recover")
     with pytest.raises(SpawnError, match=r"nothing in 'farmland' hides .* use 'recover-camera'$"):
         protocol.choose([HOME._replace(map="farmland")], protocol, 1, SEED)
 

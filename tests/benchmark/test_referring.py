@@ -25,7 +25,7 @@ from eyas.engine.targets.grammar.naming import PhraseKind
 from eyas.engine.targets.grammar.wording import WORDINGS, Wording
 from eyas.maps.street.parked_cars import _COLOURS as PARKED
 
-PROTOCOL = PROTOCOLS["referring"]
+PROTOCOL = PROTOCOLS.get("referring")
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")
 FIRST = 1_000_000
 SHORT = {"done": {"total_steps": 3_000}}
@@ -263,7 +263,7 @@ def test_switches_go_from_the_target_to_another_for_a_while():
 
 @pytest.mark.slow
 def test_somebody_in_a_crowd_has_others_near_who_look_the_same():
-    protocol = PROTOCOLS["crowd"]
+    protocol = PROTOCOLS.get("crowd")
     place = Place("citystreet", "day", "Pedestrian")
     episodes = protocol.choose([place], protocol, 1, FIRST)
     assert [episode.direction for episode in episodes] == list(protocol.directions)

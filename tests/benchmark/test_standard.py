@@ -29,7 +29,7 @@ def episodes_of(**changes):
 def standard(request):
     """A hundred starts, as the simulator makes them: episodes, and their batch."""
     episodes = episodes_of(maps=(request.param,))
-    return episodes, EpisodeBatch(episodes, PROTOCOLS["standard"], EnvConfig())
+    return episodes, EpisodeBatch(episodes, PROTOCOLS.get("standard"), EnvConfig())
 
 
 def squares(batch):
@@ -74,7 +74,7 @@ def test_starts_are_spread_over_the_map_and_over_vehicles(standard):
     place = episodes[0].place
     first = [each._replace(seed=1_000_000 + number) for number, each in enumerate(episodes)]
     assert {each.place for each in first} == {place}
-    taken = squares(EpisodeBatch(first, PROTOCOLS["standard"], EnvConfig()))
+    taken = squares(EpisodeBatch(first, PROTOCOLS.get("standard"), EnvConfig()))
     assert max(taken.values()) > max(visits.values())
     assert len(taken) < len(visits)
 

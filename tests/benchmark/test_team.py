@@ -24,7 +24,7 @@ HOME = Place("citystreet", "day", "SUMO_VEHICLE")
 
 
 def chosen(name="pair", count=1, seed=1_000_000):
-    protocol = PROTOCOLS[name]
+    protocol = PROTOCOLS.get(name)
     return protocol, protocol.choose([HOME], protocol, count, seed)
 
 

@@ -20,7 +20,7 @@ SMALL = validated(
         "env": {"observation": {"width": 24, "height": 24, "layout": "chw"}},
         "train": {
             "method": "dagger+ppo",
-            "imitation": {"total_timesteps": 96, "guided_timesteps": 64, "minibatches": 2},
+            "dagger": {"total_timesteps": 96, "guided_timesteps": 64, "minibatches": 2},
             "environments": 4,
             "shards": 2,
             "n_steps": 8,

@@ -554,7 +554,7 @@ def _records(folder, chance, most):
 
     path = folder / "episodes.jsonl"
     path.write_text(json.dumps(RECORD))
-    name = next(iter(PROTOCOLS))
+    name = PROTOCOLS.built_in[0]
 
     def read() -> None:
         path.write_bytes(path.read_bytes().replace(b"\n", b" ") + b"\n")

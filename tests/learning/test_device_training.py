@@ -24,7 +24,7 @@ SMALL = validated(
         },
         "train": {
             "method": "dagger+ppo",
-            "imitation": {"total_timesteps": 64, "guided_timesteps": 40},
+            "dagger": {"total_timesteps": 64, "guided_timesteps": 40},
             "environments": 4,
             "n_steps": 8,
             "updates_per_block": 2,

@@ -16,8 +16,8 @@ from eyas.engine.envs.batch import Truth
 from eyas.engine.policies.steering import towards
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
-from eyas.learning import dagger, ppo
-from eyas.learning.config import Method, TrainConfig
+from eyas.learning.algorithm import Learner, phases_of
+from eyas.learning.dagger import Dagger
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Roller
 from eyas.learning.shards import TorchThreads
@@ -35,7 +35,7 @@ SMALL = validated(
             "updates_per_block": 2,
             "hidden": 16,
             "evaluation": {"every": 0},
-            "imitation": {
+            "dagger": {
                 "total_timesteps": 96,
                 "guided_timesteps": 64,
                 "buffer": 64,
@@ -68,6 +68,15 @@ def roller(changes=None, shape=SHAPE):
     made = Roller(config, network)
     made.begin(np.random.default_rng(0))
     return made, network, config.train
+
+
+def dagger(made, network, config, updates=1):
+    """Return the algorithm at the beginning of a block."""
+    optimiser, generator = torch.optim.Adam(network.parameters(), 3e-3), torch.Generator()
+    learner = Learner(network, optimiser, config, generator.manual_seed(0), TorchThreads(1))
+    learned = Dagger(learner, config.dagger)
+    learned.begin(updates)
+    return learned
 
 
 @pytest.fixture(scope="module")
@@ -110,10 +119,8 @@ def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monke
 
 def test_what_a_teacher_tells_is_learned():
     """The loss falls on flights that the network has not learned from."""
-    made, network, _ = roller({"n_steps": 32})
-    config = updated(SMALL.train, {"imitation": {"minibatches": 4}})
-    optimiser, threads = torch.optim.Adam(network.parameters(), 3e-3), TorchThreads(1)
-    generator, buffer = torch.Generator().manual_seed(0), dagger.Buffer(1)
+    made, network, config = roller({"n_steps": 32, "dagger": {"minibatches": 4}})
+    learned = dagger(made, network, config)
     held = copy.deepcopy(made.roll(1.0))
     made.begin(np.random.default_rng(1))
 
@@ -125,9 +132,8 @@ def test_what_a_teacher_tells_is_learned():
     before = loss()
     for _ in range(3):
         data = made.roll(1.0)
-        buffer.add(data, ppo.advantages(data, 0.9, 0.9) + data.values[:-1])
         for _ in range(8):
-            dagger.update(network, optimiser, buffer, config, generator, threads)
+            learned.update(data)
     assert loss() < 0.75 * before
 
 
@@ -167,7 +173,7 @@ def test_a_teacher_goes_on_where_it_has_seen_the_target_and_counts_less_each_mom
 
 
 def made_config(**imitation):
-    return updated(SMALL, {"train": {"imitation": imitation}})
+    return updated(SMALL, {"train": {"dagger": imitation}})
 
 
 def test_an_exact_teacher_knows_a_hidden_target():
@@ -186,23 +192,24 @@ def test_an_exact_teacher_knows_a_hidden_target():
 
 
 def test_the_oldest_rollout_gives_way_and_no_empty_place_is_learned_from():
-    made, network, config = roller()
-    buffer, generator = dagger.Buffer(2), torch.Generator().manual_seed(0)
+    made, *rest = roller()
+    learned = dagger(made, *rest, updates=2)
+    buffer = learned.buffer
     for number in range(3):
         data = made.roll(0.0)
         buffer.add(data, torch.full((8, 4), float(number)))
-        for chosen in dagger._minibatches(network, buffer, config, generator):
+        for chosen in learned.minibatches():
             assert (chosen % 8 < buffer.filled).all()
     assert buffer.lessons.targets[0].tolist() == [2.0] * 4 + [1.0] * 4
     assert torch.equal(buffer.lessons.pictures[:, :4], data.pictures)
 
 
 def test_each_new_decision_is_learned_from_once_in_an_update():
-    made, network, config = roller({"imitation": {"replay": 0.0}})
-    buffer, generator = dagger.Buffer(2), torch.Generator().manual_seed(0)
+    made, *rest = roller({"dagger": {"replay": 0.0}})
+    learned = dagger(made, *rest, updates=2)
     for _ in range(2):
-        buffer.add(made.roll(0.0), torch.zeros(8, 4))
-    got = torch.cat(list(dagger._minibatches(network, buffer, config, generator)))
+        learned.buffer.add(made.roll(0.0), torch.zeros(8, 4))
+    got = torch.cat(list(learned.minibatches()))
     assert sorted(got.tolist()) == [row * 8 + column for row in range(8) for column in range(4, 8)]
 
 
@@ -215,14 +222,12 @@ def test_a_network_with_memory_learns_whole_sequences(tmp_path):
 
 def test_the_memory_of_a_minibatch_is_that_of_the_flight():
     """Outputs of the unchanged network are those that it had in flight."""
-    made, network, config = roller({"memory": True}, NetworkShape(3, 24, 24, 16, memory=True))
-    buffer = dagger.Buffer(1)
+    made, *rest = roller({"memory": True}, NetworkShape(3, 24, 24, 16, memory=True))
+    learned = dagger(made, *rest)
     data = made.roll(0.0)
-    buffer.add(data, data.values[:-1])
-    chosen = torch.arange(4)
-    part = dagger._Part(chosen, 1.0, torch.ones(()))
-    losses, _ = dagger._gradients(network, buffer.lessons, part, config)
-    assert float(losses[2]) == pytest.approx(0.0, abs=1e-9), "values are those of the flight"
+    learned.buffer.add(data, data.values[:-1])
+    _, figures = learned.loss(learned.everything(data), 1.0, torch.ones(()))
+    assert figures[2].item() == pytest.approx(0.0, abs=1e-9), "values are those of the flight"
 
 
 def test_channels_last_answers_the_same_but_for_rounding(tmp_path):
@@ -242,10 +247,9 @@ def test_channels_last_answers_the_same_but_for_rounding(tmp_path):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"method": "dager"}, r"^train\.method: 'dager' is not allowed; .*'dagger'"),
-        ({"imitation": {"teacher": "x"}}, r"^train\.imitation\.teacher: 'x' .*sighted"),
-        ({"imitation": {"fade": 0}}, r"^train\.imitation\.fade: 0 is not allowed"),
-        ({"imitation": {"minibatch": 4}}, r"minibatch.*minibatches"),
+        ({"dagger": {"teacher": "x"}}, r"^train\.dagger\.teacher: 'x' .*sighted"),
+        ({"dagger": {"fade": 0}}, r"^train\.dagger\.fade: 0 is not allowed"),
+        ({"dagger": {"minibatch": 4}}, r"minibatch.*minibatches"),
     ],
 )
 def test_bad_values_are_one_line(changes, message):
@@ -254,12 +258,32 @@ def test_bad_values_are_one_line(changes, message):
     assert "\n" not in str(caught.value)
 
 
+def ends(**changes):
+    return [(each.name, each.end) for each in phases_of(updated(SMALL.train, changes))]
+
+
 def test_how_long_a_teacher_teaches():
-    config = updated(SMALL.train, {"imitation": {"total_timesteps": 70}})
-    assert config.taught_decisions == 96, "whole updates of 32"
-    assert updated(config, {"method": "ppo"}).taught_decisions == 0
-    assert updated(config, {"method": "dagger"}).taught_decisions == config.run_decisions == 192
-    assert TrainConfig().method is Method.PPO
+    longer = {"total_timesteps": 70}
+    assert ends(dagger=longer) == [("dagger", 96), ("ppo", 192)], "whole updates of 32"
+    assert ends(method="ppo") == [("ppo", 192)]
+    assert ends(method="dagger") == [("dagger", 192)]
+    assert ends(dagger={"total_timesteps": 1000}) == [("dagger", 192), ("ppo", 192)]
+
+
+@pytest.mark.parametrize(
+    ("method", "message"),
+    [
+        ("dager", r"^train\.method: .*'dager'.*'dagger'"),
+        ("ppo+dagger", r"^train\.method: 'ppo\+dagger' is not allowed: 'ppo' has no end"),
+        ("dagger+tracker", r"^train\.method: 'tracker' is not an Algorithm"),
+        ("math:pi", r"^train\.method: 'math:pi' is a float"),
+    ],
+)
+def test_an_algorithm_that_is_none_is_told_in_one_line(method, message, tmp_path):
+    with pytest.raises(EyasError, match=message) as caught:
+        train(updated(SMALL, {"train": {"method": method}}), tmp_path / "run", say=quiet)
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "run").exists()
 
 
 def test_stages_keep_their_shares_of_other_decisions():
@@ -277,5 +301,5 @@ def test_method_and_steps_are_chosen_on_the_command_line(monkeypatch, tmp_path):
         main()
     assert ended.value.code in (0, None)
     kept = load_settings(tmp_path / "run" / "config.json").train
-    assert kept.method is Method.PPO
+    assert kept.method == "ppo"
     assert [stage.total_timesteps for stage in kept.stages] == [64, 32]

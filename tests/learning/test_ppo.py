@@ -5,9 +5,10 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from eyas.learning.config import TrainConfig
+from eyas.learning.algorithm import Learner
+from eyas.learning.config import PpoConfig, TrainConfig
 from eyas.learning.network import NetworkShape, TrackingNetwork
-from eyas.learning.ppo import _gradients, _Lesson, advantages, update
+from eyas.learning.ppo import Ppo
 from eyas.learning.rollout import Rollout
 from eyas.learning.shards import TorchThreads
 
@@ -31,7 +32,7 @@ def rollout(steps, count, shape=None, seed=0):
 
 def test_advantages_are_the_weighted_sum_of_later_errors():
     data, gamma, gae_lambda = rollout(12, 5), 0.9, 0.7
-    got = advantages(data, gamma, gae_lambda).numpy()
+    got = data.advantages(gamma, gae_lambda).numpy()
     r, v, e = (array.numpy() for array in (data.rewards, data.values, data.ended))
     for n in range(5):
         for t in range(12):
@@ -57,7 +58,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
     bright = torch.arange(8) % 2
     data.pictures[:] = (bright * 200 + 20).to(torch.uint8)[None, :, None, None, None]
     good, state = torch.tensor([2, 5])[bright], torch.zeros(8, shape.state)
-    threads = TorchThreads(2)
+    learned = Ppo(Learner(network, optimiser, config, generator, TorchThreads(2)), config.ppo)
     for _ in range(60):
         with torch.no_grad():
             logits, value, _ = network(data.pictures[0], state)
@@ -66,7 +67,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
         data.rewards[:] = (data.actions == good).float()
         data.values[:] = value
         data.ended[:] = 1.0  # each decision is an episode
-        update(network, optimiser, data, config, generator, threads)
+        learned.update(data)
     chances = network(data.pictures[0], state)[0].softmax(1).gather(1, good[:, None])
     assert chances.min() > 0.9
 
@@ -77,7 +78,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
 ])  # fmt: skip
 def test_a_policy_that_has_moved_far_enough_is_pushed_no_farther(change, gain, learns):
     """The objective of Schulman et al. 2017, equation 7, by its gradient."""
-    config = TrainConfig(clip_range=0.2, vf_coef=0.0, ent_coef=0.0, hidden=16)
+    config = TrainConfig(vf_coef=0.0, hidden=16)
     shape = NetworkShape(3, 24, 24, 16, memory=False)
     network = TrackingNetwork(shape)
     network.initialise(torch.Generator().manual_seed(0))
@@ -86,6 +87,9 @@ def test_a_policy_that_has_moved_far_enough_is_pushed_no_farther(change, gain, l
         logits, _, _ = network(data.pictures.flatten(0, 1), data.states.flatten(0, 1))
     own = logits.log_softmax(1).gather(1, data.actions.flatten()[:, None])[:, 0]
     data.log_probability[:] = (own - np.log1p(change)).view(4, 4)  # so that the ratio is 1 + change
-    lesson = _Lesson(data, torch.full((4, 4), gain), data.values[:-1])
-    _, gradients = _gradients(network, lesson, torch.arange(16), 1.0, config)
+    learner = Learner(network, None, config, torch.Generator(), TorchThreads(1))
+    learned = Ppo(learner, PpoConfig(clip_range=0.2, ent_coef=0.0))
+    gains = torch.full((4, 4), gain)
+    loss, _ = learned.loss(data, gains, data.values[:-1], torch.arange(16), 1.0)
+    gradients = torch.autograd.grad(loss, tuple(network.parameters()))
     assert any(bool(part.abs().max() > 1e-6) for part in gradients) == learns

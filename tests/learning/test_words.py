@@ -214,8 +214,8 @@ def test_what_would_change_nothing_is_refused(changes, why, tmp_path):
 @pytest.mark.parametrize(
     ("option", "why"),
     [
-        (["--ray"], "--ray: not allowed for a listener"),
-        (["--device", "cuda"], "train.device: 'cuda' is not allowed for a listener"),
+        (["--ray"], "--ray: not allowed with train.method 'words'"),
+        (["--device", "cuda"], "train.device: 'cuda' is not allowed with train.method 'words'"),
     ],
 )
 def test_it_is_taught_in_one_process_on_this_processor(option, why, tmp_path):

@@ -14,6 +14,7 @@ from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import Scene
 from eyas.engine.task.spawn import StartValues, start_pose
 from eyas.engine.world.maps import MAPS
+from eyas.engine.world.weather import WEATHERS
 from eyas.maps.plan.build import build_scene
 
 NAMES = MAPS.built_in
@@ -22,7 +23,7 @@ ALIKE = ("simpleway-clinker", "simpleway-desert", "simpleway-farm", "simpleway-l
 """Maps that differ only in their ground from one that is drawn; each takes long to pack."""
 DRAWN = [name for name in NAMES if name not in ALIKE]
 ALL = ("citystreet",)
-OTHERS = ("rain", "dusk", "overcast", "dust", "autumn")
+OTHERS = set(WEATHERS.built_in) - {"day", "foggy", "night", "snow"}
 """Weathers that are drawn on two maps only: packing a map in another season takes long."""
 CONDITIONS = [
     pytest.param(name, weather, marks=[pytest.mark.thorough] if number and name not in ALL else [])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 if TYPE_CHECKING:
     from eyas.benchmark.record import EpisodeRecord
 
-__all__ = ["evaluate", "list_policies"]
+__all__ = ["evaluate", "list_policies", "list_protocols"]
 
 Names = str | Sequence[str]
 
@@ -52,7 +52,7 @@ def evaluate(
 
     Args:
         policy: A name of `list_policies()`, a file, or `package.module:name`.
-        protocol: `paper`, `long`, `search` or `distractor`.
+        protocol: A name of `list_protocols()`, or `package.module:NAME`.
         out: The folder; by default `runs/evaluation/<policy>-<protocol>`.
         resume: Whether an evaluation in the folder is continued.
         overwrite: Whether one in the folder is deleted first.
@@ -84,8 +84,14 @@ def evaluate(
 
 
 def list_policies() -> tuple[str, ...]:
-    """Return the names of the policies that Eyas brings along."""
-    from eyas.benchmark.policies.shipped import shipped_names
-    from eyas.benchmark.policies.table import BUILT_IN
+    """Return the names of the policies: of Eyas, and of packages that are installed."""
+    from eyas.benchmark.policies.table import policy_names
 
-    return (*BUILT_IN, *shipped_names())
+    return policy_names()
+
+
+def list_protocols() -> tuple[str, ...]:
+    """Return the names of the protocols: of Eyas, and of packages that are installed."""
+    from eyas.benchmark.protocols import PROTOCOLS
+
+    return PROTOCOLS.names()

@@ -26,7 +26,9 @@ _Policy = Annotated[
 _Protocol = Annotated[
     str,
     typer.Option(
-        "--protocol", help="paper, standard, unseen, long, search, ...: see docs/evaluation.md."
+        "--protocol",
+        help="paper, standard, unseen, long, search, ...: see docs/evaluation.md; or "
+        "package.module:NAME.",
     ),
 ]
 _Maps = Annotated[
@@ -220,13 +222,18 @@ def compare(
     across_builds: Annotated[
         bool, typer.Option("--across-builds", help="Compare although Eyas itself differs.")
     ] = False,
+    trust: Annotated[
+        bool, typer.Option("--trust", help="Run the code of a protocol that they name by a path.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
     from eyas.benchmark.comparison import differences, refuse_incomparable, text_of
     from eyas.benchmark.result import load_run
 
-    (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
+    (stamp_a, records_a), (stamp_b, records_b) = (
+        load_run(folder, trust=trust) for folder in (first, second)
+    )
     refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
     found = differences(records_a, records_b, stamp_a.plan.rules)
     if json_:

@@ -63,6 +63,10 @@ def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> 
             f"not comparable: '{first.plan.policy}' was flown in protocol {first.plan.protocol} "
             f"{first.protocol}, '{second.plan.policy}' in {second.plan.protocol} {second.protocol}"
         )
+    if first.rules != second.rules:
+        raise DataFileError(
+            f"not comparable: the protocol's code differs: {first.rules} and {second.rules}"
+        )
     differs = "" if across_builds else first.other_build(second)
     if differs:
         world = "the world differs" if first.build.world != second.build.world else "they differ"

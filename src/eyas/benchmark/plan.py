@@ -15,8 +15,8 @@ from eyas.benchmark.delay import Measured, delay_from
 from eyas.benchmark.entry import Entry, entry_of
 from eyas.benchmark.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
 from eyas.benchmark.flight import BatchFlight, Watcher
-from eyas.benchmark.policies.apart import open_apart, runs_code
-from eyas.benchmark.policies.table import BUILT_IN, ORACLES, fingerprint, open_policy
+from eyas.benchmark.policies.apart import open_apart
+from eyas.benchmark.policies.table import ORACLES, fingerprint, open_policy, runs_code
 from eyas.benchmark.protocol import Protocol
 from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.record import EpisodeRecord
@@ -24,6 +24,7 @@ from eyas.benchmark.solvable import solvable
 from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.own_code import Origin, origin_of
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.policies.policy import Policy
 from eyas.engine.world.maps import MAPS
@@ -38,8 +39,9 @@ class EvaluationPlan(Config):
     """An evaluation. The same plan in the same version gives the same records, bit for bit."""
 
     policy: str
-    """Built-in name, path of a file, or `package.module:name`."""
+    """A name, the path of a file, or `package.module:name`."""
     protocol: str = "paper"
+    """A name, or `package.module:NAME`."""
     maps: Names = ("citystreet",)
     weathers: Names = ("day",)
     targets: Names | None = None
@@ -68,8 +70,8 @@ class EvaluationPlan(Config):
         """Take the protocol's maps if none are named."""
         if not isinstance(values, dict) or "maps" in values:
             return values
-        protocol = PROTOCOLS.get(str(values.get("protocol")))
-        return values if protocol is None else {**values, "maps": protocol.maps}
+        protocol = protocol_named(str(values.get("protocol", "paper")))
+        return {**values, "maps": protocol.maps}
 
     @property
     def rules(self) -> Protocol:
@@ -134,6 +136,8 @@ class Stamp(Config):
     """Of Eyas, too: what its code and data are."""
     protocol: str
     """Hash of the protocol."""
+    rules: Origin | None = None
+    """Whose protocol it is; None: one of Eyas."""
     policy: str | None
     """Hash of the policy's file; None if it has none."""
     plan: EvaluationPlan
@@ -157,6 +161,7 @@ def stamp(plan: EvaluationPlan) -> Stamp:
         version=__version__,
         build=this_build(),
         protocol=plan.rules.hash,
+        rules=None if (path := PROTOCOLS.path(plan.protocol)) is None else origin_of(path),
         policy=fingerprint(plan.policy),
         plan=plan,
     )
@@ -198,7 +203,7 @@ def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
     Raises:
         EyasError: It cannot be loaded, or may not act as it wants in this protocol.
     """
-    foreign = plan.policy not in BUILT_IN and runs_code(plan.policy)
+    foreign = runs_code(plan.policy)
     apart = foreign and not plan.in_process
     make = open_apart if apart else open_policy
     usual = plan.rules.oracles if plan.policy in ORACLES else {}

@@ -151,6 +151,23 @@ class Protocol:
         """Return a protocol with other settings, and so with another hash."""
         return replace(self, changes=_joined(self.changes, changes))
 
+    def like(
+        self,
+        name: str,
+        title: str,
+        changes: Mapping[str, Any] | None = None,
+        **others: Any,  # noqa: ANN401  # fields of any type
+    ) -> "Protocol":
+        """Return a protocol that is as this one but for what is said.
+
+        Args:
+            name: Its name.
+            title: What it measures, in a few words.
+            changes: Settings that differ from this one's, nested.
+            others: Other fields, such as `maps`, `episodes` or `columns`.
+        """
+        return replace(self.changed(changes or {}), name=name, title=title, **others)
+
     @property
     def steps(self) -> int:
         """Number of control steps in an episode; actions last one or several of them."""

@@ -12,7 +12,7 @@ from eyas.benchmark.protocols import protocol_named
 from eyas.benchmark.record import EpisodeRecord, read_records
 from eyas.benchmark.rows import TableRow, rows_of
 from eyas.benchmark.statistics import ENOUGH, FEWEST, Estimate
-from eyas.engine.core.config import validated
+from eyas.engine.core.config import shown, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
@@ -58,11 +58,15 @@ _LARGEST_STAMP = 1 << 24
 """Largest plan of an evaluation [bytes]."""
 
 
-def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
+def load_run(folder: Path, *, trust: bool = False) -> tuple[Stamp, list[EpisodeRecord]]:
     """Return stamp and records of an evaluation.
 
+    Args:
+        folder: Its folder.
+        trust: Whether the code of a protocol that it names by a path may be run.
+
     Raises:
-        DataFileError: The folder holds none, or a file is damaged.
+        DataFileError: The folder holds none, a file is damaged, or it names code.
     """
     path = folder / STAMP
     if not path.is_file():
@@ -70,6 +74,10 @@ def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
     values = read_json(path, _LARGEST_STAMP, "the plan of an evaluation")
     if not isinstance(values, dict):
         raise DataFileError(f"{path}: not the plan of an evaluation: not a JSON object")
+    plan = values.get("plan")
+    protocol = str(plan.get("protocol")) if isinstance(plan, dict) else ""
+    if ":" in protocol and not trust:
+        raise DataFileError(f"{path}: its protocol {shown(protocol)} is code: --trust runs it")
     return validated(Stamp, values, str(path)), read_records(folder / EPISODES)
 
 

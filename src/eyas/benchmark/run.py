@@ -91,7 +91,8 @@ def run(  # noqa: PLR0913  # choices of the user's
             film(out, plan, flown)
     if not quiet:
         print(
-            f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}, "
+            f"{plan.policy}, protocol {plan.protocol} {made.protocol}"
+            f"{'' if made.rules is None else f' of {made.rules}'}, Eyas {made.version}, "
             f"build {made.build.id}, class {entry.entry_class}"
         )
         print(table(rows, plan.protocol))
@@ -116,13 +117,13 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
             f"{out}: an evaluation is already there; continue it with --resume, or replace it "
             "with --overwrite"
         )
-    found, records = load_run(out)
+    found, records = load_run(out, trust=True)  # it must be the protocol that the user names
     if differs := found.other_build(made):
         raise OutputError(
             f"{out}: cannot be continued: flown by build {found.build.id} of Eyas, which differs "
             f"from this one in {differs}; continue with that build, or replace it with --overwrite"
         )
-    for name in ("protocol", "policy"):
+    for name in ("protocol", "rules", "policy"):
         old, new = getattr(found, name), getattr(made, name)
         if old != new:
             raise OutputError(f"{out}: cannot be continued: its {name} was {old}, now it is {new}")

@@ -3,11 +3,11 @@
 import csv
 import io
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import torch
 
@@ -17,9 +17,20 @@ from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings, save_settings
 
-__all__ = ["RunFolder", "TrainingProgress", "readable"]
+__all__ = ["RunFolder", "Stateful", "TrainingProgress", "readable"]
 
 Row = dict[str, float]
+
+
+class Stateful(Protocol):
+    """What remembers something from block to block."""
+
+    def state_dict(self) -> dict[str, Any]:
+        """Return it."""
+
+    def load_state_dict(self, state: dict[str, Any], /) -> Any:  # noqa: ANN401  # not looked at
+        """Remember it."""
+
 
 _NOT_LEARNED = ("robotics", "engine/exports", "engine/overlay", "engine/video")
 """Rooms that have no part in a training run."""
@@ -76,16 +87,22 @@ class RunFolder:
         save_settings(config, self._config)
 
     def save(
-        self, progress: TrainingProgress, network: torch.nn.Module, optimiser: torch.optim.Optimizer
+        self, progress: TrainingProgress, parts: Mapping[str, Stateful], code: Sequence[str] = ()
     ) -> None:
-        """Write a checkpoint and the curve."""
+        """Write a checkpoint and the curve.
+
+        Args:
+            progress: How far the run has come.
+            parts: What learns, `network` among them.
+            code: What identifies code of a user's that teaches.
+        """
         data = io.BytesIO()
         torch.save(
             {
                 "build": this_build().model_dump(),
+                "code": list(code),
                 "progress": asdict(progress),
-                "network": network.state_dict(),
-                "optimiser": optimiser.state_dict(),
+                **{name: part.state_dict() for name, part in parts.items()},
             },
             data,
         )
@@ -96,8 +113,8 @@ class RunFolder:
         writer.writerows(progress.rows)
         write_atomic(self.path / "curve.csv", text.getvalue().encode())
 
-    def load(self, network: torch.nn.Module, optimiser: torch.optim.Optimizer) -> TrainingProgress:
-        """Return how far the run has come; set network and optimiser as they were.
+    def load(self, parts: Mapping[str, Stateful], code: Sequence[str] = ()) -> TrainingProgress:
+        """Return how far the run has come; set what learns as it was. Arguments as of `save`.
 
         Raises:
             DataFileError: The checkpoint cannot be read.
@@ -107,11 +124,16 @@ class RunFolder:
             return TrainingProgress()
         with readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, "cpu", weights_only=True)
-            build = Build(**saved["build"])
+            build, taught = Build(**saved["build"]), saved["code"]
         self.refuse_other(build)
+        if taught != list(code):
+            raise OutputError(
+                f"{self.path}: taught by other code, {', '.join(taught) or 'none of your own'}; "
+                "resume with that code, or begin another run"
+            )
         with readable(self._checkpoint):
-            network.load_state_dict(saved["network"])
-            optimiser.load_state_dict(saved["optimiser"])
+            for name, part in parts.items():
+                part.load_state_dict(saved[name])
             kept = saved["progress"]
             # The same objects as in a run that was not resumed: so pickle writes the same bytes.
             kept["rows"] = [{sys.intern(name): row[name] for name in row} for row in kept["rows"]]

@@ -36,7 +36,9 @@ def train(  # noqa: PLR0913  # one parameter for each option
     method: Annotated[
         str | None,
         typer.Option(
-            "--method", help="How to teach: ppo, dagger, dagger+ppo or tracker (train.method)."
+            "--method",
+            help="How to teach (train.method): ppo, dagger, dagger+ppo, tracker, words, or "
+            "package.module:Class.",
         ),
     ] = None,
     steps: Annotated[

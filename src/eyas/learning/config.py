@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LESSON",
+    "DaggerConfig",
     "Evaluation",
-    "Imitation",
-    "Method",
+    "PpoConfig",
     "Round",
     "Stage",
     "TeacherKind",
@@ -37,23 +37,6 @@ Count = Annotated[int, Field(ge=1, le=2**40)]
 DeviceName = Annotated[
     str, Field(pattern=r"^(host|cuda(:\d{1,4})?)$"), Said("'cuda', 'cuda:1' and so on or 'host'")
 ]
-
-
-class Method(StrEnum):
-    """How a network is taught."""
-
-    PPO = "ppo"
-    """By rewards: proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
-    DAGGER = "dagger"
-    """By a teacher: dataset aggregation (Ross et al. 2011, arXiv:1011.0686)."""
-    DAGGER_PPO = "dagger+ppo"
-    """By a teacher at first, then by rewards."""
-    TRACKER = "tracker"
-    """The network of a tracker that follows what its first box shows, from pictures of flights
-    (docs/following-one-target.md); settings: `tracker`, no others."""
-    WORDS = "words"
-    """The network of a listener that follows what it is told, from pictures of traffic
-    (docs/following-words.md); settings: `words`, no others."""
 
 
 class TeacherKind(StrEnum):
@@ -95,7 +78,7 @@ class Evaluation(Config):
 
     every: Annotated[int, Field(ge=0, le=100_000)] = 4
     """Blocks from one evaluation to the next; 0: none."""
-    protocol: str = "paper"
+    protocol: Annotated[str, NAMES_CODE] = "paper"
     """Of `eyas evaluate`."""
     weathers: Annotated[tuple[str, ...], NAMES_CODE] = ()
     """None: `world.weather`."""
@@ -105,13 +88,15 @@ class Evaluation(Config):
     """Of the first episode: far from those of training and of `eyas evaluate`."""
 
 
-class Imitation(Config):
-    """How a teacher teaches: the network flies, the teacher tells the action that it would choose,
-    and the network learns that from these views and from earlier ones of the block.
+class DaggerConfig(Config):
+    """Dataset aggregation (Ross et al. 2011, arXiv:1011.0686): the network flies, the teacher tells
+    the action that it would choose, and the network learns that from these views and from earlier
+    ones of the block.
     """
 
     total_timesteps: Count = 100_000
-    """Decisions after which PPO goes on, with `dagger+ppo`; rounded up to whole updates."""
+    """Decisions after which the other goes on, with `dagger+ppo` or `dagger+` one of your own;
+    rounded up to whole updates."""
     teacher: TeacherKind = TeacherKind.SIGHTED
     """Who tells the right actions."""
     guided_timesteps: Annotated[int, Field(ge=0, le=2**40)] = 12_000
@@ -132,6 +117,19 @@ class Imitation(Config):
     """Of Adam; it falls linearly to `train.final_rate` of this while the teacher teaches."""
 
 
+class PpoConfig(Config):
+    """Proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
+
+    n_epochs: Annotated[int, Field(ge=1, le=100)] = 3
+    """Passes over the data of a rollout."""
+    minibatches: Annotated[int, Field(ge=1, le=4096)] = 4
+    """Parts of a pass; each is a step of the optimiser."""
+    clip_range: Annotated[float, Field(gt=0, le=10)] = 0.2
+    """Largest change of the ratio of probabilities that is rewarded."""
+    ent_coef: Annotated[float, Field(ge=0, le=10)] = 0.01
+    """Weight of the entropy of actions in the loss."""
+
+
 class Round(Config):
     """A part of the training of a tracker: flights, then lessons from all pictures there are."""
 
@@ -142,7 +140,9 @@ class Round(Config):
 
 
 class TrackerTraining(Config):
-    """How a tracker is taught."""
+    """How the network of a tracker is taught, which follows what its first box shows
+    (docs/following-one-target.md).
+    """
 
     rounds: Annotated[tuple[Round, ...], Field(min_length=1)] = (
         Round(flights=24, steps=1200),
@@ -196,7 +196,9 @@ class TrackerTraining(Config):
 
 
 class WordsTraining(Config):
-    """How a listener is taught."""
+    """How the network of a listener is taught, which follows what it is told
+    (docs/following-words.md).
+    """
 
     blocks: Annotated[int, Field(ge=1, le=100_000)] = 60
     """Blocks of new pictures, after each of which the run can be resumed."""
@@ -217,24 +219,25 @@ class WordsTraining(Config):
         """Pictures in all lessons, with those that come more than once."""
         return self.blocks * self.block_pictures
 
-    def scaled_blocks(self, total: int) -> int:
-        """Return the number of blocks that has `total` pictures in lessons, at least 1."""
-        return max(round(total / self.block_pictures), 1)
+    def scaled(self, total: int) -> dict[str, Any]:
+        """Return the change with `total` pictures in all lessons: so many blocks, at least 1."""
+        return {"blocks": max(round(total / self.block_pictures), 1)}
 
 
 class TrainConfig(Section):
-    """How a network is taught; see `Method`."""
+    """How a network is taught."""
 
     section = "train"
 
-    method: Method = Method.PPO
-    """By rewards, by a teacher, or first by a teacher."""
-    imitation: Imitation = Imitation()
-    """How a teacher teaches."""
+    method: Annotated[str, NAMES_CODE] = "ppo"
+    """A name of the table `ALGORITHMS` or `package.module:Class`; two joined by `+` learn one after
+    the other."""
+    ppo: PpoConfig = PpoConfig()
+    dagger: DaggerConfig = DaggerConfig()
     tracker: TrackerTraining = TrackerTraining()
-    """How a tracker is taught."""
     words: WordsTraining = WordsTraining()
-    """How a listener is taught."""
+    own: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
+    """Settings of an algorithm that is not one of Eyas: fields of its `Settings`."""
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
@@ -247,10 +250,6 @@ class TrainConfig(Section):
     updates_per_block: Annotated[int, Field(ge=1, le=100_000)] = 20
     """Updates between two checkpoints. Each block begins with new episodes, so that a run that is
     resumed gives the same as one that never stopped."""
-    n_epochs: Annotated[int, Field(ge=1, le=100)] = 3
-    """Passes over the data of a rollout."""
-    minibatches: Annotated[int, Field(ge=1, le=4096)] = 4
-    """Parts of a pass; each is a step of the optimiser."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 5e-4
     """Of Adam; it falls linearly to `final_rate` of this over all stages."""
     final_rate: Share = 0.05
@@ -259,10 +258,6 @@ class TrainConfig(Section):
     """Discount of rewards, per decision."""
     gae_lambda: Share = 0.9
     """Lambda of generalised advantage estimation."""
-    clip_range: Annotated[float, Field(gt=0, le=10)] = 0.2
-    """Largest change of the ratio of probabilities that is rewarded."""
-    ent_coef: Annotated[float, Field(ge=0, le=10)] = 0.01
-    """Weight of the entropy of actions in the loss."""
     vf_coef: Annotated[float, Field(ge=0, le=100)] = 0.5
     """Weight of the error of the value in the loss."""
     max_grad_norm: Annotated[float, Field(gt=0, le=1e6)] = 0.5
@@ -293,19 +288,11 @@ class TrainConfig(Section):
 
     def updates_of(self, stage: Stage) -> int:
         """Return the updates of a stage: as many as have at least its decisions."""
-        return -(-stage.total_timesteps // self.update_decisions)
+        return self.rounded(stage.total_timesteps) // self.update_decisions
 
-    @property
-    def taught_decisions(self) -> int:
-        """Decisions at the beginning of a run in which a teacher teaches."""
-        match self.method:
-            case Method.PPO | Method.TRACKER | Method.WORDS:
-                return 0
-            case Method.DAGGER:
-                return self.run_decisions
-            case Method.DAGGER_PPO:
-                updates = -(-self.imitation.total_timesteps // self.update_decisions)
-                return min(updates * self.update_decisions, self.run_decisions)
+    def rounded(self, decisions: int) -> int:
+        """Return the decisions of the fewest whole updates that have at least so many."""
+        return -(-decisions // self.update_decisions) * self.update_decisions
 
     @property
     def run_decisions(self) -> int:
@@ -323,10 +310,9 @@ class TrainConfig(Section):
 
     def scaled(self, total: int) -> dict[str, Any]:
         """Return the changes that make it a run of `total` decisions, or pictures in lessons."""
-        if self.method is Method.WORDS:
-            return {"words": {"blocks": self.words.scaled_blocks(total)}}
-        if self.method is Method.TRACKER:
-            return {"tracker": self.tracker.scaled(total)}
+        section = getattr(self, self.method, None)
+        if isinstance(section, TrackerTraining | WordsTraining):
+            return {self.method: section.scaled(total)}
         return {"stages": self.scaled_stages(total)}
 
     def scaled_stages(self, total: int) -> list[dict[str, Any]]:

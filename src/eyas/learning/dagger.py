@@ -1,29 +1,18 @@
-"""The update of dataset aggregation (Ross et al. 2011, arXiv:1011.0686)."""
+"""Dataset aggregation (Ross et al. 2011, arXiv:1011.0686)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar
 
 import torch
 from torch import Tensor, nn
 
-from eyas.learning.config import TrainConfig
-from eyas.learning.minibatch import descend, outputs, taken
-from eyas.learning.network import TrackingNetwork
+from eyas.engine.core.config import Config
+from eyas.learning.algorithm import Algorithm
+from eyas.learning.config import DaggerConfig
 from eyas.learning.rollout import Rollout
-from eyas.learning.shards import TorchThreads
 
-__all__ = ["Buffer", "ImitationLosses", "update"]
-
-
-class ImitationLosses(NamedTuple):
-    """Of the last minibatch of an update, named as the columns of the curve."""
-
-    imitation_loss: float
-    """Cross-entropy between the teacher's actions and the network's."""
-    agreement: float
-    """Share of decisions in which the network's best action is the teacher's."""
-    value_loss: float
+__all__ = ["Buffer", "Dagger"]
 
 
 @dataclass
@@ -84,78 +73,79 @@ class Buffer:
         self._next = (self._next + 1) % self._rollouts
 
 
-def update(
-    network: TrackingNetwork,
-    optimiser: torch.optim.Optimizer,
-    buffer: Buffer,
-    config: TrainConfig,
-    generator: torch.Generator,
-    threads: TorchThreads,
-) -> ImitationLosses:
-    """Teach the network what the teacher has told in the latest rollout and, again, in others.
+class Dagger(Algorithm):
+    """The network flies, a teacher tells what it would do, and the network learns that.
 
-    Args:
-        network: Changed in place.
-        optimiser: Of its parameters.
-        buffer: Rollouts of the block.
-        config: The settings.
-        generator: Source of the random order of the data.
-        threads: Finds the gradients of the parts of a minibatch.
+    `imitation_loss` is the cross-entropy between the teacher's actions and the network's,
+    `agreement` the share of decisions in which the network's best action is the teacher's.
     """
-    losses = torch.zeros(len(ImitationLosses._fields))
-    for chosen in _minibatches(network, buffer, config, generator):
-        weight = taken(buffer.lessons.weights, chosen, network).sum().clamp(min=1.0)
-        parts = [
-            _Part(part, len(part) / len(chosen), weight) for part in chosen.chunk(config.parts)
-        ]
-        found = threads.each(lambda job: _gradients(network, buffer.lessons, job, config), parts)
-        losses = torch.stack([loss for loss, _ in found]).sum(0)
-        descend(network, optimiser, [gradients for _, gradients in found], config.max_grad_norm)
-    return ImitationLosses(*losses.tolist())
 
+    Settings: ClassVar[type[Config]] = DaggerConfig
+    columns = ("imitation_loss", "agreement", "value_loss")
+    taught = True
+    settings: DaggerConfig
+    buffer: Buffer
 
-def _minibatches(
-    network: TrackingNetwork, buffer: Buffer, config: TrainConfig, generator: torch.Generator
-) -> Iterator[Tensor]:
-    """Yield minibatches of an update, see `taken`: all new ones once, each with some old ones."""
-    steps, width = buffer.lessons.labels.shape
-    whole = network.shape.memory
-    new = buffer.latest
-    if not whole:
-        new = (torch.arange(steps)[:, None] * width + new).flatten()
-    imitation = config.imitation
-    for fresh in new[torch.randperm(len(new), generator=generator)].chunk(imitation.minibatches):
-        count = round(len(fresh) * imitation.replay)
-        old = torch.randint(buffer.filled, (count,), generator=generator)
+    def begin(self, updates: int) -> None:
+        """Begin with an empty buffer: it is not in the checkpoint."""
+        most = -(-self.settings.buffer // self.learner.config.update_decisions)
+        self.buffer = Buffer(min(most, updates))
+
+    def guided(self, decisions: int) -> float:
+        """See `Algorithm.guided`: the share falls from all to none."""
+        length = self.settings.guided_timesteps
+        return max(1.0 - decisions / length, 0.0) if length else 0.0
+
+    @property
+    def learning_rate(self) -> float:
+        """A rate of its own: a teacher's actions may be followed faster than rewards."""
+        return self.settings.learning_rate
+
+    def update(self, data: Rollout) -> Tensor:
+        """Teach what the teacher has told in this rollout and, again, in others of the block."""
+        ahead = data.advantages(self.learner.config.gamma, self.learner.config.gae_lambda)
+        self.buffer.add(data, ahead + data.values[:-1])
+        figures = torch.zeros(len(self.columns))
+        for chosen in self.minibatches():
+            total = self.taken(self.buffer.lessons.weights, chosen).sum().clamp(min=1.0)
+            figures = self._descended(chosen, total)
+        return figures
+
+    def minibatches(self) -> Iterator[Tensor]:
+        """Yield minibatches of an update: all new views once, each with some old ones."""
+        generator = self.learner.generator
+        steps, width = self.buffer.lessons.labels.shape
+        whole = self.learner.network.shape.memory
+        new = self.buffer.latest
         if not whole:
-            old += width * torch.randint(steps, (count,), generator=generator)
-        yield torch.cat([fresh, old]).to(buffer.lessons.labels.device)
+            new = (torch.arange(steps)[:, None] * width + new).flatten()
+        order = torch.randperm(len(new), generator=generator)
+        for fresh in new[order].chunk(self.settings.minibatches):
+            count = round(len(fresh) * self.settings.replay)
+            old = torch.randint(self.buffer.filled, (count,), generator=generator)
+            if not whole:
+                old += width * torch.randint(steps, (count,), generator=generator)
+            yield torch.cat([fresh, old]).to(self.buffer.lessons.labels.device)
 
+    def _descended(self, chosen: Tensor, total: Tensor) -> Tensor:
+        return self.descend(chosen, lambda part, share: self.loss(part, share, total))
 
-class _Part(NamedTuple):
-    """A part of a minibatch."""
+    def loss(self, part: Tensor, share: float, total: Tensor) -> tuple[Tensor, Tensor]:
+        """Return what a part of a minibatch adds to the loss, and to the figures.
 
-    chosen: Tensor
-    """See `taken`."""
-    share: float
-    """Of the minibatch."""
-    weight: Tensor
-    """Sum of the weights in the minibatch."""
-
-
-def _gradients(
-    network: TrackingNetwork, lessons: Lessons, part: _Part, config: TrainConfig
-) -> tuple[Tensor, tuple[Tensor, ...]]:
-    """Return what a part of a minibatch adds to the losses, and to the gradient of their sum."""
-    chosen, share, weight = part
-    logits, values = outputs(network, lessons, chosen)
-    labels = taken(lessons.labels, chosen, network)
-    weights = taken(lessons.weights, chosen, network) / weight
-    wrong = nn.functional.cross_entropy(logits, labels, reduction="none")
-    imitation = (weights * wrong).sum()
-    # The value is learned as well, so that PPO can go on from there.
-    value = share * (values - taken(lessons.targets, chosen, network)).square().mean()
-    loss = imitation + config.vf_coef * value
-    gradients = torch.autograd.grad(loss, tuple(network.parameters()))
-    agreement = (weights * (logits.argmax(1) == labels)).sum()
-    return torch.stack([imitation, agreement, value]).detach(), gradients
+        Args:
+            part: See `Algorithm`.
+            share: Of the minibatch.
+            total: Sum of the labels' weights in the minibatch.
+        """
+        lessons = self.buffer.lessons
+        logits, values = self.outputs(lessons, part)
+        labels = self.taken(lessons.labels, part)
+        weights = self.taken(lessons.weights, part) / total
+        wrong = nn.functional.cross_entropy(logits, labels, reduction="none")
+        imitation = (weights * wrong).sum()
+        # The value is learned as well, so that PPO can go on from there.
+        value = share * (values - self.taken(lessons.targets, part)).square().mean()
+        agreement = (weights * (logits.argmax(1) == labels)).sum()
+        loss = imitation + self.learner.config.vf_coef * value
+        return loss, torch.stack([imitation, agreement, value])

@@ -13,7 +13,8 @@ from torch import Tensor
 
 from eyas.engine.envs.vector_env import EyasVectorEnv
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import Method, TrainConfig
+from eyas.learning.algorithm import phases_of
+from eyas.learning.config import TrainConfig
 from eyas.learning.devices import torch_device
 from eyas.learning.network import TrackingNetwork
 from eyas.learning.teacher import Teacher
@@ -52,6 +53,22 @@ class Rollout:
         parts = zip(*(vars(shard).values() for shard in shards), strict=True)
         return Rollout(*(torch.cat(part, 1) for part in parts))
 
+    def advantages(self, gamma: float, gae_lambda: float) -> Tensor:
+        """Return generalised advantage estimates (Schulman et al. 2016, arXiv:1506.02438), (T, N).
+
+        Args:
+            gamma: Discount of rewards, per decision.
+            gae_lambda: Discount of errors of the values; 1: what follows less the value.
+        """
+        estimates = torch.zeros_like(self.rewards)
+        following = torch.zeros_like(self.rewards[0])
+        for step in reversed(range(len(self.rewards))):
+            goes_on = 1.0 - self.ended[step]
+            error = self.rewards[step] + gamma * goes_on * self.values[step + 1] - self.values[step]
+            following = error + gamma * gae_lambda * goes_on * following
+            estimates[step] = following
+        return estimates
+
 
 @dataclass
 class Finished:
@@ -77,7 +94,7 @@ class Roller:
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
         count = TrainConfig.of(config).environments // TrainConfig.of(config).shards
-        taught = TrainConfig.of(config).method is not Method.PPO
+        taught = any(phase.algorithm.taught for phase in phases_of(TrainConfig.of(config)))
         self._teacher = Teacher(config, count) if taught else None
         self.env = EyasVectorEnv(
             count,

@@ -1,11 +1,12 @@
 """Training: a run of `eyas.learning`, which needs an extra."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 from eyas.engine.core.errors import ConfigError, MissingExtraError
+from eyas.engine.core.own_code import running
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import Method, TrainConfig
+from eyas.learning.config import TrainConfig
+from eyas.learning.registry import ALGORITHMS, SETTING
 
 __all__ = ["run"]
 
@@ -29,38 +30,39 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     except ModuleNotFoundError as error:
         raise MissingExtraError("training", "train") from error
     say = (lambda _: None) if quiet else _say
-    if TrainConfig.of(config).method in (Method.TRACKER, Method.WORDS):
-        return _of_pictures(config, folder, resume=resume, say=say, ray=ray)
-    if not ray:
-        return train(config, folder, resume=resume, say=say)
-    if TrainConfig.of(config).device is not None:
-        raise ConfigError(
-            f"train.device: '{TrainConfig.of(config).device}' is not there with --ray"
-        )
-    from eyas.learning.shards import on_ray
+    method = TrainConfig.of(config).method
+    whole = None if "+" in method else ALGORITHMS.get(method)
+    with running(SETTING, method):
+        if whole is not None and not isinstance(whole, type):
+            _refuse_spread(config, ray=ray)
+            path: Path = whole(config, folder, resume=resume, say=say)
+            return path
+        if not ray:
+            return train(config, folder, resume=resume, say=say)
+        if TrainConfig.of(config).device is not None:
+            raise ConfigError(
+                f"train.device: '{TrainConfig.of(config).device}' is not there with --ray"
+            )
+        from eyas.learning.shards import on_ray
 
-    with on_ray() as make_shards:
-        return train(config, folder, resume=resume, say=say, make_shards=make_shards)
+        with on_ray() as make_shards:
+            return train(config, folder, resume=resume, say=say, make_shards=make_shards)
 
 
-def _of_pictures(
-    config: EyasConfig, folder: Path, *, resume: bool, say: Callable[[str], None], ray: bool
-) -> Path:
-    """Train a network that learns from labelled pictures, in this process."""
-    from eyas.learning.tracking.training import train as train_tracker
-    from eyas.learning.words.training import train as train_listener
+def _refuse_spread(config: EyasConfig, *, ray: bool) -> None:
+    """Refuse to spread what learns without rollouts: it does so on this processor, in this process.
 
-    tracks = TrainConfig.of(config).method is Method.TRACKER
-    name = "tracker" if tracks else "listener"
+    Raises:
+        ConfigError: It is asked for.
+    """
+    method, device = TrainConfig.of(config).method, TrainConfig.of(config).device
     if ray:
-        raise ConfigError(f"--ray: not allowed for a {name}: it is taught in one process")
-    if TrainConfig.of(config).device is not None:
+        raise ConfigError(f"--ray: not allowed with {SETTING} '{method}': one process learns")
+    if device is not None:
         raise ConfigError(
-            f"train.device: '{TrainConfig.of(config).device}' is not allowed for a {name}: it is taught on "
+            f"train.device: '{device}' is not allowed with {SETTING} '{method}': it learns on "
             "this processor"
         )
-    train = train_tracker if tracks else train_listener
-    return train(config, folder, resume=resume, say=say)
 
 
 def _say(line: str) -> None:

@@ -36,7 +36,7 @@ class Teacher:
 
     def __init__(self, config: EyasConfig, count: int) -> None:
         changes = config.env.model_dump(include={"action_repeat", "speeds"})
-        learned = TrainConfig.of(config).imitation
+        learned = TrainConfig.of(config).dagger
         self._oracle = _ORACLES[learned.teacher](changes, ConstantVelocity())
         self._fade = learned.fade
         self._all, self._nobody = np.ones(count, np.bool_), np.zeros(count, np.bool_)

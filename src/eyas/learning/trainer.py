@@ -10,15 +10,16 @@ import torch
 
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.own_code import origin_of
 from eyas.engine.core.rng import TEST_SEEDS, stream
 from eyas.engine.envs.choice import steps_per_action
 from eyas.engine.envs.observation import observation_space
 from eyas.engine.sensors.config import ColourLayout
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import ActionKind, ObservationPart
-from eyas.learning import dagger, ppo
-from eyas.learning.checkpoint import RunFolder, TrainingProgress
-from eyas.learning.config import Method, Stage, TrainConfig
+from eyas.learning.algorithm import Learner, phases_of
+from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
+from eyas.learning.config import Stage, TrainConfig
 from eyas.learning.devices import torch_device
 from eyas.learning.export import export
 from eyas.learning.monitoring import (
@@ -29,6 +30,7 @@ from eyas.learning.monitoring import (
     evaluation_episodes,
 )
 from eyas.learning.network import NetworkShape, TrackingNetwork
+from eyas.learning.registry import ALGORITHMS
 from eyas.learning.rollout import Finished
 from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 
@@ -79,7 +81,7 @@ def train(
                 f"{updates:,} updates of {each:,}: {updates * each:,}"
             )
     if resume:
-        run.progress = run.files.load(run.network, run.optimiser)
+        run.progress = run.files.load(run.parts, run.code)
     if run.progress.stage < len(
         TrainConfig.of(config).stages
     ):  # environments take a while to be made
@@ -102,8 +104,9 @@ class _Run:
         self.config, self.files, self._say = config, files, say
         self._make_shards = make_shards
         _refuse_later_errors(config)
+        phases = phases_of(TrainConfig.of(config))
         # Before the network is made, because it sets PyTorch's threads.
-        self._threads = TorchThreads(TrainConfig.of(config).parts)
+        threads = TorchThreads(TrainConfig.of(config).parts)
         layout = TrainConfig.of(config).channels_last
         self.network = TrackingNetwork(_shape(config), channels_last=layout)
         generator = torch.Generator().manual_seed(config.seed)
@@ -112,7 +115,20 @@ class _Run:
             RunFolder(Path(TrainConfig.of(config).begin_from)).load_network(self.network)
         self.network.to(torch_device(TrainConfig.of(config).device))
         rate = TrainConfig.of(config).learning_rate
-        self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
+        optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
+        self._learner = Learner(
+            self.network, optimiser, TrainConfig.of(config), torch.Generator(), threads
+        )
+        self._phases = [
+            (phase.algorithm(self._learner, phase.settings), phase.end) for phase in phases
+        ]
+        self.parts: dict[str, Stateful] = {
+            "network": self.network,
+            "optimiser": optimiser,
+            **{each.name: own for each, (own, _) in zip(phases, self._phases, strict=True)},
+        }
+        own = (ALGORITHMS.path(each.name) for each in phases)
+        self.code = [str(origin_of(path)) for path in own if path is not None]
         self.progress = TrainingProgress()
         self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
         self._total = TrainConfig.of(config).run_decisions
@@ -130,7 +146,7 @@ class _Run:
             if done:
                 self.progress.stage += 1
                 self.progress.stage_decisions = 0
-            self.files.save(self.progress, self.network, self.optimiser)
+            self.files.save(self.progress, self.parts, self.code)
             export(self.network, settings.env, self.files.policy)
         shards.close()
 
@@ -139,12 +155,14 @@ class _Run:
         config, progress, start = TrainConfig.of(self.config), self.progress, time.monotonic()
         rng = stream(self.config.seed, "learning", progress.block)
         shards.begin(rng.spawn(config.shards))
-        generator = torch.Generator().manual_seed(int(rng.integers(2**62)))
-        updates = self._updates(stage)
-        teach = self._teaching(generator, updates)
+        self._learner.generator.manual_seed(int(rng.integers(2**62)))
+        algorithm, end = next(each for each in self._phases if progress.decisions < each[1])
+        updates = self._updates(stage, end)
+        algorithm.begin(updates)
         for number in range(1, updates + 1):
-            self._set_rate()
-            columns = teach(shards)
+            self._set_rate(algorithm.learning_rate, end)
+            data = shards.roll(algorithm.guided(progress.decisions))
+            figures = algorithm.update(data).tolist()
             progress.decisions += config.update_decisions
             progress.stage_decisions += config.update_decisions
             self._tell_meanwhile(number * config.update_decisions / (time.monotonic() - start))
@@ -152,9 +170,10 @@ class _Run:
         rate = updates * config.update_decisions / seconds
         progress.block += 1
         scores = self._evaluated(stage)
-        row = self._row(shards.finished(), columns) | scores._asdict()
+        learned = dict(zip(algorithm.columns, figures, strict=True))
+        row = self._row(shards.finished(), learned) | scores._asdict()
         progress.rows.append(row)
-        self._tell(row, rate)
+        self._tell(row, rate, algorithm.report(learned))
         good = stage.until_tsr is not None and scores.tsr >= stage.until_tsr
         return good or progress.stage_decisions >= stage.total_timesteps
 
@@ -166,50 +185,22 @@ class _Run:
             return evaluated(self.network, self.config)
         return NO_SCORES
 
-    def _updates(self, stage: Stage) -> int:
-        """Return the updates of the next block, all of one method."""
+    def _updates(self, stage: Stage, end: int) -> int:
+        """Return the updates of the next block, all of one algorithm."""
         config, progress = TrainConfig.of(self.config), self.progress
         left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
-        taught = (config.taught_decisions - progress.decisions) // config.update_decisions
-        return min(left, config.updates_per_block, taught if taught > 0 else left)
+        before = (end - progress.decisions) // config.update_decisions
+        return min(left, config.updates_per_block, before)
 
-    def _teaching(self, generator: torch.Generator, updates: int) -> Callable[[Shards], Columns]:
-        """Return what does an update of the next block, and returns columns of the curve."""
-        config, network, optimiser = TrainConfig.of(self.config), self.network, self.optimiser
-        threads, progress, imitation = (
-            self._threads,
-            self.progress,
-            TrainConfig.of(self.config).imitation,
-        )
-        buffer = dagger.Buffer(min(-(-imitation.buffer // config.update_decisions), updates))
+    def _set_rate(self, rate: float, end: int) -> None:
+        """Set the rate of learning, which falls until the decision with which a phase ends."""
+        left = max(1.0 - self.progress.decisions / end, TrainConfig.of(self.config).final_rate)
+        for group in self._learner.optimiser.param_groups:
+            group["lr"] = rate * left
 
-        def by_rewards(shards: Shards) -> Columns:
-            data = shards.roll()
-            return ppo.update(network, optimiser, data, config, generator, threads)._asdict()
-
-        def by_teacher(shards: Shards) -> Columns:
-            guided = max(1.0 - progress.decisions / max(imitation.guided_timesteps, 1), 0.0)
-            data = shards.roll(guided if imitation.guided_timesteps else 0.0)
-            ahead = ppo.advantages(data, config.gamma, config.gae_lambda)
-            buffer.add(data, ahead + data.values[:-1])
-            losses = dagger.update(network, optimiser, buffer, config, generator, threads)
-            return losses._asdict()
-
-        return by_teacher if progress.decisions < config.taught_decisions else by_rewards
-
-    def _set_rate(self) -> None:
-        config, done = TrainConfig.of(self.config), self.progress.decisions
-        rate, total = config.learning_rate, self._total
-        if done < config.taught_decisions:
-            rate, total = config.imitation.learning_rate, config.taught_decisions
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate * max(1.0 - done / total, config.final_rate)
-
-    def _row(self, shards: list[Finished], columns: Columns) -> Columns:
+    def _row(self, shards: list[Finished], learned: Columns) -> Columns:
         """Return the curve's row of a block; all rows of a run have the same columns."""
-        names = dict.fromkeys(ppo.Losses._fields)
-        if TrainConfig.of(self.config).method is not Method.PPO:
-            names = dict.fromkeys((*dagger.ImitationLosses._fields, *names))
+        names = dict.fromkeys(name for own, _ in self._phases for name in own.columns)
         returns = [each for finished in shards for each in finished.returns]
         lengths = [each for finished in shards for each in finished.lengths]
         return {
@@ -218,7 +209,7 @@ class _Run:
             "episodes": len(returns),
             "return": round(float(np.mean(returns or [np.nan])), 6),
             "length": round(float(np.mean(lengths or [np.nan])), 6),
-            **{name: columns.get(name, math.nan) for name in names},
+            **{name: learned.get(name, math.nan) for name in names},
         }
 
     def _tell_meanwhile(self, rate: float) -> None:
@@ -232,7 +223,7 @@ class _Run:
                 f"{left / 60:.1f} min left"
             )
 
-    def _tell(self, row: dict[str, float], rate: float) -> None:
+    def _tell(self, row: Columns, rate: float, report: str) -> None:
         """Tell how it goes."""
         progress, self._told = self.progress, time.monotonic()
         left = max(self._total - progress.decisions, 0) / rate
@@ -240,7 +231,7 @@ class _Run:
         tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
         self._say(
             f"{progress.decisions:>9,} of {self._total:,} decisions  return {row['return']:7.2f}  "
-            f"{tested}"
+            f"{tested}{report and f'{report}  '}"
             f"{rate:,.0f} decisions/s ({physics / 500:,.0f} s of flight per s)  "
             f"{left / 60:.1f} min left"
         )

@@ -78,6 +78,23 @@ def test_a_users_own_can_be_given_a_name(orchard):
     assert table.built_in == ("apple", "pear")
 
 
+def test_whose_an_object_is_can_be_told_without_importing_it(orchard, monkeypatch):
+    installed(monkeypatch, fig="orchard.trees:FIG")
+    table = fruits(group="eyas.fruits")
+    table.register("mine", "orchard.trees:FIG")
+    asked = ("fig", "mine", "orchard.rotten:X", "apple", "plum")
+    assert [table.path(name) for name in asked] == [
+        *("orchard.trees:FIG", "orchard.trees:FIG", "orchard.rotten:X", None, None)
+    ]
+    assert "orchard.trees" not in sys.modules
+
+
+def test_a_table_may_hold_objects_themselves():
+    table = Registry("meal.fruit", Fruit, {"apple": APPLE})
+    assert table.get("apple") is APPLE
+    assert table.built_in == table.names() == ("apple",)
+
+
 def test_an_unknown_name_is_told_with_the_nearest_and_all_known_ones():
     with pytest.raises(UnknownNameError) as caught:
         fruits().get("appel")

@@ -16,6 +16,7 @@ from eyas.engine.sim.still import StillWorld
 from eyas.engine.state.draw import Picture, Views
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.config import WorldConfig
+from eyas.engine.world.weather import WEATHERS
 
 FOLDER = Path(__file__).parent / "golden"
 SIZE = (120, 160)
@@ -72,15 +73,11 @@ PICTURES = {
     **{name: ("citystreet", "day", name) for name in VIEWS},
     **{
         f"{weather}-{name}": ("citystreet", weather, name)
-        for weather in ("foggy", "night", "snow")
+        for weather in WEATHERS.built_in
         for name in ("ahead", "overview")
+        if weather not in ("day", *NO_SHADOWS)
     },
     **{f"{name}-ahead": (name, "day", "ahead") for name in MAPS},
-    **{
-        f"{weather}-{name}": ("citystreet", weather, name)
-        for weather in ("rain", "dusk", "autumn")
-        for name in ("ahead", "overview")
-    },
     **{f"{weather}-overview": ("citystreet", weather, "overview") for weather in NO_SHADOWS},
     **{f"lake-{weather}-overview": ("lake", weather, "overview") for weather in ("autumn", "dusk")},
 }

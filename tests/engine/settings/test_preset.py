@@ -58,7 +58,7 @@ def test_training_starts_from_every_side():
 
 
 def test_the_flown_drone_is_that_of_the_protocol():
-    config, rules = load_settings(preset_file("flown")), PROTOCOLS["flown"].settings
+    config, rules = load_settings(preset_file("flown")), PROTOCOLS.get("flown").settings
     for name in ("tracker", "control", "reward", "camera"):
         assert getattr(config, name) == getattr(rules, name), name
     for name in ("pitch", "height", "velocity"):

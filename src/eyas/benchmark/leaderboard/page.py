@@ -8,6 +8,7 @@ from pathlib import Path
 
 from eyas.benchmark.entry import EntryClass
 from eyas.benchmark.leaderboard.submission import Submission, submissions_in
+from eyas.benchmark.plan import Stamp
 from eyas.benchmark.result import UNITS, cell
 from eyas.benchmark.rows import TableRow, rows_of
 from eyas.engine.core.errors import DataFileError
@@ -66,7 +67,7 @@ def run(folder: Path, out: Path) -> str:
             continue
         stamp = entry.stamp
         names = ",".join(sorted(record.name for record in entry.records))
-        key = (stamp.plan.protocol, stamp.protocol, stamp.program, names)
+        key = (stamp.plan.protocol, stamp.protocol + _whose(stamp), stamp.program, names)
         tables.setdefault(key, []).append(entry)
         count += 1
     if not tables:
@@ -86,14 +87,19 @@ def _section(entries: Sequence[Submission]) -> str:
         f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
         f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.followed))}; "
         f"{len(first.records)} episodes, seeds from {starts}; protocol "
-        f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, program "
-        f"<code>{stamp.program}</code></p>\n"
+        f"<code>{html.escape(stamp.protocol)}</code>{_whose(stamp)}, "
+        f"Eyas {html.escape(stamp.version)}, program <code>{stamp.program}</code></p>\n"
     )
     oracles = [entry for entry in entries if _is_oracle(entry)]
     tables = _table([entry for entry in entries if not _is_oracle(entry)])
     if oracles:
         tables += f"\n<h3>Oracles</h3>\n<p>{ORACLES}</p>\n{_table(oracles)}"
     return head + tables
+
+
+def _whose(stamp: Stamp) -> str:
+    """Return whose the protocol is, unless it is one of Eyas."""
+    return "" if stamp.rules is None else f" of {html.escape(str(stamp.rules))}"
 
 
 def _is_oracle(entry: Submission) -> bool:

@@ -77,7 +77,7 @@ def complete_run(folder: Path) -> tuple[Stamp, Entry, list[EpisodeRecord]]:
         EyasError: It has not, or is of another version's protocol, or a file is damaged.
     """
     stamp, records = load_run(folder)
-    if stamp.plan.protocol not in PROTOCOLS or stamp.protocol != stamp.plan.rules.hash:
+    if stamp.plan.protocol not in PROTOCOLS.names() or stamp.protocol != stamp.plan.rules.hash:
         raise DataFileError("flown in a protocol of another version")
     if stamp.entry is None:
         raise DataFileError(f"its {STAMP} does not tell what the policy sees and may do")

@@ -20,7 +20,7 @@ from eyas.benchmark.leaderboard.mark import MARK, Mark, content_hash, signed
 from eyas.benchmark.leaderboard.submission import complete_run, folders_in
 from eyas.benchmark.plan import EvaluationPlan, Stamp, batches, fly_batch, opened, stamp
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.policies.table import BUILT_IN, FILES
+from eyas.benchmark.policies.table import FILES, POLICIES
 from eyas.benchmark.record import EpisodeRecord
 from eyas.benchmark.result import EPISODES
 from eyas.engine.core.errors import ConfigError, EyasError
@@ -145,6 +145,8 @@ def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> Evaluat
     here = stamp(plan)
     if here.policy != made.policy:
         raise _UnverifiableError(f"the policy's file is another: {here.policy}, not {made.policy}")
+    if here.rules != made.rules:
+        raise _UnverifiableError(f"the code of its protocol '{plan.protocol}' is another here")
     if differs := made.other_build(here):
         raise _UnverifiableError(
             f"flown by build {made.build.id} of Eyas, which differs from this one in {differs}"
@@ -160,7 +162,7 @@ def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> Evaluat
 
 def _policy_of(folder: Path, said: str, *, trust: bool) -> str:
     """Return what to open for a policy: its name, or its file in the folder or where it was."""
-    if said in BUILT_IN or said in shipped_names():
+    if said in POLICIES.built_in or said in shipped_names():
         return said
     if not trust and Path(said).suffix != _DATA:
         raise _UnverifiableError(

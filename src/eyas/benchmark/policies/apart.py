@@ -19,7 +19,6 @@ from typing import IO, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.code_names import PICKLED
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import (
@@ -31,7 +30,7 @@ from eyas.engine.policies.policy import (
 )
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["ApartPolicy", "open_apart", "receive", "runs_code", "send"]
+__all__ = ["ApartPolicy", "open_apart", "receive", "send"]
 
 Array = NDArray[Any]
 Read = TypeVar("Read")
@@ -47,11 +46,6 @@ _WRONG = (
 
 _LARGEST = 1 << 30
 """Largest part of a message [bytes]."""
-
-
-def runs_code(said: str) -> bool:
-    """Return whether what a user calls a policy names code, or a file that may run some."""
-    return said.endswith(PICKLED) or ":" in said
 
 
 def send(stream: IO[bytes], head: Mapping[str, Any], arrays: Sequence[Array] = ()) -> None:
@@ -216,12 +210,14 @@ class ApartPolicy:
         self.told = frozenset(map(str, child.answer["told"]))
 
     def begin(self, start: Start) -> None:
-        """Tell that N episodes begin, and what it may know of them: no seeds, unless it samples."""
+        """Tell that N episodes begin, and what it may know of them by its class of entry: no seeds,
+        unless it samples, no words, unless it asks for them.
+        """
         seeds = start.seeds if self.sampled else np.zeros_like(start.seeds)
         boxes = start.boxes() if "box" in self.told else np.zeros((len(seeds), 4), np.int32)
         head: dict[str, Any] = {"begin": True, "words": None}
         arrays: list[Array] = [seeds, boxes]
-        if start.told is not None:
+        if start.told is not None and self.told & {"words", "attributes"}:
             head["words"] = list(start.told.words)
             arrays.append(start.told.attributes)
         self._child.ask(head, arrays, lambda *_: None)

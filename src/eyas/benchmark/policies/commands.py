@@ -20,11 +20,11 @@ def _policies_group() -> None: ...
 def list_policies(*, as_json: AsJson = False) -> None:
     """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
     from eyas.benchmark.policies.shipped import card_of, shipped_names
-    from eyas.benchmark.policies.table import BUILT_IN
+    from eyas.benchmark.policies.table import POLICIES
     from eyas.benchmark.reproduce.tables import flown_of
 
     if as_json:
-        listed: list[dict[str, Any]] = [{"name": name} for name in BUILT_IN]
+        listed: list[dict[str, Any]] = [{"name": name} for name in POLICIES.names()]
         for name in shipped_names():
             figures = [
                 {"table": table, **one.model_dump(mode="json"), "build_id": build}
@@ -35,8 +35,8 @@ def list_policies(*, as_json: AsJson = False) -> None:
             listed.append({"name": name, **said, "figures": figures})
         typer.echo(json.dumps(listed, indent=1))
         return
-    for name in BUILT_IN:
-        typer.echo(f"{name} (built in)")
+    for name in POLICIES.names():
+        typer.echo(f"{name} ({POLICIES.path(name) or 'built in'})")
     for name in shipped_names():
         card = card_of(name)
         typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")

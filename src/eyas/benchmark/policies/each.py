@@ -145,8 +145,9 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
 
     Args:
         path: `package.module:name` of a function of one observation; of a function whose attribute
-            `batched` is true, of observations with a leading axis; of a class with `act`; or of a
-            box tracker, a class with `begin` and `update`.
+            `batched` is true, of observations with a leading axis; of a class with `act`; of a
+            subclass of `Policy`, or a class with its `begin` and `act`, one object of which flies
+            all episodes; or of a box tracker, a class with `begin` and `update`.
         changes: Changes of `env`; those in the attribute `env_settings` come first.
 
     Raises:
@@ -168,8 +169,22 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
             "act(observation)"
         )
     env = env_config(getattr(found, SETTINGS, {}), changes)
+    if made and hasattr(found, "begin"):
+        return _together(found, env, path)
     if made:
         return Each(found, env, path, _asked_for(found))
     if getattr(found, "batched", False):
         return Whole(found, env, path)
     return Each(lambda: found, env, path)
+
+
+def _together(found: type, env: EnvConfig, path: str) -> Policy:
+    """Return a user's policy that flies all episodes, with what it sees as it was chosen.
+
+    It is never sampled: the seeds of the episodes, which would tell all of them, are not told.
+    """
+    with running("--policy", path):
+        policy: Policy = found()
+    policy.env, policy.sampled = env, False
+    policy.told = frozenset(getattr(policy, "told", ()))
+    return policy

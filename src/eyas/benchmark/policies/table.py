@@ -1,22 +1,32 @@
 """Finds a policy by what a user calls it."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eyas.benchmark.policies.shipped import file_of, shipped_names
+from eyas.engine.core.code_names import PICKLED
 from eyas.engine.core.errors import ConfigError, DataFileError, UnknownNameError
+from eyas.engine.core.registry import Registry
 
 if TYPE_CHECKING:  # its observations know the whole simulation, and here are names
     from eyas.engine.policies.policy import Policy
 
-__all__ = ["BUILT_IN", "FILES", "ORACLES", "fingerprint", "open_policy"]
+__all__ = [
+    "FILES",
+    "ORACLES",
+    "POLICIES",
+    "fingerprint",
+    "open_policy",
+    "policy_names",
+    "runs_code",
+]
 
 _ROOM = "eyas.benchmark.policies"
 
-BUILT_IN = {
+_BUILT_IN = {
     "random": f"{_ROOM}.simple:random",
     "hover": f"{_ROOM}.simple:hover",
     "follow": f"{_ROOM}.follow:follow",
@@ -33,7 +43,15 @@ BUILT_IN = {
         for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
     },
 }
-"""Functions that take changes of `env` and return a policy, by name."""
+
+POLICIES: Registry[Callable[..., Any]] = Registry(
+    "--policy",
+    Callable,  # type: ignore[arg-type]  # a class to `isinstance`
+    _BUILT_IN,
+    group="eyas.policies",
+)
+"""Built in are functions that take changes of `env` and return a policy; what installed packages
+add is what `package.module:name` may be, see `load_callable`."""
 
 ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
 """Those that are told the truth, and fly by seven actions or, where `env.actions` says so, by
@@ -53,11 +71,23 @@ _LARGEST = 1 << 22
 """Largest number of pixels of an observation, with its frames, that a file may ask for."""
 
 
+def policy_names() -> tuple[str, ...]:
+    """Return the names of all policies: built in, of installed packages, trained ones that ship."""
+    return (*POLICIES.names(), *shipped_names())
+
+
+def runs_code(said: str) -> bool:
+    """Return whether what a user calls a policy is code that is not ours, or a file that may run
+    some.
+    """
+    return said.endswith(PICKLED) or POLICIES.path(said) is not None
+
+
 def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> "Policy":
     """Return a policy.
 
     Args:
-        said: A built-in or shipped name, the path of a file, or `package.module:name`.
+        said: A name of `policy_names`, the path of a file, or `package.module:name`.
         changes: Changes of `env`.
         sampled: Whether a network's actions are sampled instead of the best ones.
 
@@ -66,24 +96,25 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
     """
     policy: Policy
     path = file_of(said) if said in shipped_names() else Path(said)
-    if said in BUILT_IN:
+    own = POLICIES.path(said)
+    if said in POLICIES.built_in:
         _refuse_sampled(said, sampled=sampled)
-        policy = _imported(BUILT_IN[said])(changes)
+        policy = POLICIES.get(said)(changes)
     elif path.suffix in FILES:
         if not path.is_file():
             raise DataFileError(f"{path}: cannot read: no such file")
         policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
         _refuse_large(path, policy, changes)
-    elif ":" in said:
+    elif own is not None:
         from eyas.benchmark.policies.each import load_callable
 
         _refuse_sampled(said, sampled=sampled)
-        policy = load_callable(said, changes)
+        policy = load_callable(own, changes)
     else:
         raise UnknownNameError(
             "--policy",
             said,
-            (*BUILT_IN, *shipped_names()),
+            policy_names(),
             f"(nor a file {', '.join(FILES)}, nor 'package.module:name')",
         )
     if policy.env.mixture:
@@ -94,7 +125,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 def fingerprint(said: str) -> str | None:
     """Return a hash of a policy's file; None if the policy has no file."""
     path = file_of(said) if said in shipped_names() else Path(said)
-    if said in BUILT_IN or path.suffix not in FILES:
+    if said in POLICIES.built_in or path.suffix not in FILES:
         return None
     return sha256(path.read_bytes()).hexdigest()[:16]
 

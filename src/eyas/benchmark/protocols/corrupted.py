@@ -134,15 +134,14 @@ def in_all_variants(
     return [each._replace(variant=own) for own in protocol.variants for each in episodes]
 
 
-CORRUPTED = Protocol(
+CORRUPTED = STANDARD.like(
     "corrupted",
     "3 s: as standard, behind fifteen faults of camera and air at five strengths",
-    {**STANDARD.changes, "camera": {"imager": {}}},
-    directions=STANDARD.directions,
+    {"camera": {"imager": {}}},
     episodes=4,
     columns=("tsr", "fall", "flawless", "seen"),
-    rank="tsr",
     gaps=("fall",),
+    tells_solvable=False,
     choose=in_all_variants,
     variants=_VARIANTS,
     reference=CLEAN,

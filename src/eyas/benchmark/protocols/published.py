@@ -43,15 +43,11 @@ STANDARD = Protocol(
     tells_solvable=True,
 )
 
-UNSEEN = Protocol(
+UNSEEN = STANDARD.like(
     "unseen",
     "3 s: as standard, in six towns that nobody was taught in",
-    {"traffic": {"demand": "keep_alive"}},
-    directions=_TWELVE,
     episodes=2,
-    rank="tsr",
     choose=in_one_recording,
-    tells_solvable=True,
     elsewhere=True,
     maps=tuple(
         f"{name}:{seed}" for name in ("citystreet", "downtown", "village") for seed in TEST_TOWNS

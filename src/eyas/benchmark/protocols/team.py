@@ -5,32 +5,25 @@ from eyas.benchmark.team import TeamScenario
 
 __all__ = ["PAIR", "TEAM"]
 
-_SIXTY_SECONDS = {
-    "traffic": {"demand": "keep_alive"},
-    "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
-}
 _BESIDE = {"start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}}}
-_COLUMNS = ("team_seen", "alone_seen", "handed_over", "handover_time", "tsr", "crashed")
 
 PAIR = Protocol(
     "pair",
     "60 s: two drones, one target; the second starts with it out of view, one camera is covered "
     "for 5 to 15 s",
-    _SIXTY_SECONDS,
-    columns=_COLUMNS,
+    {
+        "traffic": {"demand": "keep_alive"},
+        "done": {"total_steps": 30_000, "no_reward_steps": NEVER},
+    },
+    columns=("team_seen", "alone_seen", "handed_over", "handover_time", "tsr", "crashed"),
     rank="team_seen",
     variants={"drone-1": {}, "drone-2": _BESIDE},
     team=True,
     scenario=TeamScenario,
 )
 
-TEAM = Protocol(
+TEAM = PAIR.like(
     "team",
     "60 s: as pair, with four drones, three of which start with the target out of view",
-    _SIXTY_SECONDS,
-    columns=_COLUMNS,
-    rank="team_seen",
     variants={"drone-1": {}, "drone-2": _BESIDE, "drone-3": _BESIDE, "drone-4": _BESIDE},
-    team=True,
-    scenario=TeamScenario,
 )

@@ -49,7 +49,7 @@ class Registry(Generic[T]):
     Args:
         setting: The setting that names an object, for messages; for example `world.map`.
         kind: Class of the objects, or a protocol that can be checked at run time.
-        built_in: The engine's own objects, each as `package.module:attribute`.
+        built_in: The engine's own objects, each as `package.module:attribute` or itself.
         group: Group of the doors of houses (`eyas.engine.core.doors`) and of the entry points with
             which installed packages add objects; None: nobody else can.
         files: Group of the doors of houses with objects that are made of files (`Found`).
@@ -59,7 +59,7 @@ class Registry(Generic[T]):
         self,
         setting: str,
         kind: type[T],
-        built_in: Mapping[str, str] = MappingProxyType({}),
+        built_in: Mapping[str, T | str] = MappingProxyType({}),
         *,
         group: str | None = None,
         files: str | None = None,
@@ -110,6 +110,15 @@ class Registry(Generic[T]):
         if name not in self._loaded:
             self._loaded[name] = self._checked(name, self._found(name))
         return self._loaded[name]
+
+    def path(self, name: str) -> str | None:
+        """Return the path of an object that is a user's own or of an installed package; None if it
+        is built in, of a file, or not there. Nothing is imported.
+        """
+        if ":" in name:
+            return name
+        found = None if name in self.built_in else (self._table | self._installed()).get(name)
+        return found if isinstance(found, str) else None
 
     def forget(self) -> None:
         """Look all objects up again when they are next asked for: a file of one has changed."""

@@ -302,10 +302,7 @@ AUTUMN = Weather(name="autumn", season=Season.AUTUMN, day=_AUTUMN_DAY, night=_AU
 WEATHERS: Registry[Weather] = Registry(
     "world.weather",
     Weather,
-    {
-        each.name: f"{__name__}:{each.name.upper()}"
-        for each in (DAY, FOGGY, NIGHT, SNOW, RAIN, DUSK, OVERCAST, DUST, AUTUMN)
-    },
+    {each.name: each for each in (DAY, FOGGY, NIGHT, SNOW, RAIN, DUSK, OVERCAST, DUST, AUTUMN)},
     group="eyas.weathers",
 )
 """The four weathers of the original, Eyas' own, and those of a user."""

@@ -14,8 +14,8 @@ from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
-from eyas.learning.checkpoint import RunFolder, TrainingProgress
-from eyas.learning.config import TrainConfig, WordsTraining
+from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
+from eyas.learning.config import WordsTraining
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import Loss, lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
@@ -58,14 +58,15 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
     network = ListenerNetwork((seen.height, seen.width))
     network.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     optimiser = torch.optim.AdamW(network.parameters(), training.learning_rate, weight_decay=1e-4)
-    progress = files.load(network, optimiser)
+    parts: dict[str, Stateful] = {"network": network, "optimiser": optimiser}
+    progress = files.load(parts)
     begun = time.process_time()
     say(f"{training.blocks} blocks, {training.pictures:,} pictures in lessons")
     while progress.block < training.blocks:
         scenes = drawn(config.env, config.seed, progress.block, training.scenes)
         losses = list(_taught(network, optimiser, scenes, config, progress.block))
         _add_row(progress, losses, training)
-        files.save(progress, network, optimiser)
+        files.save(progress, parts)
         say(_line(progress, training) + f"  CPU {time.process_time() - begun:.0f} s")
     export(network, config.env, LISTENER, files.policy)
     return files.policy
