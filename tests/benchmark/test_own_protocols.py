@@ -24,7 +24,7 @@ from eyas.benchmark.scenario import Told
 from eyas.cli.app import app
 from eyas.datasets.tracking.box_trackers import BOX_TRACKERS
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, UnknownNameError
-from eyas.engine.core.own_code import origin_of
+from eyas.engine.core.origin import origin_of
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.policies.table import (
     ORACLES,
