@@ -28,7 +28,7 @@ from eyas.benchmark.protocol import Protocol
 from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.protocols.flown import FLOWN
 from eyas.benchmark.result import load_run
-from eyas.benchmark.scenario import Instruction
+from eyas.engine.policies.policy import Instruction
 from eyas.cli.app import app
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, UnknownNameError
 from eyas.engine.core.own_code import origin_of

@@ -131,7 +131,7 @@ OWN = {
     "core.build:_digest_of": _PACKAGE,
     "core.cache.array_file:map_arrays": _CACHE,
     "core.installed:_origin": _PACKAGE,
-    "core.own_code:origin_of": _CODE,
+    "core.origin:origin_of": _CODE,
     "core.machine:_processor": _PACKAGE,
     "core.program:definitions_of": _PACKAGE,
     "datasets.export:_done": _OUTPUT,

@@ -5,58 +5,13 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from importlib.util import find_spec
-from pathlib import Path
 from traceback import extract_tb
 
-from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError, nearest
 
-__all__ = ["Origin", "ended", "imported", "left_out", "origin_of", "running", "takes"]
-
-
-class Origin(Config):
-    """What code of a user's is, for results that depend on it."""
-
-    path: str
-    """`package.module:attribute`."""
-    package: str | None
-    """The installed package that has it; None: a module that belongs to none."""
-    version: str | None
-    """Of that package."""
-    code: str
-    """Twelve hexadecimal digits of all Python files of the package, or of the one module."""
-
-    def __str__(self) -> str:
-        """Return it in words."""
-        return " ".join(filter(None, (self.package or self.path, self.version, self.code)))
-
-
-def origin_of(path: str) -> Origin:
-    """Return what the code at a path is, which can be imported."""
-    from importlib.metadata import packages_distributions, version  # slow to import
-
-    name = path.partition(":")[0]
-    top = name.partition(".")[0]
-    spec = find_spec(top)
-    folders = [] if spec is None else list(spec.submodule_search_locations or ())
-    files = sorted(file for folder in folders for file in Path(folder).rglob("*.py"))
-    if not folders and spec is not None and spec.origin is not None:
-        files = [Path(spec.origin)]
-    digest = sha256()
-    for file in files:
-        content = file.read_bytes()
-        digest.update(f"{file.name} {len(content)} ".encode() + content)
-    packages = packages_distributions().get(top)
-    package = packages[0] if packages else None
-    return Origin(
-        path=path,
-        package=package,
-        version=version(package) if package else None,
-        code=digest.hexdigest()[:12],
-    )
+__all__ = ["ended", "imported", "left_out", "running", "takes"]
 
 
 def imported(path: str, setting: str) -> object:

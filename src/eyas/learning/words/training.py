@@ -14,6 +14,7 @@ from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
+from eyas.learning.config import TrainConfig
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
 from eyas.learning.config import WordsTraining
 from eyas.learning.words.export import export
