@@ -103,6 +103,7 @@ def test_the_state_has_the_same_bytes_step_by_step_and_after_resets(case, count,
     [
         ({"control": {"action_latency_steps": 5}}, "control.action_latency_steps: 5"),
         ({"sensors": {"camera": {"noise": 0.1}}}, "sensors.camera"),
+        ({"sensors": {"further": ["compass"]}}, "sensors.further: a sensor"),
         ({"camera": {"defocus": 0.01}}, "camera.defocus"),
         ({"lidar": {"enabled": True}}, "lidar.enabled: true"),
         ({"done": {"crash": "end"}}, "done.crash: 'end'"),

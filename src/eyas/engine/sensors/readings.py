@@ -105,35 +105,23 @@ class Readings:
 
 
 class _Work(NamedTuple):
-    """Inputs and outputs of the kernel. Of S sensors and C columns."""
+    """Inputs and outputs of the kernel, for S sensors and C columns."""
 
     snapshot: Snapshot
     terrain: Terrain
     active: NDArray[np.bool_]
-    seed: Integers
-    """Of the random numbers of each sensor, shape (N, S)."""
-    first: Integers
-    """Where the columns of each sensor begin, shape (S + 1,)."""
-    settings: Floats
-    """Values of its own settings, in the first of P columns, shape (S, P)."""
-    period: Integers
-    """Physics steps between readings, shape (S,)."""
-    noise: Floats
-    """Shape (C,)."""
-    bias: Floats
-    """Shape (C,)."""
-    channel: Integers
-    """Channel of the random numbers of the noise, shape (C,)."""
-    delay: Integers
-    """[physics steps], shape (S,)"""
-    drop_out: Floats
-    """Shape (S,)."""
-    drop_out_channel: Integers
-    """Shape (S,)."""
-    history: Floats
-    """The reading of each step modulo D, which is more than the longest delay, shape (N, D, C)."""
-    told: Floats
-    """Shape (N, C)."""
+    seed: Integers  # of the random numbers of each sensor, shape (N, S)
+    first: Integers  # where the columns of each sensor begin, shape (S + 1,)
+    settings: Floats  # values of its own settings, in the first of P columns, shape (S, P)
+    period: Integers  # physics steps between readings, shape (S,)
+    noise: Floats  # shape (C,)
+    bias: Floats  # shape (C,)
+    channel: Integers  # channel of the random numbers of the noise, shape (C,)
+    delay: Integers  # [physics steps], shape (S,)
+    drop_out: Floats  # shape (S,)
+    drop_out_channel: Integers  # shape (S,)
+    history: Floats  # readings by step modulo D > the longest delay, shape (N, D, C)
+    told: Floats  # shape (N, C)
 
 
 Kernel = Callable[..., Any]
