@@ -12,10 +12,11 @@ import typer.core
 
 from eyas.benchmark import commands as evaluate
 from eyas.benchmark.reproduce import command as reproduce
-from eyas.cli import runs, targets, tools
+from eyas.cli import runs, tools
 from eyas.cli.about import about
 from eyas.cli.completion import completion
 from eyas.cli.switches import as_switches
+from eyas.cli.targets import commands as targets
 from eyas.datasets import commands as data
 from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
