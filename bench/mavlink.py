@@ -17,6 +17,7 @@ from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together
 from eyas.robotics.mavlink.dialect import dialect
+from eyas.robotics.mavlink.endpoint import Endpoint
 from eyas.robotics.mavlink.fleet import Fleet
 from eyas.robotics.serve_mavlink import AS_FLOWN
 
@@ -34,7 +35,9 @@ FAST = (
 def send(fleet: Fleet, kind: str, **fields: float) -> None:
     """Send a message to a fleet."""
     message = getattr(common, f"MAVLink_{kind}_message")(**fields)
-    fleet.take(common.MAVLink(None).parse_buffer(message.pack(common.MAVLink(None, 255, 190))))
+    packet = message.pack(common.MAVLink(None, 255, 190))
+    for heard in common.MAVLink(None).parse_buffer(packet):
+        fleet.take(heard)
 
 
 def command(fleet: Fleet, system: int, number: int, *params: float) -> None:
@@ -42,6 +45,14 @@ def command(fleet: Fleet, system: int, number: int, *params: float) -> None:
     values = {f"param{at + 1}": value for at, value in enumerate((*params, *[0.0] * 7)[:7])}
     to = {"target_system": system, "target_component": 1, "confirmation": 0}
     send(fleet, "command_long", command=number, **to, **values)
+
+
+def step(fleet: Fleet, *, late: bool = False) -> None:
+    """Fly for a period."""
+    orders = fleet.orders()
+    assert orders is not None  # not in lock-step
+    fleet.simulation.advance(*orders)
+    fleet.answer(late=late)
 
 
 def main() -> None:
@@ -61,15 +72,18 @@ def main() -> None:
     sizes: list[int] = []
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
 
-        def sent(datagram: bytes) -> None:
-            sizes.append(len(datagram))
-            out.sendto(datagram, ("127.0.0.1", 46_999))
+        class Counted(Endpoint):
+            def send(self, packets: bytes) -> None:
+                sizes.append(len(packets))
+                out.sendto(packets, ("127.0.0.1", 46_999))
 
-        fleet = Fleet(simulation, config.mavlink, sent)
+        endpoint = Counted("udp:127.0.0.1:46999")
+        fleet = Fleet(simulation, config.mavlink, [endpoint])
         begin(fleet, options)
         sizes.clear()
         used = cores(fleet, options.seconds)
         fleet.close()
+        endpoint.close()
     rate = sum(sizes) * 8e-6 / options.seconds
     print(
         f"{options.vehicles} vehicles, {options.pictures:g} pictures/s each of "
@@ -101,15 +115,15 @@ def begin(fleet: Fleet, options: argparse.Namespace) -> None:
         look = options.pitch, 0.0, math.nan, math.nan
         command(fleet, system, common.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW, *look)
     for _ in range(1_000):
-        fleet.step(look=False)
-    fleet.step()
+        step(fleet, late=True)
+    step(fleet)
 
 
 def cores(fleet: Fleet, seconds: float) -> float:
     """Return the processor's time for a second of the flight."""
     begun, since = fleet.now, time.process_time()
     while fleet.now < begun + seconds:
-        fleet.step()
+        step(fleet)
         while fleet.encodes:  # as at the clock's pace
             time.sleep(0.0005)
     return (time.process_time() - since) / (fleet.now - begun)

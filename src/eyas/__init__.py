@@ -7,7 +7,7 @@
     eyas.list_maps()                                   # _weathers, _policies, _protocols, ...
 
 `make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
-`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Algorithm`, `Weather`, `MapPlan` and `Ride`.
+`Policy`, `RewardTerm`, `Sensor`, `Tracker`, `Algorithm`, `Weather`, `MapPlan`, `Face` and `Ride`.
 
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
@@ -88,6 +88,9 @@ if TYPE_CHECKING:
     from eyas.engine.sim.config import SimConfig as SimConfig
     from eyas.engine.sim.flights.path import FlightScene as FlightScene
     from eyas.engine.sim.flights.path import FlightSketch as FlightSketch
+    from eyas.engine.sim.serving import Face as Face
+    from eyas.engine.sim.serving import Orders as Orders
+    from eyas.engine.sim.serving import serve as serve
     from eyas.engine.sim.simulation import Simulation as Simulation
     from eyas.engine.sim.simulation import StepResult as StepResult
     from eyas.engine.sim.worlds import each_alone as each_alone
@@ -178,6 +181,7 @@ _PLACES = {
     "engine.sim.build": "build_simulation",
     "engine.sim.config": "SimConfig",
     "engine.sim.flights.path": "FlightScene FlightSketch",
+    "engine.sim.serving": "Face Orders serve",
     "engine.sim.simulation": "Simulation StepResult",
     "engine.sim.worlds": "each_alone together",
     "engine.state.draw": "Picture",

@@ -28,11 +28,10 @@ from eyas.benchmark.protocol import Protocol
 from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.protocols.flown import FLOWN
 from eyas.benchmark.result import load_run
-from eyas.engine.policies.policy import Instruction
 from eyas.cli.app import app
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, UnknownNameError
 from eyas.engine.core.origin import origin_of
-from eyas.engine.policies.policy import PolicyInput, Start
+from eyas.engine.policies.policy import Instruction, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES
 
 HERE = Path(__file__).parent

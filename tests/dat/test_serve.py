@@ -3,10 +3,10 @@ import logging
 
 import pytest
 
+from eyas.dat.serve import run as modes_serve
 from eyas.dat.serve.agreement import tell_disagreements
 from eyas.dat.serve.run import run
 from eyas.dat.wire.exchange import SETTINGS_FILE
-from eyas.dat.wire.server import Server
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
@@ -16,7 +16,7 @@ from eyas.engine.settings.file import load_settings
 def served(monkeypatch):
     """The servers that are started, in the place of serving."""
     started = []
-    monkeypatch.setattr(Server, "run", lambda server: started.append(server))
+    monkeypatch.setattr(modes_serve, "serve", lambda server, until_idle: started.append(server))
     return started
 
 

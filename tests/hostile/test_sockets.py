@@ -25,6 +25,7 @@ import eyas
 from eyas.engine.core.bounds import FARTHEST
 from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture
 from eyas.robotics.mavlink.equipment import equipped
@@ -113,19 +114,23 @@ def feed_mavlink(simulation, tmp_path, caplog):
     from eyas.robotics.mavlink.fleet import Fleet
 
     sent, chance, parser = [], random.Random(1), Parser()
-    fleet = Fleet(simulation, updated(AS_FLOWN, SMALL).mavlink, sent.append)
+    line = SimpleNamespace(send=sent.append)
+    fleet = Fleet(simulation, updated(AS_FLOWN, SMALL).mavlink, [line])
+    loop = Loop(fleet)
     packer = common.MAVLink(None, 1, 191)
 
     def send(message):
         for field, kind in zip(message.fieldnames, message.fieldtypes, strict=True):
             setattr(message, field, _nearest(getattr(message, field), kind))
         packet = message.pack(packer)
-        fleet.take(parser.messages(packet))
+        for heard in parser.messages(packet):
+            fleet.take(heard)
+        fleet.flush()
         return packet
 
     def fly(seconds):
         for _ in range(round(seconds / fleet.period)):
-            fleet.step()
+            loop.step()
 
     def command(number, *params):
         send(
@@ -142,9 +147,10 @@ def feed_mavlink(simulation, tmp_path, caplog):
         packet = send(message)
         if at % 20 == 0:
             command(176, 1, 6)  # offboard, as far as set points are there
-            fleet.step()
+            loop.step()
             for damaged in mutated(packet, chance, 6):
-                fleet.take(parser.messages(damaged))
+                for heard in parser.messages(damaged):
+                    fleet.take(heard)
     assert not [line for line in caplog.messages if "ignored" in line]
     fly(0.5)
     assert is_sound(simulation)
@@ -163,12 +169,12 @@ def driven():
     return DrivenDrone(build_simulation(config, together(1), tracker=tracker), config.mavlink)
 
 
-def begin(serve, server):
-    """Let a server serve in a thread, until its socket is closed."""
+def begin(face):
+    """Serve in a thread, until the socket of the face is closed."""
 
     def work():
         with suppress(OSError):
-            serve(server)
+            serve(face)
 
     threading.Thread(target=work, daemon=True).start()
 
@@ -179,7 +185,7 @@ def feed_ardupilot(simulation, tmp_path, caplog):
     drone, chance = driven(), random.Random(2)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as heard, heard.dup() as server:
         heard.bind(("127.0.0.1", 0))
-        begin(ArduPilot(drone, 0.0).serve, server)
+        begin(ArduPilot(drone, 0.0, server))
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
             out.connect(heard.getsockname())
             out.settimeout(60.0)
@@ -196,7 +202,7 @@ def feed_ardupilot(simulation, tmp_path, caplog):
                 answer(frame, rate, width)
             told = answer(5)
     assert all(map(math.isfinite, told["position"] + told["velocity"]))
-    assert is_sound(drone._simulation)
+    assert is_sound(drone.simulation)
 
 
 def feed_px4(simulation, tmp_path, caplog):
@@ -205,7 +211,7 @@ def feed_px4(simulation, tmp_path, caplog):
 
     drone, chance, packer = driven(), random.Random(3), common.MAVLink(None, 1, 1)
     server = socket.create_server(("127.0.0.1", 0))
-    begin(Px4(drone, 0.0).serve, server)
+    begin(Px4(drone, 0.0, server))
     control = common.MAVLink_hil_actuator_controls_message
     numbers = [number for number in NUMBERS if not abs(number) > 3.4e38 or math.isinf(number)]
     packets = [control(0, [number] * 16, 255, 2**64 - 1).pack(packer) for number in numbers]
@@ -218,7 +224,7 @@ def feed_px4(simulation, tmp_path, caplog):
     with suppress(OSError):
         server.shutdown(socket.SHUT_RDWR)
     server.close()
-    assert is_sound(drone._simulation)
+    assert is_sound(drone.simulation)
 
 
 def feed_announcements(simulation, tmp_path, caplog):
@@ -277,14 +283,17 @@ def feed_ros(simulation, tmp_path, caplog):
         tracker = {"supervised": supervised, "ground_contact": False}
         config = updated(AS_FLOWN, SMALL | {"tracker": tracker})
         bridge = Bridge(build_simulation(config, together(1)), config, bus, silent)
+        loop = Loop(bridge)
         for number in (*NUMBERS, *HUGE_WHOLE, "x", None, []):
             bus.next = [twist(number), *([SimpleNamespace()] if number is None else [])]
             for _ in range(len(HEARD) * 3):
-                bridge.step()
+                loop.hear(0.0)
+                loop.step()
         bus.next = [twist(1.0)]
-        bridge.step()
+        loop.hear(0.0)
+        loop.step()
         assert bridge._told["/cmd_vel"][0].tolist() == [1.0] * 6
-        assert is_sound(bridge._simulation)
+        assert is_sound(bridge.simulation)
 
 
 DEMO = {

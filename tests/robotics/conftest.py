@@ -1,6 +1,7 @@
 """A fleet without a network, and who sends it packets and reads its own: pymavlink."""
 
 import math
+import socket
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ common = pytest.importorskip("pymavlink.dialects.v20.common", reason="needs pyma
 
 from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.serving import Loop
 from eyas.engine.sim.worlds import together
 from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.mavlink.fleet import Fleet
@@ -35,18 +37,42 @@ def simulation_of(config, vehicles):
     return BUILT[key]
 
 
+class Line:
+    """An endpoint without a network: what is put into `coming` comes, `sent` has been sent."""
+
+    def __init__(self):
+        self.coming, self.sent = [], []
+        self.socket, self._other = socket.socketpair()
+        self._other.send(b"x")  # so that it can always be read
+
+    def send(self, datagram):
+        self.sent.append(datagram)
+
+    def received(self):
+        found, self.coming = self.coming, []
+        return found
+
+    def close(self):
+        self.socket.close()
+        self._other.close()
+
+
 class Bench:
     """Flies a fleet; `sent` holds what it has sent since someone looked."""
 
     def __init__(self, vehicles=1, **settings):
         config = updated(AS_FLOWN, SMALL | settings)
         self.simulation = simulation_of(equipped(config, config.mavlink), vehicles)
-        self._datagrams = []
-        self.fleet = Fleet(self.simulation, config.mavlink, self._datagrams.append)
+        endpoints = []
+        self.fleet = Fleet(self.simulation, config.mavlink, endpoints)
+        self.line = Line()  # when nothing can be refused any more
+        endpoints.append(self.line)
+        self.loop = Loop(self.fleet)
         self.fly(0.1)
 
     def close(self):
         self.fleet.close()
+        self.line.close()
 
     @property
     def pilot(self):
@@ -56,7 +82,7 @@ class Bench:
         for at in range(round(seconds / self.fleet.period)):
             if beat and at % 50 == 0:
                 self.beat(beat)
-            self.fleet.step()
+            self.loop.step()
 
     def beat(self, sender=GCS):
         self.send("heartbeat", sender, type=6, autopilot=8, base_mode=0, custom_mode=0,
@@ -65,8 +91,8 @@ class Bench:
     def taken(self):
         """Return all messages since the last look."""
         reader = common.MAVLink(None)
-        found = [m for part in self._datagrams for m in reader.parse_buffer(part) or []]
-        self._datagrams.clear()
+        found = [m for part in self.line.sent for m in reader.parse_buffer(part) or []]
+        self.line.sent.clear()
         return found
 
     def last(self, kind):
@@ -76,7 +102,11 @@ class Bench:
     def send(self, kind, sender=GCS, **fields):
         message = getattr(common, f"MAVLink_{kind}_message")(**fields)
         packet = message.pack(common.MAVLink(None, *sender))
-        self.fleet.take(common.MAVLink(None).parse_buffer(packet))
+        self.hear(common.MAVLink(None).parse_buffer(packet))
+
+    def hear(self, messages):
+        self.line.coming += messages
+        self.loop.hear(0.0)
 
     def command(self, name, *params, sender=GCS, system=1, component=1):
         """Send a command; return the result of the answer, None without one."""

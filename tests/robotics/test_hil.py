@@ -18,11 +18,12 @@ common = pytest.importorskip("pymavlink.dialects.v20.common", reason="needs pyma
 
 from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
+from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.trackers.driven import driven_drone
 from eyas.robotics.mavlink.dialect import StreamParser
 from eyas.robotics.mavlink.equipment import equipped
-from eyas.robotics.mavlink.hil.ardupilot import ArduPilot, Servos, servos_of
+from eyas.robotics.mavlink.hil.ardupilot import ArduPilot, servos_of
 from eyas.robotics.mavlink.hil.drone import DrivenDrone
 from eyas.robotics.mavlink.hil.px4 import Px4
 from eyas.robotics.mavlink.hil.sockets import bound, listening
@@ -42,21 +43,26 @@ def drone():
     return DrivenDrone(build_simulation(config, together(1), tracker=tracker), config.mavlink)
 
 
-def flown_by_small_autopilot(kind, serve, server):
+def step(drone, outputs, steps):
+    """Turn the rotors for some physics steps."""
+    drone.simulation.advance(*drone.orders(outputs, steps))
+    drone.sense(steps)
+
+
+def flown_by_small_autopilot(kind, face, server):
     """Return what the autopilot has seen: at its goals, and at the end."""
 
     def work():
-        with suppress(OSError):  # when the socket is shut down
-            serve(server)
+        with suppress(OSError):  # when the socket is closed
+            serve(face)
 
     thread = Thread(target=work, daemon=True)
     thread.start()
     words = [sys.executable, str(AUTOPILOT), kind, str(server.getsockname()[1])]
     said = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
-    with suppress(OSError):
-        server.shutdown(socket.SHUT_RDWR)
-    thread.join(5.0)
     server.close()
+    thread.join(5.0)
+    assert not thread.is_alive()
     assert said.returncode == 0, said.stderr
     *goals, end = [json.loads(line) for line in said.stdout.splitlines()]
     assert len(goals) == 3
@@ -67,7 +73,8 @@ def flown_by_small_autopilot(kind, serve, server):
 
 
 def test_an_autopilot_flies_by_px4s_contract(drone):
-    end = flown_by_small_autopilot("px4", Px4(drone, 0.0).serve, listening(f"127.0.0.1:{free()}"))
+    server = listening(f"127.0.0.1:{free()}")
+    end = flown_by_small_autopilot("px4", Px4(drone, 0.0, server), server)
     kinds = end["kinds"]
     assert kinds["107"] == kinds["115"] == 25 * (kinds["113"] - 1) + (kinds["107"] - 1) % 25 + 1
     assert end["unasked"] == 0
@@ -90,9 +97,8 @@ def free():
 
 @pytest.mark.thorough
 def test_an_autopilot_flies_by_ardupilots_contract(drone):
-    end = flown_by_small_autopilot(
-        "ardupilot", ArduPilot(drone, 0.0).serve, bound(f"127.0.0.1:{free()}")
-    )
+    heard = bound(f"127.0.0.1:{free()}")
+    end = flown_by_small_autopilot("ardupilot", ArduPilot(drone, 0.0, heard), heard)
     assert end["again"][0] == end["again"][1] > 1.0
     assert end["range"] == pytest.approx(4.0 + 0.18, abs=0.05)
     assert end["anew"]["timestamp"] == pytest.approx(0.002)
@@ -110,17 +116,35 @@ def as_ardupilot_reads(line):
     return found | {"timestamp": float(re.match(r"[-+.e\d]+", line[at:])[0])}
 
 
-def test_its_lines_are_read_as_ardupilot_reads_them(drone):
-    pilot = ArduPilot(drone, 0.0)
-    pilot.answer(Servos(400, 0, (0.0,) * 16))
-    line = pilot.answer(Servos(400, 1, (0.0,) * 16)).decode()
+@pytest.fixture
+def ask(drone):
+    """Return the line that answers a packet of ArduPilot."""
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out,
+        bound(f"127.0.0.1:{free()}") as heard,
+    ):
+        out.connect(heard.getsockname())
+        out.settimeout(60.0)
+        loop = Loop(ArduPilot(drone, 0.0, heard))
+
+        def answer(frame, width=1000):
+            out.send(struct.pack("<HHI16H", 18_458, 400, frame, *[width] * 16))
+            loop.turn()
+            return out.recv(65_535)
+
+        yield answer
+
+
+def test_its_lines_are_read_as_ardupilot_reads_them(ask):
+    ask(0)
+    line = ask(1).decode()
     assert line[0] == line[-1] == "\n"
     seen = as_ardupilot_reads(line.strip())
     assert seen["timestamp"] == pytest.approx(0.004)
     assert seen["accel_body"] == pytest.approx([0.0, 0.0, -9.81], abs=0.05)
     assert seen["attitude"] == pytest.approx([0.0, 0.0, math.pi / 2], abs=1e-3)
     assert seen["quaternion"] == pytest.approx([HOVER, 0.0, 0.0, HOVER], abs=1e-3)
-    again = pilot.answer(Servos(400, 1, (1.0,) * 16))
+    again = ask(1, width=2000)
     assert as_ardupilot_reads(again.decode())["timestamp"] == seen["timestamp"]
 
 
@@ -141,11 +165,11 @@ def test_packets_of_ardupilot_are_read():
 )
 def test_each_motor_turns_the_drone_as_in_px4_and_ardupilot(drone, motor, roll, pitch, yaw):
     drone.begin()
-    drone.step([0.9] * 16, 50)  # off the ground
+    step(drone, [0.9] * 16, 50)  # off the ground
     before = drone.instant.rates
     outputs = [0.8] * 4
     outputs[motor] = 0.9
-    drone.step(outputs, 5)
+    step(drone, outputs, 5)
     change = np.sign(np.subtract(drone.instant.rates, before))
     assert change.tolist() == [roll, pitch, yaw]
 
@@ -167,7 +191,7 @@ def test_the_same_outputs_give_the_same_flight(drone):
     for _ in range(2):
         drone.begin()
         for outputs in ([0.8] * 16, [0.7, 0.72, 0.71, math.nan], [9.0, -1.0, 0.5, 0.5]):
-            drone.step(outputs, 20)
+            step(drone, outputs, 20)
         at = drone.instant
         sensed = at.imu(), at.magnetic(), at.pressure()
         flights.append((at.local, at.attitude, sensed))

@@ -1,5 +1,6 @@
 """Time that stands still until a set point has come."""
 
+import math
 import socket
 import threading
 import time
@@ -9,10 +10,11 @@ import pytest
 from pymavlink.dialects.v20 import common
 
 from eyas.engine.core.errors import ConfigError, OutputError
-from eyas.robotics.mavlink import loop
+from eyas.engine.sim.serving import serve
 from eyas.robotics.mavlink.endpoint import Endpoint
-from eyas.robotics.mavlink.loop import fly
 from eyas.robotics.mavlink.modes import Mode
+
+GCS = (255, 190)
 
 
 class StopError(Exception):
@@ -24,12 +26,6 @@ def packet(kind, **fields):
     return message.pack(common.MAVLink(None, 255, 190))
 
 
-BEAT = {
-    **{"type": 6, "autopilot": 8, "base_mode": 0, "custom_mode": 0},
-    **{"system_status": 4, "mavlink_version": 3},
-}
-
-
 def velocity(north):
     return packet(
         "set_position_target_local_ned", time_boot_ms=0, target_system=1, target_component=1,
@@ -38,24 +34,29 @@ def velocity(north):
     )  # fmt: skip
 
 
+def counted(fleet, steps, end):
+    """Note the time of each step of a fleet, and stop after some."""
+    answer = fleet.answer
+
+    def noted(**words):
+        steps.append(fleet.now)
+        answer(**words)
+        if len(steps) == end:
+            raise StopError
+
+    fleet.answer = noted
+
+
 def test_each_set_point_is_one_step(make_bench):
-    bench = make_bench()
+    bench = make_bench(mavlink={"lockstep": True})
     bench.fly_up()
     bench.velocity(1, 0, 0)
     bench.command("DO_SET_MODE", 1, 6, 0)
-    bench.fleet.step()
+    bench.loop.step()
     endpoint = Endpoint("udpin:127.0.0.1:0".replace(":0", f":{free_port()}"))
     steps, begun = [], bench.fleet.now
-    step = bench.fleet.step
-
-    def counted(**words):
-        steps.append(bench.fleet.now)
-        step(**words)
-        if len(steps) == 20:
-            raise StopError
-
-    bench.fleet.step = counted
-    bench.fleet._out = endpoint.send
+    counted(bench.fleet, steps, 20)
+    bench.fleet._endpoints = [endpoint]
 
     def client():
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
@@ -72,7 +73,7 @@ def test_each_set_point_is_one_step(make_bench):
     flies = threading.Thread(target=client)
     flies.start()
     with pytest.raises(StopError):
-        fly(bench.fleet, [endpoint], lockstep=True)
+        serve(bench.fleet)
     flies.join()
     endpoint.close()
     assert bench.fleet.now - begun == pytest.approx(0.2)
@@ -82,33 +83,31 @@ def test_each_set_point_is_one_step(make_bench):
 def test_a_ground_station_does_not_keep_time_still_for_a_program_that_has_died(
     make_bench, monkeypatch
 ):
-    bench = make_bench(vehicles=2, mavlink={"vehicles": 2})
+    bench = make_bench(vehicles=2, mavlink={"vehicles": 2, "lockstep": True})
     bench.fly_up()
     assert bench.command("COMPONENT_ARM_DISARM", 1, system=2) == 0
     for system in (1, 2):
         bench.velocity(1, 0, 0, system=system)
         bench.command("DO_SET_MODE", 1, 6, 0, system=system)
-    bench.fleet.step()
-    monkeypatch.setattr("eyas.robotics.mavlink.loop._PATIENCE", 0.3)
-    endpoint, before = Endpoint(f"udpin:127.0.0.1:{free_port()}"), bench.fleet.now
-    station = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    step = bench.fleet.step
+    assert bench.loop.step()
+    monkeypatch.setattr("eyas.robotics.mavlink.fleet._PATIENCE", 0.3)
+    before, received = bench.fleet.now, bench.line.received
 
-    def others_go_on(fleet, endpoints, wait):
-        station.sendto(packet("heartbeat", **BEAT), endpoint.socket.getsockname())
+    def others_go_on():
+        time.sleep(0.01)
+        bench.beat()  # a ground station
         bench.velocity(1, 0, 0, system=2)  # its program lives
-        hear(fleet, endpoints, wait)
+        return received()
 
-    def stopped(**words):
-        step(**words)
-        raise StopError
+    def send(kind, sender=GCS, **fields):
+        message = getattr(common, f"MAVLink_{kind}_message")(**fields)
+        packet = message.pack(common.MAVLink(None, *sender))
+        bench.line.coming += common.MAVLink(None).parse_buffer(packet)
 
-    hear = loop._hear
-    monkeypatch.setattr(loop, "_hear", others_go_on)
-    bench.fleet.step = stopped
-    with station, pytest.raises(StopError):
-        fly(bench.fleet, [endpoint], lockstep=True)
-    endpoint.close()
+    bench.send, bench.line.received = send, others_go_on
+    counted(bench.fleet, [], 1)
+    with pytest.raises(StopError):
+        serve(bench.fleet)
     assert bench.fleet.now > before
     assert [vehicle.pilot.mode for vehicle in bench.fleet.vehicles] == [Mode.HOLD, Mode.OFFBOARD]
 
@@ -121,7 +120,7 @@ def test_the_same_set_points_give_the_same_flight(make_bench):
         for at in range(60):
             bench.velocity(2.0, 0.1 * at, 0)
             bench.command("DO_SET_MODE", 1, 6, 0)
-            bench.fleet.step()
+            bench.loop.step()
         state = bench.simulation.snapshot.trackers
         ends.append(np.concatenate([state.position[0], state.orientation[0]]))
     assert (ends[0] == ends[1]).all()
@@ -144,7 +143,13 @@ def test_when_the_traffic_ends_vehicles_stay_where_they_are(bench):
     bench.fly_up()
     before = bench.simulation.snapshot.trackers.position.copy()
     ticks = bench.simulation.snapshot.episodes.tick
-    ticks += bench.simulation.steps_left - 10
+    bench.command("DO_GIMBAL_MANAGER_PITCHYAW", -60, 20, math.nan, math.nan, 0, 0, 0)
+    bench.fly(0.5)
+    looks = bench.simulation.snapshot.trackers.commanded_gimbal.copy()
+    ticks += bench.simulation.steps_left - 2
+    bench.loop.step()
+    assert ticks[0] < 5000
+    assert (bench.simulation.snapshot.trackers.commanded_gimbal == looks).all()
     bench.fly(0.5)
     after = bench.simulation.snapshot.trackers.position
     np.testing.assert_allclose(after, before, atol=0.05)

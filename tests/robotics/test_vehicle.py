@@ -292,7 +292,7 @@ def test_garbage_changes_nothing(bench):
             b"\xfd" + noise,
             whole[: rng.randrange(len(whole))],
         ):
-            bench.fleet.take(parser.messages(datagram))
+            bench.hear(parser.messages(datagram))
     assert parser.messages(b"\xfd\xff" + noise + whole) is not None
     assert [m.get_type() for m in parser.messages(whole)] == ["HEARTBEAT"]
     bench.fly(0.5)
@@ -365,7 +365,7 @@ def test_messages_of_all_kinds_with_any_content_change_nothing(bench):
                 message.target_system, message.target_component = 1, rng.choice((0, 1, 100, 154))
             if hasattr(message, "command"):
                 message.command = rng.choice(sorted(common.enums["MAV_CMD"]))
-            bench.fleet.take([message])
+            bench.hear([message])
     bench.fly(0.5)
     assert np.isfinite(bench.simulation.snapshot.trackers.position).all()
     assert bench.taken()

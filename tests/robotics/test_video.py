@@ -30,7 +30,7 @@ def test_ffmpeg_shows_the_pictures_of_the_camera(make_bench, tmp_path):
 
     def fly():
         while not done.wait(0.01):
-            bench.fleet.step()
+            bench.loop.step()
 
     flight = threading.Thread(target=fly)
     flight.start()

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from eyas.engine.core.config import shown, updated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.sim.serving import serve
 from eyas.engine.trackers.config import TrackerConfig, TrackerKind
 from eyas.engine.world.maps import MAPS
 from eyas.robotics.mavlink.config import MavlinkConfig
@@ -60,14 +61,14 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
         config = equipped(config, MavlinkConfig.of(config), noisy=True)
         simulation = build_simulation(config, together(1), tracker=tracker)
         drone = DrivenDrone(simulation, MavlinkConfig.of(config))
-        stack.callback(drone.close)
         latitude, longitude, altitude = drone.home()
         place = f"{latitude:.7f},{longitude:.7f},{altitude:.1f},90"
         if px4:
             _LOG.info("waiting for PX4 on TCP %s; it stands at %s", address, place)
-            Px4(drone, MavlinkConfig.of(config).hil.speed).serve(heard)
-        _LOG.info("waiting for ArduPilot on UDP %s; start it with --home=%s", address, place)
-        ArduPilot(drone, MavlinkConfig.of(config).hil.speed).serve(heard)
+            serve(Px4(drone, MavlinkConfig.of(config).hil.speed, heard))
+        else:
+            _LOG.info("waiting for ArduPilot on UDP %s; start it with --home=%s", address, place)
+            serve(ArduPilot(drone, MavlinkConfig.of(config).hil.speed, heard))
 
 
 def _check_tracker(config: TrackerConfig) -> None:

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.sim.serving import serve
 from eyas.engine.world.maps import MAPS
 from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.dialect import dialect
@@ -51,18 +52,12 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
         from eyas.engine.sim.worlds import together
         from eyas.robotics.mavlink.equipment import equipped
         from eyas.robotics.mavlink.fleet import Fleet
-        from eyas.robotics.mavlink.loop import fly
-
-        def send(datagram: bytes) -> None:
-            for endpoint in endpoints:
-                endpoint.send(datagram)
 
         settings = MavlinkConfig.of(config)
         config = equipped(config, settings)
-        fleet = Fleet(build_simulation(config, together(settings.vehicles)), settings, send)
-        stack.callback(fleet.close)
+        fleet = Fleet(build_simulation(config, together(settings.vehicles)), settings, endpoints)
         _LOG.info("flying %s: %s", _named(settings), ", ".join(addresses))
-        fly(fleet, endpoints, lockstep=settings.lockstep)
+        serve(fleet)
 
 
 def _named(settings: MavlinkConfig) -> str:

@@ -1,7 +1,8 @@
 """Serve a drone to nodes of ROS 2 that run: topics out, velocities in."""
 
 import logging
-from collections.abc import Sequence
+import time
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,10 +12,9 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_RATE, PHYSICS_STEP, physics_steps
 from eyas.engine.core.config import updated
-from eyas.engine.core.faults import FaultLog
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.sim.serving import Face, Orders, serve
 from eyas.engine.world.maps import MAPS
-from eyas.robotics.mavlink.hil.pace import Pace
 
 if TYPE_CHECKING:
     from eyas.engine.sim.simulation import Simulation
@@ -43,7 +43,7 @@ _PATIENCE = 0.5
 """How long a velocity holds [s]."""
 
 
-class Bridge:
+class Bridge(Face):
     """A drone, what it tells and what it is told.
 
     Args:
@@ -53,13 +53,15 @@ class Bridge:
         messages: Makes the messages.
     """
 
+    relief = "smaller or fewer pictures help (camera.width, camera.height, video.fps)"
+
     def __init__(
         self, simulation: "Simulation", config: EyasConfig, bus: "Bus", messages: "Messages"
     ) -> None:
         from eyas.engine.state.draw import Picture
 
-        self._simulation, self._config = simulation, config
-        self._bus, self._messages, self._faults = bus, messages, FaultLog()
+        self.simulation, self._config = simulation, config
+        self._bus, self._messages = bus, messages
         self._steps = physics_steps(config.control.frequency)
         self._between = max(round(PHYSICS_RATE / config.video.fps), 1)
         self._readers = {name: bus.listen(name, kind) for name, kind in HEARD.items()}
@@ -77,28 +79,33 @@ class Bridge:
         """Time since the start [s]."""
         return self._ticks * PHYSICS_STEP
 
-    def step(self) -> None:
-        """Tell what is due, and fly for a control step."""
+    def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
+        """Return the readers, after a time [s]: DDS keeps what has come."""
+        time.sleep(wait)
+        return [(f"messages of {name}", name) for name in self._readers]
+
+    def take(self, message: str) -> None:
+        """Take the velocities of a topic."""
+        for twist in self._bus.heard(self._readers[message]):
+            parts = _numbers(twist.linear), _numbers(twist.angular)
+            whole = np.array([*parts[0], *parts[1]])
+            self._told[message] = np.where(np.isfinite(whole), whole, 0.0), self.now
+
+    def orders(self) -> Orders:
+        """Tell what is due, and return the velocities that hold."""
         if self._ticks >= self._due:
             self._due += self._between
             self._tell()
-        if self._simulation.steps_left < self._steps:
-            _LOG.info("the traffic has reached its end, and all begins anew")
-            self._simulation.rewind()
-            self._simulation.reset()
-        self._simulation.advance(self._command(), self._steps)
+        return Orders(self._command(), self._steps)
+
+    def answer(self, *, late: bool) -> None:
+        """Let time go on."""
         self._ticks += self._steps
 
     def _command(self) -> NDArray[np.float64]:
         """Return the command that holds now, shape (1, 8)."""
         from eyas.engine.envs.actions import turn_commands
 
-        for name, reader in self._readers.items():
-            with self._faults.guard(f"messages of {name}"):
-                for twist in self._bus.heard(reader):
-                    parts = _numbers(twist.linear), _numbers(twist.angular)
-                    whole = np.array([*parts[0], *parts[1]])
-                    self._told[name] = np.where(np.isfinite(whole), whole, 0.0), self.now
         body, camera = (self._held(name) for name in HEARD)
         command = np.array([[body[0], body[1], body[2] * PHYSICS_STEP, body[5]]])
         gimbal = self._config.env.gimbal
@@ -114,7 +121,7 @@ class Bridge:
         from eyas.engine.exports.capture import frame_of, moment_of
         from eyas.engine.exports.frame import RecordedAction
 
-        simulation, picture = self._simulation, self._picture
+        simulation, picture = self.simulation, self._picture
         simulation.view.draw(np.zeros(1, np.int32), picture)
         moment = moment_of(simulation, 0, picture, 0)
         frame = frame_of(moment, 0, picture, 0, self._number, RecordedAction(-1, None))
@@ -166,7 +173,4 @@ def run(config: EyasConfig, domain: int) -> None:
 
     bridge = Bridge(build_simulation(config, together(1)), config, bus, messages)
     _LOG.info("on the air in domain %d: %s; hears %s", domain, ", ".join(told), ", ".join(HEARD))
-    pace = Pace(1.0)
-    while True:
-        bridge.step()
-        pace.keep(bridge.now)
+    serve(bridge)

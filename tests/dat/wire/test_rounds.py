@@ -10,6 +10,7 @@ from eyas.dat.wire.codec import HOVER, RESET
 from eyas.dat.wire.config import WireConfig
 from eyas.dat.wire.exchange import Exchange, Pause
 from eyas.dat.wire.server import Server, Service
+from eyas.engine.sim.serving import serve as serve_by
 
 
 class EnoughError(Exception):
@@ -22,7 +23,9 @@ class TrackerGroup:
     def __init__(self, played):
         self.played = played
 
-    def play(self, actions):
+    sim = None
+
+    def orders(self, actions):
         self.played.append(list(actions))
         raise EnoughError
 
@@ -74,7 +77,7 @@ def run(tmp_path, port):
         starter = threading.Thread(target=first, daemon=True)
         starter.start()
         with pytest.raises(EnoughError):
-            Server(exchange, lambda: service, lambda: ("127.0.0.1", port)).run()
+            serve_by(Server(exchange, lambda: service, lambda: ("127.0.0.1", port)))
         starter.join()
         return played
 

@@ -21,12 +21,21 @@ AHEAD = Action((20.0, 0.0, 0.0, 0.5), reset=False)
 CONFIG = SimConfig(camera={"width": 64, "height": 48}, done=DoneConfig(no_reward_steps=10_000))
 
 
+class Group(TrackerGroup):
+    def play(self, actions):
+        """Carry out one action of each, as the loop does."""
+        orders = self.orders(actions)
+        if orders.steps:
+            self.sim.advance(*orders)
+        return self.answers()
+
+
 @pytest.fixture
 def crews():
     made = []
 
     def make(count, config=CONFIG, steps=4):
-        made.append(TrackerGroup(build_simulation(config, together(count)), steps))
+        made.append(Group(build_simulation(config, together(count)), steps))
         return made[-1]
 
     yield make

@@ -17,6 +17,7 @@ from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.files import refusals
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import originals_named
+from eyas.engine.sim.serving import serve
 from eyas.engine.world.maps import MAPS
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def run(
         source = SettingsSource(config, exchange.settings if load else None, load)
         desk = _Desk(source, config, root)
         try:
-            Server(exchange, desk.ask, source.place, until_idle).run()
+            serve(Server(exchange, desk.ask, source.place), until_idle=until_idle)
         except KeyboardInterrupt as error:
             error.add_note("clients that still wait must be started again")
             raise

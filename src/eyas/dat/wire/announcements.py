@@ -4,7 +4,6 @@ import logging
 import math
 import socket
 import time
-from collections.abc import Callable
 from contextlib import suppress
 
 from eyas.engine.core.errors import ConfigError, EyasError, OutputError
@@ -75,19 +74,13 @@ class Announcements:
         self._socket = new
         _LOG.info("now waiting for clients on UDP port %d of %s", port, address)
 
-    def wait(self, meanwhile: Callable[[], None] = lambda: None) -> int:
-        """Wait for the first announcement; return the number of agents.
-
-        Args:
-            meanwhile: Called twice a second.
-        """
-        while True:
-            meanwhile()
-            self._socket.settimeout(0.5)  # not for ever: some systems let no signal in before
-            with suppress(TimeoutError):
-                count = self._next()
-                if count is not None:
-                    return count
+    def wait(self, seconds: float) -> int | None:
+        """Wait for an announcement; return the number of agents, None if none has come [s]."""
+        self._socket.settimeout(seconds)
+        try:
+            return self._next()
+        except (BlockingIOError, TimeoutError):
+            return None
 
     def poll(self) -> int | None:
         """Return the number of agents in the last announcement; None if there is none."""

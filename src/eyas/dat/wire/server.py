@@ -1,17 +1,24 @@
 """The server: gathers an action of each client, lets the trackers act, gives the answers."""
 
 import logging
-import math
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from eyas.dat.wire.announcements import Announcements
 from eyas.dat.wire.client_session import AnswerFile, ClientSession
 from eyas.dat.wire.codec import RESET
 from eyas.dat.wire.config import WireConfig
 from eyas.dat.wire.exchange import Exchange, Pause
-from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError, SpawnError
+from eyas.engine.core.errors import (
+    ConfigError,
+    DataFileError,
+    EyasError,
+    MissingExtraError,
+    SpawnError,
+)
+from eyas.engine.sim.serving import Face, Orders
 from eyas.engine.task.journal import Journal
 
 if TYPE_CHECKING:
@@ -37,199 +44,121 @@ class Service(NamedTuple):
     """Whether all that is said and done is logged as by the original."""
 
 
-class _Idle(Exception):  # noqa: N818  # an end, no error
-    """There was no client for long."""
+class _Training(NamedTuple):
+    """Agents that are served together, in a world of their own."""
+
+    service: Service
+    group: "TrackerGroup"
+    journal: Journal
+    sessions: list[ClientSession]
 
 
-class Server:
-    """Serves clients of the original's protocol, until it is interrupted.
+class Server(Face):
+    """The original's protocol; each change of the number of clients begins a new world.
 
     Args:
         exchange: The folder.
         ask: Returns what to serve, whenever agents announce themselves; the same object as long as
             nothing has changed.
         place: Returns the address and the port on which to listen, which may change.
-        until_idle: Time without a client after which `run` ends [s].
     """
 
-    def __init__(
-        self,
-        exchange: Exchange,
-        ask: Callable[[], Service],
-        place: Callable[[], tuple[str, int]],
-        until_idle: float = math.inf,
-    ) -> None:
-        self._exchange = exchange
-        self._until_idle, self._active = until_idle, time.monotonic()
-        self._ask = ask
-        self._place = place
-        self._looked = time.monotonic()
-        self._late: set[str] = set()
+    speed = 0.0  # in lock-step
 
-    def run(self) -> None:
-        """Serve until there is no client for long; each change of their number begins a new world.
+    def __init__(
+        self, exchange: Exchange, ask: Callable[[], Service], place: Callable[[], tuple[str, int]]
+    ) -> None:
+        self._exchange, self._ask, self._place = exchange, ask, place
+        self._open, self._serving = ExitStack(), ExitStack()
+        self._training: _Training | None = None
+        self._looked = time.monotonic()
+        self._pause = Pause()
+        self._late: set[str] = set()
+        self._count = 0  # of agents that are served, or about to be
+
+    def open(self) -> None:
+        """Listen, and keep the folder.
 
         Raises:
             EyasError: The folder or the port cannot be used.
         """
         address, port = self._place()
-        announcements = Announcements(address, port)
-        try:
-            with self._exchange.opened(announcements.since) as removed:
-                if removed:
-                    _LOG.info(
-                        "%s: deleted %d files of an earlier run; clients that were started "
-                        "before now must be started again",
-                        *(self._exchange.files, removed),
-                    )
-                _LOG.info("waiting for clients on UDP port %d of %s", port, address)
-                count, begun = self._wait(announcements), frozenset[int]()
-                while True:
-                    count, begun = self._served(count, begun, announcements)
-        except _Idle:
-            _LOG.info("no client for %g s: ended", self._until_idle)
-        finally:
-            announcements.close()
-
-    def _wait(self, announcements: Announcements) -> int:
-        def meanwhile() -> None:
-            announcements.move(*self._place())
-            self._end_idle()
-
-        count = announcements.wait(meanwhile)
-        self._active = time.monotonic()
-        return count
-
-    def _end_idle(self) -> None:
-        """End if there was no client for long.
-
-        Raises:
-            _Idle: There was none.
-        """
-        if time.monotonic() - self._active > self._until_idle:
-            raise _Idle
-
-    def _served(
-        self, count: int, begun: frozenset[int], announcements: Announcements
-    ) -> tuple[int, frozenset[int]]:
-        """Do as `_serve`; agents that cannot be served are told of in a line, and others waited
-        for.
-        """
-        _LOG.info("%d agent%s announced", count, "s" * (count > 1))
-        service = self._ask()
-        try:
-            group = service.build(count)
-            try:
-                return self._serve(service, group, (count, begun), announcements)
-            finally:
-                group.close()
-        except (ConfigError, DataFileError, MissingExtraError, SpawnError) as error:
-            _LOG.error(
-                "%d agent%s cannot be served: %s; their clients wait in vain: end them; waiting "
-                "for the next",
-                *(count, "s" * (count > 1), error),
+        self._announcements = Announcements(address, port)
+        self._open.callback(self._announcements.close)
+        removed = self._open.enter_context(self._exchange.opened(self._announcements.since))
+        if removed:
+            _LOG.info(
+                "%s: deleted %d files of an earlier run; clients that were started before now must "
+                "be started again",
+                *(self._exchange.files, removed),
             )
-            announcements.poll()  # of the others of them
-        return self._wait(announcements), frozenset()
+        _LOG.info("waiting for clients on UDP port %d of %s", port, address)
 
-    def _serve(
-        self,
-        service: Service,
-        group: "TrackerGroup",
-        agents: tuple[int, frozenset[int]],
-        announcements: Announcements,
-    ) -> tuple[int, frozenset[int]]:
-        """Serve some agents until others are announced.
+    def close(self) -> None:
+        """End, and leave the folder."""
+        with self._open:
+            self._end()
 
-        Args:
-            service: What is served.
-            group: The trackers.
-            agents: Number of agents, and those of them whose first reset has been taken already.
-            announcements: Where others may be announced.
-
-        Returns:
-            The number of the others, and those whose first reset has been taken already.
-
-        Raises:
-            SpawnError: There are fewer targets than agents.
-        """
-        count, begun = agents
-        names = [f"{service.tracker}{number}" for number in range(count)]
-        with Journal(self._exchange.logs, names, verbose=service.verbose) as journal:
-            sessions = [
-                ClientSession(self._exchange.names(name), journal.hearer(number))
-                for number, name in enumerate(names)
-            ]
-            for number in begun & set(range(count)):
-                sessions[number].action = RESET
-            _LOG.info("serving %s in %s", _named(names), self._exchange.files)
-            self._late.clear()
-            self._active = time.monotonic()  # making the world may have taken long
-            while True:
-                other = self._gather(service, sessions, announcements)
-                if other is not None:
-                    return other, _begun(sessions)
-                self._play(service, group, sessions, journal)
-
-    def _gather(
-        self, service: Service, sessions: list[ClientSession], announcements: Announcements
-    ) -> int | None:
-        """Give all answers and wait for the next action of each client.
-
-        Returns:
-            The number of other agents, if such are announced; None when all actions are there.
-        """
-        pause = Pause()
-        while any(session.action is None for session in sessions):
-            happened = [session for session in sessions if session.poll()]
+    def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
+        """Go on by a file with each client that has; or hear agents that are announced."""
+        training, end = self._training, time.monotonic() + wait
+        if training is None:
+            self._look()
+            count = self._announcements.wait(wait)
+            if count is None:
+                return []
+            self._begin(count)
+            return [("agents", None)]
+        while True:
+            happened = [session for session in training.sessions if session.poll()]
+            complete = all(session.action is not None for session in training.sessions)
+            if self._pause.long:
+                self._look()
+            if (complete or self._pause.long) and self._others_begin(training):
+                return [("agents", None)]
             if happened:
-                self._welcome(happened)
-                self._active = time.monotonic()
-                pause.restart()
-                continue
-            if pause.long:
-                self._look(announcements)
-                other = announcements.poll()
-                if other is not None and self._is_new(service, other, len(sessions)):
-                    return other
-                self._tell_late(sessions, service.config.patience)
-                self._end_idle()
-            pause.sleep()
-        other = announcements.poll()
-        return other if other is not None and self._is_new(service, other, len(sessions)) else None
+                self._pause.restart()
+                return [(session.names.tracker, session) for session in happened]
+            if complete or time.monotonic() > end:
+                return []
+            self._pause.sleep()
 
-    def _is_new(self, service: Service, announced: int, count: int) -> bool:
-        """Return whether agents that are announced need a world of their own."""
-        return announced != count or self._ask() is not service
+    def take(self, message: ClientSession | None) -> None:
+        """Note that a client goes on."""
+        if message is not None and message.names.tracker in self._late:
+            self._late.discard(message.names.tracker)
+            _LOG.info("%s: goes on", message.names.tracker)
 
-    def _look(self, announcements: Announcements) -> None:
-        """Follow the settings' port, twice a second."""
-        now = time.monotonic()
-        if now - self._looked > _LOOKS:
-            self._looked = now
-            announcements.move(*self._place())
+    def orders(self) -> Orders | None:
+        """Return the actions of all clients, when all are there."""
+        training = self._training
+        if training is None:
+            return None
+        actions = [session.action for session in training.sessions if session.action is not None]
+        if len(actions) < len(training.sessions):
+            return None
+        training.journal.actions([action.command for action in actions])
+        return training.group.orders(actions)
 
-    def _play(
-        self,
-        service: Service,
-        group: "TrackerGroup",
-        sessions: list[ClientSession],
-        journal: Journal,
-    ) -> None:
-        actions = [session.action for session in sessions]
-        given = [action for action in actions if action is not None]
-        journal.actions([action.command for action in given])
-        answers = group.play(given)
-        journal.step(group.sim.snapshot)
-        for session, answer in zip(sessions, answers, strict=True):
-            session.answer(_answer_files(service, session, answer))
+    def answer(self, *, late: bool) -> None:
+        """Give each client its answer."""
+        training = self._training
+        assert training is not None  # there were orders
+        answers = training.group.answers()
+        training.journal.step(training.group.sim.snapshot)
+        for session, answer in zip(training.sessions, answers, strict=True):
+            session.answer(_answer_files(training.service, session, answer))
+        self._pause.restart()
 
-    def _tell_late(self, sessions: list[ClientSession], patience: float) -> None:
+    def idle(self, stood: float) -> None:
         """Report clients that do not go on, once."""
+        if self._training is None:
+            return
+        patience = self._training.service.config.patience
         since = time.monotonic() - patience
         late = [
             session.names.tracker
-            for session in sessions
+            for session in self._training.sessions
             if session.owes and session.waiting < since
         ]
         if set(late) - self._late:
@@ -240,11 +169,71 @@ class Server:
                 *(", ".join(late), patience),
             )
 
-    def _welcome(self, sessions: list[ClientSession]) -> None:
-        for session in sessions:
-            if session.names.tracker in self._late:
-                self._late.discard(session.names.tracker)
-                _LOG.info("%s: goes on", session.names.tracker)
+    def fail(self, error: EyasError) -> None:
+        """Tell of agents that cannot be served in a line, and wait for others."""
+        if self._count == 0 or not isinstance(
+            error, ConfigError | DataFileError | MissingExtraError | SpawnError
+        ):
+            raise error
+        count = self._count
+        self._end()
+        _LOG.error(
+            "%d agent%s cannot be served: %s; their clients wait in vain: end them; waiting for "
+            "the next",
+            *(count, "s" * (count > 1), error),
+        )
+        self._announcements.poll()  # of the others of them
+
+    def _begin(self, count: int, begun: frozenset[int] = frozenset()) -> None:
+        """Make a world for agents that have announced themselves.
+
+        Args:
+            count: Their number.
+            begun: Those of them whose first reset has been taken already.
+        """
+        self._count = count
+        _LOG.info("%d agent%s announced", count, "s" * (count > 1))
+        service = self._ask()
+        group = service.build(count)
+        self._serving.callback(group.close)
+        names = [f"{service.tracker}{number}" for number in range(count)]
+        journal = Journal(self._exchange.logs, names, verbose=service.verbose)
+        self._serving.enter_context(journal)
+        sessions = [
+            ClientSession(self._exchange.names(name), journal.hearer(number))
+            for number, name in enumerate(names)
+        ]
+        for number in begun & set(range(count)):
+            sessions[number].action = RESET
+        _LOG.info("serving %s in %s", _named(names), self._exchange.files)
+        self._training = _Training(service, group, journal, sessions)
+        self.simulation = group.sim
+        self._late.clear()
+        self._pause.restart()
+
+    def _end(self) -> None:
+        """End the world."""
+        self._training, self._count = None, 0
+        self._serving.close()
+
+    def _others_begin(self, training: _Training) -> bool:
+        """Begin anew if agents are announced that need a world of their own."""
+        count = self._announcements.poll()
+        if count is None:
+            return False
+        if count == len(training.sessions) and self._ask() is training.service:
+            return False
+        begun = _begun(training.sessions)
+        self._end()
+        self._begin(count, begun)
+        return True
+
+    def _look(self) -> None:
+        """Follow the settings' port, twice a second."""
+        now = time.monotonic()
+        if now - self._looked > _LOOKS:
+            self._looked = now
+            self._announcements.move(*self._place())
 
 
 def _answer_files(service: Service, session: ClientSession, answer: "Answer") -> list[AnswerFile]:

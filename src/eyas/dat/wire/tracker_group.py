@@ -6,11 +6,11 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.dat.wire.codec import Action, packet_line
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.sim.serving import Orders
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
 from eyas.engine.targets.catalogue import MODELS
@@ -57,13 +57,15 @@ class TrackerGroup:
         self._threads = ThreadPoolExecutor(workers, "eyas-pictures")
         self._drawn: list[Future[bytes]] = []
         self._begun = False
+        self._resets = np.zeros(sim.count, np.bool_)  # who gets a new episode with the answer
+        self._unasked = np.zeros(sim.count, np.bool_)  # who gets one without having asked
 
     def close(self) -> None:
         """Wait for the last pictures."""
         self._threads.shutdown(wait=True, cancel_futures=True)
 
-    def play(self, actions: Sequence[Action]) -> list[Answer]:
-        """Carry out one action of each tracker, shape (N,).
+    def orders(self, actions: Sequence[Action]) -> Orders:
+        """Return the orders of one action of each tracker, shape (N,), that `answers` answers.
 
         Those that reset begin a new episode at the end of the others' action. Whoever did not ask
         for the new episode that it gets, because the traffic begins anew, is told that the last one
@@ -73,13 +75,36 @@ class TrackerGroup:
             SpawnError: There are fewer targets than trackers.
         """
         wait(self._drawn)  # an answer may have been dropped before its picture was done
-        resets = np.array([action.reset for action in actions])
-        renewed = self._move(actions, resets)
+        sim, steps = self.sim, self._steps
+        self._resets = np.array([action.reset for action in actions])
+        self._unasked = np.zeros(sim.count, np.bool_)
+        everyone = bool(self._resets.all())
+        if not self._begun:  # all begin, whatever they ask for
+            sim.reset()
+            self._begun, self._resets, steps = True, self._unasked, 0
+        elif sim.steps_left < (sim.config.done.total_steps if everyone else steps):
+            _LOG.info("the traffic has reached its end, and begins anew for all trackers")
+            self._renew()
+            steps = 0
+        return Orders(np.array([a.command for a in actions]), 0 if everyone else steps)
+
+    def answers(self) -> list[Answer]:
+        """Return the answers, shape (N,), after the orders have been carried out.
+
+        Raises:
+            SpawnError: There are fewer targets than trackers.
+        """
+        if self._resets.any():
+            try:
+                self.sim.reset(self._resets)
+            except SpawnError as error:
+                _LOG.warning("%s; so the traffic begins anew for all trackers", error)
+                self._renew()
         basic, reward = self.sim.packets()
         seen = self.sim.view
         # What is sensed may be late; time, reward, end and the reward packet are not.
         basic[:, SENSOR_COLUMNS] = seen.packets()[0][:, SENSOR_COLUMNS]
-        basic[renewed & ~resets, BASIC_COLUMNS["done"]] = 1.0
+        basic[self._unasked, BASIC_COLUMNS["done"]] = 1.0
         self._drawn = self._draw()
         models = self.sim.snapshot.targets.model.tolist()
         radar = None
@@ -95,32 +120,11 @@ class TrackerGroup:
             for n, picture in enumerate(self._drawn)
         ]
 
-    def _move(self, actions: Sequence[Action], resets: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Move all trackers; return which of them have begun an episode."""
-        sim = self.sim
-        if not self._begun:  # whatever they ask for
-            sim.reset()
-            self._begun = True
-            return resets
-        left = sim.steps_left
-        needed = sim.config.done.total_steps if resets.all() else self._steps
-        if left < needed:
-            _LOG.info("the traffic has reached its end, and begins anew for all trackers")
-            return self._renew()
-        if not resets.all():
-            sim.advance(np.array([action.command for action in actions]), self._steps)
-        if resets.any():
-            try:
-                sim.reset(resets)
-            except SpawnError as error:
-                _LOG.warning("%s; so the traffic begins anew for all trackers", error)
-                return self._renew()
-        return resets
-
-    def _renew(self) -> NDArray[np.bool_]:
+    def _renew(self) -> None:
+        """Begin the traffic and all episodes anew, also of those who did not ask for it."""
+        self._unasked, self._resets = ~self._resets, np.zeros(self.sim.count, np.bool_)
         self.sim.rewind()
         self.sim.reset()
-        return np.ones(self.sim.count, np.bool_)
 
     def _draw(self) -> list[Future[bytes]]:
         """Begin to draw; return the pictures to come."""

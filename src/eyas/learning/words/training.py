@@ -14,9 +14,8 @@ from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
-from eyas.learning.config import TrainConfig
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
-from eyas.learning.config import WordsTraining
+from eyas.learning.config import TrainConfig, WordsTraining
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import Loss, lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork

@@ -1,14 +1,25 @@
-"""Import a map of OpenStreetMap: read it, make its streets, keep it, record its traffic."""
+"""The import of a map of OpenStreetMap, step by step; each step is made of those before it.
+
+    file                                  `maps/osm/reader.py`
+    -> place on earth, area               `maps/osm/projection.py`
+    -> streets, through netconvert        `maps/osm/streets.py`, `maps/osm/network.py`
+    -> survey: all that is known beside   `maps/osm/houses.py`, `land.py`
+    -> plan -> folder                     `maps/plan/file.py`
+    -> traffic                            `engine/traffic/library.py`
+
+When the map is first used, `maps/towns` completes its plan, and `maps/plan/build.py` makes the
+scene of it, as of any other plan.
+"""
 
 import gzip
 import json
 import re
-import shlex
 import shutil
 import time
 from collections import Counter
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -19,7 +30,7 @@ from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, Outpu
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.rng import stream
 from eyas.engine.envs.registration import register_map
-from eyas.engine.state.roads import RoadGraph
+from eyas.engine.state.roads import RoadGraph, RoadNetwork
 from eyas.engine.terminal.progress import sumo_progress
 from eyas.engine.traffic.library import record_canonical
 from eyas.engine.traffic.net_file import (
@@ -37,7 +48,7 @@ from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
 from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.maps.osm.data import Bounds
+from eyas.maps.osm.data import Bounds, OsmData
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
@@ -47,8 +58,9 @@ from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
+from eyas.maps.programs.import_report import Report
 
-__all__ = ["ATTRIBUTION", "Report", "run"]
+__all__ = ["ATTRIBUTION", "run"]
 
 ATTRIBUTION = """\
 © OpenStreetMap contributors
@@ -64,53 +76,6 @@ _LARGEST = 6000.0
 _SMALLEST = 40.0
 _MARGIN = 30.0
 """Floor beyond the imported area [m]."""
-
-
-@dataclass(slots=True)
-class Report:
-    """What an import has found and guessed."""
-
-    name: str
-    folder: Path
-    registered: bool
-    """Whether it is known by its name; otherwise by its folder."""
-    size: tuple[float, float] = (0.0, 0.0)
-    """Extent of the floor [m]."""
-    lanes: int = 0
-    signals: int = 0
-    """Programs of traffic lights."""
-    buildings: int = 0
-    trees: int = 0
-    guessed: Counter[str] = field(default_factory=Counter)
-    """Number of things without a tag, by what had to be guessed."""
-    odd: Counter[str] = field(default_factory=Counter)
-    """Number of values that made no sense, by tag."""
-    broken: Counter[str] = field(default_factory=Counter)
-    """Number of outlines that were mended or left out, by what was wrong."""
-    traffic: str = ""
-    """What was recorded, or why nothing was."""
-    seconds: float = 0.0
-
-    @property
-    def known_as(self) -> str:
-        """What commands and settings call the map."""
-        return self.name if self.registered else str(self.folder)
-
-    def lines(self) -> list[str]:
-        """Return the report for people."""
-        width, height = self.size
-        made = [
-            f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
-            f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
-            f"in {self.seconds:.0f} s",
-            f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
-        ]
-        for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
-                              ("mended or left out", self.broken)):  # fmt: skip
-            if counted:
-                parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
-                made.append(f"{word}: {parts}")
-        return [*made, self.traffic, "© OpenStreetMap contributors"]
 
 
 def run(
@@ -141,55 +106,19 @@ def run(
     _check_free(folder, name, overwrite=overwrite, own=out is None)
     report = Report(name, folder, registered=out is None)
     data = read_osm(path)
-    limits = covered(data, bounds, str(path))
-    west, south, east, north = limits
-    projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
-    extent = _extent(projection, limits, str(path))
-    streets = street_file(data, limits, lambda key: report.odd.update([key]))
-    finished = osm_network(streets, projection.text, str(path))
-    graph, net = RoadGraph(name, 0, (), (), finished), SumoNet(finished)
-    network = road_network(net, graph_hash(graph))
-    shapes = Shapes(data, projection, extent, lambda what: report.broken.update([what]))
-    features = _features(shapes, net, report)
-    x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
-    report.size = (2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN)))
-    report.lanes, report.signals = len(network.lane_width), len(net.programs)
+    place = _place(data, bounds, str(path))
+    streets = _streets(data, place, report)
+    survey = _survey(data, place, streets, report)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
-        projection.longitude, projection.latitude, report.size,
+        place.projection.longitude, place.projection.latitude, place.size,
     )  # fmt: skip
-    with refusals(folder):
-        if folder.exists():
-            shutil.rmtree(folder)
-        folder.mkdir(parents=True)
-    write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
-    save_network(folder / NETWORK_FILE, network)
-    _write_plan(folder, origin, features)
+    _write(folder, streets, _plan(origin, survey), origin)
     if out is None:
         register_map(name)
-    report.traffic = _recorded(graph, folder, record=record)
+    report.traffic = _recorded(streets.graph, folder, record=record)
     report.seconds = time.monotonic() - begun
     return report
-
-
-def _write_plan(folder: Path, origin: Origin, features: Survey) -> None:
-    """Write the plan of a map, and where it comes from."""
-    plan = MapPlan(
-        name=origin.name,
-        title=origin.title,
-        attribution=ATTRIBUTION,
-        size=origin.size,
-        roads=Roads(file=ROADS_FILE),
-        survey=features,
-    )
-    write_plan(folder / PLAN_FILE, plan)
-    write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
-    kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
-    flushed(folder / name for name in kept)
-    origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
-    # Last, since a folder with this file is a map.
-    write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
-    MAPS.forget()
 
 
 def _name(text: str) -> str:
@@ -211,9 +140,24 @@ def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
         raise OutputError(f"{folder}: is there already; replace it with --overwrite")
 
 
-def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Polygon:
-    """Return the area of the map [m]."""
-    west, south, east, north = limits
+class _Place(NamedTuple):
+    """Where on earth the map lies."""
+
+    source: str  # name of the file, for messages
+    limits: Bounds  # [degrees]
+    projection: Projection
+    extent: shapely.Polygon  # the imported area [m]
+    size: tuple[float, float]  # of the floor [m]
+
+
+def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
+    """Return the area to import, in degrees and in metres around its middle.
+
+    Raises:
+        EyasError: It is empty, too large or too small.
+    """
+    west, south, east, north = limits = covered(data, bounds, source)
+    projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
     corners = projection.metres([(west, south), (east, south), (east, north), (west, north)])
     width, height = np.ptp(corners, axis=0)
     if max(width, height) > _LARGEST:
@@ -226,28 +170,89 @@ def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Poly
             f"{source}: covers {width:.0f} x {height:.0f} m, too little for a map; allowed: "
             f"at least {_SMALLEST:g} m"
         )
-    return shapely.Polygon(corners)
+    extent = shapely.Polygon(corners)
+    x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
+    size = 2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN))
+    return _Place(source, limits, projection, extent, size)
 
 
-def _features(shapes: Shapes, net: SumoNet, report: Report) -> Survey:
+class _Streets(NamedTuple):
+    """The streets, as netconvert has made them."""
+
+    graph: RoadGraph  # holds the bytes of SUMO's file
+    net: SumoNet
+    network: RoadNetwork
+
+
+def _streets(data: OsmData, place: _Place, report: Report) -> _Streets:
+    """Return the streets for cars within the area.
+
+    Raises:
+        EyasError: SUMO is not installed, or makes no network of them.
+    """
+    cut = street_file(data, place.limits, lambda key: report.odd.update([key]))
+    finished = osm_network(cut, place.projection.text, place.source)
+    graph, net = RoadGraph(report.name, 0, (), (), finished), SumoNet(finished)
+    network = road_network(net, graph_hash(graph))
+    report.size, report.lanes, report.signals = (
+        place.size, len(network.lane_width), len(net.programs),
+    )  # fmt: skip
+    return _Streets(graph, net, network)
+
+
+def _survey(data: OsmData, place: _Place, streets: _Streets, report: Report) -> Survey:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
         report.odd[key] += 1
 
-    features = Survey(houses=houses_of(shapes, odd))
-    add_land(features, shapes, odd, stream(0, "imported tree rows"))
+    shapes = Shapes(data, place.projection, place.extent, lambda what: report.broken.update([what]))
+    survey = Survey(houses=houses_of(shapes, odd))
+    add_land(survey, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.
-    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(net))))
-    features.signals = signalled_edges(net)
-    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossing_lines(net).items()}
-    report.buildings, report.trees = len(features.houses), len(features.trees)
-    for house in features.houses:
+    pavement = snapped(pavement_area(streets.net))
+    survey.pavement = shapely.MultiPolygon(polygons_of(pavement))
+    survey.signals = signalled_edges(streets.net)
+    survey.lit_crossings = {
+        name: shapely.LineString(line) for name, line in crossing_lines(streets.net).items()
+    }
+    report.buildings, report.trees = len(survey.houses), len(survey.trees)
+    for house in survey.houses:
         report.guessed["heights"] += house.height is None and house.levels is None
         report.guessed["roofs"] += not house.roof
-    report.guessed["heights of trees"] += sum(not tall for _, _, tall in features.trees)
+    report.guessed["heights of trees"] += sum(not tall for _, _, tall in survey.trees)
     report.guessed += Counter()  # drops what was never guessed
-    return features
+    return survey
+
+
+def _plan(origin: Origin, survey: Survey) -> MapPlan:
+    """Return the plan, which says only what is known."""
+    return MapPlan(
+        name=origin.name,
+        title=origin.title,
+        attribution=ATTRIBUTION,
+        size=origin.size,
+        roads=Roads(file=ROADS_FILE),
+        survey=survey,
+    )
+
+
+def _write(folder: Path, streets: _Streets, plan: MapPlan, origin: Origin) -> None:
+    """Write the map, in the place of what the folder holds."""
+    with refusals(folder):
+        if folder.exists():
+            shutil.rmtree(folder)
+        folder.mkdir(parents=True)
+    write_atomic(folder / ROADS_FILE, gzip.compress(streets.graph.finished, mtime=0))
+    save_network(folder / NETWORK_FILE, streets.network)
+    write_plan(folder / PLAN_FILE, plan)
+    write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
+    kept = (ROADS_FILE, NETWORK_FILE, PLAN_FILE, ATTRIBUTION_FILE)
+    flushed(folder / name for name in kept)
+    origin = replace(origin, checksums={name: sum_of(folder / name) for name in kept})
+    # Last, since a folder with this file is a map.
+    write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
+    MAPS.forget()
 
 
 def _recorded(graph: RoadGraph, folder: Path, *, record: bool) -> str:

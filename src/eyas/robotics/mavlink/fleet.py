@@ -1,20 +1,21 @@
 """All vehicles in one world: their steps, their packets and their pictures."""
 
 import logging
-from collections.abc import Callable, Iterable, Iterator
+import select
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
-from eyas.engine.core.faults import FaultLog
+from eyas.engine.sim.serving import Face, Orders
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
 from eyas.engine.task.config import Crash
 from eyas.robotics.mavlink.camera import Lens
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.endpoint import parsed_address
+from eyas.robotics.mavlink.endpoint import Endpoint, parsed_address
 from eyas.robotics.mavlink.frames import Geodesy
 from eyas.robotics.mavlink.modes import Landed, Mode
 from eyas.robotics.mavlink.places import standing_places
@@ -32,10 +33,13 @@ _DATAGRAM = 1200
 _TOGETHER = 4
 """Most pictures that are drawn at once: of 20 vehicles, 320x240 pixels, one takes 6.4 ms so, 9.0 ms
 alone."""
+_PATIENCE = 10.0
+"""How long time stands still for a vehicle without a set point [s]."""
 
 
-class Fleet:
-    """Vehicles that fly in real time, or step by step.
+class Fleet(Face):
+    """Vehicles that fly by the clock; or in lock-step, where time stands still while a vehicle in
+    offboard mode waits for a set point.
 
     Attributes:
         period: Length of a step: that of a command [s].
@@ -45,22 +49,23 @@ class Fleet:
     Args:
         simulation: Trackers in one world, not yet reset.
         config: Its settings.
-        out: Takes datagrams.
+        endpoints: Where messages go and come from.
 
     Raises:
         EyasError: Something of the settings is not possible.
     """
 
+    relief = "smaller or fewer pictures help (camera.width, camera.height, mavlink.picture_rate)"
+
     def __init__(
-        self, simulation: Simulation, config: MavlinkConfig, out: Callable[[bytes], None]
+        self, simulation: Simulation, config: MavlinkConfig, endpoints: Sequence[Endpoint]
     ) -> None:
-        self._simulation, self._config, self._out = simulation, config, out
+        self.simulation, self._config, self._endpoints = simulation, config, endpoints
         self._steps = physics_steps(simulation.config.control.frequency)
         self.period = self._steps / PHYSICS_RATE
         self.now, self._taken = 0.0, 0
         self._gathered: list[bytes] = []
         self._length = 0
-        self._faults = FaultLog()
         geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
         self._readings, self._sights = Readings(simulation, geodesy), Sights(simulation)
         count = simulation.count
@@ -72,6 +77,9 @@ class Fleet:
         places = standing_places(simulation)
         simulation.start_at(np.arange(count), places, self._pitch)
         self.vehicles = [self._vehicle(at, tuple(places[at, :3])) for at in range(count)]
+        # What they seem to have sent is an echo, or comes from another vehicle of the same number;
+        # a companion computer has the system id of its vehicle.
+        self._own = {sender for vehicle in self.vehicles for sender in vehicle.senders}
         self._groups = [
             list(range(first, min(first + _TOGETHER, count)))
             for first in range(0, count, _TOGETHER)
@@ -87,18 +95,18 @@ class Fleet:
         self._crashed = np.zeros(count, np.bool_)
 
     def _video(self) -> list[VideoSender]:
-        config, camera = self._config, self._simulation.config.camera
+        config, camera = self._config, self.simulation.config.camera
         if not config.video:
             return []
         host, port = parsed_address(config.video, "mavlink.video")
         how = camera.height, camera.width, config.picture_rate, config.video_quality
         return [
             VideoSender(Stream((host, port + 2 * at), *how), at + 1)
-            for at in range(self._simulation.count)
+            for at in range(self.simulation.count)
         ]
 
     def _vehicle(self, at: int, home: Any) -> Vehicle:  # noqa: ANN401  # three numbers
-        config, camera = self._config, self._simulation.config.camera
+        config, camera = self._config, self.simulation.config.camera
         port = parsed_address(config.video, "mavlink.video")[1] + 2 * at if config.video else 0
         field = float(self._fields[at])
         lens = Lens(camera.width, camera.height, field, config.picture_rate, port)
@@ -115,26 +123,24 @@ class Fleet:
         for sender in self._senders:
             sender.close()
 
-    def take(self, messages: Iterable[Any]) -> None:
-        """Give messages to those they are for, and send the answers.
-
-        One that cannot be handled is a line in the log. A companion computer has the system id of
-        its vehicle, so only what a vehicle's own component seems to have sent is an echo.
-        """
-        own = {sender for vehicle in self.vehicles for sender in vehicle.senders}
-        for message in messages:
-            sender = message.get_srcSystem(), message.get_srcComponent()
-            if sender in own:  # an echo, or another vehicle of the same number
-                continue
-            with self._faults.guard(f"{message.get_type()} from {sender[0]}/{sender[1]}"):
-                for vehicle in self.vehicles:
-                    vehicle.take(message)
-        self._flush()
-
     @property
-    def waits(self) -> bool:
-        """Whether a vehicle in offboard mode has got no set point since the last step."""
-        return any(self._waiting())
+    def speed(self) -> float:
+        """That of the clock; in lock-step, as fast as set points come."""
+        return 0.0 if self._config.lockstep and self._offboard else 1.0
+
+    def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
+        """Yield what comes within a time [s], and send the answers."""
+        ready, _, _ = select.select([end.socket for end in self._endpoints], [], [], wait)
+        for message in [m for end in self._endpoints if ready for m in end.received()]:
+            sender = f"{message.get_srcSystem()}/{message.get_srcComponent()}"
+            yield f"{message.get_type()} from {sender}", message
+        self.flush()
+
+    def take(self, message: Any) -> None:  # noqa: ANN401  # pymavlink's
+        """Give a message to those it is for."""
+        if (message.get_srcSystem(), message.get_srcComponent()) not in self._own:
+            for vehicle in self.vehicles:
+                vehicle.take(message)
 
     def _waiting(self) -> Iterator[Vehicle]:
         """Yield the vehicles in offboard mode that have got no set point since the last step."""
@@ -143,64 +149,65 @@ class Fleet:
                 yield vehicle
 
     @property
-    def offboard(self) -> bool:
+    def _offboard(self) -> bool:
         """Whether any vehicle is in offboard mode."""
         return any(vehicle.pilot.mode is Mode.OFFBOARD for vehicle in self.vehicles)
 
-    def step(self, *, look: bool = True) -> None:
-        """Fly for a period, and send what is due; pictures, too, if `look`."""
+    def orders(self) -> Orders | None:
+        """Return what the pilots want; None in lock-step while one waits for a set point."""
+        if self._config.lockstep and any(self._waiting()):
+            return None
         for at, vehicle in enumerate(self.vehicles):
             self._set_points[at] = vehicle.pilot.set_points
             forward, left, up, turn = vehicle.command(self.now, self.period)
             self._commands[at] = forward, left, up / PHYSICS_RATE, turn
             self._angles[at] = vehicle.aim(self.period)
         self._zoom()
-        simulation = self._simulation
-        if simulation.steps_left < self._steps:
-            self._begin_traffic_anew()
-        simulation.command_gimbal(self._angles)
-        simulation.advance(self._commands, self._steps)
+        self.simulation.command_gimbal(self._angles)
+        return Orders(self._commands, self._steps)
+
+    def answer(self, *, late: bool) -> None:
+        """Send what is due; pictures only if there is time."""
         self._taken += 1
         self.now = self._taken * self._steps / PHYSICS_RATE
         self._readings.renew()
         self._tell_crashes()
         for vehicle in self.vehicles:
             vehicle.tell(self.now)
-            self._flush()
-        if look:
+            self.flush()
+        if not late:
             self._look()
 
-    def beat(self) -> None:
-        """Send heartbeats while time stands still."""
+    def idle(self, stood: float) -> None:
+        """Send heartbeats; and give up who sends no set point for long, whatever else comes: the
+        heartbeats of a ground station go on when the program has died.
+        """
         for vehicle in self.vehicles:
             vehicle.beat()
-        self._flush()
-
-    def hold(self, why: str) -> None:
-        """Let those that wait for a set point hold."""
-        for vehicle in list(self._waiting()):
-            vehicle.pilot.hold(why)
+        self.flush()
+        for vehicle in list(self._waiting()) if stood > _PATIENCE else ():
+            vehicle.pilot.hold("No set points")
 
     def _zoom(self) -> None:
         fields = np.array([vehicle.camera.field_of_view for vehicle in self.vehicles])
         if (fields != self._fields).any():
             self._fields = fields
-            self._simulation.set_fields_of_view(fields)
+            self.simulation.set_fields_of_view(fields)
 
     def _tell_crashes(self) -> None:
         """Report what flying vehicles touch, where contacts are computed."""
-        if self._simulation.config.done.crash is Crash.ORIGINAL:
+        if self.simulation.config.done.crash is Crash.ORIGINAL:
             return
-        crashed = self._simulation.snapshot.episodes.crash
+        crashed = self.simulation.snapshot.episodes.crash
         for at in np.flatnonzero(crashed & ~self._crashed).tolist():
             if self.vehicles[at].pilot.landed is Landed.AIR:
                 self.vehicles[at].pilot.said.append((2, "Crashed"))
         self._crashed = crashed.copy()
 
-    def _begin_traffic_anew(self) -> None:
+    def rewind(self) -> None:
         """Begin the traffic anew; vehicles stay where they are, at rest."""
         _LOG.info("the traffic has reached its end, and begins anew")
-        simulation, state = self._simulation, self._simulation.snapshot
+        simulation, state = self.simulation, self.simulation.snapshot
         poses = np.column_stack([state.trackers.commanded_position, state.trackers.commanded_yaw])
         actors = state.targets.actor.tolist()
         simulation.rewind()
@@ -209,6 +216,7 @@ class Fleet:
         simulation.set_fields_of_view(self._fields)
         for tracker, actor in enumerate(actors):
             simulation.follow(tracker, actor)
+        simulation.command_gimbal(self._angles)
 
     def _look(self) -> None:
         """Draw the pictures that are due, and let cameras see their targets in them."""
@@ -227,7 +235,7 @@ class Fleet:
         """Draw and send the pictures of some vehicles."""
         tracks = any(self.vehicles[vehicle].camera.tracks for vehicle in group)
         picture = (self._picture if tracks else self._plain).first(len(group))
-        self._simulation.view.draw(np.array(group, np.int32), picture)
+        self.simulation.view.draw(np.array(group, np.int32), picture)
         assert picture.rgb is not None
         for at, vehicle in enumerate(group):
             self._senders[vehicle].send(picture.rgb[at], self.now)
@@ -236,12 +244,15 @@ class Fleet:
 
     def _gather(self, packet: bytes) -> None:
         if self._length + len(packet) > _DATAGRAM:
-            self._flush()
+            self.flush()
         self._gathered.append(packet)
         self._length += len(packet)
 
-    def _flush(self) -> None:
+    def flush(self) -> None:
+        """Send the packets that have been gathered."""
         if self._gathered:
-            self._out(b"".join(self._gathered))
+            datagram = b"".join(self._gathered)
+            for endpoint in self._endpoints:
+                endpoint.send(datagram)
             self._gathered.clear()
             self._length = 0

@@ -9,13 +9,13 @@ import logging
 import math
 import socket
 import struct
+from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
 from eyas.engine.core.clock import PHYSICS_RATE
-from eyas.engine.core.faults import FaultLog
-from eyas.robotics.mavlink.hil.drone import DrivenDrone
-from eyas.robotics.mavlink.hil.pace import Pace
+from eyas.engine.sim.serving import Orders
+from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
 
 __all__ = ["ArduPilot", "Servos", "servos_of"]
 
@@ -51,49 +51,63 @@ def servos_of(packet: bytes) -> Servos | None:
     return Servos(rate, frame, tuple(outputs))
 
 
-class ArduPilot:
+class ArduPilot(Autopilot):
     """Lets one ArduPilot fly; one that starts anew begins anew.
 
     Args:
         drone: What it flies.
         speed: See `HilConfig.speed`.
+        heard: Where its packets come.
     """
 
-    def __init__(self, drone: DrivenDrone, speed: float) -> None:
-        self._drone, self._pace, self._speed = drone, Pace(speed), speed
+    def __init__(self, drone: DrivenDrone, speed: float, heard: socket.socket) -> None:
+        super().__init__(drone, speed)
+        self._socket = heard
+        self._asked: tuple[Servos, Any] | None = None  # the packet to be answered, and from where
         self._frame: int | None = None
+        self._steps = 0
 
-    def serve(self, heard: socket.socket) -> None:
-        """Fly until the user stops it."""
-        faults = FaultLog()
-        while True:
-            try:
-                packet, peer = heard.recvfrom(65_535)
-            except ConnectionError:  # some systems tell so that nobody hears what was sent
-                continue
-            with faults.guard(f"packet from {peer[0]}"):
-                servos = servos_of(packet)
-                if servos is None:
-                    continue
-                answer = self.answer(servos)
-                with suppress(OSError):  # it came from where nobody can be answered: port 0
-                    heard.sendto(answer, peer)
+    def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
+        """Return the packet that comes within a time [s], with its sender."""
+        self._socket.settimeout(wait)
+        try:
+            packet, peer = self._socket.recvfrom(65_535)
+        except (BlockingIOError, TimeoutError, ConnectionError):
+            return []  # of the last, some systems tell so that nobody hears what was sent
+        return [(f"packet from {peer[0]}", (packet, peer))]
 
-    def answer(self, servos: Servos) -> bytes:
-        """Fly for a frame, and return what is sensed then; for a packet that comes again, time
-        stands still.
-        """
+    def take(self, message: tuple[bytes, Any]) -> None:
+        """Note what is asked for; for a packet that comes again, time stands still."""
+        packet, peer = message
+        servos = servos_of(packet)
+        if servos is None:
+            return
         if self._frame is None or servos.frame < self._frame:
             _LOG.info("ArduPilot has started")
             self._drone.begin()
-            self._pace = Pace(self._speed)
-        if servos.frame != self._frame:
-            rate = min(max(servos.rate, _RATES[0]), _RATES[1])
-            self._drone.step(servos.outputs, round(PHYSICS_RATE / rate))
-            self._pace.keep(self._drone.now)
+            self._frame = None
+        self._asked = servos, peer
+
+    def orders(self) -> Orders | None:
+        """Return what the last packet asks for."""
+        if self._asked is None:
+            return None
+        servos, _ = self._asked
+        rate = min(max(servos.rate, _RATES[0]), _RATES[1])
+        self._steps = round(PHYSICS_RATE / rate) if servos.frame != self._frame else 0
         self._frame = servos.frame
+        return self._drone.orders(servos.outputs, self._steps)
+
+    def answer(self, *, late: bool) -> None:
+        """Send what is sensed now."""
+        assert self._asked is not None  # there were orders
+        (_, peer), self._asked = self._asked, None
+        if self._steps:
+            self._drone.sense(self._steps)
         # Its reader wants no spaces behind colons, and a line between line feeds.
-        return b"\n" + json.dumps(self._told(), separators=(",", ":")).encode() + b"\n"
+        line = b"\n" + json.dumps(self._told(), separators=(",", ":")).encode() + b"\n"
+        with suppress(OSError):  # it came from where nobody can be answered: port 0
+            self._socket.sendto(line, peer)
 
     def _told(self) -> dict[str, Any]:
         at = self._drone.instant

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.sim.serving import Face, Orders
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
 from eyas.engine.trackers.driven import WEIGHT
@@ -17,7 +18,7 @@ from eyas.robotics.mavlink.places import standing_places
 from eyas.robotics.mavlink.readings import Instant, Readings
 from eyas.robotics.mavlink.video import Stream, VideoSender
 
-__all__ = ["MOTORS", "DrivenDrone"]
+__all__ = ["MOTORS", "Autopilot", "DrivenDrone"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -36,6 +37,7 @@ class DrivenDrone:
     """One drone, and its sensors.
 
     Attributes:
+        simulation: As below.
         now: Time since it has begun [s].
         instant: What it knows of itself now.
 
@@ -45,7 +47,7 @@ class DrivenDrone:
     """
 
     def __init__(self, simulation: Simulation, config: MavlinkConfig) -> None:
-        self._simulation, self._config = simulation, config
+        self.simulation, self._config = simulation, config
         geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
         self._readings = Readings(simulation, geodesy)
         self._most = 0.25 * config.hil.thrust_to_weight * WEIGHT
@@ -59,7 +61,6 @@ class DrivenDrone:
         simulation.reset()
         self._place = standing_places(simulation)
         self.begin()
-        self._told = False
 
     def close(self) -> None:
         """End the thread of the video."""
@@ -68,7 +69,7 @@ class DrivenDrone:
 
     def begin(self) -> None:
         """Stand where it stands at first, at time 0, in the traffic of then."""
-        simulation = self._simulation
+        simulation = self.simulation
         simulation.reseed(simulation.config.seed)
         simulation.rewind()
         simulation.reset()
@@ -77,8 +78,8 @@ class DrivenDrone:
         self._ticks, self._picture_due = 0, 0.0
         self._renew()
 
-    def step(self, outputs: Sequence[float], steps: int) -> None:
-        """Fly.
+    def orders(self, outputs: Sequence[float], steps: int) -> Orders:
+        """Return the orders that turn its rotors.
 
         Args:
             outputs: Of the first four motors, 0 to 1; a rotor's rate is proportional to its output,
@@ -87,16 +88,15 @@ class DrivenDrone:
         """
         shares = [outputs[motor] for motor in MOTORS]
         held = [min(max(share, 0.0), 1.0) if math.isfinite(share) else 0.0 for share in shares]
-        thrusts = [self._most * share * share for share in held]
-        self._simulation.advance(np.array([thrusts]), steps)
+        return Orders(np.array([[self._most * share * share for share in held]]), steps)
+
+    def sense(self, steps: int) -> None:
+        """Know what has come of orders of some physics steps, and send a picture if one is due."""
         self._ticks += steps
         self._renew()
-        if self._simulation.steps_left <= 0 and not self._told:
-            self._told = True
-            _LOG.info("the traffic has reached its end, and stands still")
         if self._video is not None and self.now >= self._picture_due:
             self._picture_due += 1.0 / self._config.picture_rate
-            self._simulation.view.draw(np.zeros(1, np.int32), self._picture)
+            self.simulation.view.draw(np.zeros(1, np.int32), self._picture)
             assert self._picture.rgb is not None
             self._video.send(self._picture.rgb[0], self.now)
 
@@ -115,3 +115,32 @@ class DrivenDrone:
         """Return its height over the ground below [m], not below 0."""
         body = self.instant.body
         return max(body.position[2] - body.ground, 0.0)
+
+
+class Autopilot(Face):
+    """What is the same for all autopilots outside.
+
+    Args:
+        drone: What it flies.
+        speed: See `HilConfig.speed`.
+    """
+
+    def __init__(self, drone: DrivenDrone, speed: float) -> None:
+        self._drone, self._speed = drone, speed
+        self.simulation = drone.simulation
+        self._over = False
+
+    @property
+    def speed(self) -> float:
+        """As the settings say."""
+        return self._speed
+
+    def rewind(self) -> None:
+        """Go on in a traffic that stands still, as an autopilot cannot be put back."""
+        if not self._over:
+            self._over = True
+            _LOG.info("the traffic has reached its end, and stands still")
+
+    def close(self) -> None:
+        """End the video."""
+        self._drone.close()

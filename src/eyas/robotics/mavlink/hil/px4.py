@@ -10,12 +10,13 @@ import math
 import select
 import socket
 import time
+from collections.abc import Iterable
 from typing import Any
 
+from eyas.engine.sim.serving import Orders
 from eyas.lanes import exact
 from eyas.robotics.mavlink.dialect import Packer, StreamParser
-from eyas.robotics.mavlink.hil.drone import DrivenDrone
-from eyas.robotics.mavlink.hil.pace import Pace
+from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
 __all__ = ["Px4"]
@@ -35,57 +36,110 @@ _SILENCE = 10.0
 """After this time without an answer it is said that one is waited for [s]."""
 
 
-class Px4:
+class Px4(Autopilot):
     """Lets one PX4 after the other fly.
 
     Args:
         drone: What it flies.
         speed: See `HilConfig.speed`.
+        server: Where it connects.
     """
 
-    def __init__(self, drone: DrivenDrone, speed: float) -> None:
-        self._drone, self._speed = drone, speed
-        self._packer = Packer(1, 51)
+    def __init__(self, drone: DrivenDrone, speed: float, server: socket.socket) -> None:
+        super().__init__(drone, speed)
+        self._server, self._packer = server, Packer(1, 51)
+        self._connection: socket.socket | None = None
+        self._parser, self._number = StreamParser(), 0
+        self._outputs = [0.0] * 16
+        self._newest: list[float] | None = None  # outputs that no step has used yet
+        self._lockstep = False  # whether PX4's outputs run
+        self._silent = False  # whether its silence has been reported
 
-    def serve(self, server: socket.socket) -> None:
-        """Fly until the user stops it."""
-        while True:
+    @property
+    def speed(self) -> float:
+        """As the settings say; until PX4's outputs run, the clock's: it starts its parts by it."""
+        return self._speed or (0.0 if self._lockstep else 1.0)
+
+    def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
+        """Return what comes within a time [s], if PX4 has connected; else wait for it."""
+        if self._connection is None:
+            self._accept(wait)
+        elif select.select([self._connection], [], [], wait)[0]:
             try:
-                connection, peer = server.accept()
-            except ConnectionError:  # it had gone before it was let in
-                continue
-            _LOG.info("PX4 has connected from %s port %d", *peer[:2])
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._drone.begin()
-            with connection:
-                try:
-                    self._fly(connection)
-                except (OSError, EOFError):  # whatever has ended the connection
-                    _LOG.info("PX4 has gone; waiting for another")
+                data = self._connection.recv(65_535)
+            except OSError:  # whatever has ended the connection
+                data = b""
+            if data:
+                return [(m.get_type(), m) for m in self._parser.messages(data)]
+            self._hang_up()
+        return []
 
-    def _fly(self, connection: socket.socket) -> None:
-        """Fly until the connection ends.
+    def take(self, message: Any) -> None:  # noqa: ANN401  # pymavlink's
+        """Keep the newest outputs."""
+        if message.get_type() == "HIL_ACTUATOR_CONTROLS":
+            self._newest = list(message.controls)
 
-        Raises:
-            ConnectionError: It has ended.
-            EOFError: It has been closed.
-        """
-        parser, pace = StreamParser(), Pace(self._speed)
-        outputs, number = [0.0] * 16, 0
-        lockstep = False
-        while True:
-            connection.sendall(b"".join(self._readings(number)))
-            told = _outputs(connection, parser, wait=lockstep)
-            if told is not None and not lockstep:
-                # What it still answers to earlier readings must not be taken for later answers.
-                time.sleep(_SETTLING)
-                told = _outputs(connection, parser, wait=False) or told
-                lockstep = True
-            outputs = told or outputs
-            self._drone.step(outputs, STEPS)
-            number += 1
-            # Until PX4's outputs run, time is the clock's: it starts its parts by it.
-            pace.keep(self._drone.now, least=0.0 if lockstep else 1.0)
+    def orders(self) -> Orders | None:
+        """Return PX4's outputs; once they run, time waits for them."""
+        if self._newest is not None and not self._lockstep:
+            # What it still answers to earlier readings must not be taken for later answers.
+            time.sleep(_SETTLING)
+            while found := self.receive(0.0):
+                for _, message in found:
+                    self.take(message)
+            self._lockstep = True
+        if self._connection is None or (self._lockstep and self._newest is None):
+            return None
+        self._outputs, self._newest = self._newest or self._outputs, None
+        return self._drone.orders(self._outputs, STEPS)
+
+    def answer(self, *, late: bool) -> None:
+        """Send the readings of now."""
+        self._drone.sense(STEPS)
+        self._number += 1
+        self._silent = False
+        self._send()
+
+    def idle(self, stood: float) -> None:
+        """Report a PX4 that does not answer, once."""
+        if self._connection is not None and stood > _SILENCE and not self._silent:
+            self._silent = True
+            _LOG.warning("PX4 has not answered for %g s; time waits for it", _SILENCE)
+
+    def close(self) -> None:
+        """End the connection, and the video."""
+        if self._connection is not None:
+            self._connection.close()
+        super().close()
+
+    def _accept(self, wait: float) -> None:
+        self._server.settimeout(wait)
+        try:
+            connection, peer = self._server.accept()
+        except (BlockingIOError, TimeoutError, ConnectionError):
+            return  # of the last: it had gone before it was let in
+        _LOG.info("PX4 has connected from %s port %d", *peer[:2])
+        connection.settimeout(None)
+        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._drone.begin()
+        self._connection, self._parser = connection, StreamParser()
+        self._outputs, self._newest = [0.0] * 16, None
+        self._number, self._lockstep, self._silent = 0, False, False
+        self._send()
+
+    def _send(self) -> None:
+        if self._connection is None:
+            return
+        try:
+            self._connection.sendall(b"".join(self._readings(self._number)))
+        except OSError:
+            self._hang_up()
+
+    def _hang_up(self) -> None:
+        if self._connection is not None:
+            self._connection.close()
+        self._connection = None
+        _LOG.info("PX4 has gone; waiting for another")
 
     def _readings(self, number: int) -> list[bytes]:
         """Return the packets of an instant, the `number`-th."""
@@ -155,28 +209,3 @@ _HEARTBEAT = {
     **{"type": 0, "autopilot": 8, "base_mode": 0, "custom_mode": 0},
     **{"system_status": 0, "mavlink_version": 3},
 }
-
-
-def _outputs(connection: socket.socket, parser: StreamParser, *, wait: bool) -> list[float] | None:
-    """Return the newest outputs that have come; if `wait`, some must come.
-
-    Raises:
-        EOFError: The connection has been closed.
-    """
-    found: list[float] | None = None
-    since, told = time.monotonic(), False
-    while True:
-        patience = 0.5 if wait and found is None else 0.0
-        if not select.select([connection], [], [], patience)[0]:
-            if patience == 0.0:
-                return found
-            if not told and time.monotonic() - since > _SILENCE:
-                told = True
-                _LOG.warning("PX4 has not answered for %g s; time waits for it", _SILENCE)
-            continue
-        data = connection.recv(65_535)
-        if not data:
-            raise EOFError
-        for message in parser.messages(data):
-            if message.get_type() == "HIL_ACTUATOR_CONTROLS":
-                found = list(message.controls)
