@@ -17,17 +17,14 @@ from eyas.engine.core.own_code import imported, left_out
 
 __all__ = ["BOX_TRACKERS", "NANO_FOLDER", "Box", "BoxTracker", "box_tracker"]
 
-Box = tuple[float, float, float, float]
-"""Left, top, width, height [pixels]."""
+Box = tuple[float, float, float, float]  # Left, top, width, height [pixels]
 
-Picture = NDArray[np.uint8]
-"""sRGB, row 0 on top, shape (H, W, 3)."""
+Picture = NDArray[np.uint8]  # sRGB, row 0 on top, shape (H, W, 3)
 
 NANO_FOLDER = "EYAS_NANOTRACK"
 """Environment variable: the folder with the two networks of NanoTrack."""
 
-_LEAST = 8
-"""Smallest side of a box with which the trackers of OpenCV can begin [pixels]."""
+_LEAST = 8  # Smallest side of a box with which the trackers of OpenCV can begin [pixels]
 
 
 class BoxTracker(Protocol):
@@ -123,8 +120,7 @@ _OF_OPENCV = {"csrt": "CSRT", "kcf": "KCF", "mosse": "MOSSE", "medianflow": "Med
 be seeded, so that its boxes depend on what was tracked before."""
 
 
-BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")
-"""Names of all."""
+BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")  # Names of all
 
 
 def box_tracker(said: str, setting: str = "--tracker") -> Callable[[], BoxTracker]:

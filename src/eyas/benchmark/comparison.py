@@ -32,12 +32,9 @@ class Difference(NamedTuple):
     name: str
     figure: str
     n: int
-    first: float
-    """Mean of the first policy."""
-    second: float
-    """Mean of the second policy."""
-    mean: float
-    """Mean difference."""
+    first: float  # Mean of the first policy
+    second: float  # Mean of the second policy
+    mean: float  # Mean difference
     interval: Interval | None
     """95 %, of the mean difference; None if there are too few independent seeds."""
     improved: float

@@ -14,22 +14,17 @@ from eyas.lanes import exact
 
 __all__ = ["PROFILES", "Delay", "Fixed", "Measured", "Profiled", "SampledDelay", "delay_from"]
 
-_LARGEST = 10_000.0
-"""Largest latency [ms]."""
+_LARGEST = 10_000.0  # Largest latency [ms]
 
-_GRACE = 3
-"""First answers whose measured latency does not count: libraries warm up."""
+_GRACE = 3  # First answers whose measured latency does not count: libraries warm up
 
 
 class Profile(NamedTuple):
     """How fast a measured system decides."""
 
-    rate: float
-    """Decisions in a second, at most."""
-    mean: float
-    """Latency, mean [ms]."""
-    p95: float
-    """Latency that 95 % of its answers keep [ms]."""
+    rate: float  # Decisions in a second, at most
+    mean: float  # Latency, mean [ms]
+    p95: float  # Latency that 95 % of its answers keep [ms]
 
 
 PROFILES = {
@@ -43,17 +38,14 @@ PROFILES = {
 """Systems for aerial navigation by vision and language, and a controller of rules ("50+ Hz"), as
 measured in CARLA-Air (arXiv 2605.31066, table 13)."""
 
-_P95 = 1.6448536269514722
-"""The quantile of the normal distribution that `Profile.p95` is of."""
+_P95 = 1.6448536269514722  # The quantile of the normal distribution that `Profile.p95` is of.
 
 
 class Delay(Protocol):
     """The latency of a policy."""
 
-    name: str
-    """As the user has written it."""
-    period: float
-    """Shortest time from one look to the next [s]."""
+    name: str  # As the user has written it
+    period: float  # Shortest time from one look to the next [s]
 
     def begin(self, seeds: list[int]) -> None:
         """Episodes with these seeds begin."""
@@ -90,8 +82,7 @@ class SampledDelay:
     """SampledDelay from measured ones, by the seed of each episode."""
 
     name: str
-    values: list[float]
-    """[s]"""
+    values: list[float]  # [s]
     period: float = 0.0
 
     def begin(self, seeds: list[int]) -> None:

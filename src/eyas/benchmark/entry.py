@@ -18,12 +18,9 @@ __all__ = ["Entry", "EntryClass", "entry_class", "entry_of"]
 class EntryClass(StrEnum):
     """What a policy knows."""
 
-    PIXELS = "pixels"
-    """What its camera and its own sensors show."""
-    WORDS = "text+pixels"
-    """Also words, or the attributes that they name."""
-    BOX = "box"
-    """Also the target's true box in the first picture."""
+    PIXELS = "pixels"  # What its camera and its own sensors show
+    WORDS = "text+pixels"  # Also words, or the attributes that they name
+    BOX = "box"  # Also the target's true box in the first picture
     PRIVILEGED = "privileged"
     """More than a drone can know: the true state, classes of pixels, or code that flies in the
     process of the simulator, and could read it."""

@@ -26,12 +26,9 @@ class Envelope:
     which are settings of the protocol.
     """
 
-    speed: float = 40.0
-    """Largest speed along and across [m/s]."""
-    climb: float = 5.0
-    """Largest speed up and down [m/s]."""
-    turn_rate: float = 2.0
-    """[rad/s]"""
+    speed: float = 40.0  # Largest speed along and across [m/s]
+    climb: float = 5.0  # Largest speed up and down [m/s]
+    turn_rate: float = 2.0  # [rad/s]
     lowest: float = 12.0
     """Height above the ground below the drone, under which it is not let sink [m]."""
     highest: float = 25.0
@@ -79,5 +76,4 @@ class Envelope:
         return held
 
 
-ENVELOPE = Envelope()
-"""That of all protocols of today."""
+ENVELOPE = Envelope()  # That of all protocols of today

@@ -22,8 +22,7 @@ _MOST_SETS = 100
 class Place(NamedTuple):
     """Where episodes are, and what is followed."""
 
-    map: str
-    """Its name or path; a town of another seed than 0 is written `citystreet:900000001`."""
+    map: str  # Its name or path; a town of another seed than 0 is written `citystreet:900000001`
     weather: str
     target: str
 
@@ -38,14 +37,11 @@ class EpisodeSpec(NamedTuple):
     """One episode of an evaluation. Protocol and episode determine all but the policy's actions."""
 
     place: Place
-    direction: float
-    """Heading of the drone relative to its target's at the start [rad]."""
-    seed: int
-    """Seed of which it is the first episode."""
+    direction: float  # Heading of the drone relative to its target's at the start [rad]
+    seed: int  # Seed of which it is the first episode
     traffic: int | None = None
     """Seed of the recorded traffic in which it happens; None: the one of the protocol."""
-    variant: str = ""
-    """Which of the versions of one episode it is, in protocols that have several."""
+    variant: str = ""  # Which of the versions of one episode it is, in protocols that have several
 
     @property
     def name(self) -> str:

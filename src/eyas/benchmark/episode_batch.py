@@ -30,11 +30,9 @@ Mask = NDArray[np.bool_]
 Gathered = TypeVar("Gathered")
 
 
-_ROOF = 1.3
-"""Height of a car's roof, which is seen longest [m]."""
+_ROOF = 1.3  # Height of a car's roof, which is seen longest [m]
 
-_EYE = 22.0
-"""Height of the protocols' drones [m]."""
+_EYE = 22.0  # Height of the protocols' drones [m]
 
 
 class EpisodeGroup(NamedTuple):
@@ -42,8 +40,7 @@ class EpisodeGroup(NamedTuple):
 
     config: EyasConfig
     simulation: Simulation
-    rows: NDArray[np.int64]
-    """Their places in the batch, shape (K,)."""
+    rows: NDArray[np.int64]  # Their places in the batch, shape (K,)
     staged: Sequence[Any] = ()
     """What the protocol's `stage` has returned for each; empty: there is none."""
 

@@ -23,32 +23,23 @@ KINDS = ("stop", "turn", "dash", "hiding")
 """What is told from a target's path: it stops on the road, turns round, drives faster than anybody
 may, or is out of sight for a while."""
 
-_PERIOD = 0.25
-"""Time between two looks [s]."""
+_PERIOD = 0.25  # Time between two looks [s]
 
-_STANDING = 0.5
-"""Speed below which a target stands [m/s]."""
+_STANDING = 0.5  # Speed below which a target stands [m/s]
 
-_FAST = 17.0
-"""Speed of a dash [m/s]: others drive at most 16.5."""
+_FAST = 17.0  # Speed of a dash [m/s]: others drive at most 16.5.
 
-_LEAST = {"stop": 1.5, "dash": 1.0, "hiding": 2.0}
-"""Shortest duration of each [s]."""
+_LEAST = {"stop": 1.5, "dash": 1.0, "hiding": 2.0}  # Shortest duration of each [s]
 
-_ABOUT_TURN = 2.6
-"""Least change of heading of who turns round [rad]."""
+_ABOUT_TURN = 2.6  # Least change of heading of who turns round [rad]
 
-_TURNING = 4.0
-"""Longest time that it takes [s]."""
+_TURNING = 4.0  # Longest time that it takes [s]
 
-_BEGUN = 3.0
-"""Earliest time at which one counts [s]."""
+_BEGUN = 3.0  # Earliest time at which one counts [s]
 
-_HELD = 3.0
-"""Time within which the target must be seen after one [s]."""
+_HELD = 3.0  # Time within which the target must be seen after one [s]
 
-_EACH = 2
-"""Least number of them in an episode."""
+_EACH = 2  # Least number of them in an episode
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -57,12 +48,9 @@ Mask = NDArray[np.bool_]
 class Evasion(NamedTuple):
     """Something that a driver has done to be lost."""
 
-    kind: str
-    """One of `KINDS`."""
-    start: float
-    """[s]"""
-    end: float
-    """[s]"""
+    kind: str  # One of `KINDS`
+    start: float  # [s]
+    end: float  # [s]
 
 
 def evasions_of(shares: Floats, places: Floats, period: float = _PERIOD) -> list[Evasion]:

@@ -22,8 +22,7 @@ FOLDER = "videos"
 
 _LOG = logging.getLogger("eyas")
 
-_SIZE = 480, 640
-"""Height and width of the pictures."""
+_SIZE = 480, 640  # Height and width of the pictures
 
 
 def chosen_flights(records: Sequence[EpisodeRecord]) -> dict[str, EpisodeRecord]:

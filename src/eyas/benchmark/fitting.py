@@ -12,14 +12,11 @@ Fits = Callable[[Sequence[EpisodeSpec], Protocol], Sequence[object]]
 """Returns for each episode what it has of what is asked for; nothing (`bool` is false): it does not
 fit."""
 
-_TRIED = 50
-"""Number of seeds that are tried for each episode."""
+_TRIED = 50  # Number of seeds that are tried for each episode
 
-_HOPELESS = 1_000
-"""Number of starts after which no more are tried if none of them fits."""
+_HOPELESS = 1_000  # Number of starts after which no more are tried if none of them fits
 
-_PARTS = 25
-"""In how many parts: looking at a few together costs less than at each alone."""
+_PARTS = 25  # In how many parts: looking at a few together costs less than at each alone
 
 
 def first_fitting(  # noqa: PLR0913  # what is asked for, and of what

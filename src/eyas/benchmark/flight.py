@@ -22,8 +22,7 @@ from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, 
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
-_PERIOD = 0.128
-"""Time between two looks [s]."""
+_PERIOD = 0.128  # Time between two looks [s]
 
 
 def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]:
@@ -35,8 +34,7 @@ def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]
 
 Mask = NDArray[np.bool_]
 
-Watcher = Callable[[EpisodeBatch, Meter], None]
-"""Called after each control step, for films."""
+Watcher = Callable[[EpisodeBatch, Meter], None]  # Called after each control step, for films
 
 
 class BatchFlight:

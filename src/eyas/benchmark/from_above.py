@@ -31,10 +31,8 @@ Floats = NDArray[np.float64]
 class FromAbove(NamedTuple):
     """N targets at K looks; look k is at (k + 1) periods."""
 
-    shares: Floats
-    """Share of each that nothing hides, shape (N, K)."""
-    places: Floats
-    """Centre of each, east and north [m], shape (N, K, 2)."""
+    shares: Floats  # Share of each that nothing hides, shape (N, K)
+    places: Floats  # Centre of each, east and north [m], shape (N, K, 2)
 
 
 def seen_from_above(

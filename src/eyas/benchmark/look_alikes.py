@@ -78,8 +78,7 @@ COLOURS: Final = (
 """Colours of look-alikes. None is that of a car in the car parks, which is scenery: phrases do not
 know it, but a reader sees it. From above all differ from roads, and from dark glass and roofs."""
 
-_BYSTANDERS: Final = ("yellow", "blue", "white", "grey")
-"""Further colours of all others."""
+_BYSTANDERS: Final = ("yellow", "blue", "white", "grey")  # Further colours of all others
 
 _TOLD_FROM_ABOVE: Final = (BodyWord.SMALL_CAR, BodyWord.VAN)
 """Bodies of cars that their lengths tell from others; that of an SUV is a sedan's."""
@@ -90,8 +89,7 @@ _CROWDED: Final = 14.0
 _INSIDE: Final = 0.08
 """Least distance of look-alikes from the edges of the first picture [its width, its height]."""
 
-_ATTEMPTS: Final = 60
-"""Times that are tried."""
+_ATTEMPTS: Final = 60  # Times that are tried
 
 _LATER: Final = (250, 500)
 """Physics steps after which what a target does must still tell it apart: one picture does not show
@@ -101,16 +99,11 @@ it. 0.5 and 1 s."""
 class StagedStart(NamedTuple):
     """A start, and what may be said of it."""
 
-    case: tuple[PhraseKind, int]
-    """By what the target is told apart, and the number of look-alikes."""
-    actor: int
-    """The target."""
-    other: int
-    """The look-alike that the words are about in the variant `other`."""
-    pose: NDArray[np.float64]
-    """Of the drone: east, north, up [m], heading [rad], shape (4,)."""
-    phrases: dict[str, Phrase]
-    """What is said in each variant."""
+    case: tuple[PhraseKind, int]  # By what the target is told apart, and the number of look-alikes
+    actor: int  # The target
+    other: int  # The look-alike that the words are about in the variant `other`
+    pose: NDArray[np.float64]  # Of the drone: east, north, up [m], heading [rad], shape (4,)
+    phrases: dict[str, Phrase]  # What is said in each variant
 
 
 def case_of(seed: int) -> tuple[PhraseKind, int]:

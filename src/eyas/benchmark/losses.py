@@ -30,20 +30,16 @@ __all__ = [
     "with_losses",
 ]
 
-LEAST_VISIBLE = 0.15
-"""Share of the target that must be visible, else it is out of sight."""
+LEAST_VISIBLE = 0.15  # Share of the target that must be visible, else it is out of sight
 
-SEARCH_LIMIT = 15.0
-"""Time within which a target must be seen again to count as recovered [s]."""
+SEARCH_LIMIT = 15.0  # Time within which a target must be seen again to count as recovered [s]
 
 COVERED = {"covered-2s": 2.0, "covered-5s": 5.0, "covered-10s": 10.0, "covered-15s": 15.0}
 """How long cameras are covered, by the name of the variant [s]."""
 
-_LENGTH = (4.0, 12.0)
-"""Shortest and longest loss by things [s]."""
+_LENGTH = (4.0, 12.0)  # Shortest and longest loss by things [s]
 
-_MOST = 3
-"""Largest number of losses by things in an episode."""
+_MOST = 3  # Largest number of losses by things in an episode
 
 _PERIOD = 0.256
 """Time between two looks: a whole number of control steps, so that covers begin with one [s]."""
@@ -52,11 +48,9 @@ _FAR = 12.0
 """Least distance between where a target vanishes and where it comes out [m]. Nearer, a drone that
 waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
 
-_STEADY = 0.77
-"""Shorter glimpses than this do not end a loss [s]: no more than two looks."""
+_STEADY = 0.77  # Shorter glimpses than this do not end a loss [s]: no more than two looks
 
-_BEGUN = 3.0
-"""Earliest time of a loss: before, a policy must get hold of its target [s]."""
+_BEGUN = 3.0  # Earliest time of a loss: before, a policy must get hold of its target [s]
 
 _ONSETS = (5.0, 20.0), (42.0, 58.0)
 """Between which times a camera is covered, twice in an episode [s]."""
@@ -67,10 +61,8 @@ Floats = NDArray[np.float64]
 class Loss(NamedTuple):
     """A target cannot be seen for a while."""
 
-    start: float
-    """[s]"""
-    end: float
-    """When it can be seen again [s]."""
+    start: float  # [s]
+    end: float  # When it can be seen again [s]
 
 
 def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:

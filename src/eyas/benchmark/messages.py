@@ -10,8 +10,7 @@ from eyas.benchmark.protocol import Protocol
 
 __all__ = ["MESSAGE", "Radio", "mates"]
 
-MESSAGE = 6
-"""Numbers of a message, whose meaning is the policy's own."""
+MESSAGE = 6  # Numbers of a message, whose meaning is the policy's own
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -19,8 +19,7 @@ from eyas.engine.task.done import DoneReason
 
 __all__ = ["LOOK", "TRACE_PERIOD", "Meter", "published", "watched"]
 
-LEAST_LOSS = 0.5
-"""Shortest time out of the picture that counts as a loss [s]."""
+LEAST_LOSS = 0.5  # Shortest time out of the picture that counts as a loss [s]
 
 
 class Watch(TypedDict):
@@ -84,20 +83,16 @@ def _gaps(in_view: NDArray[np.bool_], first: int) -> list[tuple[int, int]]:
 
 Floats = NDArray[np.float64]
 
-LOOK = 4
-"""Control steps between two counts of the target's pixels."""
+LOOK = 4  # Control steps between two counts of the target's pixels
 
-_TRACE = 20
-"""Control steps between two points of a trace."""
+_TRACE = 20  # Control steps between two points of a trace
 
-TRACE_PERIOD = 0.16
-"""The same in the protocols' control steps of 8 ms [s]."""
+TRACE_PERIOD = 0.16  # The same in the protocols' control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363
 """Fewest and most actions that the original's client makes in 1,500 physics steps."""
 
-_PUBLISHED_LENGTH = 375
-"""Number by which it divides."""
+_PUBLISHED_LENGTH = 375  # Number by which it divides
 
 _CRASHES = frozenset(
     (DoneReason.HEIGHT, DoneReason.DISTANCE, DoneReason.VELOCITY, DoneReason.YAW_RATE)
@@ -109,14 +104,10 @@ class _Measured(NamedTuple):
 
     reward: Floats
     reason: NDArray[np.int64]
-    position: Floats
-    """Of the drone [m], shape (N, 3)."""
-    acceleration: Floats
-    """Of the drone [m/s^2], shape (N, 3)."""
-    target: Floats
-    """Its centre, east, north and up [m], shape (N, 3)."""
-    middle: Floats
-    """What the middle of the picture shows, east and north [m], shape (N, 2)."""
+    position: Floats  # Of the drone [m], shape (N, 3)
+    acceleration: Floats  # Of the drone [m/s^2], shape (N, 3)
+    target: Floats  # Its centre, east, north and up [m], shape (N, 3)
+    middle: Floats  # What the middle of the picture shows, east and north [m], shape (N, 2)
 
 
 def _measured(group: EpisodeGroup) -> _Measured:
@@ -134,16 +125,11 @@ def _measured(group: EpisodeGroup) -> _Measured:
 class _Sums(NamedTuple):
     """What is added up over the control steps of N flights."""
 
-    error: Floats
-    """Distance of the target from the middle of the picture [m], shape (N,)."""
-    path: Floats
-    """[m], shape (N,)."""
-    jerk: Floats
-    """Squared jerk [m^2/s^6], shape (N,)."""
-    height: Floats
-    """Height above the target [m], shape (N,)."""
-    shares: Floats
-    """Looks with a visible pixel, and visible shares, shape (N, 2)."""
+    error: Floats  # Distance of the target from the middle of the picture [m], shape (N,)
+    path: Floats  # [m], shape (N,)
+    jerk: Floats  # Squared jerk [m^2/s^6], shape (N,)
+    height: Floats  # Height above the target [m], shape (N,)
+    shares: Floats  # Looks with a visible pixel, and visible shares, shape (N, 2)
 
 
 class Meter:
@@ -160,10 +146,8 @@ class Meter:
         self._reward = np.zeros((count, steps))
         self._trace = np.zeros((count, steps // _TRACE, 4))
         self._sums = _Sums(*(np.zeros((count, *own)) for own in ((), (), (), (), (2,))))
-        self.length = np.zeros(count, np.int64)
-        """Control steps flown, shape (N,)."""
-        self.reason = np.zeros(count, np.int64)
-        """`DoneReason` of each, shape (N,)."""
+        self.length = np.zeros(count, np.int64)  # Control steps flown, shape (N,)
+        self.reason = np.zeros(count, np.int64)  # `DoneReason` of each, shape (N,)
         self._last = batch.gathered(_measured)
 
     def measure(self, active: NDArray[np.bool_]) -> None:

@@ -14,14 +14,12 @@ from eyas.engine.settings.env import EnvConfig
 
 __all__ = ["CLOSE", "COMPANY", "NEAR", "in_company", "with_neighbours"]
 
-NEAR = 12.0
-"""Largest distance of the other vehicle from the target [m]."""
+NEAR = 12.0  # Largest distance of the other vehicle from the target [m]
 
 CLOSE, COMPANY = 8.0, 2
 """Distance within which a target in a crowd has others [m], and how many at least."""
 
-_TRIED = 50
-"""Number of seeds that are tried for each episode."""
+_TRIED = 50  # Number of seeds that are tried for each episode
 
 
 def with_neighbours(

@@ -29,8 +29,7 @@ __all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "Stage", "in_order"]
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
-NEVER = 2**31 - 1
-"""As `done.no_reward_steps`: a lost target does not end the episode."""
+NEVER = 2**31 - 1  # As `done.no_reward_steps`: a lost target does not end the episode.
 
 Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]
 """Chooses the episodes of places: so many for each place and direction, from a first seed on. More
@@ -96,51 +95,39 @@ class Protocol:
     """A protocol; its settings are those of the preset `dat-eval`, with changes."""
 
     name: str
-    title: str
-    """What it measures, in a few words."""
+    title: str  # What it measures, in a few words
     changes: Mapping[str, Any] = field(default_factory=dict)
-    directions: tuple[float, ...] = _DIRECTIONS
-    """Start directions [rad]."""
-    targets: tuple[str, ...] = ("SUMO_VEHICLE",)
-    """What is followed, unless a user names others."""
+    directions: tuple[float, ...] = _DIRECTIONS  # Start directions [rad]
+    targets: tuple[str, ...] = ("SUMO_VEHICLE",)  # What is followed, unless a user names others
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
-    maps: tuple[str, ...] = ("citystreet",)
-    """Where it is flown unless a user names other maps."""
+    maps: tuple[str, ...] = ("citystreet",)  # Where it is flown unless a user names other maps
     elsewhere: bool = False
     """Whether it is not flown on maps on which policies are taught: on those of Eyas only with
     seeds from `eyas.engine.core.rng.TEST_SEEDS` on."""
     columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
-    rank: str = "tsr"
-    """The figure by which a leaderboard ranks."""
+    rank: str = "tsr"  # The figure by which a leaderboard ranks
     gaps: tuple[str, ...] = ()
     """Those of its own figures that are differences of two shares, from -1 to 1."""
-    alike: bool = False
-    """Whether all others of the target's kind look like it."""
-    choose: Chooser = in_order
-    """Which its episodes are."""
-    stage: Stage | None = None
-    """Changes how its episodes begin; None: they begin as sampled."""
-    scenario: MakeScenario | None = None
-    """What happens in its flights beside the flights."""
+    alike: bool = False  # Whether all others of the target's kind look like it
+    choose: Chooser = in_order  # Which its episodes are
+    stage: Stage | None = None  # Changes how its episodes begin; None: they begin as sampled
+    scenario: MakeScenario | None = None  # What happens in its flights beside the flights
     groups: Mapping[str, Callable[["EpisodeRecord"], str]] = field(default_factory=dict)
     """Groups of rows in its tables, beside those of all protocols: what each record belongs to."""
     variants: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Versions of each episode, with changes of the settings; none: there is one."""
     reference: str = ""
     """The variant from which the others' figure `fall` counts; none: there is no such figure."""
-    team: bool = False
-    """Whether the variants are drones that follow one target together."""
-    first_box: bool = True
-    """Whether policies are told the target's true box in the first picture."""
+    team: bool = False  # Whether the variants are drones that follow one target together
+    first_box: bool = True  # Whether policies are told the target's true box in the first picture
     tells_solvable: bool = False
     """Whether records say if the policy `sighted` solves the episode, where a TSR can say so."""
     oracles: Mapping[str, Any] = field(default_factory=dict)
     """Changes of `env` for the oracles, before those of a user's: it is theirs that the drone can
     be flown, and no part of what is measured."""
-    envelope: Envelope = ENVELOPE
-    """What drones may do."""
+    envelope: Envelope = ENVELOPE  # What drones may do
 
     @cached_property
     def settings(self) -> EyasConfig:

@@ -14,8 +14,7 @@ from eyas.engine.core.files import read_limited, refusals, write_atomic
 __all__ = ["EpisodeRecord", "Published", "RecordFile", "Trace", "order_records", "read_records"]
 
 
-_LARGEST = 1 << 31
-"""Largest size of a file of records [bytes]: half a million episodes of 90 s."""
+_LARGEST = 1 << 31  # Largest size of a file of records [bytes]: half a million episodes of 90 s
 
 
 class Published(Config):

@@ -54,8 +54,7 @@ UNITS = {
 """Units of the figures that have one."""
 
 
-_LARGEST_STAMP = 1 << 24
-"""Largest plan of an evaluation [bytes]."""
+_LARGEST_STAMP = 1 << 24  # Largest plan of an evaluation [bytes]
 
 
 def load_run(folder: Path, *, trust: bool = False) -> tuple[Stamp, list[EpisodeRecord]]:

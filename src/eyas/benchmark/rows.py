@@ -28,10 +28,8 @@ class Figure(NamedTuple):
 
     read: Callable[[EpisodeRecord], float | None]
     """Reads it from the record; records for which it is None are left out of a row's mean."""
-    high: float | None = None
-    """The largest value that is possible, if there is one."""
-    signed: bool = False
-    """Whether it may be less than 0; all others are not."""
+    high: float | None = None  # The largest value that is possible, if there is one
+    signed: bool = False  # Whether it may be less than 0; all others are not
 
 
 def figures_of(
@@ -85,8 +83,7 @@ def _own_figure(name: str, record: EpisodeRecord) -> float | None:
 class TableRow(NamedTuple):
     """A row of a table."""
 
-    group: str
-    """`all`, `solvable`, `seeds`, `map`, `weather`, `target` or `visibility`."""
+    group: str  # `all`, `solvable`, `seeds`, `map`, `weather`, `target` or `visibility`
     name: str
     records: list[EpisodeRecord]
     figures: dict[str, Estimate]

@@ -38,11 +38,9 @@ __all__ = ["TIMING", "run"]
 
 _LOG = logging.getLogger("eyas")
 
-CROISSANT = "croissant.json"
-"""What the episodes are, for machines."""
+CROISSANT = "croissant.json"  # What the episodes are, for machines
 
-TIMING = "timing.json"
-"""How long the policy takes; apart from the result, which repeats."""
+TIMING = "timing.json"  # How long the policy takes; apart from the result, which repeats
 
 
 def run(  # noqa: PLR0913  # choices of the user's

@@ -24,11 +24,9 @@ __all__ = ["AT_REST", "AT_SPEED", "at_rest_and_at_speed", "leaves_its_way", "set
 AT_REST, AT_SPEED = "at-rest", "at-speed"
 """Variants: the target stands at the start, and the drone hovers; both drive."""
 
-_PERIOD = 0.256
-"""Time between two looks [s]."""
+_PERIOD = 0.256  # Time between two looks [s]
 
-_STANDS, _DRIVES = 0.3, 5.0
-"""Speed below which a target stands, and from which it drives [m/s]."""
+_STANDS, _DRIVES = 0.3, 5.0  # Speed below which a target stands, and from which it drives [m/s]
 
 _VISIBLE, _FIRST = 0.5, 4
 """Least share of a target that is visible, and at how many first looks: nobody can know one that

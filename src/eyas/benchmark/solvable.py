@@ -16,8 +16,7 @@ from eyas.engine.core.cache.folder import Kind
 
 __all__ = ["SOLVED", "solvable"]
 
-SOLVED = 0.95
-"""TSR from which `sighted` has solved an episode."""
+SOLVED = 0.95  # TSR from which `sighted` has solved an episode
 
 
 def solvable(episodes: list[EpisodeSpec], protocol: Protocol) -> list[bool | None]:

@@ -46,11 +46,9 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-LEVEL = 0.95
-"""Share of repetitions of which the interval should hold the true value."""
+LEVEL = 0.95  # Share of repetitions of which the interval should hold the true value
 
-POWER = 0.8
-"""Share of repetitions in which a difference should be told, see `episodes_to_tell`."""
+POWER = 0.8  # Share of repetitions in which a difference should be told, see `episodes_to_tell`
 
 _NORMAL, _NORMAL_OF_POWER = 1.959963984540054, 0.8416212335729143
 """Quantiles of the normal distribution: 0.5 (1 + LEVEL), and POWER."""
@@ -59,8 +57,7 @@ _STUDENT = 2.372271230299, 2.822498615740, 2.555849679508, 1.589534053394
 """What Student's t adds to the first for one, two, ... inverse degrees of freedom: the expansion of
 Cornish and Fisher (1938)."""
 
-FEWEST = 5
-"""Fewest clusters of which an interval is made, and of which a stratum is one of its own."""
+FEWEST = 5  # Fewest clusters of which an interval is made, and of which a stratum is one of its own
 
 ENOUGH = 40
 """From so many clusters on, intervals hold about as often as they say (docs/evaluation.md)."""
@@ -72,8 +69,7 @@ _LARGEST_AGAIN = 0.5
 """How many more clusters a variance counts that differ by the largest deviation seen. Without, the
 intervals of differences of two good policies held in 89 % of samples of 40; with one, 98 %."""
 
-_WORST = 0.2
-"""Share of the flights of which the mean of the worst is."""
+_WORST = 0.2  # Share of the flights of which the mean of the worst is
 
 
 class Interval(NamedTuple):
@@ -86,23 +82,18 @@ class Interval(NamedTuple):
 class Estimate(NamedTuple):
     """A figure of a sample."""
 
-    n: int
-    """Number of episodes that have it."""
-    seeds: int
-    """Number of their seeds: the independent observations."""
+    n: int  # Number of episodes that have it
+    seeds: int  # Number of their seeds: the independent observations
     mean: float
-    interval: Interval | None
-    """None if there are too few seeds."""
+    interval: Interval | None  # None if there are too few seeds
 
 
 @dataclass(frozen=True)
 class Clusters:
     """Which of N samples belong together."""
 
-    of: NDArray[np.int64]
-    """Cluster of each sample, shape (N,)."""
-    strata: NDArray[np.int64]
-    """Stratum of each of C clusters, shape (C,)."""
+    of: NDArray[np.int64]  # Cluster of each sample, shape (N,)
+    strata: NDArray[np.int64]  # Stratum of each of C clusters, shape (C,)
 
     @property
     def count(self) -> int:

@@ -27,10 +27,8 @@ class Part(NamedTuple):
 
     name: str
     version: str
-    licence: str
-    """As its metadata say."""
-    besides: str
-    """What its wheel has within it; empty: nothing that is known."""
+    licence: str  # As its metadata say
+    besides: str  # What its wheel has within it; empty: nothing that is known
 
 
 def about(

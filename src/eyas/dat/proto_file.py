@@ -20,21 +20,17 @@ __all__ = ["GEOMETRY", "Part", "read_proto"]
 GEOMETRY = ("Box", "Cylinder", "Sphere", "Cone", "Capsule", "IndexedFaceSet", "Mesh")
 """Geometry nodes that are read."""
 
-_LARGEST_FILE = 64 << 20
-"""[bytes]"""
+_LARGEST_FILE = 64 << 20  # [bytes]
 _MOST_PARTS, _MOST_TRIANGLES = 5000, 1_000_000
 _MOST_READ = 64 << 20
 """Largest content of all PROTOs together, where one is read again for each node [bytes]."""
-_ROUND = 24
-"""Number of sides of what is round."""
-_PLAIN = (0.62, 0.62, 0.62)
-"""sRGB of what has no colour."""
+_ROUND = 24  # Number of sides of what is round
+_PLAIN = (0.62, 0.62, 0.62)  # sRGB of what has no colour
 _INSIDE = (
     "children", "endPoint", "device", "value", "slowHelix", "fastHelix", "animatedGeometries",
 )  # fmt: skip
 """Fields in which there may be shapes; not `boundingObject`, which is not drawn."""
-_NOT_DRAWN = ("IndexedLineSet", "PointSet")
-"""Geometry without a surface."""
+_NOT_DRAWN = ("IndexedLineSet", "PointSet")  # Geometry without a surface
 _NODES = frozenset(
     "Accelerometer Altimeter BallJoint Billboard Brake Camera Charger Compass Connector "
     "DifferentialWheels Display DistanceSensor Emitter GPS Group Gyro Hinge2Joint HingeJoint "

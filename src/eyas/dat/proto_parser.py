@@ -17,12 +17,9 @@ _TOKEN = re.compile(
 )
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|0[xX][0-9a-fA-F]+")
 
-_DEEPEST = 64
-"""Largest nesting of nodes and lists."""
-_LARGEST = 1e9
-"""Largest number; most are metres."""
-_MOST = 4_000_000
-"""Largest number of words and numbers in a file."""
+_DEEPEST = 64  # Largest nesting of nodes and lists
+_LARGEST = 1e9  # Largest number; most are metres
+_MOST = 4_000_000  # Largest number of words and numbers in a file
 
 _FIELDS = ("field", "exposedField", "vrmlField", "hiddenField", "unconnectedField", "w3dField")
 _WORDS = {"TRUE": True, "FALSE": False, "NULL": None}
@@ -41,10 +38,8 @@ class Node:
 class Proto:
     """What a file tells."""
 
-    body: Node
-    """The node that the PROTO stands for."""
-    externs: dict[str, str]
-    """Addresses of other PROTOs, by their names."""
+    body: Node  # The node that the PROTO stands for
+    externs: dict[str, str]  # Addresses of other PROTOs, by their names
 
 
 class _Reader:

@@ -56,15 +56,12 @@ def action_names(widths: Iterable[int]) -> tuple[str, ...]:
 class Motion(NamedTuple):
     """States and actions of one episode of T frames."""
 
-    states: NDArray[np.float32]
-    """`STATE_NAMES` of each frame, shape (T, 10)."""
-    truth: NDArray[np.float32]
-    """`TRUTH_NAMES` of each frame, shape (T, 8)."""
+    states: NDArray[np.float32]  # `STATE_NAMES` of each frame, shape (T, 10)
+    truth: NDArray[np.float32]  # `TRUTH_NAMES` of each frame, shape (T, 8)
     actions: NDArray[np.float32]
     """`ACTION_NAMES` from each frame to the next: as commanded, or as flown where nothing was
     commanded; in the last frame those before; shape (T, 4), or with `GIMBAL_NAMES` (T, 6)."""
-    rewards: NDArray[np.float32]
-    """Reward at each frame, NaN where it is not defined, shape (T,)."""
+    rewards: NDArray[np.float32]  # Reward at each frame, NaN where it is not defined, shape (T,)
 
 
 def motion_of(episode: RecordedEpisode) -> Motion:

@@ -24,14 +24,12 @@ from eyas.engine.world.maps import MAPS
 
 __all__ = ["Part", "in_order_of_work", "planned", "sample_of", "shard_of"]
 
-_WARM_UP = 310
-"""Steps before the first episode that can be: those of `start.warm_up_steps` [2 ms]."""
+_WARM_UP = 310  # Steps before the first episode that can be: those of `start.warm_up_steps` [2 ms].
 
 _UNRECORDED = 30
 """Steps after each reset that are not recorded, as in `video.warm_up_steps` [2 ms]."""
 
-_GRACE = 100
-"""Steps after a reset in which no episode ends, as in `done.grace_steps` [2 ms]."""
+_GRACE = 100  # Steps after a reset in which no episode ends, as in `done.grace_steps` [2 ms].
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,16 +38,12 @@ class Part:
 
     name: str
     """Name of its folder, `00012-citystreet-day`; with variants `00012-citystreet-day-clean`."""
-    number: int
-    """Number among all parts; its variants have the same."""
+    number: int  # Number among all parts; its variants have the same
     split: str
-    variant: str
-    """Name of its variant; empty without."""
+    variant: str  # Name of its variant; empty without
     config: EyasConfig
-    frames: int
-    """Frames that it has if no target leaves the world early."""
-    choices: dict[str, Any]
-    """What was chosen for it from the lists of the recipe."""
+    frames: int  # Frames that it has if no target leaves the world early
+    choices: dict[str, Any]  # What was chosen for it from the lists of the recipe
 
     @property
     def folder(self) -> str:

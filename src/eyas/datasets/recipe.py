@@ -19,8 +19,7 @@ from eyas.engine.targets.config import TargetName
 
 __all__ = ["LICENCES", "SHIPPED", "SPLITS", "Camera", "Recipe", "Split", "Splits", "read_recipe"]
 
-SHIPPED = ("detect", "follow", "sot")
-"""Names of the recipes that come with Eyas."""
+SHIPPED = ("detect", "follow", "sot")  # Names of the recipes that come with Eyas
 
 SPLITS = ("train", "val", "test")
 

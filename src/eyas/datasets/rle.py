@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 __all__ = ["encoded_masks"]
 
-_MOST_GROUPS = 7
-"""More than enough for 32 bits with their sign."""
+_MOST_GROUPS = 7  # More than enough for 32 bits with their sign
 
 Ints = NDArray[np.int64]
 
@@ -22,12 +21,9 @@ Ints = NDArray[np.int64]
 class _Runs(NamedTuple):
     """Runs of pixels of one object, column by column; those of an object follow each other."""
 
-    ids: Ints
-    """The object of each, shape (R,)."""
-    starts: Ints
-    """Number of the first pixel, shape (R,)."""
-    ends: Ints
-    """Number of the pixel after the last, shape (R,)."""
+    ids: Ints  # The object of each, shape (R,)
+    starts: Ints  # Number of the first pixel, shape (R,)
+    ends: Ints  # Number of the pixel after the last, shape (R,)
 
 
 def encoded_masks(masks: NDArray[np.int32]) -> dict[int, tuple[str, int]]:

@@ -18,11 +18,9 @@ from eyas.engine.policies.sight import subjects, visible_shares
 
 __all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
 
-SEED = 7
-"""Of the episode that is flown, so that results of different days can be compared."""
+SEED = 7  # Of the episode that is flown, so that results of different days can be compared
 SECONDS = 60
-READY = 3.0
-"""Seconds before each flight in which everything stands still."""
+READY = 3.0  # Seconds before each flight in which everything stands still
 
 
 class Duel:

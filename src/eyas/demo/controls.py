@@ -28,22 +28,15 @@ class Control(StrEnum):
     CAMERA_CENTRE = "camera_centre"
 
 
-Held = Mapping[Control, float]
-"""How far each control is held, 0 to 1; those not named are not."""
+Held = Mapping[Control, float]  # How far each control is held, 0 to 1; those not named are not
 
-SPEED = 20.0
-"""Forward and sideways [m/s]."""
-CLIMB = 0.01
-"""[m per physics step of 2 ms], 5 m/s."""
-TURN = math.radians(90.0)
-"""[rad/s]"""
+SPEED = 20.0  # Forward and sideways [m/s]
+CLIMB = 0.01  # [m per physics step of 2 ms], 5 m/s
+TURN = math.radians(90.0)  # [rad/s]
 
-CAMERA_PITCH = (-0.5, 1.5)
-"""Limits of the camera's pitch, positive down [rad]."""
-CAMERA_YAW = (-1.7, 1.7)
-"""Limits of its yaw relative to the body [rad]."""
-PITCH_STEP, YAW_STEP = 0.003, 0.005
-"""Turn of the camera [rad per physics step]."""
+CAMERA_PITCH = (-0.5, 1.5)  # Limits of the camera's pitch, positive down [rad]
+CAMERA_YAW = (-1.7, 1.7)  # Limits of its yaw relative to the body [rad]
+PITCH_STEP, YAW_STEP = 0.003, 0.005  # Turn of the camera [rad per physics step]
 
 
 def command_of(held: Held) -> NDArray[np.float64]:

@@ -12,10 +12,8 @@ from eyas.engine.task.rules import lenient, make_rules
 
 __all__ = ["DemoFlight"]
 
-_FAR = 30.0
-"""Distance from which on a pilot does not fly to a target, but appears there [m]."""
-_WARNING = 1000
-"""Physics steps before the end of the traffic at which it begins anew."""
+_FAR = 30.0  # Distance from which on a pilot does not fly to a target, but appears there [m]
+_WARNING = 1000  # Physics steps before the end of the traffic at which it begins anew
 
 
 class DemoFlight:

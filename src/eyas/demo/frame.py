@@ -18,8 +18,7 @@ __all__ = ["FACTORS", "IN_FLIGHT", "Coding", "CodingChoice", "DemoFrame", "Strea
 
 Coding = Literal["auto", "jpeg", "h264"]
 
-IN_FLIGHT = 2
-"""Largest number of frames that a viewer has not acknowledged."""
+IN_FLIGHT = 2  # Largest number of frames that a viewer has not acknowledged
 
 FACTORS = (23, 28, 33)
 """x264's constant rate factors; flying at 640 x 360 pixels, 15, 6 and 3 kB for each picture."""
@@ -32,16 +31,11 @@ _RANGES: dict[Coding, tuple[int, int]] = {
 WANTED = 25.0
 """Frames that should get through in a second. If fewer do, the line is to blame if it takes longer
 for each than the time between them."""
-EASY = 0.024
-"""A line that takes less time for a frame may have room for larger pictures [s]."""
-PERIOD = 2.0
-"""From one decision to the next [s]."""
-PATIENCE = 5
-"""Easy periods after which larger pictures are tried; it doubles each time."""
-HELP = 1.3
-"""If smaller pictures do not shorten the time by this factor, no smaller ones will."""
-PAUSE = 60.0
-"""After that, for how long smaller pictures are not tried [s]."""
+EASY = 0.024  # A line that takes less time for a frame may have room for larger pictures [s]
+PERIOD = 2.0  # From one decision to the next [s]
+PATIENCE = 5  # Easy periods after which larger pictures are tried; it doubles each time
+HELP = 1.3  # If smaller pictures do not shorten the time by this factor, no smaller ones will
+PAUSE = 60.0  # After that, for how long smaller pictures are not tried [s]
 SETTLING = 4
 """Frames after a change that do not count: those on their way, and the first, which is whole."""
 
@@ -156,8 +150,7 @@ class Stream:
         return b"".join(bytes(packet) for packet in self._coder.encode(picture))
 
 
-QUALITY = 82
-"""Of JPEG: 640 x 360 pixels take about 45 kB."""
+QUALITY = 82  # Of JPEG: 640 x 360 pixels take about 45 kB
 
 
 class DemoFrame:

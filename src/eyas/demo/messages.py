@@ -33,8 +33,7 @@ __all__ = [
     "parsed",
 ]
 
-LONGEST = 4096
-"""Of a message [bytes]."""
+LONGEST = 4096  # Of a message [bytes]
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Side = Annotated[int, Field(ge=16, le=16384)]

@@ -23,8 +23,7 @@ __all__ = [
     "world_now",
 ]
 
-BOXES = "boxes"
-"""The name under which a tracker outside flies."""
+BOXES = "boxes"  # The name under which a tracker outside flies
 
 _UNFAIR = (
     said.ClickMessage,
@@ -36,8 +35,7 @@ _UNFAIR = (
 )
 """What would change a flight against a policy."""
 
-STEP = 4
-"""Physics steps of a single step."""
+STEP = 4  # Physics steps of a single step
 
 
 def carry_out(session: Session, message: said.Message) -> dict[str, Any] | None:

@@ -27,8 +27,7 @@ _TYPES = {
     ".svg": "image/svg+xml",
 }
 
-File = tuple[str, bytes]
-"""Its type, and its bytes."""
+File = tuple[str, bytes]  # Its type, and its bytes
 
 
 @cache

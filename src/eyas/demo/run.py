@@ -20,8 +20,7 @@ from eyas.lanes.interrupts import let_in, shielded
 
 __all__ = ["RECORDINGS", "listen", "run_browser", "run_headless", "session_of"]
 
-_LOOK = 0.05
-"""Time from one look for signals to the next [s]."""
+_LOOK = 0.05  # Time from one look for signals to the next [s]
 
 
 def run_until_signal(serving: Coroutine[Any, Any, None]) -> None:
@@ -56,8 +55,7 @@ async def _ended(serving: Coroutine[Any, Any, None]) -> KeyboardInterrupt | None
 
 RECORDINGS = Path("runs/demo")
 BUILT_IN = ("follow", "servo")
-LINES = 10
-"""Lines per second in a terminal."""
+LINES = 10  # Lines per second in a terminal
 
 
 def session_of(config: EyasConfig, policy: str | None = None) -> Session:

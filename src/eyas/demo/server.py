@@ -29,8 +29,7 @@ from eyas.engine.world.maps import MAPS
 __all__ = ["DemoServer"]
 
 SOCKET = "/socket"
-ERRORS = 20
-"""Refused messages after which a connection is closed."""
+ERRORS = 20  # Refused messages after which a connection is closed
 MOST_VIEWERS = 16
 
 _SAFE = {

@@ -17,12 +17,9 @@ from eyas.engine.settings.config import EyasConfig
 
 __all__ = ["Session"]
 
-SILENCE = 0.5
-"""Time after which the keys of a page that says nothing are released [s]."""
-CHUNK = 10
-"""Largest number of physics steps between two looks at the reward."""
-TRAFFIC = 3
-"""Frames from one list of all vehicles to the next."""
+SILENCE = 0.5  # Time after which the keys of a page that says nothing are released [s]
+CHUNK = 10  # Largest number of physics steps between two looks at the reward
+TRAFFIC = 3  # Frames from one list of all vehicles to the next
 
 
 class Session:
@@ -42,8 +39,7 @@ class Session:
         self.duel: Duel | None = None
         self.duel_later: str | None = None
         """The policy of a duel that begins when the new world is built."""
-        self.sides_change = False
-        """Whether the next flight of the duel is to begin."""
+        self.sides_change = False  # Whether the next flight of the duel is to begin
         plan = WorldChoice(config, config.traffic.max_vehicles)
         self.builder = Builder(plan)
         self.begin_flight(plan.build())

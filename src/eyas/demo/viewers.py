@@ -13,8 +13,7 @@ if TYPE_CHECKING:  # PyAV takes its time to be imported; only H.264 needs it
 
 __all__ = ["Viewer", "Viewers"]
 
-TEXTS = 32
-"""Largest number of texts that wait for a viewer; older ones are dropped."""
+TEXTS = 32  # Largest number of texts that wait for a viewer; older ones are dropped
 
 
 class Viewer:

@@ -48,16 +48,14 @@ __all__ = [
     "size_of",
 ]
 
-Kind = Any
-"""One of numba's types."""
+Kind = Any  # One of numba's types
 
 
 class _Overload(NamedTuple):
     """A function compiled for arguments of certain types."""
 
     signature: Any
-    described: Any
-    """numba's description of the function: its name and types."""
+    described: Any  # numba's description of the function: its name and types
     module: Module
 
 

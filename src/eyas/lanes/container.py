@@ -23,8 +23,7 @@ Bytes = bytes | memoryview
 class Contents(NamedTuple):
     """What a file holds."""
 
-    header: Any
-    """Anything that JSON can tell."""
+    header: Any  # Anything that JSON can tell
     pieces: list[memoryview]
 
 

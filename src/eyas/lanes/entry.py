@@ -29,8 +29,7 @@ __all__ = ["LOCK", "entry_address", "nothing_compiled"]
 
 _LOG = logging.getLogger(OWNER)
 
-LOCK = threading.RLock()
-"""Held while numba and LLVM compile."""
+LOCK = threading.RLock()  # Held while numba and LLVM compile
 
 
 def entry_address(

@@ -55,8 +55,7 @@ __all__ = [
     "tanh",
 ]
 
-_DIGITS = 12
-"""Decimal places of random numbers that come of a logarithm of the C library."""
+_DIGITS = 12  # Decimal places of random numbers that come of a logarithm of the C library
 
 
 def log2(value: ArrayLike) -> Any:  # noqa: ANN401  # a number or an array, as numpy's

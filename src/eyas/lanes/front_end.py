@@ -20,8 +20,7 @@ from eyas.lanes import elementary
 
 __all__ = ["SETTINGS", "Compiler", "Library", "flags", "typing"]
 
-Kind = Any
-"""One of numba's types."""
+Kind = Any  # One of numba's types
 
 # Kernels allocate nothing, so they need no reference counting of arrays (`_nrt`). It costs two
 # atomic operations for each array passed on, which is slow when threads share the arrays: pictures

@@ -20,8 +20,7 @@ _SPARE = np.zeros(512)
 _NOTHING = _SPARE.ctypes.data
 """Address of empty arrays: lanes that are not wanted are read from where the first elements are."""
 
-_FORMATS = {bool: "?", int: "q", float: "d"}
-"""Formats of numbers, in the language of `struct`."""
+_FORMATS = {bool: "?", int: "q", float: "d"}  # Formats of numbers, in the language of `struct`
 
 
 class Held(Generic[Bundle]):
@@ -40,10 +39,8 @@ class Held(Generic[Bundle]):
         layout = _layouts.get(tuple(key)) or _layouts.setdefault(tuple(key), _layout(bundle))
         self._memory = bytearray(layout.format.pack(*words))
         self.bundle = bundle
-        self.kind = layout.kind
-        """Identifies the type of the bundle, the same in every process."""
-        self.size = layout.size
-        """[bytes]"""
+        self.kind = layout.kind  # Identifies the type of the bundle, the same in every process
+        self.size = layout.size  # [bytes]
         self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
 
     def again(self, bundle: Bundle) -> "Held[Bundle]":
@@ -56,13 +53,11 @@ class _Layout(NamedTuple):
     """How a bundle lies in memory."""
 
     kind: str
-    size: int
-    """[bytes]"""
+    size: int  # [bytes]
     format: struct.Struct
 
 
-_layouts: dict[tuple[object, ...], _Layout] = {}
-"""Layouts by the types in a bundle."""
+_layouts: dict[tuple[object, ...], _Layout] = {}  # Layouts by the types in a bundle
 
 
 def _flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: ANN401  # anything
@@ -92,12 +87,9 @@ class _Part(NamedTuple):
     """How a value lies in memory."""
 
     kind: str
-    code: str
-    """Format of its words, in the language of `struct`, with all padding."""
-    size: int
-    """[bytes]"""
-    alignment: int
-    """[bytes]"""
+    code: str  # Format of its words, in the language of `struct`, with all padding
+    size: int  # [bytes]
+    alignment: int  # [bytes]
 
 
 def _part(value: object) -> _Part:

@@ -34,16 +34,13 @@ __all__ = [
     "write_code",
 ]
 
-SUFFIX = ".eyk"
-"""End of the names of files of machine code."""
+SUFFIX = ".eyk"  # End of the names of files of machine code
 
 _LOCK = threading.Lock()
 
-_LOADED: list[llvm.ResourceTracker] = []
-"""Kernels loaded, kept until the process ends."""
+_LOADED: list[llvm.ResourceTracker] = []  # Kernels loaded, kept until the process ends
 
-_NUMBERS = itertools.count()
-"""Numbers of the kernels that this process has tried to load."""
+_NUMBERS = itertools.count()  # Numbers of the kernels that this process has tried to load
 
 
 class MachineCode(NamedTuple):
@@ -53,8 +50,7 @@ class MachineCode(NamedTuple):
     """Name of the function to call; different for each kernel, as all are loaded together."""
     needs: tuple[str, ...]
     """Functions outside the kernel that it calls, such as those of the C library."""
-    code: bytes | memoryview
-    """An object file."""
+    code: bytes | memoryview  # An object file
 
 
 class Cpu(NamedTuple):

@@ -30,11 +30,9 @@ from eyas.lanes.vector.kinds import Lanes
 
 __all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]
 
-SUFFIX = ".eym"
-"""End of the names of files of modules."""
+SUFFIX = ".eym"  # End of the names of files of modules
 
-_NUMBERS = itertools.count()
-"""Numbers of the modules that are not kept."""
+_NUMBERS = itertools.count()  # Numbers of the modules that are not kept
 
 _LOG = logging.getLogger(OWNER)
 
@@ -42,8 +40,7 @@ ARCHIVE = Path(__file__).parent / "shipped" / "modules.xz"
 """Modules that come with the package, so that the first edit of a kernel costs no more than later
 ones. They serve one version of numba and llvmlite, that of the release."""
 
-_LOADED: dict[str, "Module"] = {}
-"""Modules read or made by this process, by name."""
+_LOADED: dict[str, "Module"] = {}  # Modules read or made by this process, by name
 
 
 class Module:
@@ -60,14 +57,10 @@ class Module:
         returns: numba.types.Type,
     ) -> None:
         self.name = name
-        self.symbol = symbol
-        """The function's name in the module."""
-        self.calls = calls
-        """The modules of the kernels that it calls."""
-        self.code = code
-        """LLVM's bitcode."""
-        self.returns = returns
-        """numba's type of what the function returns."""
+        self.symbol = symbol  # The function's name in the module
+        self.calls = calls  # The modules of the kernels that it calls
+        self.code = code  # LLVM's bitcode
+        self.returns = returns  # numba's type of what the function returns
 
     def _ensure_finalized(self) -> None:
         """Be asked by numba, before a function that is not ours is linked to this."""

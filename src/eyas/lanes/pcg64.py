@@ -20,8 +20,7 @@ __all__ = ["STATE", "begin_stream", "fraction", "whole"]
 
 Words = NDArray[np.int64]
 
-STATE: Final = 10
-"""Length of a state."""
+STATE: Final = 10  # Length of a state
 
 _WORD = 0xFFFFFFFF
 _INC, _HAS_HALF, _HALF = 4, 8, 9

@@ -42,8 +42,7 @@ __all__ = [
 
 _LOG = logging.getLogger(OWNER)
 
-LEVEL = "x86-64-v3"
-"""The level of the x86-64 ABI for which code is shipped, as LLVM names it."""
+LEVEL = "x86-64-v3"  # The level of the x86-64 ABI for which code is shipped, as LLVM names it
 
 needed = frozenset(
     "cx16 sahf popcnt sse3 ssse3 sse4.1 sse4.2 avx avx2 bmi bmi2 f16c fma lzcnt movbe xsave".split()

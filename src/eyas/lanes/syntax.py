@@ -28,8 +28,7 @@ class Written(NamedTuple):
     """What is written about a function, or in a whole file; of a file without the names."""
 
     digest: str
-    names: tuple[str, ...]
-    """The names that it reads, with attributes, `np.float32`."""
+    names: tuple[str, ...]  # The names that it reads, with attributes, `np.float32`.
 
 
 @cache
@@ -130,5 +129,4 @@ def _digest(text: bytes) -> str:
     return sha256(text).hexdigest()[:24]
 
 
-INDEX = TextIndex(Path(__file__), _parsed)
-"""The syntax of files."""
+INDEX = TextIndex(Path(__file__), _parsed)  # The syntax of files

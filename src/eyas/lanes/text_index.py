@@ -26,13 +26,11 @@ from eyas.lanes.trusted import (
 
 __all__ = ["FOLDER", "SUFFIX", "TextIndex", "digest_of"]
 
-FOLDER = "definitions"
-"""Name of the folder in the cache."""
+FOLDER = "definitions"  # Name of the folder in the cache
 
 SUFFIX = ".eyi"
 
-_MOST = 3000
-"""Texts that are kept, three times those of the package; the oldest go. They are 6 MB."""
+_MOST = 3000  # Texts that are kept, three times those of the package; the oldest go. They are 6 MB.
 
 _Known = dict[str, bytes | memoryview]
 
@@ -54,8 +52,7 @@ class TextIndex:
         """
         self._source = source
         self._read = read
-        self.shipped = source.with_suffix(SUFFIX)
-        """The file that comes with a wheel."""
+        self.shipped = source.with_suffix(SUFFIX)  # The file that comes with a wheel
         self._new: _Known = {}
 
     def of(self, text: bytes) -> Any:  # noqa: ANN401  # JSON

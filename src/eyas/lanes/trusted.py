@@ -36,11 +36,9 @@ _LOG = logging.getLogger(OWNER)
 FOLDER_VARIABLE = f"{OWNER.upper()}_CACHE_DIR"
 """Environment variable: the folder of the cache, instead of the user's default."""
 
-_TOLD: set[Path] = set()
-"""Folders of which it is told that someone else may have written into them."""
+_TOLD: set[Path] = set()  # Folders of which it is told that someone else may have written into them
 
-_WARNED: list[object] = []
-"""Why something could not be kept: one reason of maybe many."""
+_WARNED: list[object] = []  # Why something could not be kept: one reason of maybe many
 
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
 

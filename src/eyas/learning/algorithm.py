@@ -36,19 +36,15 @@ class Learner:
     generator: torch.Generator
     """The only random numbers of updates: begun anew with each block, so that a run that is
     resumed gives the same as one that never stopped."""
-    threads: "TorchThreads"
-    """Find the gradients of the parts of a minibatch side by side."""
+    threads: "TorchThreads"  # Find the gradients of the parts of a minibatch side by side
 
 
 class Views(Protocol):
     """T views of each of N environments."""
 
-    pictures: Tensor
-    """uint8, shape (T, N, C, H, W)."""
-    states: Tensor
-    """What the network carried, shape (T, N, S)."""
-    ended: Tensor
-    """Whether the episode ended with each decision, shape (T, N)."""
+    pictures: Tensor  # uint8, shape (T, N, C, H, W)
+    states: Tensor  # What the network carried, shape (T, N, S)
+    ended: Tensor  # Whether the episode ended with each decision, shape (T, N)
 
 
 LossOf = Callable[[Tensor, float], tuple[Tensor, Tensor]]
@@ -172,8 +168,7 @@ class Phase(NamedTuple):
     name: str
     algorithm: type[Algorithm]
     settings: Config
-    end: int
-    """Decisions of the run after which the next one learns."""
+    end: int  # Decisions of the run after which the next one learns
 
 
 def phases_of(config: TrainConfig) -> list[Phase]:

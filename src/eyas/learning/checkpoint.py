@@ -41,14 +41,10 @@ class TrainingProgress:
     """How far a run has come."""
 
     stage: int = 0
-    block: int = 0
-    """Number of the next block."""
-    decisions: int = 0
-    """Of all stages."""
-    stage_decisions: int = 0
-    """Of the current stage."""
-    rows: list[Row] = field(default_factory=list)
-    """Of the curve, one for each block."""
+    block: int = 0  # Number of the next block
+    decisions: int = 0  # Of all stages
+    stage_decisions: int = 0  # Of the current stage
+    rows: list[Row] = field(default_factory=list)  # Of the curve, one for each block
 
 
 class RunFolder:

@@ -29,8 +29,7 @@ __all__ = [
     "WordsTraining",
 ]
 
-LESSON = 128
-"""Pictures in a step of learning of a tracker."""
+LESSON = 128  # Pictures in a step of learning of a tracker
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
@@ -45,8 +44,7 @@ class TeacherKind(StrEnum):
     SIGHTED = "sighted"
     """An oracle that is told where the target is only while the picture shows at least 15 % of it,
     and goes on at its last velocity."""
-    EXACT = "exact"
-    """An oracle that always knows where the target is."""
+    EXACT = "exact"  # An oracle that always knows where the target is
 
 
 class Stage(Config):

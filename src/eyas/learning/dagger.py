@@ -19,18 +19,12 @@ __all__ = ["Buffer", "Dagger"]
 class Lessons:
     """What is learned from T decisions in each of M environments."""
 
-    pictures: Tensor
-    """uint8, shape (T, M, C, H, W)."""
-    states: Tensor
-    """What the network carried, shape (T, M, S)."""
-    ended: Tensor
-    """Whether the episode ended with each decision, shape (T, M)."""
-    labels: Tensor
-    """The teacher's actions, shape (T, M)."""
-    weights: Tensor
-    """Of these, shape (T, M)."""
-    targets: Tensor
-    """Of the values, shape (T, M)."""
+    pictures: Tensor  # uint8, shape (T, M, C, H, W)
+    states: Tensor  # What the network carried, shape (T, M, S)
+    ended: Tensor  # Whether the episode ended with each decision, shape (T, M)
+    labels: Tensor  # The teacher's actions, shape (T, M)
+    weights: Tensor  # Of these, shape (T, M)
+    targets: Tensor  # Of the values, shape (T, M)
 
 
 class Buffer:

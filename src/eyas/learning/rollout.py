@@ -74,10 +74,8 @@ class Rollout:
 class Finished:
     """The episodes that have ended since the block began."""
 
-    returns: list[float] = field(default_factory=list)
-    """Sum of the unscaled rewards of each."""
-    lengths: list[float] = field(default_factory=list)
-    """Decisions in each."""
+    returns: list[float] = field(default_factory=list)  # Sum of the unscaled rewards of each
+    lengths: list[float] = field(default_factory=list)  # Decisions in each
 
 
 class Roller:

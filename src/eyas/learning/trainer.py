@@ -36,13 +36,11 @@ from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 
 __all__ = ["train"]
 
-_SILENCE = 10.0
-"""Longest time without a line [s]."""
+_SILENCE = 10.0  # Longest time without a line [s]
 
 Say = Callable[[str], None]
 
-Columns = dict[str, float]
-"""Numbers of a block, by the names of the curve's columns."""
+Columns = dict[str, float]  # Numbers of a block, by the names of the curve's columns
 
 
 def train(
@@ -132,8 +130,7 @@ class _Run:
         self.progress = TrainingProgress()
         self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
         self._total = TrainConfig.of(config).run_decisions
-        self._told = -math.inf
-        """When it was last told how it goes [s]."""
+        self._told = -math.inf  # When it was last told how it goes [s]
 
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""

@@ -58,14 +58,10 @@ class Origin:
 
     name: str
     title: str
-    source: str
-    """Name of the file that it was made of."""
-    longitude: float
-    """Of the middle of the map, in degrees."""
-    latitude: float
-    """Of the middle of the map, in degrees."""
-    size: tuple[float, float]
-    """Extent of the floor [m]."""
+    source: str  # Name of the file that it was made of
+    longitude: float  # Of the middle of the map, in degrees
+    latitude: float  # Of the middle of the map, in degrees
+    size: tuple[float, float]  # Extent of the floor [m]
     format: str = FORMAT
     checksums: dict[str, str] = field(default_factory=dict)
     """SHA-256 of the files beside it, by name; of older maps none."""
@@ -237,5 +233,4 @@ def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
     return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges)
 
 
-MAP_FILES = MapFiles()
-"""The imported maps of the user, and plans in files."""
+MAP_FILES = MapFiles()  # The imported maps of the user, and plans in files

@@ -11,11 +11,9 @@ from eyas.engine.core.errors import ConfigError, DataFileError
 
 __all__ = ["CARD", "ModelCard", "read_card"]
 
-CARD = "card.json"
-"""The file, beside the records of an evaluation."""
+CARD = "card.json"  # The file, beside the records of an evaluation
 
-_LARGEST = 1 << 20
-"""Largest size of the file [bytes]."""
+_LARGEST = 1 << 20  # Largest size of the file [bytes]
 
 
 def _is_link(text: str) -> str:

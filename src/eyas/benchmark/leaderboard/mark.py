@@ -20,14 +20,12 @@ from eyas.engine.core.files import read_limited, refusals, user_path
 
 __all__ = ["KEY_VARIABLE", "MARK", "Mark", "content_hash", "fitting_mark", "signed"]
 
-MARK = "verified.json"
-"""The file."""
+MARK = "verified.json"  # The file
 
 KEY_VARIABLE = "EYAS_VERIFIER_KEY"
 """Environment variable: file with the key; by default one of the user's."""
 
-_LARGEST = 1 << 31
-"""Largest size of a file of records [bytes]."""
+_LARGEST = 1 << 31  # Largest size of a file of records [bytes]
 
 
 class Mark(Config):

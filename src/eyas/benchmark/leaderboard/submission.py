@@ -21,12 +21,10 @@ __all__ = ["Submission", "complete_run", "folders_in", "submissions_in"]
 
 _LOG = logging.getLogger("eyas")
 
-_LARGEST = 1 << 20
-"""Largest size of the file with the timing [bytes]."""
+_LARGEST = 1 << 20  # Largest size of the file with the timing [bytes]
 
 
-_BEYOND = 1e9
-"""Larger than every figure of a flight."""
+_BEYOND = 1e9  # Larger than every figure of a flight
 
 
 class Submission(NamedTuple):
@@ -36,12 +34,9 @@ class Submission(NamedTuple):
     stamp: Stamp
     records: list[EpisodeRecord]
     card: ModelCard | None
-    entry: Entry
-    """What the policy sees and may do."""
-    hardware: str
-    """The machine whose answers were timed; `-` where no file tells."""
-    mark: Mark | None
-    """What was flown again; None: nothing."""
+    entry: Entry  # What the policy sees and may do
+    hardware: str  # The machine whose answers were timed; `-` where no file tells
+    mark: Mark | None  # What was flown again; None: nothing
 
 
 def folders_in(folder: Path) -> list[Path]:

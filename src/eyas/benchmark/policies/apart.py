@@ -35,8 +35,7 @@ __all__ = ["ApartPolicy", "open_apart", "receive", "send"]
 Array = NDArray[Any]
 Read = TypeVar("Read")
 
-_PLAIN = "biuf"
-"""Kinds of numbers that arrays of a message may hold."""
+_PLAIN = "biuf"  # Kinds of numbers that arrays of a message may hold
 
 _WRONG = (
     *(ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError),
@@ -44,8 +43,7 @@ _WRONG = (
 )
 """What reading raises where a message is of another form."""
 
-_LARGEST = 1 << 30
-"""Largest part of a message [bytes]."""
+_LARGEST = 1 << 30  # Largest part of a message [bytes]
 
 
 def send(stream: IO[bytes], head: Mapping[str, Any], arrays: Sequence[Array] = ()) -> None:
@@ -169,8 +167,7 @@ class _Child:
 _CHILDREN: dict[str, _Child] = {}
 """The running processes: batches of one evaluation share one, which takes a second to start."""
 
-_KEPT = 4
-"""Largest number of them."""
+_KEPT = 4  # Largest number of them
 
 
 @atexit.register

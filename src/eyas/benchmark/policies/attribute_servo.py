@@ -22,8 +22,7 @@ __all__ = ["AttributeServo", "attribute_servo", "salient_servo"]
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
-_SIZE: Final = (126, 168)
-"""Height and width of its pictures [pixels]: a car is 20 pixels long."""
+_SIZE: Final = (126, 168)  # Height and width of its pictures [pixels]: a car is 20 pixels long
 
 _SHAPES: Final = {
     BodyWord.VEHICLE: (4.2, 1.4),
@@ -43,17 +42,13 @@ _SHAPES: Final = {
 _CAR_LIKE: Final = 0.9
 """Largest difference of a blob's shape from a car's, as of `_unlike`: a van is one, a roof not."""
 
-_WATCHED: Final = 1.0
-"""How long it watches what moves, if the words are about that [s]."""
+_WATCHED: Final = 1.0  # How long it watches what moves, if the words are about that [s]
 
-_GATE: Final = 3.0
-"""Farthest from where it is expected that the target is looked for, at first [m]."""
+_GATE: Final = 3.0  # Farthest from where it is expected that the target is looked for, at first [m]
 
-_WIDER: Final = 4.0
-"""How much farther, for each second in which it is not seen [m/s]."""
+_WIDER: Final = 4.0  # How much farther, for each second in which it is not seen [m/s]
 
-_SPEEDS: Final = (0.8, 1.5)
-"""Below the first something stands, above the second it moves [m/s]."""
+_SPEEDS: Final = (0.8, 1.5)  # Below the first something stands, above the second it moves [m/s]
 
 _TURN: Final = 0.12
 """Change of its direction while it is watched from which on something turns [rad]."""
@@ -62,12 +57,9 @@ _TURN: Final = 0.12
 class _Track(NamedTuple):
     """Something that is followed, ahead and left of the drone's first place."""
 
-    place: Floats
-    """[m], shape (2,)."""
-    velocity: Floats
-    """[m/s], shape (2,)."""
-    unseen: float
-    """Time since it was seen [s]."""
+    place: Floats  # [m], shape (2,)
+    velocity: Floats  # [m/s], shape (2,)
+    unseen: float  # Time since it was seen [s]
 
 
 class _Drone:
@@ -75,10 +67,8 @@ class _Drone:
 
     def __init__(self, claim: Claim | None) -> None:
         self.claim = claim
-        self.colour: Floats | None = None
-        """Of what it follows without words, as seen [0 to 255]."""
-        self.own = np.zeros(2)
-        """Its way so far, ahead and left [m]."""
+        self.colour: Floats | None = None  # Of what it follows without words, as seen [0 to 255]
+        self.own = np.zeros(2)  # Its way so far, ahead and left [m]
         self.time = 0.0
         self.watched: list[tuple[float, Floats]] = []
         """Times and places of all candidates while it watches."""

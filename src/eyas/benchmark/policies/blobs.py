@@ -22,20 +22,16 @@ _VEIL: Final = (0.07, 0.12, 0.18)
 """What the sky's reflection adds to paint in the sun, sRGB: measured on the cars of citystreet by
 day, where red paint of (0.80, 0.11, 0.10) shares is seen with (0.59, 0.18, 0.24)."""
 
-_FROM_NAME: Final = 0.2
-"""Largest difference of shares from a name's paint."""
+_FROM_NAME: Final = 0.2  # Largest difference of shares from a name's paint
 
 _LIGHT: Final = (0.6, 1.15)
 """Brightness in shade and in sun, as a multiple of the paint's; measured likewise."""
 
-_DARKER: Final = 0.3
-"""Weight of the logarithm of what is beyond these."""
+_DARKER: Final = 0.3  # Weight of the logarithm of what is beyond these
 
-_UNSURE: Final = 0.05
-"""A paint may be one of two names that differ by less."""
+_UNSURE: Final = 0.05  # A paint may be one of two names that differ by less
 
-_LEVELS: Final = 32
-"""Of each channel in the table of names."""
+_LEVELS: Final = 32  # Of each channel in the table of names
 
 _BRIDGED: Final = 0.8, 0.45
 """Windows and roofs up to twice as long do not divide a blob, where it is one vehicle or a queue of
@@ -44,33 +40,24 @@ equal ones, and where different ones of one colour may be side by side [m]."""
 _FILLED: Final = 0.3
 """Least share of a blob's rectangle that has its colour: leaves have it here and there."""
 
-_QUEUE: Final = 1.4
-"""A blob that is so many times as long as one vehicle is a queue."""
+_QUEUE: Final = 1.4  # A blob that is so many times as long as one vehicle is a queue
 
-_SPACING: Final = 1.5
-"""Between the vehicles of a queue [m]."""
+_SPACING: Final = 1.5  # Between the vehicles of a queue [m]
 
-_SIZES: Final = (0.8, 16.0)
-"""Shortest and longest blob that may be a vehicle [m]."""
+_SIZES: Final = (0.8, 16.0)  # Shortest and longest blob that may be a vehicle [m]
 
-_WIDEST: Final = 4.0
-"""[m]"""
+_WIDEST: Final = 4.0  # [m]
 
-_LEAST: Final = 4
-"""Fewest pixels."""
+_LEAST: Final = 4  # Fewest pixels
 
 
 class Blobs(NamedTuple):
     """B blobs, the largest first."""
 
-    place: Floats
-    """Column and row of the middle [pixels], shape (B, 2)."""
-    length: Floats
-    """[m], shape (B,)."""
-    width: Floats
-    """[m], shape (B,)."""
-    axis: Floats
-    """Direction of the long side: column and row, shape (B, 2)."""
+    place: Floats  # Column and row of the middle [pixels], shape (B, 2)
+    length: Floats  # [m], shape (B,)
+    width: Floats  # [m], shape (B,)
+    axis: Floats  # Direction of the long side: column and row, shape (B, 2)
 
 
 def painted(picture: NDArray[np.uint8], name: str) -> Mask:

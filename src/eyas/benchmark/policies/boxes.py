@@ -14,8 +14,7 @@ from eyas.engine.settings.env import EnvConfig
 
 __all__ = ["BoxPilot", "csrt", "kcf", "medianflow", "mosse", "nano", "pilot", "stay"]
 
-_SIZE = 240, 320
-"""Height and width of the pictures."""
+_SIZE = 240, 320  # Height and width of the pictures
 
 
 class BoxPilot:

@@ -25,8 +25,7 @@ __all__ = ["Each", "Whole", "load_callable"]
 
 _IN_WORDS = frozenset({"words", "attributes"})
 
-SETTINGS = "env_settings"
-"""Attribute of a user's policy: changes of the defaults of `env`."""
+SETTINGS = "env_settings"  # Attribute of a user's policy: changes of the defaults of `env`
 
 
 class Each:

@@ -14,22 +14,17 @@ __all__ = ["SPACING", "LaneGraph", "Lanes", "lane_graph"]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-SPACING = 2.0
-"""Distance of neighbouring points [m]."""
+SPACING = 2.0  # Distance of neighbouring points [m]
 
-_ALIKE = 0.8
-"""Largest angle between the heading of a vehicle and that of its lane [rad]."""
+_ALIKE = 0.8  # Largest angle between the heading of a vehicle and that of its lane [rad]
 
 
 class LaneGraph(NamedTuple):
     """Points along the lanes, and along the ways over junctions from lane to lane; P points."""
 
-    place: Floats
-    """East and north [m], shape (P, 2)."""
-    heading: Floats
-    """Of the lane [rad], shape (P,)."""
-    speed: Floats
-    """Speed limit [m/s], shape (P,)."""
+    place: Floats  # East and north [m], shape (P, 2)
+    heading: Floats  # Of the lane [rad], shape (P,)
+    speed: Floats  # Speed limit [m/s], shape (P,)
     after: Integers
     """Points that follow, the straightest first; each row is filled up by repeating them, shape
     (P, S)."""

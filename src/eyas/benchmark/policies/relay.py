@@ -17,8 +17,7 @@ __all__ = ["Relay", "relay"]
 Floats = NDArray[np.float64]
 
 
-_FRESH = 10.0
-"""Age up to which a mate's sighting is flown to; then each searches for itself [s]."""
+_FRESH = 10.0  # Age up to which a mate's sighting is flown to; then each searches for itself [s]
 
 
 class Relay(SightOracle):

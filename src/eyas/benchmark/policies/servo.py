@@ -14,22 +14,15 @@ from eyas.lanes import exact
 __all__ = ["GimbalServo", "Servo", "gimbal_servo", "servo"]
 
 _SIZE = 84
-_PATCH = 14
-"""Side of the pattern [pixels]."""
-_REACH = 11
-"""Farthest motion between two pictures [pixels]."""
-_LEARNING = 0.1
-"""Share of a new picture in the pattern, where the match is good."""
-_GOOD = 0.6
-"""Least correlation of a good match."""
+_PATCH = 14  # Side of the pattern [pixels]
+_REACH = 11  # Farthest motion between two pictures [pixels]
+_LEARNING = 0.1  # Share of a new picture in the pattern, where the match is good
+_GOOD = 0.6  # Least correlation of a good match
 
-_GAIN = 5.0
-"""Rate at which a camera is turned, by how far it would have to be [1/s]."""
-_HIGHEST = 0.6
-"""How far it may be turned up [rad]."""
+_GAIN = 5.0  # Rate at which a camera is turned, by how far it would have to be [1/s]
+_HIGHEST = 0.6  # How far it may be turned up [rad]
 _SHARES = np.zeros((7, 4))
-_SHARES[:4, :2] = [[1, 0], [-1, 0], [0, 1], [0, -1]]
-"""The seven actions as shares of the speeds."""
+_SHARES[:4, :2] = [[1, 0], [-1, 0], [0, 1], [0, -1]]  # The seven actions as shares of the speeds
 
 Floats = NDArray[np.float64]
 

@@ -18,29 +18,23 @@ __all__ = ["Clue", "Motion", "Predictor", "SightOracle"]
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-ENOUGH = 0.15
-"""Share of the target that must be visible: of a car, about the pixels of its bonnet."""
+ENOUGH = 0.15  # Share of the target that must be visible: of a car, about the pixels of its bonnet
 
 _LOOK_TICKS = 16
 """Physics steps between two looks at what is visible: as often as the figures count pixels, so
 that both share one picture."""
 
 
-_FASTEST = 30.0
-"""What moves faster has not moved, but is another guess [m/s]."""
+_FASTEST = 30.0  # What moves faster has not moved, but is another guess [m/s]
 
 
 class Motion(NamedTuple):
     """How targets moved when they were last seen."""
 
-    place: Floats
-    """Their centres, east and north [m], shape (N, 2)."""
-    velocity: Floats
-    """[m/s], shape (N, 2)."""
-    yaw: Floats
-    """Heading [rad], shape (N,)."""
-    turn_rate: Floats
-    """[rad/s], shape (N,)."""
+    place: Floats  # Their centres, east and north [m], shape (N, 2)
+    velocity: Floats  # [m/s], shape (N, 2)
+    yaw: Floats  # Heading [rad], shape (N,)
+    turn_rate: Floats  # [rad/s], shape (N,)
 
     @classmethod
     def create(cls, count: int) -> "Motion":
@@ -51,27 +45,19 @@ class Motion(NamedTuple):
 class Clue(NamedTuple):
     """What is known of N targets at an instant."""
 
-    last: Motion
-    """Of one that has not been seen yet, its place is the middle of the first picture."""
-    age: Floats
-    """Time since it was seen, or since the start [s], shape (N,); 0: it is seen."""
-    known: Mask
-    """Whether it has been seen, shape (N,)."""
-    middle: Floats
-    """Ground point in the middle of the picture, east and north [m], shape (N, 2)."""
-    yaw: Floats
-    """Heading of the drone [rad], shape (N,)."""
-    covered: Mask
-    """Whose camera shows nothing, shape (N,)."""
+    last: Motion  # Of one that has not been seen yet, its place is the middle of the first picture
+    age: Floats  # Time since it was seen, or since the start [s], shape (N,); 0: it is seen
+    known: Mask  # Whether it has been seen, shape (N,)
+    middle: Floats  # Ground point in the middle of the picture, east and north [m], shape (N, 2)
+    yaw: Floats  # Heading of the drone [rad], shape (N,)
+    covered: Mask  # Whose camera shows nothing, shape (N,)
 
 
 class _Flown(NamedTuple):
     """Where an oracle has flown to."""
 
-    places: Floats
-    """[m], shape (N, 2)."""
-    age: Floats
-    """See `Clue` [s], shape (N,)."""
+    places: Floats  # [m], shape (N, 2)
+    age: Floats  # See `Clue` [s], shape (N,)
 
 
 class Predictor(Protocol):

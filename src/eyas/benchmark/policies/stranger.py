@@ -57,8 +57,7 @@ class _Answers:
     def __init__(self, policy: Policy) -> None:
         self._policy = policy
         self._actions = make_actions(policy.env)
-        self._latest: dict[str, Array] = {}
-        """Latest observations, by the names of their parts."""
+        self._latest: dict[str, Array] = {}  # Latest observations, by the names of their parts
 
     def give(self, incoming: IO[bytes], outgoing: IO[bytes]) -> None:
         """Answer all messages.

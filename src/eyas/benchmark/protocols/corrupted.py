@@ -15,8 +15,7 @@ from eyas.benchmark.record import EpisodeRecord
 
 __all__ = ["CLEAN", "CORRUPTED", "CORRUPTIONS"]
 
-CLEAN = "clean"
-"""The variant without faults."""
+CLEAN = "clean"  # The variant without faults
 
 Settings = Mapping[str, Any]
 

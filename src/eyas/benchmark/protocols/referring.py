@@ -36,18 +36,15 @@ __all__ = ["REFERRING"]
 
 _VARIANTS: Final = ("right", "other", "contradictory", "none")
 
-_TRIED: Final = 12
-"""Number of seeds that are tried for each episode."""
+_TRIED: Final = 12  # Number of seeds that are tried for each episode
 
-_LEAST_VISIBLE: Final = 0.5
-"""Smallest share of the target that is visible at the start."""
+_LEAST_VISIBLE: Final = 0.5  # Smallest share of the target that is visible at the start
 
 _CHOSEN_BY: Final = 3.0
 """Time by which a policy should have chosen [s]; judged over the half second before."""
 
 _CHOICE: Final = 0.5
-_END: Final = 5.0
-"""Length of the end of an episode, over which success is judged [s]."""
+_END: Final = 5.0  # Length of the end of an episode, over which success is judged [s]
 
 
 def stage(simulation: Simulation, episodes: Sequence[EpisodeSpec]) -> list[StagedStart | None]:

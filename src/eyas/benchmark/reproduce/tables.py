@@ -36,8 +36,7 @@ class Row(NamedTuple):
 
     label: str
     plan: EvaluationPlan
-    part: str = "all"
-    """A variant of the protocol."""
+    part: str = "all"  # A variant of the protocol
 
     @property
     def episodes(self) -> int:
@@ -55,11 +54,9 @@ class Table(NamedTuple):
     """A table of a document."""
 
     name: str
-    page: str
-    """The document, in `docs`."""
+    page: str  # The document, in `docs`
     title: str
-    columns: tuple[str, ...]
-    """Figures, as in `result.json`."""
+    columns: tuple[str, ...]  # Figures, as in `result.json`.
     rows: tuple[Row, ...]
 
 

@@ -19,8 +19,7 @@ __all__ = ["CameraCost", "camera_table", "measure_camera"]
 
 _VIEWS, _SIDE = 64, 84
 
-_TURN = (12.0, 0.0, 0.0, 1.5)
-"""Command while it is measured: without motion nothing is blurred."""
+_TURN = (12.0, 0.0, 0.0, 1.5)  # Command while it is measured: without motion nothing is blurred
 
 _CASES: Mapping[str, Mapping[str, Any]] = {
     "pinhole": {},
@@ -47,10 +46,8 @@ class CameraCost:
     """What a picture costs."""
 
     effect: str
-    microseconds: float
-    """Median of the processor time of a picture [us]."""
-    ratio: float
-    """Over that of a pinhole's, the median of measurements side by side."""
+    microseconds: float  # Median of the processor time of a picture [us]
+    ratio: float  # Over that of a pinhole's, the median of measurements side by side
 
 
 def measure_camera(seconds: float) -> list[CameraCost]:

@@ -24,13 +24,11 @@ __all__ = [
     "why_not",
 ]
 
-_CALL = {"x86_64": 298, "aarch64": 241}
-"""Number of the system call `perf_event_open`."""
+_CALL = {"x86_64": 298, "aarch64": 241}  # Number of the system call `perf_event_open`
 
 _CYCLES, _INSTRUCTIONS = 0, 1
 _SIZE = 64
-_OWN_CODE_ONLY = 1 << 5 | 1 << 6
-"""Neither the kernel of the system nor a hypervisor."""
+_OWN_CODE_ONLY = 1 << 5 | 1 << 6  # Neither the kernel of the system nor a hypervisor
 
 
 class Counts(NamedTuple):
@@ -89,8 +87,7 @@ def _read(file: int) -> int:
     return int(value)
 
 
-_BLOCK = 0.05
-"""Calls are repeated for at least this time for one timing [s]."""
+_BLOCK = 0.05  # Calls are repeated for at least this time for one timing [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,29 +95,23 @@ class Measurement:
     """One line of the table."""
 
     name: str
-    value: float
-    """Median."""
+    value: float  # Median
     unit: str
-    includes: str
-    """What the figure covers."""
-    repeats: int
-    """Number of timings of which it is the median."""
+    includes: str  # What the figure covers
+    repeats: int  # Number of timings of which it is the median
     cpu_microseconds: float | None = None
     """Time of all threads on the processor for one picture or start [µs], median; else None."""
     instructions: float | None = None
     """User instructions for one pixel; None: no picture, or no access to hardware counters."""
-    cycles: float | None = None
-    """User cycles for one pixel; None likewise."""
+    cycles: float | None = None  # User cycles for one pixel; None likewise
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Timing of repeated calls."""
 
-    rate: float
-    """Calls per second, median."""
-    cpu: float
-    """Time of all threads on the processor for one call [s], median."""
+    rate: float  # Calls per second, median
+    cpu: float  # Time of all threads on the processor for one call [s], median
     repeats: int
 
 

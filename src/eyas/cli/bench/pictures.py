@@ -49,13 +49,10 @@ _STAGES = (
 class StageTime:
     """The time that one stage of drawing a picture takes."""
 
-    pictures: str
-    """Size of the pictures, and how many are drawn at once."""
+    pictures: str  # Size of the pictures, and how many are drawn at once
     stage: str
-    microseconds: float
-    """Median for one picture [us]."""
-    share: float
-    """Share of the time of the whole picture."""
+    microseconds: float  # Median for one picture [us]
+    share: float  # Share of the time of the whole picture
 
 
 def measure_stages(seconds: float) -> list[StageTime]:

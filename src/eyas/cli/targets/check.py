@@ -28,8 +28,7 @@ from eyas.engine.targets.catalogue import KINDS, MODELS
 
 __all__ = ["check"]
 
-_SECONDS = 60
-"""Time for which a motion of one's own is tried [s]."""
+_SECONDS = 60  # Time for which a motion of one's own is tried [s]
 
 _OUT, _LOST = 0.05, 0.25
 """Shares of its size: how far a body may stick out of its box, and what it must fill of it."""

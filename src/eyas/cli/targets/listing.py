@@ -25,13 +25,10 @@ class ModelRow:
 
     name: str
     kind: str
-    size: tuple[float, float, float]
-    """Length, width and height [m]."""
-    colours: tuple[str, ...]
-    """See `looks_in_words`."""
+    size: tuple[float, float, float]  # Length, width and height [m]
+    colours: tuple[str, ...]  # See `looks_in_words`
     motion: str
-    mass: float | None
-    """[kg]; None: not known."""
+    mass: float | None  # [kg]; None: not known
     triangles: tuple[int, int]
     """Number of triangles at the finest and at the coarsest level of detail."""
 

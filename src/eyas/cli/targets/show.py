@@ -17,21 +17,15 @@ from eyas.engine.targets.words import words_of
 
 __all__ = ["ALL", "run"]
 
-ALL = "all"
-"""Name by which all targets are shown in one picture."""
+ALL = "all"  # Name by which all targets are shown in one picture
 
-_NEAR = 256
-"""Side of a picture from near [pixels]."""
-_SMALL = 168
-"""Side of a picture on the sheet of all [pixels]."""
-_HEIGHT = 22.0
-"""Distance of a tracker's camera [m]."""
+_NEAR = 256  # Side of a picture from near [pixels]
+_SMALL = 168  # Side of a picture on the sheet of all [pixels]
+_HEIGHT = 22.0  # Distance of a tracker's camera [m]
 _FIELD = np.deg2rad(45.0)
 _TURNS = 8
-_MOST = 16
-"""Models of a kind on the sheet of all."""
-_FRAMES, _RATE = 72, 24
-"""Frames of a film, and frames a second."""
+_MOST = 16  # Models of a kind on the sheet of all
+_FRAMES, _RATE = 72, 24  # Frames of a film, and frames a second
 _BACK, _INK, _DIM = (24, 25, 27), (230, 230, 228), (160, 161, 163)
 
 Rgb = NDArray[np.uint8]

@@ -26,14 +26,10 @@ _MAP = "simpleway-lake"
 class TargetPose:
     """How the target is at an instant; it heads along the street."""
 
-    travelled: float = 0.0
-    """[m]"""
-    speed: float = 0.0
-    """[m/s]"""
-    yaw_rate: float = 0.0
-    """[rad/s]"""
-    individual: int = 0
-    """Which of the vehicles of its model: they differ in details."""
+    travelled: float = 0.0  # [m]
+    speed: float = 0.0  # [m/s]
+    yaw_rate: float = 0.0  # [rad/s]
+    individual: int = 0  # Which of the vehicles of its model: they differ in details
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,12 +38,9 @@ class Camera:
 
     bearing: float
     """Direction from the target to the camera, counter-clockwise from straight ahead [rad]."""
-    elevation: float
-    """Angle of that direction above the horizon [rad]."""
-    distance: float
-    """[m]"""
-    field_of_view: float
-    """Horizontal, and vertical if the picture is square [rad]."""
+    elevation: float  # Angle of that direction above the horizon [rad]
+    distance: float  # [m]
+    field_of_view: float  # Horizontal, and vertical if the picture is square [rad]
 
 
 class TargetStage:

@@ -67,10 +67,8 @@ class Case(NamedTuple):
 
     name: str
     map: str
-    quick: bool
-    """Whether `eyas verify --quick` looks at it."""
-    measure: Callable[[], dict[str, str]]
-    """Returns hashes by the names of what they are of."""
+    quick: bool  # Whether `eyas verify --quick` looks at it
+    measure: Callable[[], dict[str, str]]  # Returns hashes by the names of what they are of
 
 
 def cases() -> list[Case]:

@@ -23,8 +23,7 @@ from eyas.lanes.folder import FOLDER_VARIABLE
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
 
-Hashes = dict[str, dict[str, str]]
-"""Of cases by name, of each by the name of what they are of."""
+Hashes = dict[str, dict[str, str]]  # Of cases by name, of each by the name of what they are of
 
 
 def manifest_path() -> Path:
@@ -99,10 +98,8 @@ def _blas_kernel() -> str:
 class Verdict(NamedTuple):
     """What was compared."""
 
-    same: int
-    """Number of hashes that are those of the manifest."""
-    different: dict[str, list[str]]
-    """Names of the others by case."""
+    same: int  # Number of hashes that are those of the manifest
+    different: dict[str, list[str]]  # Names of the others by case
 
 
 def run(*, quick: bool = False, map_name: str | None = None, as_json: bool = False) -> bool:

@@ -16,8 +16,7 @@ __all__ = ["SettingsSource", "quietly"]
 
 _LOG = logging.getLogger("eyas")
 
-_TOLD = 8
-"""Largest number of differences in one line."""
+_TOLD = 8  # Largest number of differences in one line
 
 Signature = tuple[int, int, int] | None
 

@@ -23,8 +23,7 @@ __all__ = [
     "Varied",
 ]
 
-Values = Mapping[str, object]
-"""Values by dotted path: by the original's keys, or by ours."""
+Values = Mapping[str, object]  # Values by dotted path: by the original's keys, or by ours
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +33,7 @@ class Guess:
     key: str
     trial: object = None
     """A value of our field that is refused if this key is the cause; None: the key is the cause."""
-    allowed: str | None = None
-    """Allowed values of the key; None: those of our field."""
+    allowed: str | None = None  # Allowed values of the key; None: those of our field
 
 
 class LegacyEntry(ABC):
@@ -108,8 +106,7 @@ class Same(_OneKey):
 
     key: str
     path: str
-    upper_case: bool = False
-    """Whether the original has our names in upper case."""
+    upper_case: bool = False  # Whether the original has our names in upper case
 
     @override
     def read(self, values: Values) -> Values:
@@ -190,16 +187,13 @@ class Span(_OneField):
 class Varied(LegacyEntry):
     """The four to six keys that define whether and how one value is sampled."""
 
-    random: str
-    """Switch: sampled between `least` and `most`; else it is `fixed`."""
+    random: str  # Switch: sampled between `least` and `most`; else it is `fixed`
     fixed: str
     least: str
     most: str
     path: str
-    sides: str | None = None
-    """Switch: a magnitude is sampled, with a random sign."""
-    default: str | None = None
-    """Switch: the other keys have no effect, and our field is None."""
+    sides: str | None = None  # Switch: a magnitude is sampled, with a random sign
+    default: str | None = None  # Switch: the other keys have no effect, and our field is None
     replaces: str | None = None
     """A second field of ours: true if sampled: sampled values replace, fixed ones are added."""
 
@@ -270,8 +264,7 @@ class Varied(LegacyEntry):
             yield Guess(key, values[key])
 
 
-_LEAST, _MOST = 0.5, 1.5
-"""The pitches that the gimbal reaches [rad]."""
+_LEAST, _MOST = 0.5, 1.5  # The pitches that the gimbal reaches [rad]
 
 _FLATTEST, _STEEPEST = 0.1, 3.0
 """The pitches for which there is a start position [rad]; see `StartConfig.pitch`."""
@@ -316,10 +309,8 @@ class Switch(_OneKey):
 
     key: str
     path: str
-    on: str
-    """Value of the field if the key is true."""
-    off: str
-    """Value of the field if the key is false."""
+    on: str  # Value of the field if the key is true
+    off: str  # Value of the field if the key is false
 
     @override
     def read(self, values: Values) -> Values:

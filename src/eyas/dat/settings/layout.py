@@ -11,11 +11,9 @@ from eyas.engine.core.config import Problem, unknown_keys
 
 __all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
 
-Nested = Mapping[str, Any]
-"""The content of a JSON object."""
+Nested = Mapping[str, Any]  # The content of a JSON object
 
-_COUNTS = "_Steps"
-"""End of the keys of numbers of steps, which may be written as 1500.0 too."""
+_COUNTS = "_Steps"  # End of the keys of numbers of steps, which may be written as 1500.0 too.
 
 
 @cache

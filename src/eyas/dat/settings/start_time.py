@@ -4,11 +4,9 @@ from eyas.engine.settings.config import EyasConfig
 
 __all__ = ["AGENT_STEPS", "CHANNEL_STEPS", "started_later"]
 
-CHANNEL_STEPS = 4
-"""Steps for each channel of a recording [2 ms]."""
+CHANNEL_STEPS = 4  # Steps for each channel of a recording [2 ms]
 
-AGENT_STEPS = 6
-"""Steps for each agent of a training [2 ms]."""
+AGENT_STEPS = 6  # Steps for each agent of a training [2 ms]
 
 
 def started_later(config: EyasConfig, steps: int) -> EyasConfig:

@@ -12,8 +12,7 @@ from eyas.engine.world.config import world_of
 
 __all__ = ["WorldPath"]
 
-_SIMPLE = "simpleway"
-"""First part of the names of the simple maps."""
+_SIMPLE = "simpleway"  # First part of the names of the simple maps
 
 
 @dataclass(frozen=True, slots=True)

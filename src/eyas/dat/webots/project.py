@@ -49,10 +49,8 @@ _WORLD = WorldPath("world", "map", "weather")
 class Condition(NamedTuple):
     """Weather and hour of a world."""
 
-    weather: str | None = None
-    """None: the map's first."""
-    hour: float | None = None
-    """None: the weather's own."""
+    weather: str | None = None  # None: the map's first
+    hour: float | None = None  # None: the weather's own
 
 
 def run(name: str, seed: int, folder: Path, detail: int, condition: Condition) -> list[Path]:

@@ -22,8 +22,7 @@ _POSE = (
 _AWAY = 10_000.0
 """East coordinate of what is not on the map now, as in the original [m]; it waits as high as it
 drives, which tells the controller its height."""
-_MOST = {"passenger": 40}
-"""How many of a class a world holds, and of any other."""
+_MOST = {"passenger": 40}  # How many of a class a world holds, and of any other
 _OTHERS = 10
 
 

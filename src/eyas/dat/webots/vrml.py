@@ -44,8 +44,7 @@ class Node:
     kind: str
     fields: "Mapping[str, Value]" = field(default_factory=dict)
     """Numbers, text, truth, vectors as tuples, several values as lists, nodes, None for NULL."""
-    name: str = ""
-    """After DEF; empty: none."""
+    name: str = ""  # After DEF; empty: none
 
 
 Value = (

@@ -18,14 +18,11 @@ from eyas.maps.programs.prisms import prism
 
 __all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
 
-BASIC_STEP = 2
-"""Of physics, as in the original [ms]."""
+BASIC_STEP = 2  # Of physics, as in the original [ms]
 
-_SUN = 2.7
-"""Intensity of the original's sun, which by a clear day has the colour 1."""
+_SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colour 1
 
-_GROUND = {ObjectClass.GROUND, ObjectClass.WATER}
-"""What is drawn by the node `land`."""
+_GROUND = {ObjectClass.GROUND, ObjectClass.WATER}  # What is drawn by the node `land`
 
 Floats = NDArray[np.float64]
 

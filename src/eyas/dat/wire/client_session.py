@@ -17,14 +17,11 @@ from eyas.engine.core.files import refusals, write_atomic
 
 __all__ = ["AnswerFile", "ClientSession"]
 
-_LONGEST = 4096
-"""Largest action file that is read [bytes]."""
+_LONGEST = 4096  # Largest action file that is read [bytes]
 
-_UNFINISHED = 1.0
-"""Time after which a line without its end is taken as it is [s]."""
+_UNFINISHED = 1.0  # Time after which a line without its end is taken as it is [s]
 
-_AGAIN = 0.5
-"""Time after which a file that could not be written is tried again [s]."""
+_AGAIN = 0.5  # Time after which a file that could not be written is tried again [s]
 
 _LOG = logging.getLogger("eyas")
 
@@ -35,8 +32,7 @@ class AnswerFile(NamedTuple):
     """One file of an answer."""
 
     path: Path
-    content: Callable[[], bytes | None]
-    """Returns the content; None if it is not ready yet."""
+    content: Callable[[], bytes | None]  # Returns the content; None if it is not ready yet
 
 
 class ClientSession:

@@ -10,8 +10,7 @@ from eyas.engine.core.errors import ActionError
 
 __all__ = ["HOVER", "RESET", "Action", "packet_line", "parse_action"]
 
-_FASTEST = 1e4
-"""Largest number in an action, as for the speeds of the environments' actions."""
+_FASTEST = 1e4  # Largest number in an action, as for the speeds of the environments' actions
 
 
 class Action(NamedTuple):
@@ -19,13 +18,11 @@ class Action(NamedTuple):
 
     command: tuple[float, float, float, float]
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate, counter-clockwise [rad/s]."""
-    reset: bool
-    """Whether it asks for a new episode instead."""
+    reset: bool  # Whether it asks for a new episode instead
 
 
 HOVER = Action((0.0, 0.0, 0.0, 0.0), reset=False)
-RESET = HOVER._replace(reset=True)
-"""What clients send first."""
+RESET = HOVER._replace(reset=True)  # What clients send first
 
 
 def parse_action(line: bytes) -> Action:

@@ -17,8 +17,7 @@ __all__ = ["RARE", "SETTINGS_FILE", "Exchange", "Names", "Pause"]
 _SHORTEST, _LONGEST = 0.0002, 0.02
 """Limits of a sleep [s]. Clients of the original look once in a millisecond themselves."""
 
-RARE = 0.05
-"""Time without an event after which to look for what happens rarely, too [s]."""
+RARE = 0.05  # Time without an event after which to look for what happens rarely, too [s]
 
 
 class Pause:
@@ -51,8 +50,7 @@ _SIMULATOR = Path("Webots_Simulation", "traffic_project")
 SETTINGS_FILE = _SIMULATOR / "config" / "env_config.json"
 """The settings of the original's simulator, below its root; its clients read them too."""
 
-_COARSE = 0.02
-"""How far times of files lie behind the clock at most, some ticks of the kernel [s]."""
+_COARSE = 0.02  # How far times of files lie behind the clock at most, some ticks of the kernel [s]
 
 _START = "start.txt"
 _OURS = re.compile(

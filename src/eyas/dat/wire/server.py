@@ -28,20 +28,16 @@ __all__ = ["Server", "Service"]
 
 _LOG = logging.getLogger("eyas")
 
-_LOOKS = 0.5
-"""Time between two looks at the settings' port [s]."""
+_LOOKS = 0.5  # Time between two looks at the settings' port [s]
 
 
 class Service(NamedTuple):
     """What is served to agents that announce themselves."""
 
     config: WireConfig
-    tracker: str
-    """Name of the trackers, such as `DRONE`."""
-    build: Callable[[int], "TrackerGroup"]
-    """Returns the trackers, for a number of agents."""
-    verbose: bool
-    """Whether all that is said and done is logged as by the original."""
+    tracker: str  # Name of the trackers, such as `DRONE`
+    build: Callable[[int], "TrackerGroup"]  # Returns the trackers, for a number of agents
+    verbose: bool  # Whether all that is said and done is logged as by the original
 
 
 class _Training(NamedTuple):

@@ -26,14 +26,10 @@ _LOG = logging.getLogger("eyas")
 class Answer(NamedTuple):
     """What a client gets for an action."""
 
-    state: bytes
-    """The basic packet."""
-    reward: bytes
-    """The reward packet."""
-    radar: bytes | None
-    """The radar packet; None without a lidar."""
-    picture: Future[bytes]
-    """JPEG; made in another thread while the client reads the packets."""
+    state: bytes  # The basic packet
+    reward: bytes  # The reward packet
+    radar: bytes | None  # The radar packet; None without a lidar
+    picture: Future[bytes]  # JPEG; made in another thread while the client reads the packets
 
 
 class TrackerGroup:

@@ -22,18 +22,15 @@ from eyas.engine.recordings.recording import RecordedEpisode
 if TYPE_CHECKING:
     import pyarrow
 
-_LARGEST = 1 << 28
-"""Largest arrays of an episode [bytes]."""
+_LARGEST = 1 << 28  # Largest arrays of an episode [bytes]
 
 __all__ = ["LeRobot"]
 
 CAMERA = "observation.images.camera"
 
-_CHUNK = 1000
-"""Files in a folder."""
+_CHUNK = 1000  # Files in a folder
 
-_LOOKED_AT = 16
-"""Pictures of an episode by which the statistics of its colours are estimated."""
+_LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated
 
 _FEATURES = {
     "observation.state": STATE_NAMES,

@@ -25,8 +25,7 @@ __all__ = ["Minari"]
 
 Row = dict[str, Any]
 
-_MARGIN = 1 << 16
-"""What an episode may take more than its part [bytes]."""
+_MARGIN = 1 << 16  # What an episode may take more than its part [bytes]
 
 
 class Minari(Format):

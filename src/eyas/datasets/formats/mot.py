@@ -29,8 +29,7 @@ from eyas.engine.recordings.recording import RecordedEpisode
 __all__ = ["Mot"]
 
 BENCHMARK = "EYAS"
-COUNTED = 1
-"""The class of everything in the main file: pedestrian."""
+COUNTED = 1  # The class of everything in the main file: pedestrian
 
 
 class Mot(Format):

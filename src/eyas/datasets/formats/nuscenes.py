@@ -53,8 +53,7 @@ ATTRIBUTES = (
     *("pedestrian.moving", "pedestrian.standing"),
 )
 
-MOVES = 0.2
-"""Speed from which something moves [m/s]."""
+MOVES = 0.2  # Speed from which something moves [m/s]
 
 CHANNEL, MAP = "CAM_FRONT", "maps/blank.png"
 

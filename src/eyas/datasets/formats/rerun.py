@@ -16,8 +16,7 @@ from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 __all__ = ["Rerun"]
 
-_TARGET, _OTHER = (255, 140, 0), (90, 170, 255)
-"""Colours of boxes."""
+_TARGET, _OTHER = (255, 140, 0), (90, 170, 255)  # Colours of boxes
 
 
 class Rerun(Format):

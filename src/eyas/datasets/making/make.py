@@ -50,10 +50,8 @@ Recorded = Callable[[Sequence[Part], Path], Iterator[tuple[Part, PartFacts]]]
 class Making:
     """How a data set is made; its bytes do not depend on it."""
 
-    workers: int | None = None
-    """Number of processes; None: one for each core."""
-    resume: bool = False
-    """Whether one in the folder is continued."""
+    workers: int | None = None  # Number of processes; None: one for each core
+    resume: bool = False  # Whether one in the folder is continued
     quiet: bool = True
 
     @property

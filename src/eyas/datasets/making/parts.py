@@ -38,8 +38,7 @@ __all__ = [
     "worlds_of",
 ]
 
-PART_FILE = "part.json"
-"""File of a complete part with its `PartFacts`."""
+PART_FILE = "part.json"  # File of a complete part with its `PartFacts`
 
 
 def begin_worker(threads: int) -> None:

@@ -46,8 +46,7 @@ class Remote:
             raise ConfigError(f"--out: {url!r} is not allowed: {_line(error)}") from error
         self._url, self._path = url, path.rstrip("/")
         digest = hashlib.sha256(url.encode()).hexdigest()[:16]
-        self.root = cache_folder() / "datasets" / digest
-        """The folder in which it is made."""
+        self.root = cache_folder() / "datasets" / digest  # The folder in which it is made
 
     @contextmanager
     def scratch(self, plan: Plan, making: Making) -> Iterator[Path]:

@@ -24,8 +24,7 @@ from eyas.lanes import limit_threads
 
 __all__ = ["on_ray"]
 
-_RETRIES = 3
-"""How often a part is made again whose process was lost."""
+_RETRIES = 3  # How often a part is made again whose process was lost
 
 _WAITING = 2
 """Parts that are made or wait for each core: archives that are done wait in memory, too."""

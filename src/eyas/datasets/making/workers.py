@@ -24,8 +24,7 @@ _MAPS = 2
 """Maps after which a process is replaced, since each in four weathers stays with some 250 MB, while
 a new process takes 4 s until its first frame."""
 
-_RETRIES = 2
-"""How often a part is tried again whose process was lost, as by a lack of memory."""
+_RETRIES = 2  # How often a part is tried again whose process was lost, as by a lack of memory
 
 
 class _Queue:
@@ -65,10 +64,8 @@ class _Worker:
 
     threads: int
     pool: ProcessPoolExecutor | None = None
-    place: str | None = None
-    """The map of its last part."""
-    maps: int = 0
-    """Number of maps on which this process has worked."""
+    place: str | None = None  # The map of its last part
+    maps: int = 0  # Number of maps on which this process has worked
 
     def begin(self, part: Part, call: Callable[..., Any], *args: Any) -> Future[Any]:  # noqa: ANN401
         self.maps += part.config.world.map != self.place

@@ -30,27 +30,20 @@ __all__ = [
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-PRECISION_PIXELS = 20
-"""Largest distance of the centres that counts as precise [pixels]."""
+PRECISION_PIXELS = 20  # Largest distance of the centres that counts as precise [pixels]
 
-_SUCCESS = np.linspace(0.0, 1.0, 21)
-"""Thresholds of OTB's success curve."""
+_SUCCESS = np.linspace(0.0, 1.0, 21)  # Thresholds of OTB's success curve
 
-_RESTART_AFTER = 5
-"""Frames after a failure until the tracker gets the true box again."""
+_RESTART_AFTER = 5  # Frames after a failure until the tracker gets the true box again
 
 
 class Track(NamedTuple):
     """What a tracker has said of an episode of T frames."""
 
-    boxes: Floats
-    """Left, top, width, height [pixels]; all 0 where it found nothing, shape (T, 4)."""
-    told: Mask
-    """Frames whose box it was told: the first, and those of restarts, shape (T,)."""
-    failures: int
-    """How often it was restarted."""
-    seconds: Floats
-    """How long it took [s], NaN where it was not asked, shape (T,)."""
+    boxes: Floats  # Left, top, width, height [pixels]; all 0 where it found nothing, shape (T, 4)
+    told: Mask  # Frames whose box it was told: the first, and those of restarts, shape (T,)
+    failures: int  # How often it was restarted
+    seconds: Floats  # How long it took [s], NaN where it was not asked, shape (T,)
 
 
 def true_boxes(episode: RecordedEpisode) -> Floats:
@@ -144,17 +137,12 @@ class Figures(NamedTuple):
 
     frames: int
     episodes: int
-    ao: float
-    """Average overlap."""
-    ao_interval: Interval | None
-    """95 %, of independent episodes; None: too few of them."""
-    sr50: float
-    """Share of frames with an overlap above 0.5."""
+    ao: float  # Average overlap
+    ao_interval: Interval | None  # 95 %, of independent episodes; None: too few of them
+    sr50: float  # Share of frames with an overlap above 0.5.
     sr75: float
-    precision: float
-    """Share of frames whose centre is within `PRECISION_PIXELS`."""
-    success: float
-    """Area below OTB's success curve, the mean over episodes."""
+    precision: float  # Share of frames whose centre is within `PRECISION_PIXELS`
+    success: float  # Area below OTB's success curve, the mean over episodes
 
 
 def figures_of(samples: Sequence[tuple[Floats, Floats]]) -> Figures | None:

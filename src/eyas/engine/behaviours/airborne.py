@@ -19,10 +19,8 @@ __all__ = ["AirborneConfig", "Space", "chases", "flocks"]
 
 Floats = NDArray[np.float64]
 
-_FLOCK = 6
-"""Most birds in a flock."""
-_TRIES = 24
-"""Ways that are drawn for a flock; the first that is free is taken."""
+_FLOCK = 6  # Most birds in a flock
+_TRIES = 24  # Ways that are drawn for a flock; the first that is free is taken
 _LOWEST, _HIGHEST, _ROOM = 10.0, 60.0, 4.0
 """Heights above the ground, and room above what stands below [m]."""
 _LAG, _AVERAGE = 1.5, 2.0
@@ -42,8 +40,7 @@ class AirborneConfig(Config):
 class Space(NamedTuple):
     """A map, as those see it who fly over it."""
 
-    extent: Floats
-    """Width and depth [m], shape (2,)."""
+    extent: Floats  # Width and depth [m], shape (2,)
     heights: Callable[[Floats], Floats]
     """Returns how high something stands around points [m], east and north, shape (..., 2)."""
 
@@ -51,16 +48,11 @@ class Space(NamedTuple):
 class _Way(NamedTuple):
     """A closed way: two harmonics along each axis, and a height."""
 
-    centre: Floats
-    """East and north [m], shape (2,)."""
-    size: Floats
-    """Amplitudes of each harmonic eastwards and northwards [m], shape (2, 2)."""
-    phase: Floats
-    """[rad], shape (2, 2)."""
-    rate: float
-    """Of the first harmonic [rad/s]."""
-    height: float
-    """[m]"""
+    centre: Floats  # East and north [m], shape (2,)
+    size: Floats  # Amplitudes of each harmonic eastwards and northwards [m], shape (2, 2)
+    phase: Floats  # [rad], shape (2, 2)
+    rate: float  # Of the first harmonic [rad/s]
+    height: float  # [m]
 
 
 def _place(way: _Way, time: Floats) -> tuple[Floats, Floats]:

@@ -19,11 +19,9 @@ __all__ = [
     "poses_on",
 ]
 
-_SHARP: Final = 2.0
-"""Corners sharper than this are turned on the spot [rad]."""
+_SHARP: Final = 2.0  # Corners sharper than this are turned on the spot [rad]
 
-_STEP: Final = 0.2
-"""Largest turn between points that stand for an arc [rad]."""
+_STEP: Final = 0.2  # Largest turn between points that stand for an arc [rad]
 
 Floats = NDArray[np.float64]
 
@@ -31,25 +29,18 @@ Floats = NDArray[np.float64]
 class Chain(NamedTuple):
     """A path of M pieces."""
 
-    start: tuple[float, float, float]
-    """East, north [m] and heading [rad] before the first piece."""
-    spin: Floats
-    """Turn on the spot before each piece, counter-clockwise [rad], shape (M,)."""
-    length: Floats
-    """[m], shape (M,)."""
-    curvature: Floats
-    """Counter-clockwise [1/m], 0 for a straight line, shape (M,)."""
+    start: tuple[float, float, float]  # East, north [m] and heading [rad] before the first piece
+    spin: Floats  # Turn on the spot before each piece, counter-clockwise [rad], shape (M,)
+    length: Floats  # [m], shape (M,)
+    curvature: Floats  # Counter-clockwise [1/m], 0 for a straight line, shape (M,)
 
 
 class Poses(NamedTuple):
     """Poses on a path, shape (K,) each."""
 
-    x: Floats
-    """East [m]."""
-    y: Floats
-    """North [m]."""
-    yaw: Floats
-    """Heading, without jumps [rad]."""
+    x: Floats  # East [m]
+    y: Floats  # North [m]
+    yaw: Floats  # Heading, without jumps [rad]
 
 
 def chain_of(pieces: list[tuple[float, float, float]], start: tuple[float, float, float]) -> Chain:

@@ -17,17 +17,14 @@ from eyas.lanes import exact
 
 __all__ = ["CrossingWalk", "Streets", "crossing_walk", "walk_motion"]
 
-_PASSED_BY: Final = 0.4
-"""Share of the crossings that somebody does not take."""
+_PASSED_BY: Final = 0.4  # Share of the crossings that somebody does not take
 
-_LEAST: Final = 2.0
-"""Least walk between two crossings [m]."""
+_LEAST: Final = 2.0  # Least walk between two crossings [m]
 
 Floats = NDArray[np.float64]
 
 
-_NEAR: Final = 0.05
-"""Points nearer to each other are one [m]."""
+_NEAR: Final = 0.05  # Points nearer to each other are one [m]
 
 
 class Streets(NamedTuple):
@@ -43,8 +40,7 @@ class CrossingWalk(NamedTuple):
     """Paths one after the other; each is stood at the end of until the next begins."""
 
     legs: list[Chain]
-    begins: list[float]
-    """When each begins, from the beginning of the life [s]."""
+    begins: list[float]  # When each begins, from the beginning of the life [s]
 
 
 def crossing_walk(

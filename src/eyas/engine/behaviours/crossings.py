@@ -13,17 +13,14 @@ from eyas.lanes import exact
 
 __all__ = ["Crossing", "crossings_of"]
 
-_PAVED: Final = 9.0
-"""How far from the kerb pavements are sought: corners are round [m]."""
+_PAVED: Final = 9.0  # How far from the kerb pavements are sought: corners are round [m]
 
-_BEYOND_KERB: Final = 4.0
-"""The same on imported maps, which tell where each crossing ends [m]."""
+_BEYOND_KERB: Final = 4.0  # The same on imported maps, which tell where each crossing ends [m]
 
 _ASIDES: Final = (0.0, 0.9, -0.9)
 """There, one crosses beside the middle if something stands at the end of it [m]."""
 
-_BESIDE: Final = 1.2
-"""There, pavements may end so far beside the middle of a crossing [m]."""
+_BESIDE: Final = 1.2  # There, pavements may end so far beside the middle of a crossing [m]
 
 Floats = NDArray[np.float64]
 _Joined = tuple[tuple[int, float], tuple[int, float], Floats]
@@ -34,18 +31,13 @@ class Crossing(NamedTuple):
     """From one way on a pavement over a road to another."""
 
     way: int
-    along: float
-    """Where on the way it begins, from its first corner [m]."""
+    along: float  # Where on the way it begins, from its first corner [m]
     other: int
     other_along: float
-    line: Floats
-    """Where it begins and ends [m], shape (2, 2)."""
-    number: int = 0
-    """Which of the map's crossings it is: there and back, near the kerb or not."""
-    light: str = ""
-    """Name of its traffic light in the network; empty: it has none."""
-    to_kerb: float = 0.0
-    """From its beginning to the kerb [m]."""
+    line: Floats  # Where it begins and ends [m], shape (2, 2)
+    number: int = 0  # Which of the map's crossings it is: there and back, near the kerb or not
+    light: str = ""  # Name of its traffic light in the network; empty: it has none
+    to_kerb: float = 0.0  # From its beginning to the kerb [m]
 
 
 def crossings_of(
@@ -86,14 +78,10 @@ class _Paint(NamedTuple):
     """A crossing, before it is known which pavements it joins."""
 
     right: Floats
-    left: Floats
-    """Its ends at the kerbs [m], shape (2,)."""
-    light: str
-    """See `Crossing`."""
-    beyond: float
-    """How far from the kerbs pavements are sought [m]."""
-    asides: tuple[float, ...]
-    """How far beside its middle one may cross, the best first [m]."""
+    left: Floats  # Its ends at the kerbs [m], shape (2,)
+    light: str  # See `Crossing`
+    beyond: float  # How far from the kerbs pavements are sought [m]
+    asides: tuple[float, ...]  # How far beside its middle one may cross, the best first [m]
 
 
 def _free(side: _Side, one: _Paint, obstacles: GroundObstacles, radius: float) -> _Joined | None:

@@ -15,20 +15,16 @@ from eyas.lanes import exact, interpreted
 
 __all__ = ["GapAcceptance"]
 
-_CLEAR: Final = 1.8
-"""From the line that is crossed to the side of a vehicle, at least [m]."""
+_CLEAR: Final = 1.8  # From the line that is crossed to the side of a vehicle, at least [m]
 
 _ASIDE: Final = 0.3
 """From who waits at the kerb to the side of a vehicle, at least: tails cut corners [m]."""
 
-_BEFORE: Final = 0.5
-"""For how long before somebody crosses nothing may be on the line [s]."""
+_BEFORE: Final = 0.5  # For how long before somebody crosses nothing may be on the line [s]
 
-_AFTER: Final = 1.5
-"""The same afterwards [s]."""
+_AFTER: Final = 1.5  # The same afterwards [s]
 
-_PATIENCE: Final = 60.0
-"""The longest that somebody waits for a gap [s]."""
+_PATIENCE: Final = 60.0  # The longest that somebody waits for a gap [s]
 
 Floats = NDArray[np.floating]
 
@@ -128,17 +124,12 @@ class GapAcceptance:
 class _KindTracks(NamedTuple):
     """The motion of the vehicles of one kind."""
 
-    rows: NDArray[np.void]
-    """Their samples, shape (samples, vehicles)."""
-    x: Floats
-    """Their places; far away where they are absent [m], shape (samples, vehicles)."""
-    y: Floats
-    """[m], the same shape."""
+    rows: NDArray[np.void]  # Their samples, shape (samples, vehicles)
+    x: Floats  # Their places; far away where they are absent [m], shape (samples, vehicles)
+    y: Floats  # [m], the same shape
     sections: list[Section]
-    middle: float
-    """Distance of their middles ahead of their reference points [m]."""
-    reach: float
-    """How far from its reference point a vehicle reaches, at most [m]."""
+    middle: float  # Distance of their middles ahead of their reference points [m]
+    reach: float  # How far from its reference point a vehicle reaches, at most [m]
 
 
 def _tracks_of(vehicles: Motion, kind: int, samples: int) -> _KindTracks:

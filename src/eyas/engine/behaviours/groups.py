@@ -15,8 +15,7 @@ from eyas.engine.targets.habit import Behaviour, Habit
 
 __all__ = ["Lifetimes", "SampleClock", "ScriptedGroup", "lasting", "recycled"]
 
-_LEAST: Final = 60.0
-"""Least length of a life, where that of the original is too short [s]."""
+_LEAST: Final = 60.0  # Least length of a life, where that of the original is too short [s]
 
 _EPISODES: Final = 4.0
 """Least length of a life, in episodes: then three of four objects last one at any time."""
@@ -30,8 +29,7 @@ class Lifetimes(NamedTuple):
 
     slot: NDArray[np.int64]
     """Number of the object that stays; one object has several, each at another place."""
-    enters: NDArray[np.int64]
-    """First sample."""
+    enters: NDArray[np.int64]  # First sample
     leaves: NDArray[np.int64]
     """Last sample; the next life begins two samples later, so that no motion joins the two."""
 
@@ -40,28 +38,20 @@ class SampleClock(NamedTuple):
     """The instants of a motion."""
 
     samples: int
-    rate: float
-    """[Hz]"""
+    rate: float  # [Hz]
 
 
 class ScriptedGroup(NamedTuple):
     """Some of one kind."""
 
-    kind: str
-    """Name of the kind."""
-    breadth: float
-    """Diameter of the circle in which it fits [m]."""
-    behaviour: Behaviour | None
-    """None: that of the habit."""
-    habit: Habit
-    """How they move."""
+    kind: str  # Name of the kind
+    breadth: float  # Diameter of the circle in which it fits [m]
+    behaviour: Behaviour | None  # None: that of the habit
+    habit: Habit  # How they move
     lifetimes: Lifetimes
-    offset: Variation
-    """Where it begins: distance from the middle of the road [m]."""
-    setting: str
-    """Setting of the number, for messages."""
-    chosen_by: str = "custom.behaviour"
-    """Setting of the behaviour, for messages."""
+    offset: Variation  # Where it begins: distance from the middle of the road [m]
+    setting: str  # Setting of the number, for messages
+    chosen_by: str = "custom.behaviour"  # Setting of the behaviour, for messages
 
 
 def lasting(count: int, samples: int) -> Lifetimes:

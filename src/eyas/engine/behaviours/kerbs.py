@@ -28,11 +28,9 @@ _BESIDE_CARS: Final = 0.6
 _SPARE: Final = 0.15
 """How much wider obstacles are passed than need be, as corners of ways are rounded [m]."""
 
-_ROUNDED: Final = 0.05
-"""How much nearer to obstacles ways may come where their corners are cut [m]."""
+_ROUNDED: Final = 0.05  # How much nearer to obstacles ways may come where their corners are cut [m]
 
-_APART: Final = 1.0
-"""Distance to such places that is kept [m]."""
+_APART: Final = 1.0  # Distance to such places that is kept [m]
 
 _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
@@ -40,11 +38,9 @@ _KERB_HEIGHT: Final = 0.05
 _FROM_CARS: Final = 1.1
 """Nobody walks nearer to where vehicles come, at the points that are tested [m]."""
 
-_GRAIN: Final = 0.1
-"""Places nearer to each other than half of this are one [m]."""
+_GRAIN: Final = 0.1  # Places nearer to each other than half of this are one [m]
 
-_TURN: Final = 0.03
-"""The same for headings [rad]."""
+_TURN: Final = 0.03  # The same for headings [rad]
 
 
 def kerb_ways(
@@ -80,10 +76,8 @@ class _Place(NamedTuple):
 
     obstacles: GroundObstacles
     surface: WalkedSurface
-    swept: shapely.STRtree
-    """Where vehicles come."""
-    radius: float
-    """Distance to obstacles that is kept [m]."""
+    swept: shapely.STRtree  # Where vehicles come
+    radius: float  # Distance to obstacles that is kept [m]
 
 
 def _paved(ring: shapely.LinearRing, place: _Place, lane: int) -> list[Walkway]:

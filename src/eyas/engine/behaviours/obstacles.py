@@ -13,11 +13,9 @@ from eyas.lanes import exact
 
 __all__ = ["GroundObstacles"]
 
-_STEP: Final = 0.3
-"""Height above the ground up to which one can step over things [m]."""
+_STEP: Final = 0.3  # Height above the ground up to which one can step over things [m]
 
-_HEAD: Final = 2.2
-"""Height above the ground over which nothing is in the way [m]."""
+_HEAD: Final = 2.2  # Height above the ground over which nothing is in the way [m]
 
 _CLUTTER: Final = frozenset(
     "litter,fallen leaves,drain,road sign,bus stop,cabinet,planter,rubbish,wheeled bins,shop board,"
@@ -25,14 +23,11 @@ _CLUTTER: Final = frozenset(
 )
 """Names of kinds of things, without their numbers, that stand where people do not walk along."""
 
-_STEEP: Final = 0.5
-"""Largest rise within a cell of the relief, per metre of its side."""
+_STEEP: Final = 0.5  # Largest rise within a cell of the relief, per metre of its side
 
-_EDGE: Final = 5.0
-"""Distance to the edge of the map that is kept [m]."""
+_EDGE: Final = 5.0  # Distance to the edge of the map that is kept [m]
 
-_FAR: Final = 1e5
-"""Farther than anything is put [m]."""
+_FAR: Final = 1e5  # Farther than anything is put [m]
 
 _SOLID: Final = (
     ObjectClass.BUILDING,

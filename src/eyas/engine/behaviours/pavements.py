@@ -19,31 +19,24 @@ __all__ = ["LANES", "Walkway", "along", "bridged", "is_hard", "paved_parts", "pa
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 
-_SHORTEST: Final = 25.0
-"""Least length of a pavement on which one walks [m]."""
+_SHORTEST: Final = 25.0  # Least length of a pavement on which one walks [m]
 
-_DRIVEWAY: Final = 12.0
-"""Largest width of asphalt that interrupts a pavement [m]."""
+_DRIVEWAY: Final = 12.0  # Largest width of asphalt that interrupts a pavement [m]
 
-_LAWN: Final = -0.05
-"""Height above that of lawns [m]."""
+_LAWN: Final = -0.05  # Height above that of lawns [m]
 
 _BESIDE: Final = 5.0
 """Largest distance from the road of those who walk along its edge, round what stands there [m]."""
 
-_EVERY: Final = 1.0
-"""Distance between points that are tested for pavement [m]."""
+_EVERY: Final = 1.0  # Distance between points that are tested for pavement [m]
 
 
 class Walkway(NamedTuple):
     """A way that ends where it begins: round a block, or there and back."""
 
-    corners: NDArray[np.float64]
-    """[m], shape (K, 2), the last not the first again."""
-    length: float
-    """[m]"""
-    lane: int
-    """Of those who have the road on their left: 0; on their right: 1."""
+    corners: NDArray[np.float64]  # [m], shape (K, 2), the last not the first again
+    length: float  # [m]
+    lane: int  # Of those who have the road on their left: 0; on their right: 1
 
     @property
     def line(self) -> shapely.LineString:

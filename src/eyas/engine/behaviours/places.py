@@ -15,20 +15,16 @@ from eyas.lanes import exact
 
 __all__ = ["Roadside"]
 
-_ROUNDS: Final = 200
-"""How often places are sampled for those that have none yet."""
+_ROUNDS: Final = 200  # How often places are sampled for those that have none yet
 
 _PATIENT: Final = 10
 """Rounds with the offset that is asked for; then it grows, by up to `_WIDER` more each round."""
 
-_WIDER: Final = 0.3
-"""[m]"""
+_WIDER: Final = 0.3  # [m]
 
-_HOPELESS: Final = 40
-"""Rounds without a single place after which there is none."""
+_HOPELESS: Final = 40  # Rounds without a single place after which there is none
 
-_APART: Final = 0.3
-"""Free ground around each [m]."""
+_APART: Final = 0.3  # Free ground around each [m]
 
 Floats = NDArray[np.float64]
 
@@ -36,10 +32,8 @@ Floats = NDArray[np.float64]
 class _Middle(NamedTuple):
     """Points on the middles of roads, shape (K, 2) each."""
 
-    point: Floats
-    """[m]"""
-    left: Floats
-    """Unit vectors across the road."""
+    point: Floats  # [m]
+    left: Floats  # Unit vectors across the road
 
 
 class Roadside:

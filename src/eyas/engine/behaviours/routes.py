@@ -24,47 +24,34 @@ Piece: TypeAlias = tuple[float, float, float]
 _AROUND: Final = 30.0
 """Half the side of the square in which a polyline's points lie, as in the original [m]."""
 
-_ROUNDS: Final = 80
-"""How often polylines are sampled; they shrink from round to round."""
+_ROUNDS: Final = 80  # How often polylines are sampled; they shrink from round to round
 
-_DIRECTIONS: Final = 12
-"""Directions that are tried at an obstacle."""
+_DIRECTIONS: Final = 12  # Directions that are tried at an obstacle
 
-_FIRST: Final = 4
-"""How many of them are tried first; they are enough in most places."""
+_FIRST: Final = 4  # How many of them are tried first; they are enough in most places
 
-_FAR: Final = 12.0
-"""The farthest that a leg leads [m]; the next may lead straight on."""
+_FAR: Final = 12.0  # The farthest that a leg leads [m]; the next may lead straight on
 
-_WAY: Final = (3.0, 12.0)
-"""Shortest and longest leg of a wander [s of its speed]."""
+_WAY: Final = (3.0, 12.0)  # Shortest and longest leg of a wander [s of its speed]
 
-_ENOUGH: Final = 4.0
-"""One that leads so far is as good as a longer one [m]."""
+_ENOUGH: Final = 4.0  # One that leads so far is as good as a longer one [m]
 
-_MARGIN: Final = 0.05
-"""Distance from the end of a leg to where it would touch an obstacle [m]."""
+_MARGIN: Final = 0.05  # Distance from the end of a leg to where it would touch an obstacle [m]
 
-_LEAST: Final = 1.0
-"""Least time that counts for a leg [s]."""
+_LEAST: Final = 1.0  # Least time that counts for a leg [s]
 
-_WAVE: Final = 0.8
-"""Angular frequency of a weave [rad/s]; its yaw rate has an amplitude of 1 rad/s."""
+_WAVE: Final = 0.8  # Angular frequency of a weave [rad/s]; its yaw rate has an amplitude of 1 rad/s
 
-_PIECES: Final = 24
-"""Arcs that stand for a wave."""
+_PIECES: Final = 24  # Arcs that stand for a wave
 
 
 class RouteTask(NamedTuple):
     """What paths are wanted for: L lifetimes."""
 
-    start: Floats
-    """[m], shape (L, 2)."""
-    seconds: Floats
-    """Least duration [s], shape (L,)."""
+    start: Floats  # [m], shape (L, 2)
+    seconds: Floats  # Least duration [s], shape (L,)
     habit: Habit
-    radius: float
-    """Distance to obstacles that is kept [m]."""
+    radius: float  # Distance to obstacles that is kept [m]
     obstacles: GroundObstacles
     rng: np.random.Generator
 
@@ -205,14 +192,10 @@ def _turns(
 class Wave(NamedTuple):
     """One period of a weave, during which the yaw rate is a sine."""
 
-    period: float
-    """Its length [m]."""
-    swing: float
-    """Amplitude of the heading [rad]."""
-    onwards: float
-    """How far it leads [m]."""
-    aside: float
-    """How far aside it swings [m]."""
+    period: float  # Its length [m]
+    swing: float  # Amplitude of the heading [rad]
+    onwards: float  # How far it leads [m]
+    aside: float  # How far aside it swings [m]
 
     def leg(self, turn: float, way: float) -> tuple[list[Piece], float]:
         """Return the pieces of as many periods as lead so far [m], after a turn [rad], and how far

@@ -34,8 +34,7 @@ from eyas.lanes import exact
 
 __all__ = ["scripted_table"]
 
-_SPAN: Final = 0.25
-"""Half the distance over which the slope of the land is taken [m]."""
+_SPAN: Final = 0.25  # Half the distance over which the slope of the land is taken [m]
 
 _JITTER: Final = 0.5
 """How irregularly those who go the same way follow each other, as a share of even distances."""
@@ -46,17 +45,14 @@ _WIDE: Final = 1.2
 _TOGETHER: Final = 4
 """Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
 
-_BY_KERB: Final = 0.5
-"""Distance from the kerb of those who ride, between it and those who walk [m]."""
+_BY_KERB: Final = 0.5  # Distance from the kerb of those who ride, between it and those who walk [m]
 
-_UNHURRIED: Final = 0.7
-"""Speed of the slowest who ride, as a share of the usual one."""
+_UNHURRIED: Final = 0.7  # Speed of the slowest who ride, as a share of the usual one
 
 Floats = NDArray[np.float64]
 
 
-STROLL: Final = (1.1, 1.7)
-"""Slowest and fastest walk on a pavement [m/s]."""
+STROLL: Final = (1.1, 1.7)  # Slowest and fastest walk on a pavement [m/s]
 
 
 class _Course(NamedTuple):
@@ -64,8 +60,7 @@ class _Course(NamedTuple):
 
     path: Chain | CrossingWalk | Spot
     habit: Habit
-    begun: float = 0.0
-    """For how long it has been gone when the life begins [s]."""
+    begun: float = 0.0  # For how long it has been gone when the life begins [s]
 
     def ride(self, time: Floats) -> TimedMotion:
         """Return the motion at times since the beginning of the life [s]."""

@@ -19,8 +19,7 @@ _NEAR: Final = 0.7
 _GRAIN: Final = 0.04
 """Distance between the points at which the ground is sought: slow robots share many [m]."""
 
-_ROW: Final = 2**31
-"""More than all points between one end of a map and the other."""
+_ROW: Final = 2**31  # More than all points between one end of a map and the other
 
 Floats = NDArray[np.float64]
 
@@ -28,10 +27,8 @@ Floats = NDArray[np.float64]
 class Footing(NamedTuple):
     """The ground at K points, shape (K,) each."""
 
-    height: Floats
-    """z [m]."""
-    pavement: NDArray[np.bool_]
-    """Whether it is a pavement."""
+    height: Floats  # z [m]
+    pavement: NDArray[np.bool_]  # Whether it is a pavement
 
 
 class WalkedSurface:

@@ -13,20 +13,16 @@ __all__ = ["TimedMotion", "ride", "time_of"]
 
 Floats = NDArray[np.float64]
 
-_PHASES = 4
-"""Phases of a piece: turn on the spot, accelerate, keep the speed, brake."""
+_PHASES = 4  # Phases of a piece: turn on the spot, accelerate, keep the speed, brake
 
 
 class TimedMotion(NamedTuple):
     """Motion at K instants, shape (K,) each."""
 
     poses: Poses
-    speed: Floats
-    """[m/s]"""
-    yaw_rate: Floats
-    """[rad/s]"""
-    travelled: Floats
-    """Walkway since the beginning [m]."""
+    speed: Floats  # [m/s]
+    yaw_rate: Floats  # [rad/s]
+    travelled: Floats  # Walkway since the beginning [m]
 
 
 def ride(chain: Chain, habit: Habit, time: Floats) -> TimedMotion:

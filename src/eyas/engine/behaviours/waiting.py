@@ -20,8 +20,7 @@ _SPOTS: Final = {
 }
 """Where one stands at things whose names begin so: left of its middle and towards the road [m]."""
 
-_TURNED: Final = 0.6
-"""How far one looks aside from the road, or from the table, at most [rad]."""
+_TURNED: Final = 0.6  # How far one looks aside from the road, or from the table, at most [rad]
 
 Floats = NDArray[np.float64]
 
@@ -29,12 +28,9 @@ Floats = NDArray[np.float64]
 class Spot(NamedTuple):
     """Where somebody stands."""
 
-    x: float
-    """East [m]."""
-    y: float
-    """North [m]."""
-    yaw: float
-    """[rad]"""
+    x: float  # East [m]
+    y: float  # North [m]
+    yaw: float  # [rad]
 
     def stand(self, time: Floats) -> TimedMotion:
         """Return the motion at times, of which there is none."""

@@ -25,8 +25,7 @@ __all__ = ["Said", "Written", "describe", "names_of"]
 class Written(Protocol):
     """A type that describes how its values are written in JSON."""
 
-    written: ClassVar[str]
-    """The notation, for example `{"uniform": [low, high]}`."""
+    written: ClassVar[str]  # The notation, for example `{"uniform": [low, high]}`
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,11 +11,9 @@ __all__ = ["FARTHEST", "LARGEST", "checked", "limited"]
 
 Floats = NDArray[np.float64]
 
-LARGEST = 1e4
-"""Largest number of a command, as of the speeds of environments' actions."""
+LARGEST = 1e4  # Largest number of a command, as of the speeds of environments' actions
 
-FARTHEST = 1e6
-"""Farthest place from the origin along each axis [m], as in recordings of traffic."""
+FARTHEST = 1e6  # Farthest place from the origin along each axis [m], as in recordings of traffic
 
 
 def limited(values: Floats, most: float) -> Floats:

@@ -4,11 +4,9 @@ from eyas.engine.core.errors import ConfigError
 
 __all__ = ["PHYSICS_RATE", "PHYSICS_STEP", "physics_steps"]
 
-PHYSICS_RATE = 500
-"""Physics steps per second [Hz]."""
+PHYSICS_RATE = 500  # Physics steps per second [Hz]
 
-PHYSICS_STEP = 1.0 / PHYSICS_RATE
-"""Length of a physics step [s]; kernels read it."""
+PHYSICS_STEP = 1.0 / PHYSICS_RATE  # Length of a physics step [s]; kernels read it
 
 
 def physics_steps(control_frequency: float) -> int:

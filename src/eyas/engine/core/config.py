@@ -85,20 +85,14 @@ class Config(BaseModel):
 class Problem:
     """An error in a setting."""
 
-    path: Path
-    """Keys that lead to the setting; empty if the settings as a whole are wrong."""
-    value: object
-    """Value of the setting."""
-    allowed: str
-    """Allowed values, in words."""
+    path: Path  # Keys that lead to the setting; empty if the settings as a whole are wrong
+    value: object  # Value of the setting
+    allowed: str  # Allowed values, in words
     names: tuple[str, ...] = ()
     """Allowed values of a choice of names; for an unknown key, the known keys."""
-    unknown_key: bool = False
-    """Whether the key is wrong, not its value."""
-    instead: str = ""
-    """What else is allowed instead of this value, in words."""
-    others: tuple["Problem", ...] = ()
-    """Further unknown keys."""
+    unknown_key: bool = False  # Whether the key is wrong, not its value
+    instead: str = ""  # What else is allowed instead of this value, in words
+    others: tuple["Problem", ...] = ()  # Further unknown keys
 
     def error(self) -> ConfigError:
         """Return the error to raise, one line."""

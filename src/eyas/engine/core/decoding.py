@@ -26,14 +26,12 @@ from eyas.engine.core.files import read_limited
 __all__ = ["decoded_arrays", "decoded_json", "decoded_picture", "gunzipped", "npz_arrays",
            "read_json"]  # fmt: skip
 
-_MOST_ARRAYS = 64
-"""Largest number of arrays in a `.npz`."""
+_MOST_ARRAYS = 64  # Largest number of arrays in a `.npz`.
 
 _LARGEST_NUMBER = 2.0**64
 """Largest size of a number in JSON: nothing that Eyas reads has a larger one."""
 
-_LONG = re.compile(rb"\d{19}|[eE]\+?0*(?:1[89]|[2-9]\d|[1-9]\d\d)")
-"""A number that may be larger."""
+_LONG = re.compile(rb"\d{19}|[eE]\+?0*(?:1[89]|[2-9]\d|[1-9]\d\d)")  # A number that may be larger
 
 _INVALID = re.compile(rb"NaN|Infinity|\\u[dD][89a-fA-F]")
 """What JSON may not hold, and escapes of which a text cannot be written in UTF-8 if one of a pair

@@ -23,8 +23,7 @@ _PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")
 class Definition(NamedTuple):
     """What a module says about one of its names."""
 
-    digest: str
-    """Of what it says; empty: the name is imported."""
+    digest: str  # Of what it says; empty: the name is imported
     refers: tuple[str, ...]
     """Other names of the module, `name`, and of others, `package.module:name.attribute`."""
 
@@ -233,5 +232,4 @@ def _say(node: object, words: list[str], *, fields: bool) -> None:
         words.append(repr(node))
 
 
-INDEX = TextIndex(Path(__file__), read_definitions)
-"""The definitions in files."""
+INDEX = TextIndex(Path(__file__), read_definitions)  # The definitions in files

@@ -14,15 +14,11 @@ from eyas.lanes import Held, compiled, kernel
 
 __all__ = ["deflated"]
 
-_SYMBOLS = 286
-"""Bytes, the end (256), and lengths of runs from 257 on."""
+_SYMBOLS = 286  # Bytes, the end (256), and lengths of runs from 257 on
 _END = 256
-_MOST_BITS = 15
-"""Length of the longest code that deflate allows."""
-_LONGEST, _SHORTEST = 258, 3
-"""Lengths of runs."""
-_WORD = 32
-"""Bits that are written at once."""
+_MOST_BITS = 15  # Length of the longest code that deflate allows
+_LONGEST, _SHORTEST = 258, 3  # Lengths of runs
+_WORD = 32  # Bits that are written at once
 
 
 class _Tables(NamedTuple):
@@ -30,33 +26,23 @@ class _Tables(NamedTuple):
 
     symbol: NDArray[np.int64]
     bits: NDArray[np.int64]
-    rest: NDArray[np.int64]
-    """What these bits say."""
+    rest: NDArray[np.int64]  # What these bits say
 
 
 class _Work(NamedTuple):
     """Input, working memory and output."""
 
-    data: NDArray[np.uint8]
-    """Shape (N,)."""
-    words: NDArray[np.int64]
-    """The same, eight bytes at once, shape (N / 8,)."""
-    counts: NDArray[np.int64]
-    """How often each symbol occurs, shape (286,)."""
-    length: NDArray[np.int64]
-    """Bits of its code, shape (286,)."""
-    code: NDArray[np.int64]
-    """The code, its first bit lowest, shape (286,)."""
-    order: NDArray[np.int64]
-    """The symbols that occur, the rarest first, shape (286,)."""
+    data: NDArray[np.uint8]  # Shape (N,)
+    words: NDArray[np.int64]  # The same, eight bytes at once, shape (N / 8,)
+    counts: NDArray[np.int64]  # How often each symbol occurs, shape (286,)
+    length: NDArray[np.int64]  # Bits of its code, shape (286,)
+    code: NDArray[np.int64]  # The code, its first bit lowest, shape (286,)
+    order: NDArray[np.int64]  # The symbols that occur, the rarest first, shape (286,)
     weight: NDArray[np.int64]
     """Weights of the items of this and the last level, see `_set_lengths`, shape (2, 572)."""
-    leaf: NDArray[np.bool_]
-    """Whether each item of each level is a symbol, shape (15, 572)."""
-    out: NDArray[np.uint32]
-    """The stream in words of four bytes, the lowest byte first."""
-    used: NDArray[np.int64]
-    """Bytes of `out` that are written, shape (1,)."""
+    leaf: NDArray[np.bool_]  # Whether each item of each level is a symbol, shape (15, 572)
+    out: NDArray[np.uint32]  # The stream in words of four bytes, the lowest byte first
+    used: NDArray[np.int64]  # Bytes of `out` that are written, shape (1,)
 
 
 def deflated(data: NDArray[np.uint8]) -> bytes:
@@ -199,8 +185,7 @@ class _Bits(NamedTuple):
 
     bits: int
     have: int
-    at: int
-    """Where the next word is written."""
+    at: int  # Where the next word is written
 
 
 @kernel(inline=True)

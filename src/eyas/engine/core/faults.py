@@ -11,8 +11,7 @@ __all__ = ["FaultLog"]
 
 _LOG = logging.getLogger("eyas")
 
-_BETWEEN = 1.0
-"""Shortest time between two lines, so that a sender cannot fill the log [s]."""
+_BETWEEN = 1.0  # Shortest time between two lines, so that a sender cannot fill the log [s]
 
 
 class FaultLog:

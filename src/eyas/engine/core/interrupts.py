@@ -20,8 +20,7 @@ _ENDING = tuple(
 _PATIENCE = 10.0
 """Time for a program to end in order, after which a further signal ends it at once [s]."""
 
-_AGAIN = 0.02
-"""Time until an interrupt is raised again that was lost in code that cannot raise [s]."""
+_AGAIN = 0.02  # Time until an interrupt is raised again that was lost in code that cannot raise [s]
 
 
 class Interrupted(KeyboardInterrupt):

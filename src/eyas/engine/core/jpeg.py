@@ -8,8 +8,7 @@ from PIL import Image
 
 __all__ = ["QUALITY", "jpeg_bytes"]
 
-QUALITY = 100
-"""The original's JPEG quality."""
+QUALITY = 100  # The original's JPEG quality
 
 
 def jpeg_bytes(rgb: NDArray[np.uint8], quality: int = QUALITY) -> bytes:

@@ -56,20 +56,16 @@ _STEPS, _HALVINGS = 2048, 40
 class Lens(NamedTuple):
     """A lens; with all coefficients 0 and model `BROWN`, a pinhole."""
 
-    model: int
-    """`BROWN` or `FISHEYE`."""
+    model: int  # `BROWN` or `FISHEYE`
     k1: float
     """Radial coefficients: of the tangent's powers 3, 5 and 7, or the angle's 3, 5, 7 and 9."""
     k2: float
     k3: float
     k4: float
-    p1: float
-    """Tangential coefficients, of `BROWN` only."""
+    p1: float  # Tangential coefficients, of `BROWN` only
     p2: float
-    right: float
-    """Principal point right of the middle of the picture, as a share of the width."""
-    below: float
-    """The same below it, as a share of the height."""
+    right: float  # Principal point right of the middle of the picture, as a share of the width
+    below: float  # The same below it, as a share of the height
     limit: float
     """Tangent (`BROWN`) or angle (`FISHEYE`) from the optical axis at which the picture ends."""
 
@@ -103,8 +99,7 @@ def _slope_of(k: tuple[float, float, float, float], radius: float) -> float:
     return 1.0 + square * (3.0 * k[0] + square * inner)
 
 
-NO_LENS = lens_of(BROWN)
-"""A pinhole."""
+NO_LENS = lens_of(BROWN)  # A pinhole
 
 
 @kernel(inline=True)

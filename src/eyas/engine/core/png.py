@@ -14,21 +14,16 @@ __all__ = ["PAETH", "png_bytes"]
 
 i4 = np.int32  # kernels would make unsigned numbers of bytes
 
-_GREY, _COLOURS = 0, 2
-"""PNG's types of colour."""
-PAETH = 4
-"""Number of the filter that predicts a byte from those beside and above it."""
+_GREY, _COLOURS = 0, 2  # PNG's types of colour
+PAETH = 4  # Number of the filter that predicts a byte from those beside and above it
 
 
 class _Rows(NamedTuple):
     """Rows of a picture, and what the filter makes of them."""
 
-    raw: NDArray[np.uint8]
-    """Bytes, the highest of a number first, shape (H, bytes of a row)."""
-    step: NDArray[np.int64]
-    """Bytes of a pixel, shape (1,)."""
-    filtered: NDArray[np.uint8]
-    """Shape (H, 1 + bytes of a row)."""
+    raw: NDArray[np.uint8]  # Bytes, the highest of a number first, shape (H, bytes of a row)
+    step: NDArray[np.int64]  # Bytes of a pixel, shape (1,)
+    filtered: NDArray[np.uint8]  # Shape (H, 1 + bytes of a row)
 
 
 def png_bytes(pixels: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:

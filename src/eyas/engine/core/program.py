@@ -31,8 +31,7 @@ __all__ = [
     "definitions_of",
 ]
 
-_OWN = __name__.partition(".")[0]
-"""The package, which is followed from everywhere."""
+_OWN = __name__.partition(".")[0]  # The package, which is followed from everywhere
 
 _ROOM = __name__.rpartition(".")[0]
 
@@ -46,8 +45,7 @@ _COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64", "smal
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}
 """Libraries that compute, by the names under which they are imported; their versions count."""
 
-Place = tuple[str, str]
-"""A definition: its module and its name; a library has no name."""
+Place = tuple[str, str]  # A definition: its module and its name; a library has no name
 
 
 class UnknownCodeError(TypeError):

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["OWN", "Found", "Registry"]
 
-OWN = "package.module:attribute"
-"""How an object of a user's own is named."""
+OWN = "package.module:attribute"  # How an object of a user's own is named
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
@@ -28,8 +27,7 @@ T_co = TypeVar("T_co", covariant=True)
 class Found(Protocol[T_co]):
     """Objects that are made of files, wherever these lie."""
 
-    form: str
-    """How the path of such a file looks, for messages."""
+    form: str  # How the path of such a file looks, for messages
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all objects."""

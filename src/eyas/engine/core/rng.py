@@ -54,12 +54,9 @@ def fresh_seed() -> int:
 class EpisodeKey(NamedTuple):
     """What the random values of an episode depend on."""
 
-    seed: int
-    """Seed of the run."""
-    tracker: int
-    """Number of the tracker among those with this seed."""
-    episode: int
-    """Number of the episode, from 0."""
+    seed: int  # Seed of the run
+    tracker: int  # Number of the tracker among those with this seed
+    episode: int  # Number of the episode, from 0
 
     def stream(self, room: str) -> np.random.Generator:
         """Return the generator of a room in this episode."""

@@ -49,8 +49,7 @@ class Choice(Config):
     """The values."""
 
 
-Variation = float | Uniform | Mirrored | Choice
-"""A number, or a rule for sampling one."""
+Variation = float | Uniform | Mirrored | Choice  # A number, or a rule for sampling one
 
 
 def sample(variation: Variation, rng: np.random.Generator) -> float:
@@ -71,8 +70,7 @@ def sample(variation: Variation, rng: np.random.Generator) -> float:
 class Rule(NamedTuple):
     """A variation as kernels read it."""
 
-    kind: int
-    """One of the numbers below."""
+    kind: int  # One of the numbers below
     values: NDArray[np.float64]
     """The number, the two limits in ascending order, or the values to choose from."""
 

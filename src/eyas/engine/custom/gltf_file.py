@@ -32,8 +32,7 @@ _GLB = struct.Struct("<4sIIII")
 _CHUNK = struct.Struct("<II")
 _JSON = 0x4E4F534A
 
-_MODES = (4, 5)
-"""Modes of primitives that are read: triangles, and strips of them."""
+_MODES = (4, 5)  # Modes of primitives that are read: triangles, and strips of them
 
 
 def mended_gltf(path: Path, largest: int) -> tuple[bytes, str]:

@@ -22,11 +22,9 @@ from eyas.lanes import exact
 
 __all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
 
-LARGEST = 200_000
-"""Largest number of triangles of a target."""
+LARGEST = 200_000  # Largest number of triangles of a target
 
-_LARGEST_FILE = 512 << 20
-"""[bytes]"""
+_LARGEST_FILE = 512 << 20  # [bytes]
 
 _GLTF_ENDINGS = (".glb", ".gltf")
 
@@ -39,28 +37,21 @@ _INSIDE = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4], [2, 2, 2]]) / 6.0
 _FINE = 20_000
 """Number of triangles up to which textured parts are cut, so that they show their texture."""
 
-_LARGEST_TEXTURE = 8192
-"""Largest side of a texture [pixels]."""
+_LARGEST_TEXTURE = 8192  # Largest side of a texture [pixels]
 
-_EVEN = 0.01
-"""Mean deviation of the texture within triangles that is not worth a cut [sRGB 0 to 1]."""
+_EVEN = 0.01  # Mean deviation of the texture within triangles that is not worth a cut [sRGB 0 to 1]
 
-_PLAIN = (0.62, 0.62, 0.62)
-"""sRGB of what has no colour."""
+_PLAIN = (0.62, 0.62, 0.62)  # sRGB of what has no colour
 
 
 @dataclass(frozen=True, slots=True)
 class Triangles:
     """A shape without materials. V vertices, T triangles."""
 
-    points: NDArray[np.float64]
-    """[m], shape (V, 3)."""
-    corners: NDArray[np.int64]
-    """Vertices, counter-clockwise as seen from outside, shape (T, 3)."""
-    colours: NDArray[np.float64]
-    """sRGB 0 to 1, shape (T, 3)."""
-    left_out: str = ""
-    """What of the file is not read, in words."""
+    points: NDArray[np.float64]  # [m], shape (V, 3)
+    corners: NDArray[np.int64]  # Vertices, counter-clockwise as seen from outside, shape (T, 3)
+    colours: NDArray[np.float64]  # sRGB 0 to 1, shape (T, 3)
+    left_out: str = ""  # What of the file is not read, in words
 
     @property
     def size(self) -> tuple[float, float, float]:

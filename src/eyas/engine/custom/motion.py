@@ -26,11 +26,9 @@ from eyas.lanes import exact
 
 __all__ = ["Places", "custom_motion"]
 
-_SPAN = 0.25
-"""Half the distance over which the slope of the ground is taken [m]."""
+_SPAN = 0.25  # Half the distance over which the slope of the ground is taken [m]
 
-_FEWEST = 5
-"""Least number of samples of a trajectory."""
+_FEWEST = 5  # Least number of samples of a trajectory
 
 Floats = NDArray[np.float64]
 
@@ -40,8 +38,7 @@ class Places(NamedTuple):
 
     lifetimes: Lifetimes
     offset: Variation
-    vehicles: Motion | None = None
-    """For which those wait who cross roads."""
+    vehicles: Motion | None = None  # For which those wait who cross roads
 
 
 def custom_motion(

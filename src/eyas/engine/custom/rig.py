@@ -18,8 +18,7 @@ __all__ = ["OwnRig"]
 _TRIED = np.linspace(0.0, 20.0, 64)
 """Distances at which the farthest place of each part is looked for [m]."""
 
-_MARGIN = 1.5
-"""Factor on it: parts may go farther in between."""
+_MARGIN = 1.5  # Factor on it: parts may go farther in between
 
 
 class OwnRig:

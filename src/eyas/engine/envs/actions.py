@@ -34,10 +34,8 @@ turns the camera, shape (N, 8), see `eyas.engine.trackers.gimbal_command`."""
 class Actions(Protocol):
     """A space of actions."""
 
-    space: gymnasium.Space[Any]
-    """The actions of one agent."""
-    allowed: str
-    """Which these are, in words."""
+    space: gymnasium.Space[Any]  # The actions of one agent
+    allowed: str  # Which these are, in words
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # whatever a learner returns
         """Return the commands of N actions.

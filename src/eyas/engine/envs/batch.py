@@ -52,10 +52,8 @@ _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
-_BOUND = (BoundCall, Held)
-"""To the addresses of arrays, which stay."""
-_SCRATCH = (VisibleActors, Picture, Starts)
-"""Worked out at each use."""
+_BOUND = (BoundCall, Held)  # To the addresses of arrays, which stay
+_SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 """Types of parts for `eyas.engine.core.memento.remember` to leave out."""
@@ -64,31 +62,25 @@ FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 Mask = NDArray[np.bool_]
 Seeds = Sequence[int | None] | None
 
-_STEPS = logging.getLogger("eyas.steps")
-"""Gets a line for each action if `verbose` is true."""
+_STEPS = logging.getLogger("eyas.steps")  # Gets a line for each action if `verbose` is true
 _STEPS.setLevel(logging.INFO)
 
 
 class Outcome(NamedTuple):
     """Result of one action of each of N agents."""
 
-    reward: NDArray[np.float64]
-    """Sum over the control steps that the action lasted, shape (N,)."""
+    reward: NDArray[np.float64]  # Sum over the control steps that the action lasted, shape (N,)
     terms: dict[str, NDArray[np.float64]]
     """The same of each term of the reward, without its weight, shape (N,)."""
-    terminated: Mask
-    """Whether the episode has ended before its number of steps, shape (N,)."""
-    truncated: Mask
-    """Whether it has ended by its number of steps, shape (N,)."""
-    reason: NDArray[np.int64]
-    """`eyas.engine.task.done.DoneReason` of its end, shape (N,)."""
+    terminated: Mask  # Whether the episode has ended before its number of steps, shape (N,)
+    truncated: Mask  # Whether it has ended by its number of steps, shape (N,)
+    reason: NDArray[np.int64]  # `eyas.engine.task.done.DoneReason` of its end, shape (N,).
 
 
 class Truth(NamedTuple):
     """What is true of N agents and their targets, for teachers; later steps change it."""
 
-    snapshot: Snapshot
-    """Their state."""
+    snapshot: Snapshot  # Their state
     visible: NDArray[np.float64]
     """Share of each target that the latest picture shows, shape (N,); 0 if nothing is measured."""
 

@@ -23,8 +23,7 @@ _NAMES = {
     ObservationPart.SENSORS.value: "agent_pos",
     ObservationPart.PRIVILEGED.value: "environment_state",
 }
-SUCCESS = 0.5
-"""Share of an episode's full length in view from which it counts as a success."""
+SUCCESS = 0.5  # Share of an episode's full length in view from which it counts as a success
 
 
 class LeRobotVectorEnv(gymnasium.vector.VectorWrapper[Any, Any, Any, Any, Any]):

@@ -24,8 +24,7 @@ class _Group(NamedTuple):
     """The environments of one kind."""
 
     batch: Batch
-    rows: NDArray[np.int64]
-    """Their indices, shape (K,)."""
+    rows: NDArray[np.int64]  # Their indices, shape (K,)
 
 
 class MixedBatch:

@@ -12,8 +12,7 @@ from eyas.engine.core.png import png_bytes
 
 __all__ = ["LONGEST_STRIP", "show_wrapped", "strip_html"]
 
-LONGEST_STRIP = 6
-"""Largest number of pictures of a strip."""
+LONGEST_STRIP = 6  # Largest number of pictures of a strip
 
 
 def strip_html(pictures: Sequence[NDArray[np.uint8]], line: str) -> str:

@@ -16,12 +16,9 @@ Floats = NDArray[np.float64]
 class Box3D(NamedTuple):
     """A 3D box in the world."""
 
-    centre: Floats
-    """[m], shape (3,)."""
-    size: Floats
-    """Length, width, height [m], shape (3,)."""
-    rotation: Floats
-    """Box to world; columns forward, left, up, shape (3, 3)."""
+    centre: Floats  # [m], shape (3,)
+    size: Floats  # Length, width, height [m], shape (3,)
+    rotation: Floats  # Box to world; columns forward, left, up, shape (3, 3)
 
 
 def box_of(corners: ArrayLike) -> Box3D:

@@ -45,10 +45,8 @@ _target_direction = interpreted(target_direction)
 class Moment(NamedTuple):
     """What is known of a tracker at the time of a frame."""
 
-    shown: Snapshot
-    """The state that its picture shows."""
-    now: EpisodeState
-    """The episodes at the time of the frame, which is later if pictures are late."""
+    shown: Snapshot  # The state that its picture shows
+    now: EpisodeState  # The episodes at the time of the frame, which is later if pictures are late
     actors: ActorView | None = None
     """The actors around it that the picture shows; None: only the target is wanted."""
     whole_box: Floats | None = None
@@ -59,28 +57,18 @@ class Moment(NamedTuple):
     none."""
     sensors: Floats | None = None
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
-    parts: MovingParts | None = None
-    """See `Frame.parts`; nothing changes it later."""
-    clean: NDArray[np.uint8] | None = None
-    """See `Frame.clean`; nothing changes it later."""
-    cameras: tuple[CameraPicture, ...] = ()
-    """See `Frame.cameras`; nothing changes them later."""
-    exposure: tuple[float, float] | None = None
-    """See `Frame.exposure`."""
-    events: NDArray[np.void] | None = None
-    """See `Frame.events`; nothing changes it later."""
-    lens: Lens | None = None
-    """The lens of its camera; None: it is a pinhole."""
+    parts: MovingParts | None = None  # See `Frame.parts`; nothing changes it later.
+    clean: NDArray[np.uint8] | None = None  # See `Frame.clean`; nothing changes it later.
+    cameras: tuple[CameraPicture, ...] = ()  # See `Frame.cameras`; nothing changes them later.
+    exposure: tuple[float, float] | None = None  # See `Frame.exposure`.
+    events: NDArray[np.void] | None = None  # See `Frame.events`; nothing changes it later.
+    lens: Lens | None = None  # The lens of its camera; None: it is a pinhole
     lamps: NDArray[np.uint8] | None = None
     """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
-    rotors: Floats | None = None
-    """See `Frame.rotors`; nothing changes it later."""
-    traffic: ActorView | None = None
-    """See `Frame.traffic`; nothing changes it later."""
-    signals: Mapping[str, Floats] = {}
-    """See `Frame.signals`; nothing changes it later."""
-    words: str = ""
-    """The target in words that nothing else in view shares."""
+    rotors: Floats | None = None  # See `Frame.rotors`; nothing changes it later.
+    traffic: ActorView | None = None  # See `Frame.traffic`; nothing changes it later.
+    signals: Mapping[str, Floats] = {}  # See `Frame.signals`; nothing changes it later.
+    words: str = ""  # The target in words that nothing else in view shares
     parked: Sequence[SeenParked] = ()
     """The parked objects in its picture, in the order of their ids."""
 

@@ -14,8 +14,7 @@ __all__ = ["EventWriter", "evt2"]
 
 NAME = "events.raw"
 _FRAMES = b"% eyas_frames "
-_MOST = 2048
-"""Columns and rows have eleven bits."""
+_MOST = 2048  # Columns and rows have eleven bits
 
 _TIME_HIGH = 8 << 28
 

@@ -24,8 +24,7 @@ from eyas.lanes import compiled, kernel
 
 __all__ = ["FlowWriter", "forward_flow"]
 
-SCALE, ZERO = 64.0, 32768.0
-"""KITTI's encoding of a flow: 64 for each pixel, above 32768."""
+SCALE, ZERO = 64.0, 32768.0  # KITTI's encoding of a flow: 64 for each pixel, above 32768
 
 _TOLERANCE, _LEAST = 0.01, 0.02
 """A point is hidden by what is nearer than it by this share of its distance, and [m]: more than
@@ -92,30 +91,21 @@ class FlowEpisode(EpisodeWriter):
 class _Camera(NamedTuple):
     """A camera, and what it sees."""
 
-    eye: Floats
-    """Optical centre [m], shape (3,)."""
-    axes: Floats
-    """Camera to world; columns forward, left, up, shape (3, 3)."""
-    focal: Floats
-    """Focal length [pixels], shape (1,)."""
-    middle: Floats
-    """Column and row of the principal point [pixels], shape (2,)."""
-    bent: int
-    """1: `lens` bends the picture."""
+    eye: Floats  # Optical centre [m], shape (3,)
+    axes: Floats  # Camera to world; columns forward, left, up, shape (3, 3)
+    focal: Floats  # Focal length [pixels], shape (1,)
+    middle: Floats  # Column and row of the principal point [pixels], shape (2,)
+    bent: int  # 1: `lens` bends the picture
     lens: Lens
-    row: NDArray[np.int32]
-    """See `MovingParts`, shape (H, W)."""
-    depth: NDArray[np.float32]
-    """See `MovingParts`, shape (H, W)."""
+    row: NDArray[np.int32]  # See `MovingParts`, shape (H, W)
+    depth: NDArray[np.float32]  # See `MovingParts`, shape (H, W)
 
 
 class _Motion(NamedTuple):
     """How each of the I parts moves to the next frame."""
 
-    known: NDArray[np.bool_]
-    """Whether it is in both frames, shape (I,)."""
-    move: Floats
-    """World at the first frame to world at the second, shape (I, 3, 4)."""
+    known: NDArray[np.bool_]  # Whether it is in both frames, shape (I,)
+    move: Floats  # World at the first frame to world at the second, shape (I, 3, 4)
 
 
 def forward_flow(first: Frame, second: Frame) -> NDArray[np.uint16]:
@@ -183,8 +173,7 @@ class _Point(NamedTuple):
 
     column: float
     line: float
-    ahead: float
-    """Distance along the optical axis [m]; infinity for the sky."""
+    ahead: float  # Distance along the optical axis [m]; infinity for the sky
 
 
 @kernel(inline=True)

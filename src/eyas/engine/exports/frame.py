@@ -54,16 +54,14 @@ Output = Literal[
 objects, the target in words, moving parts, pictures of other cameras, events, or all actors.
 """
 
-OUTPUTS: tuple[Output, ...] = get_args(Output)
-"""All these names."""
+OUTPUTS: tuple[Output, ...] = get_args(Output)  # All these names
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedAction:
     """The action of a tracker."""
 
-    number: int
-    """Number of the action if it is one of several, 0 to 5 for a random one; else -1."""
+    number: int  # Number of the action if it is one of several, 0 to 5 for a random one; else -1
     command: Floats | None
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
     target is followed exactly."""
@@ -76,34 +74,24 @@ class RecordedAction:
 class RecordedBody:
     """The body of a tracker. World frame, east-north-up, unless it says otherwise."""
 
-    position: Floats
-    """Centre [m], shape (3,)."""
-    velocity: Floats
-    """[m/s], shape (3,)."""
-    acceleration: Floats
-    """[m/s^2], shape (3,)."""
-    orientation: Floats
-    """Body to world, quaternion w, x, y, z, shape (4,)."""
-    angular_velocity: Floats
-    """Body frame [rad/s], shape (3,)."""
-    gimbal: Floats
-    """Roll, pitch, yaw of the gimbal's joints [rad], shape (3,)."""
+    position: Floats  # Centre [m], shape (3,)
+    velocity: Floats  # [m/s], shape (3,)
+    acceleration: Floats  # [m/s^2], shape (3,)
+    orientation: Floats  # Body to world, quaternion w, x, y, z, shape (4,)
+    angular_velocity: Floats  # Body frame [rad/s], shape (3,)
+    gimbal: Floats  # Roll, pitch, yaw of the gimbal's joints [rad], shape (3,)
 
 
 @dataclass(frozen=True, slots=True)
 class CameraPose:
     """Position, orientation and lens of the camera."""
 
-    position: Floats
-    """Optical centre, world frame [m], shape (3,)."""
+    position: Floats  # Optical centre, world frame [m], shape (3,)
     rotation: Floats
     """Camera to world; columns are the camera's forward, left and up axes, shape (3, 3)."""
-    field_of_view: float
-    """Horizontal [rad]."""
-    width: int
-    """Width of the picture [pixels]."""
-    height: int
-    """Height of the picture [pixels]."""
+    field_of_view: float  # Horizontal [rad]
+    width: int  # Width of the picture [pixels]
+    height: int  # Height of the picture [pixels]
     lens: Lens = NO_LENS
     """The lens that bends the picture. With one, the field of view is that of a pinhole with the
     same focal length."""
@@ -130,33 +118,23 @@ class CameraPose:
 class CameraPicture:
     """A picture of a camera that a tracker has beside its own."""
 
-    name: str
-    """Its name in the setting `cameras`."""
+    name: str  # Its name in the setting `cameras`
     pose: CameraPose
-    rgb: NDArray[np.uint8]
-    """Colours, shape (H, W, 3)."""
+    rgb: NDArray[np.uint8]  # Colours, shape (H, W, 3)
 
 
 @dataclass(frozen=True, slots=True)
 class Subject:
     """A moving or parked object and its place in the picture. World frame, east-north-up."""
 
-    object_id: int
-    """Its value in `Frame.object_id`; the same in all frames of an episode."""
-    type: str
-    """Name of its model."""
-    object_class: ObjectClass
-    """Its class, the number in `Frame.class_id`."""
-    size: Floats
-    """Length, width, height [m], shape (3,)."""
-    position: Floats
-    """Reference point on the road [m], shape (3,)."""
-    centre: Floats
-    """Middle of its visible body, the point that is rewarded [m], shape (3,)."""
-    velocity: Floats
-    """[m/s], shape (3,)."""
-    yaw: float
-    """Heading, counter-clockwise from east [rad]."""
+    object_id: int  # Its value in `Frame.object_id`; the same in all frames of an episode.
+    type: str  # Name of its model
+    object_class: ObjectClass  # Its class, the number in `Frame.class_id`.
+    size: Floats  # Length, width, height [m], shape (3,)
+    position: Floats  # Reference point on the road [m], shape (3,)
+    centre: Floats  # Middle of its visible body, the point that is rewarded [m], shape (3,)
+    velocity: Floats  # [m/s], shape (3,)
+    yaw: float  # Heading, counter-clockwise from east [rad]
     motion: Movement
     box: NDArray[np.int32]
     """Extent in the picture, hidden parts included, clipped to the picture: left, top, right,
@@ -167,19 +145,15 @@ class Subject:
     """Extent of all its vertices, not clipped to the picture: left, top, right, bottom [pixels].
     Those nearer to the camera than 8 cm along the optical axis, or behind it, are left out; all 0
     if all are, or if no writer wants `others`; shape (4,)."""
-    seen_pixels: int
-    """Pixels that show it."""
-    covered_pixels: int
-    """Pixels that would show it if nothing hid it; 0 outside the picture."""
+    seen_pixels: int  # Pixels that show it
+    covered_pixels: int  # Pixels that would show it if nothing hid it; 0 outside the picture
     words: str = ""
     """What it looks like, "a red car". The target's words are shared by nothing else in view; empty
     if no writer wants `words`."""
     sections: tuple[Section, ...] = ()
     """The sections of an articulated vehicle; empty for all others."""
-    lamps: int = 0
-    """What it signals, a `Lamp`; 0: nothing, or lamps do not work."""
-    parked: bool = False
-    """Whether it is part of the scene and never moves."""
+    lamps: int = 0  # What it signals, a `Lamp`; 0: nothing, or lamps do not work
+    parked: bool = False  # Whether it is part of the scene and never moves
 
     @property
     def visible_fraction(self) -> float:

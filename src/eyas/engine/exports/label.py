@@ -39,8 +39,7 @@ __all__ = [
     "rounded_list",
 ]
 
-DECIMALS = 6
-"""Decimals of every number (micrometres, microradians); few enough for identical bytes."""
+DECIMALS = 6  # Decimals of every number (micrometres, microradians); few enough for identical bytes
 
 
 def rounded(value: float) -> float | None:
@@ -53,8 +52,7 @@ def rounded_list(values: ArrayLike) -> list[float | None]:
     return [rounded(value) for value in np.asarray(values, np.float64).tolist()]
 
 
-Label = dict[str, Any]
-"""The label of a frame, as JSON has it; numbers that are not finite are None."""
+Label = dict[str, Any]  # The label of a frame, as JSON has it; numbers that are not finite are None
 
 _PER_SECOND = np.array([1.0, 1.0, 1.0 / PHYSICS_STEP, 1.0])
 """Commands climb by metres in each physics step; labels tell metres per second."""
@@ -66,16 +64,14 @@ class Type(NamedTuple):
     """The type of a field."""
 
     name: str
-    schema: Mapping[str, Any]
-    """JSON schema."""
+    schema: Mapping[str, Any]  # JSON schema
 
 
 def _array(name: str, of: Mapping[str, Any], count: int) -> Type:
     return Type(name, {"type": "array", "items": of, "minItems": count, "maxItems": count})
 
 
-_LARGEST = 1e12
-"""More than any honest number; its square is still finite in float32."""
+_LARGEST = 1e12  # More than any honest number; its square is still finite in float32
 
 WHOLE = Type("whole number", {"type": "integer", "minimum": -1, "maximum": 2**31 - 1})
 NUMBER = Type("number", {"type": "number", "minimum": -_LARGEST, "maximum": _LARGEST})
@@ -127,21 +123,17 @@ class LabelField(NamedTuple):
     of `others` for the others.
     """
 
-    key: str | None
-    """Its name in the label of a frame; None: the target has none."""
+    key: str | None  # Its name in the label of a frame; None: the target has none
     type: Type
     meaning: str
     of_frame: Callable[[Frame, Episode], Any] | None = None
     """Returns its value, if it is of the frame."""
     of_object: Callable[[Frame, Subject], Any] | None = None
     """Returns its value, if it is of moving objects."""
-    others: str | None = None
-    """Its name in an entry of `others`; None: these have none."""
+    others: str | None = None  # Its name in an entry of `others`; None: these have none
     unit: str = ""
-    frame: str = ""
-    """The frame of reference."""
-    left_out: bool = False
-    """Whether a label has it only where it is not empty."""
+    frame: str = ""  # The frame of reference
+    left_out: bool = False  # Whether a label has it only where it is not empty
 
 
 def _points(corners: Any) -> list[list[float | None]]:  # noqa: ANN401  # an array, or None

@@ -25,20 +25,13 @@ _folded = interpreted(folded)
 class Movement:
     """How a moving object moves, and stands on the ground."""
 
-    acceleration: Floats
-    """Change of the velocity, world frame [m/s^2], shape (3,)."""
-    yaw_rate: float
-    """Counter-clockwise [rad/s]."""
-    slope: float
-    """Pitch of the ground along its heading, positive up [rad]."""
-    travelled: float
-    """Way since it entered the world [m]."""
-    direction: TargetDirection
-    """Its turn."""
-    rise: float
-    """Height of its reference point above the ground [m]."""
-    hitch: float = 0.0
-    """Heading of its trailer less that of its truck [rad]; 0 of all others."""
+    acceleration: Floats  # Change of the velocity, world frame [m/s^2], shape (3,)
+    yaw_rate: float  # Counter-clockwise [rad/s]
+    slope: float  # Pitch of the ground along its heading, positive up [rad]
+    travelled: float  # Way since it entered the world [m]
+    direction: TargetDirection  # Its turn
+    rise: float  # Height of its reference point above the ground [m]
+    hitch: float = 0.0  # Heading of its trailer less that of its truck [rad]; 0 of all others
     upright: bool = False
     """Whether it stays upright on slopes, like people; else it tilts with the ground."""
     extent: Floats | None = None
@@ -49,14 +42,10 @@ class Movement:
 class SectionBox(NamedTuple):
     """The 3D box of a section of an articulated vehicle."""
 
-    name: str
-    """"truck" or "trailer"."""
-    size: tuple[float, float, float]
-    """Length, width, height [m]."""
-    yaw: float
-    """Heading, counter-clockwise from east [rad]."""
-    corners: Floats
-    """As from `box_corners` [m], shape (8, 3)."""
+    name: str  # "truck" or "trailer"
+    size: tuple[float, float, float]  # Length, width, height [m]
+    yaw: float  # Heading, counter-clockwise from east [rad]
+    corners: Floats  # As from `box_corners` [m], shape (8, 3)
 
 
 def box_corners(

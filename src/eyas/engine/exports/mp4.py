@@ -29,8 +29,7 @@ CODECS = {
 }
 """Encoders in order of preference, with settings of about equal, visually clean quality."""
 
-LARGEST_DENOMINATOR = 1001
-"""Largest denominator of the frame rate; 30000/1001 is a common rate."""
+LARGEST_DENOMINATOR = 1001  # Largest denominator of the frame rate; 30000/1001 is a common rate
 
 
 class Mp4Writer(Writer):

@@ -16,8 +16,7 @@ from eyas.engine.sensors.table import fitted_sensors
 __all__ = ["ROTOR_COLUMNS", "LidarWriter", "SensorWriter"]
 
 
-ROTOR_COLUMNS = ("rotor_1", "rotor_2", "rotor_3", "rotor_4")
-"""Columns of `Frame.rotors`."""
+ROTOR_COLUMNS = ("rotor_1", "rotor_2", "rotor_3", "rotor_4")  # Columns of `Frame.rotors`.
 
 
 class TableWriter(Writer):

@@ -31,10 +31,8 @@ MP4 (1.7 ms, 5.6 kB). The default effort, 4, makes it 12 kB in 6.3 ms."""
 _HEAD = struct.Struct("<4sI4s")
 _CHUNK = struct.Struct("<4sI")
 _ANIMATED, _UNBLENDED = 0x02, 0x02
-_LARGEST = 0xFFFF_FFF6
-"""Of a file [bytes]."""
-_LONGEST = 0xFF_FFFF
-"""That a picture can stay [ms]."""
+_LARGEST = 0xFFFF_FFF6  # Of a file [bytes]
+_LONGEST = 0xFF_FFFF  # That a picture can stay [ms]
 
 
 class WebpWriter(Writer):

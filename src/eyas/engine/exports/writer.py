@@ -48,12 +48,9 @@ __all__ = [
 class Scores:
     """Sums over frames."""
 
-    rewarded: int = 0
-    """Frames whose reward is a finite number."""
-    reward: float = 0.0
-    """Sum of those rewards."""
-    sightings: int = 0
-    """Frames in which a pixel of the target is visible."""
+    rewarded: int = 0  # Frames whose reward is a finite number
+    reward: float = 0.0  # Sum of those rewards
+    sightings: int = 0  # Frames in which a pixel of the target is visible
 
     def plus(self, reward: float, *, seen: bool) -> "Scores":
         """Return the sums including one more frame."""

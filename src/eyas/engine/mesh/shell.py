@@ -12,8 +12,7 @@ from eyas.lanes import exact
 
 __all__ = ["DETAILS", "Shape", "Shell", "levels_of", "shell_of"]
 
-_CREASE = 0.75
-"""Panels that meet at a larger angle keep a hard edge [rad]."""
+_CREASE = 0.75  # Panels that meet at a larger angle keep a hard edge [rad]
 
 
 class Shell:

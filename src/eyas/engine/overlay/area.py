@@ -21,11 +21,9 @@ _height_over = interpreted(height_over)
 RISE = 0.3
 """Tolerance in height within which a surface counts as ground [m]: roads and kerbs are higher."""
 
-WIDTH = 0.14
-"""Of the line [m]."""
+WIDTH = 0.14  # Of the line [m]
 
-THINNEST = 1.75
-"""Smallest width of the line, in strokes of the canvas."""
+THINNEST = 1.75  # Smallest width of the line, in strokes of the canvas
 
 Window = tuple[slice, slice]
 Floats = NDArray[np.float32]

@@ -13,8 +13,7 @@ DRONE_SIZE = 0.5
 """Distance between neighbouring motors [m]; larger than the real one, to be visible from far."""
 
 GEM_SIDES = 6
-GEM_RADIUS, GEM_GIRDLE = 0.42, 0.7
-"""Radius and height of its widest ring, as shares of its height."""
+GEM_RADIUS, GEM_GIRDLE = 0.42, 0.7  # Radius and height of its widest ring, as shares of its height
 
 GEM_COLOUR = (1.0, 0.27, 0.5)
 TABLE_COLOUR = (1.0, 0.5, 0.66)

@@ -13,17 +13,14 @@ from eyas.lanes import exact
 
 __all__ = ["CASING", "NEAR", "Canvas", "cover"]
 
-NEAR = 0.1
-"""Nearer parts than this are not drawn [m]."""
+NEAR = 0.1  # Nearer parts than this are not drawn [m]
 
 Floats = NDArray[np.float32]
 
-CASING = (0.04, 0.05, 0.07)
-"""Colour of the outlines, which make marks visible on any ground."""
+CASING = (0.04, 0.05, 0.07)  # Colour of the outlines, which make marks visible on any ground
 
 
-SPARSE = 0.3
-"""If fewer of a window's pixels are touched, the others are left out."""
+SPARSE = 0.3  # If fewer of a window's pixels are touched, the others are left out
 
 
 class Canvas:

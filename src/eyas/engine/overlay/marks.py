@@ -27,16 +27,14 @@ LABEL_COLOUR = (1.0, 1.0, 1.0)
 REWARD_COLOURS = ((0.95, 0.26, 0.2), (1.0, 0.78, 0.12), (0.35, 0.9, 0.3))
 """Colours for a reward of 0, 0.5 and 1."""
 
-FARTHEST = 400.0
-"""Depth at which a view that extends above the horizon is cut off [m]."""
+FARTHEST = 400.0  # Depth at which a view that extends above the horizon is cut off [m]
 
 GEM_HEIGHT, GEM_GAP, GEM_TURN = 1.3, 0.4, 1.5
 """Heights of the marker and of the gap below it [m]; turn rate of the marker [rad/s]."""
 
 UP = np.array([0.0, 0.0, 1.0])
 
-CIRCLE = 72
-"""Number of corners of the circle within which distances are rewarded."""
+CIRCLE = 72  # Number of corners of the circle within which distances are rewarded
 
 
 class Marks:

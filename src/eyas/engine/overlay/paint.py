@@ -65,13 +65,11 @@ def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float3
     return masks[0], masks[1]
 
 
-WIDTH = 1.5
-"""Width, in strokes of the canvas."""
+WIDTH = 1.5  # Width, in strokes of the canvas
 
 OPACITY = 0.85
 
-BENT_PIECES = 24
-"""Straight pieces of a line that is seen through a lens."""
+BENT_PIECES = 24  # Straight pieces of a line that is seen through a lens
 
 
 def paint_line(canvas: Canvas, line: ThinLine) -> None:

@@ -88,10 +88,8 @@ class PolicyInput(NamedTuple):
 class Failure(NamedTuple):
     """What a policy has failed with."""
 
-    line: str
-    """The error."""
-    traceback: str | None
-    """Where it was raised."""
+    line: str  # The error
+    traceback: str | None  # Where it was raised
 
     @classmethod
     def of(cls, error: BaseException, *, traced: bool = True) -> "Failure":

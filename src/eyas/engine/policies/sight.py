@@ -13,8 +13,7 @@ from eyas.lanes import exact
 
 __all__ = ["SIZE", "nearest_to_middle", "subjects", "visible_shares"]
 
-SIZE = 63, 84
-"""Height and width of the pictures in which pixels are counted."""
+SIZE = 63, 84  # Height and width of the pictures in which pixels are counted
 
 
 def subjects(

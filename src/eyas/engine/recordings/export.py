@@ -46,20 +46,16 @@ __all__ = [
 
 _LOG = logging.getLogger("eyas")
 
-EXPORTS = "exports"
-"""Folder of the exports in that of a recording or data set."""
+EXPORTS = "exports"  # Folder of the exports in that of a recording or data set
 
 FINISHED, GROWING = "export.json", ".export.json"
 """What an export is of, when it is complete, and while it is in progress."""
 
-_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)
-"""What is no part of a finished export."""
+_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # What is no part of a finished export
 
-DONE = ".done"
-"""Names of the episodes that are written completely, a line each."""
+DONE = ".done"  # Names of the episodes that are written completely, a line each
 
-Told = Callable[[int], None]
-"""Is told how many frames have been exported."""
+Told = Callable[[int], None]  # Is told how many frames have been exported
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +66,8 @@ class ExportOptions:
     least_side: int = 1
     least_visible: float = 0.0
     ignore_parked: bool = False
-    resume: bool = False
-    """Whether an interrupted export in the folder is continued."""
-    overwrite: bool = False
-    """Whether an export in the folder is deleted first."""
+    resume: bool = False  # Whether an interrupted export in the folder is continued
+    overwrite: bool = False  # Whether an export in the folder is deleted first
 
 
 def export(

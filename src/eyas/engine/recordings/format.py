@@ -54,24 +54,21 @@ CLASS_NAMES = {
 }
 """Names of the classes of labelled objects, in the order of the formats that number classes."""
 
-KEPT = ".kept"
-"""Folder of what `add` keeps for `finish`, in the folder of the export."""
+KEPT = ".kept"  # Folder of what `add` keeps for `finish`, in the folder of the export
 
 
 class Exported(NamedTuple):
     """An episode, as far as `Format.finish` knows it."""
 
     name: str
-    split: str
-    """`train`, `val` or `test`; `train` outside of a data set."""
+    split: str  # `train`, `val` or `test`; `train` outside of a data set
     frames: int
 
 
 class SeenObject(NamedTuple):
     """A moving or parked object in a frame: the target, or another one."""
 
-    label: Label
-    """Its fields by the names of the entries of `others`: `id`, `box`, `words`, ..."""
+    label: Label  # Its fields by the names of the entries of `others`: `id`, `box`, `words`, ...
     is_target: bool
 
     @property

@@ -26,15 +26,13 @@ __all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
 
 _log = logging.getLogger("eyas")
 
-_PATIENCE = 300.0
-"""Longest time that this process waits for the second one [s]."""
+_PATIENCE = 300.0  # Longest time that this process waits for the second one [s]
 
 _compiling: list[subprocess.Popen[bytes]] = []
 """The second process, if it compiles; kept even after that, because Python warns of processes that
 are forgotten before they end."""
 
-_doing_other: list[subprocess.Popen[bytes]] = []
-"""The second process, if it does something else."""
+_doing_other: list[subprocess.Popen[bytes]] = []  # The second process, if it does something else
 
 _COMPILE = "from eyas.engine.render.ahead import draw_nothing; draw_nothing()"
 

@@ -25,26 +25,16 @@ class Size(NamedTuple):
     """All that decides which arrays a task has, and what is written in them but the cameras."""
 
     views: int
-    height: int
-    """Height of the pictures [pixels]."""
-    width: int
-    """Width of the pictures [pixels]."""
-    across: int
-    """Samples along a row of each pixel."""
-    down: int
-    """Samples along a column of each pixel."""
-    until: int
-    """See `Task`."""
-    falls: bool
-    """Whether flakes, drops and leaves are drawn."""
-    parts: bool
-    """Whether each view draws some rows only, which are then one band."""
-    threads: int
-    """Number of threads that share the work."""
-    bent: bool = False
-    """Whether lenses bend the pictures."""
-    timed: bool = False
-    """Whether the views have instants."""
+    height: int  # Height of the pictures [pixels]
+    width: int  # Width of the pictures [pixels]
+    across: int  # Samples along a row of each pixel
+    down: int  # Samples along a column of each pixel
+    until: int  # See `Task`
+    falls: bool  # Whether flakes, drops and leaves are drawn
+    parts: bool  # Whether each view draws some rows only, which are then one band
+    threads: int  # Number of threads that share the work
+    bent: bool = False  # Whether lenses bend the pictures
+    timed: bool = False  # Whether the views have instants
 
 
 def new_task(size: Size) -> Task:

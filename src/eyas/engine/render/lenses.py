@@ -30,11 +30,9 @@ _ASIDE = 0.375 * math.pi
 """Angle between the optical axis and those of the faces aside: they begin at an eighth of a turn
 and end at a quarter."""
 
-_KEPT = 8
-"""Lenses for which tables are kept, if no more are in use."""
+_KEPT = 8  # Lenses for which tables are kept, if no more are in use
 
-_MARGIN = 1.5
-"""Pixels around what is seen of a face."""
+_MARGIN = 1.5  # Pixels around what is seen of a face
 
 
 def _turns() -> Floats:
@@ -53,13 +51,10 @@ _TURNS = _turns()
 class _Shape(NamedTuple):
     """Shape of the tables of a picture size."""
 
-    height: int
-    """[pixels]"""
+    height: int  # [pixels]
     width: int
-    across: int
-    """Samples along a row of each pixel."""
-    down: int
-    """Samples along a column of each pixel."""
+    across: int  # Samples along a row of each pixel
+    down: int  # Samples along a column of each pixel
 
     def tables(self, lenses: int, tiles: tuple[int, int]) -> LensTables:
         """Return tables without content."""
@@ -82,8 +77,7 @@ class _Shape(NamedTuple):
         )
 
 
-NO_TABLES = _Shape(0, 0, 1, 1).tables(0, (0, 0))
-"""What is handed over where there is no lens."""
+NO_TABLES = _Shape(0, 0, 1, 1).tables(0, (0, 0))  # What is handed over where there is no lens
 
 
 class LensBank:

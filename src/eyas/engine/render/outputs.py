@@ -18,8 +18,7 @@ __all__ = [
     "write_measured",
 ]
 
-MEASURES = 10
-"""Numbers that are measured of a thing, see `Output.subject`."""
+MEASURES = 10  # Numbers that are measured of a thing, see `Output.subject`.
 
 NO_OUTPUT = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),
@@ -112,12 +111,9 @@ def write_measured(job: Job, output: Output, picture: Picture) -> None:
 class _Measured(NamedTuple):
     """What is measured of things in whole pictures."""
 
-    box: NDArray[np.int32]
-    """Shape (P, ..., 4)."""
-    pixels: NDArray[np.int32]
-    """Shape (P, ..., 2)."""
-    visible_box: NDArray[np.int32]
-    """Shape (P, ..., 4)."""
+    box: NDArray[np.int32]  # Shape (P, ..., 4).
+    pixels: NDArray[np.int32]  # Shape (P, ..., 2).
+    visible_box: NDArray[np.int32]  # Shape (P, ..., 4).
 
 
 def _joined(by_band: NDArray[np.int32], first: NDArray[np.int64]) -> _Measured:

@@ -251,8 +251,7 @@ GRIDS = {1: (1, 1), 2: (1, 2), 4: (2, 2)}
 """Samples along a row and along a column of a pixel, by their number. Two lie one above the other:
 seen from a drone, kerbs, sills and lines of the road lie rather across the picture."""
 
-_KEPT = 4
-"""Sizes of pictures for which arrays are kept."""
+_KEPT = 4  # Sizes of pictures for which arrays are kept
 
 _influence = interpreted(influence)
 

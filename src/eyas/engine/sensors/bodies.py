@@ -20,11 +20,9 @@ _LONG, _WIDE, _HIGH = (0.5 * size for size in BODY)
 class UprightBox(NamedTuple):
     """An upright box around a body that may be tilted."""
 
-    cosine: float
-    """Of its heading."""
+    cosine: float  # Of its heading
     sine: float
-    half_length: float
-    """[m]"""
+    half_length: float  # [m]
     half_width: float
     half_height: float
 

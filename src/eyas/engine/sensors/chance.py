@@ -12,8 +12,7 @@ from eyas.lanes.elementary import cos, log
 
 __all__ = ["SEEDS", "mixed", "normal", "uniform"]
 
-SEEDS = 1 << 32
-"""Seeds are whole numbers from 0 up to below this."""
+SEEDS = 1 << 32  # Seeds are whole numbers from 0 up to below this
 
 _WORD = 0xFFFFFFFF
 

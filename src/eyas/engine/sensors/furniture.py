@@ -16,14 +16,12 @@ __all__ = ["Cylinder", "Furniture", "Prism", "crown_slices", "furniture"]
 
 Row = NDArray[np.float64]
 
-_SLICES = 5
-"""Cylinders in the stack."""
+_SLICES = 5  # Cylinders in the stack
 
 _SHARE = 0.85
 """Radius of a cylinder over that of the leaves at its height: the outermost stand alone."""
 
-_CUTS = 4
-"""Parts into which each edge of a triangle is cut to find points on it."""
+_CUTS = 4  # Parts into which each edge of a triangle is cut to find points on it
 
 
 def crown_slices(mesh: Mesh, low: Row, high: Row) -> list[tuple[float, float, float]]:
@@ -64,35 +62,29 @@ def _points_on(mesh: Mesh) -> NDArray[np.float64]:
     return points
 
 
-_LONG = 1.4
-"""Length over width from which leaves are a hedge, and no crown."""
+_LONG = 1.4  # Length over width from which leaves are a hedge, and no crown
 
-_TRUNK = 0.025
-"""Radius of a trunk over the height of its tree."""
+_TRUNK = 0.025  # Radius of a trunk over the height of its tree
 
 
 @dataclass(frozen=True, slots=True)
 class Prism:
     """An upright prism."""
 
-    outline: NDArray[np.float64]
-    """Counter-clockwise [m], shape (4, 2)."""
+    outline: NDArray[np.float64]  # Counter-clockwise [m], shape (4, 2)
     bottom: float
     top: float
-    thing: int
-    """Object of the scene."""
+    thing: int  # Object of the scene
 
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
     """An upright cylinder."""
 
-    place: tuple[float, float, float]
-    """x, y, radius [m]."""
+    place: tuple[float, float, float]  # x, y, radius [m]
     bottom: float
     top: float
-    thing: int
-    """Object of the scene."""
+    thing: int  # Object of the scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +121,7 @@ def furniture(scene: Scene) -> Furniture:
 class _Span(NamedTuple):
     """The extent of a mesh, or of the leaves of a tree, in the mesh's frame."""
 
-    low: list[float]
-    """Lowest x, y, z [m]."""
+    low: list[float]  # Lowest x, y, z [m]
     high: list[float]
     slices: list[tuple[float, float, float]]
     """Bottom, top and radius of the cylinders of a crown [m]; none: it is a box."""

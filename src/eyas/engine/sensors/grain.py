@@ -11,8 +11,7 @@ from eyas.lanes import exact, parallel, thread_count
 
 __all__ = ["Grain"]
 
-_DEVIATION = 147.8
-"""Standard deviation of the sum of four random bytes: (4 (256^2 - 1) / 12)^(1/2)."""
+_DEVIATION = 147.8  # Standard deviation of the sum of four random bytes: (4 (256^2 - 1) / 12)^(1/2)
 
 
 class Grain:
@@ -69,11 +68,9 @@ class Grain:
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    pixels: NDArray[np.uint8]
-    """Shape (V, bytes of a picture)."""
+    pixels: NDArray[np.uint8]  # Shape (V, bytes of a picture)
     seed: NDArray[np.int64]
-    bias: NDArray[np.float64]
-    """Of each channel, shape (V, 3)."""
+    bias: NDArray[np.float64]  # Of each channel, shape (V, 3)
     step: NDArray[np.int64]
     scale: float
 

@@ -19,11 +19,9 @@ __all__ = [
     "walk_along",
 ]
 
-SPACING = 8.0
-"""Width of a cell [m]."""
+SPACING = 8.0  # Width of a cell [m]
 
-_BESIDE = 1e-3
-"""How far beside a ray cells are looked at, far more than rounding moves it [m]."""
+_BESIDE = 1e-3  # How far beside a ray cells are looked at, far more than rounding moves it [m]
 
 
 class ObstacleGrid(NamedTuple):
@@ -31,18 +29,13 @@ class ObstacleGrid(NamedTuple):
 
     first: NDArray[np.int32]
     """Start of each cell's items, row by row from the south-west, shape (rows * columns + 1,)."""
-    item: NDArray[np.int32]
-    """The items."""
-    top: NDArray[np.float64]
-    """Highest z of each cell's items [m], shape (rows * columns,)."""
+    item: NDArray[np.int32]  # The items
+    top: NDArray[np.float64]  # Highest z of each cell's items [m], shape (rows * columns,)
     columns: int
     rows: int
-    west: float
-    """[m]"""
-    south: float
-    """[m]"""
-    bounds: NDArray[np.float64]
-    """West, south, east, north of each item [m], shape (I, 4)."""
+    west: float  # [m]
+    south: float  # [m]
+    bounds: NDArray[np.float64]  # West, south, east, north of each item [m], shape (I, 4)
 
 
 class Walk(NamedTuple):
@@ -51,30 +44,18 @@ class Walk(NamedTuple):
     Lanes are the columns of a ray that goes rather east or west, else the rows.
     """
 
-    lane: int
-    """The first lane."""
-    lanes: int
-    """Number of lanes."""
-    onward: int
-    """1 or -1: to the next lane."""
-    stride: int
-    """From a cell to the one beside it in the next lane of a higher number."""
-    start: float
-    """Where the ray begins along it, from the edge of the grid [m]."""
-    farthest: float
-    """Where it ends [m]."""
-    inverse: float
-    """Length of the ray over its way along it; 0 for an upright one."""
-    least: int
-    """First cell of each lane that the ray may reach at all."""
-    most: int
-    """The last one."""
-    cell_stride: int
-    """From a cell to the next one of its lane."""
-    aside: float
-    """Where the ray begins across the lanes, from the edge of the grid [m]."""
-    slope: float
-    """Its way across lanes over that along it."""
+    lane: int  # The first lane
+    lanes: int  # Number of lanes
+    onward: int  # 1 or -1: to the next lane
+    stride: int  # From a cell to the one beside it in the next lane of a higher number
+    start: float  # Where the ray begins along it, from the edge of the grid [m]
+    farthest: float  # Where it ends [m]
+    inverse: float  # Length of the ray over its way along it; 0 for an upright one
+    least: int  # First cell of each lane that the ray may reach at all
+    most: int  # The last one
+    cell_stride: int  # From a cell to the next one of its lane
+    aside: float  # Where the ray begins across the lanes, from the edge of the grid [m]
+    slope: float  # Its way across lanes over that along it
 
 
 def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> ObstacleGrid:

@@ -15,8 +15,7 @@ from eyas.lanes.elementary import sin_cos
 
 __all__ = ["GRAVITY", "accelerometer", "feel", "gyroscope", "rest", "smoothing_share"]
 
-GRAVITY = 9.81
-"""[m/s^2]"""
+GRAVITY = 9.81  # [m/s^2]
 
 
 def smoothing_share(time_constant: float) -> float:

@@ -25,17 +25,13 @@ from eyas.lanes import compiled, exact, kernel
 
 __all__ = ["CAR_MOUNT", "MOUNT", "POINT_NUMBERS", "Lidar"]
 
-MOUNT = MountConfig(z=0.031)
-"""Where the original's drone has it."""
+MOUNT = MountConfig(z=0.031)  # Where the original's drone has it
 
-CAR_MOUNT = MountConfig(x=-0.1)
-"""Where the original's car has it."""
+CAR_MOUNT = MountConfig(x=-0.1)  # Where the original's car has it
 
-POINT_NUMBERS = 5
-"""Numbers of each point in a radar packet: x, y, z, layer, time."""
+POINT_NUMBERS = 5  # Numbers of each point in a radar packet: x, y, z, layer, time
 
-_ROUNDING = 1e-9
-"""Keeps a point that is due at a whole step from being due one later."""
+_ROUNDING = 1e-9  # Keeps a point that is due at a whole step from being due one later
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", np.float64, np.int32)
@@ -167,22 +163,15 @@ class _Scan(NamedTuple):
     episodes: EpisodeState
     obstacles: Obstacles
     active: NDArray[np.bool_]
-    place: Floats
-    """Of the lidar, body frame [m], shape (3,)."""
-    ahead: Floats
-    """Direction of each point in the body frame, shape (P, 3)."""
-    turned: NDArray[np.int64]
-    """Points measured since the reset, shape (N,)."""
-    seed: NDArray[np.int64]
-    """Of the noise of the episode, shape (N,)."""
+    place: Floats  # Of the lidar, body frame [m], shape (3,)
+    ahead: Floats  # Direction of each point in the body frame, shape (P, 3)
+    turned: NDArray[np.int64]  # Points measured since the reset, shape (N,)
+    seed: NDArray[np.int64]  # Of the noise of the episode, shape (N,)
     range: Floats
     """Of the point of each number modulo K, the points that are kept [m], shape (N, K)."""
-    thing: NDArray[np.int32]
-    """The same [object id]."""
-    time: Floats
-    """The same [s]."""
-    per_step: float
-    """Points measured in a physics step."""
+    thing: NDArray[np.int32]  # The same [object id]
+    time: Floats  # The same [s]
+    per_step: float  # Points measured in a physics step
     nearest: float
     farthest: float
     noise: float

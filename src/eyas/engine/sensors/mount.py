@@ -18,14 +18,10 @@ Floats = NDArray[np.float64]
 class Mount(NamedTuple):
     """The place of a sensor, for kernels."""
 
-    place: Floats
-    """Body frame [m], shape (3,)."""
-    turn: Floats
-    """Sensor to body, shape (3, 3)."""
-    pitch: float
-    """Positive down [rad]."""
-    yaw: float
-    """[rad]"""
+    place: Floats  # Body frame [m], shape (3,)
+    turn: Floats  # Sensor to body, shape (3, 3)
+    pitch: float  # Positive down [rad]
+    yaw: float  # [rad]
 
 
 def mount_of(config: MountConfig) -> Mount:

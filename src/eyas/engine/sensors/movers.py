@@ -100,11 +100,9 @@ def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> N
 class _Place(NamedTuple):
     """Where the reference point of the straight vehicle is, carried by its truck or trailer."""
 
-    x: float
-    """[m]"""
+    x: float  # [m]
     y: float
-    cosine: float
-    """Of the heading of that one."""
+    cosine: float  # Of the heading of that one
     sine: float
 
 

@@ -26,22 +26,14 @@ class Solids(NamedTuple):
     Item i below B is prism i; item B + c is cylinder c.
     """
 
-    points: Floats
-    """Corners of the prisms, counter-clockwise [m], shape (K, 2)."""
-    first: NDArray[np.int32]
-    """Start of each prism's corners, shape (B + 1,)."""
-    round: Floats
-    """Centre and radius of each cylinder [m], shape (C, 3)."""
-    bottom: Floats
-    """z of each item [m], shape (B + C,)."""
-    top: Floats
-    """z of each item [m], shape (B + C,)."""
-    thing: NDArray[np.int32]
-    """Object of the scene that each item belongs to, shape (B + C,)."""
-    grid: ObstacleGrid
-    """The items in each cell."""
-    ground: int
-    """Object of the scene that the ground is."""
+    points: Floats  # Corners of the prisms, counter-clockwise [m], shape (K, 2)
+    first: NDArray[np.int32]  # Start of each prism's corners, shape (B + 1,)
+    round: Floats  # Centre and radius of each cylinder [m], shape (C, 3)
+    bottom: Floats  # z of each item [m], shape (B + C,)
+    top: Floats  # z of each item [m], shape (B + C,)
+    thing: NDArray[np.int32]  # Object of the scene that each item belongs to, shape (B + C,)
+    grid: ObstacleGrid  # The items in each cell
+    ground: int  # Object of the scene that the ground is
 
 
 BLOCK: Final = np.dtype(
@@ -65,16 +57,12 @@ class MovingObstacles(NamedTuple):
     """The actors, and the bodies of the others, around N trackers, in W worlds."""
 
     motion: Motion
-    world: NDArray[np.int32]
-    """World of each tracker, shape (N,)."""
+    world: NDArray[np.int32]  # World of each tracker, shape (N,)
     model: NDArray[np.int32]
     """Model of each actor in each world, index into the catalogue, shape (W, A)."""
-    block: NDArray[np.void]
-    """Boxes of all models, of dtype `BLOCK`, shape (K,)."""
-    first: NDArray[np.int32]
-    """Start of each model's boxes, shape (M + 1,)."""
-    middle: Floats
-    """Distance of each model's middle ahead of its reference point [m], shape (M,)."""
+    block: NDArray[np.void]  # Boxes of all models, of dtype `BLOCK`, shape (K,)
+    first: NDArray[np.int32]  # Start of each model's boxes, shape (M + 1,)
+    middle: Floats  # Distance of each model's middle ahead of its reference point [m], shape (M,)
     bodies: TrackerState
     """The N trackers, whose bodies others in their world meet; none: they have no bodies."""
 
@@ -82,18 +70,12 @@ class MovingObstacles(NamedTuple):
 class Boxes(NamedTuple):
     """Working memory: the upright boxes of what moves near one tracker at one time, at most B."""
 
-    corners: Floats
-    """Corners, counter-clockwise, those of box b from 4 b [m], shape (4 B, 2)."""
-    bottom: Floats
-    """[m], shape (B,)."""
-    top: Floats
-    """[m], shape (B,)."""
-    moved: Floats
-    """Motion in the last physics step [m], shape (B, 3)."""
-    thing: NDArray[np.int32]
-    """Object id, shape (B,)."""
-    bounds: Floats
-    """West, south, east, north [m], shape (B, 4)."""
+    corners: Floats  # Corners, counter-clockwise, those of box b from 4 b [m], shape (4 B, 2)
+    bottom: Floats  # [m], shape (B,)
+    top: Floats  # [m], shape (B,)
+    moved: Floats  # Motion in the last physics step [m], shape (B, 3)
+    thing: NDArray[np.int32]  # Object id, shape (B,)
+    bounds: Floats  # West, south, east, north [m], shape (B, 4)
 
 
 class Obstacles(NamedTuple):

@@ -21,8 +21,7 @@ from eyas.lanes import kernel
 
 __all__ = ["Ray", "cast_ray"]
 
-_HALVINGS = 24
-"""How often the part of a ray that enters a hill is halved."""
+_HALVINGS = 24  # How often the part of a ray that enters a hill is halved
 
 _SLACK = 1e-3
 """What is nearer than this is looked at exactly: far more than rounding moves anything [m]."""
@@ -31,12 +30,10 @@ _SLACK = 1e-3
 class Ray(NamedTuple):
     """A ray in the world frame."""
 
-    x: float
-    """[m]"""
+    x: float  # [m]
     y: float
     z: float
-    ahead_x: float
-    """Unit vector."""
+    ahead_x: float  # Unit vector
     ahead_y: float
     ahead_z: float
 

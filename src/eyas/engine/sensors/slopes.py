@@ -10,11 +10,9 @@ from eyas.lanes import exact, kernel
 
 __all__ = ["Slopes", "free_way", "slopes_of"]
 
-_CELLS: Final = 4
-"""Cells of the relief along the side of a block."""
+_CELLS: Final = 4  # Cells of the relief along the side of a block
 
-_AROUND: Final = (1, 4)
-"""Blocks around each over which the steepest slope is taken."""
+_AROUND: Final = (1, 4)  # Blocks around each over which the steepest slope is taken
 
 _SLACK: Final = 1e-3
 """What is nearer to the ground than this is looked at exactly [m]: far more than rounding."""
@@ -25,12 +23,9 @@ Floats = NDArray[np.float64]
 class Slopes(NamedTuple):
     """The steepest slopes around square blocks of the relief, rise per metre in any direction."""
 
-    near: Floats
-    """In a block and those beside it, shape (R, C); (0, 0) for a flat map."""
-    far: Floats
-    """In a block and four around it, shape (R, C)."""
-    width: float
-    """Side of a block [m]."""
+    near: Floats  # In a block and those beside it, shape (R, C); (0, 0) for a flat map
+    far: Floats  # In a block and four around it, shape (R, C)
+    width: float  # Side of a block [m]
 
 
 def slopes_of(terrain: Terrain) -> Slopes:

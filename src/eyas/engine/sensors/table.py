@@ -30,10 +30,8 @@ class Fitted:
 
     sensor: Sensor
     errors: ReadingConfig
-    settings: tuple[float, ...]
-    """Values of its own settings, in the order of `Sensor.settings`."""
-    first: int
-    """Column of its first number in rows of all readings."""
+    settings: tuple[float, ...]  # Values of its own settings, in the order of `Sensor.settings`.
+    first: int  # Column of its first number in rows of all readings
     random: tuple[str, int, int]
     """Name of the seed of its random numbers, empty: that of the episode's readings; and with that
     seed the channels of its first number's noise and of its drop-out."""

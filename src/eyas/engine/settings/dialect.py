@@ -18,8 +18,7 @@ Nested = Mapping[str, Any]
 class Dialect(Protocol):
     """The settings of another program. Its keys begin with a capital letter, ours with none."""
 
-    file: str
-    """Name of its file beside a recording."""
+    file: str  # Name of its file beside a recording
 
     def is_spoken(self, values: Nested) -> bool:
         """Return whether the content of a file is in this dialect."""

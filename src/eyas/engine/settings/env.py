@@ -72,12 +72,10 @@ class GimbalConfig(Config):
 class ActionKind(StrEnum):
     """What an agent chooses from."""
 
-    DISCRETE = "discrete"
-    """Seven actions: six motions along or about one axis, and hover."""
+    DISCRETE = "discrete"  # Seven actions: six motions along or about one axis, and hover
     SHARES = "shares"
     """Four numbers from -1 to 1: shares of the speeds forward, left, up and of the turn rate."""
-    VELOCITY = "velocity"
-    """The same four in physical units: m/s and, counter-clockwise, rad/s."""
+    VELOCITY = "velocity"  # The same four in physical units: m/s and, counter-clockwise, rad/s
     DISCRETE_GIMBAL = "discrete+gimbal"
     """Eleven actions: the seven, and four that turn the camera: down, up, left, right."""
     SHARES_GIMBAL = "shares+gimbal"
@@ -107,14 +105,11 @@ class ActionKind(StrEnum):
 class ObservationPart(StrEnum):
     """What an observation can hold; of several, it is a dictionary by these names."""
 
-    IMAGE = "image"
-    """The camera's picture, uint8."""
+    IMAGE = "image"  # The camera's picture, uint8
     CAMERAS = "cameras"
     """Pictures of the cameras that `cameras` adds, in their order, uint8, along a first axis."""
-    DEPTH = "depth"
-    """Distance along the optical axis [m], float32, infinity for the sky."""
-    CLASSES = "classes"
-    """`eyas.engine.state.scene.ObjectClass` of each pixel, uint8."""
+    DEPTH = "depth"  # Distance along the optical axis [m], float32, infinity for the sky
+    CLASSES = "classes"  # `eyas.engine.state.scene.ObjectClass` of each pixel, uint8.
     SENSORS = "sensors"
     """GPS, accelerometer, gyroscope and IMU: 19 numbers of the basic packet, float32."""
     LIDAR = "lidar"

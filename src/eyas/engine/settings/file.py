@@ -25,8 +25,7 @@ Nested = dict[str, Any]
 SCHEMA_KEY = "$schema"
 """By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
 
-_LARGEST = 16 << 20
-"""Largest file of settings [bytes]."""
+_LARGEST = 16 << 20  # Largest file of settings [bytes]
 
 
 def load_settings(

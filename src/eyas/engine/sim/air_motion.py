@@ -20,10 +20,8 @@ from eyas.engine.targets.quadrotor import QUADROTOR
 
 __all__ = ["air_motions"]
 
-_TEXEL = 4.0
-"""Side of the squares in which heights are known [m]."""
-_AROUND = 2
-"""Squares around a place whose heights count."""
+_TEXEL = 4.0  # Side of the squares in which heights are known [m]
+_AROUND = 2  # Squares around a place whose heights count
 
 _BIRD_SPEED, _DRONE_SPEED = 11.0, 7.0
 

@@ -45,8 +45,7 @@ __all__ = ["Assets", "load_assets"]
 
 _FALLING = ("flakes", "rain", "leaves")
 
-_RATE = 10.0
-"""Samples per second of worlds without vehicles, as of a recording [Hz]."""
+_RATE = 10.0  # Samples per second of worlds without vehicles, as of a recording [Hz]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +61,7 @@ class Assets:
     """Returns what rays and bodies may meet, loaded when it is first asked for."""
     body_part: int = -1
     """Part of the renderer's library that a tracker looks like to others; -1: it has none."""
-    signals: SignalLights | None = None
-    """Lights of signals that change; None: there are none."""
+    signals: SignalLights | None = None  # Lights of signals that change; None: there are none
 
 
 def load_assets(

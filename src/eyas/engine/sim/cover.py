@@ -17,22 +17,18 @@ from eyas.lanes import exact
 
 __all__ = ["cover_of", "hidden_stretches"]
 
-_HEIGHT = 22.0
-"""Height of the drone above the road, as in the protocols [m]."""
+_HEIGHT = 22.0  # Height of the drone above the road, as in the protocols [m]
 
 _ASIDE = (4.5, 10.0)
 """How far beside the car it is [m]: so that its camera, which looks down by 1.37 rad, centres the
 car, and so that the car is at the edge of the picture. A drone may be on any side, so a place is
 hidden only if all four sides see none of it: else, who flies on sees the car under a crown."""
 
-_STEP = 1.0
-"""Between two places on a lane that are looked at [m]."""
+_STEP = 1.0  # Between two places on a lane that are looked at [m]
 
-_POINTS = (-0.8, 0.0, 0.8)
-"""Points of a car's width that are looked at, to the left [m]."""
+_POINTS = (-0.8, 0.0, 0.8)  # Points of a car's width that are looked at, to the left [m]
 
-_ROOF = 1.3
-"""Their height: the roof is what is seen longest [m]."""
+_ROOF = 1.3  # Their height: the roof is what is seen longest [m]
 
 Floats = NDArray[np.float64]
 

@@ -44,8 +44,7 @@ class Crowd(Config):
         return self.follows_vehicles or any(extra.is_traffic for extra in self.extras)
 
 
-NOBODY = Crowd()
-"""Only SUMO's vehicles."""
+NOBODY = Crowd()  # Only SUMO's vehicles
 
 
 def crowd_of(config: SimConfig, trackers: int = 0) -> Crowd:

@@ -38,10 +38,8 @@ class Surroundings(NamedTuple):
     """Where and when a crowd moves."""
 
     scene: Scene
-    clock: SampleClock
-    """Number of samples, and their rate."""
-    seed: int
-    """Of places and ways."""
+    clock: SampleClock  # Number of samples, and their rate
+    seed: int  # Of places and ways
     vehicles: Motion | None = None
     """The vehicles, for which those wait who cross roads; None: there are none, or their motion is
     not known in advance."""

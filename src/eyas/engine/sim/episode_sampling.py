@@ -33,73 +33,54 @@ __all__ = [
 
 _LOOKS, _LIGHT, _CAMERA, _EPISODE = map(room_key, ("looks", "light", "camera", "episode"))
 
-ATTEMPTS: Final = 100
-"""Number of start times that are tried."""
+ATTEMPTS: Final = 100  # Number of start times that are tried
 
-_TIMES: Final = 10
-"""Number of start times after which half the stay of a vehicle is enough."""
+_TIMES: Final = 10  # Number of start times after which half the stay of a vehicle is enough
 
-_ROUNDING: Final = 1e-9
-"""Tolerance for rounding errors in times that are multiples of 2 ms [s]."""
+_ROUNDING: Final = 1e-9  # Tolerance for rounding errors in times that are multiples of 2 ms [s]
 
 
 class Streams(NamedTuple):
     """What the random numbers of N trackers depend on, beside the number of the episode."""
 
-    seed: NDArray[np.int64]
-    """Seed of each, shape (N,)."""
-    number: NDArray[np.int64]
-    """Number of each among those with its seed, shape (N,)."""
+    seed: NDArray[np.int64]  # Seed of each, shape (N,)
+    number: NDArray[np.int64]  # Number of each among those with its seed, shape (N,)
 
 
 class ModelTable(NamedTuple):
     """The M models of the catalogue, as far as targets have their numbers; see `TargetState`."""
 
-    size: NDArray[np.float64]
-    """[m], shape (M, 3)."""
-    rise: NDArray[np.float64]
-    """[m], shape (M,)."""
-    ahead: NDArray[np.float64]
-    """[m], shape (M,)."""
-    slowest: NDArray[np.float64]
-    """[m/s], shape (M,)."""
+    size: NDArray[np.float64]  # [m], shape (M, 3)
+    rise: NDArray[np.float64]  # [m], shape (M,)
+    ahead: NDArray[np.float64]  # [m], shape (M,)
+    slowest: NDArray[np.float64]  # [m/s], shape (M,)
 
 
 class SamplingRules(NamedTuple):
     """How episodes are sampled: settings, and limits that follow from them."""
 
-    pitch: Rule
-    """The start: the fields of `StartConfig`, in the order in which they are sampled."""
+    pitch: Rule  # The start: the fields of `StartConfig`, in the order in which they are sampled
     horizontal_bias: Rule
     vertical_bias: Rule
     height: Rule
     direction: Rule
-    field_of_view: Rule
-    """[rad]"""
-    varied_field: int
-    """1: the field of view is sampled; 0: it is a number."""
-    same_target: int
-    """1: trackers that share a world follow one target."""
-    first_tick: int
-    """Earliest start [physics steps]."""
+    field_of_view: Rule  # [rad]
+    varied_field: int  # 1: the field of view is sampled; 0: it is a number
+    same_target: int  # 1: trackers that share a world follow one target
+    first_tick: int  # Earliest start [physics steps]
     times: int
     """Number of starts that leave enough of the traffic for a whole episode [physics steps]."""
-    last_tick: int
-    """End of the traffic [physics steps]."""
-    steps: int
-    """Longest episode [physics steps]."""
+    last_tick: int  # End of the traffic [physics steps]
+    steps: int  # Longest episode [physics steps]
 
 
 class EpisodeSampling(NamedTuple):
     """Everything that the sampling of episodes reads and writes."""
 
     snapshot: Snapshot
-    world_of: NDArray[np.int32]
-    """World of each tracker, shape (N,)."""
-    leader: NDArray[np.int64]
-    """First tracker of each world, shape (W,)."""
-    lasting: NDArray[np.bool_]
-    """Whether the time of each world goes on, shape (W,)."""
+    world_of: NDArray[np.int32]  # World of each tracker, shape (N,)
+    leader: NDArray[np.int64]  # First tracker of each world, shape (W,)
+    lasting: NDArray[np.bool_]  # Whether the time of each world goes on, shape (W,)
     side: NDArray[np.float64]
     """What is added to the sampled direction of each tracker, whose target others may follow, too
     [rad], shape (N,)."""
@@ -109,8 +90,7 @@ class EpisodeSampling(NamedTuple):
     light: LightRules
     rules: SamplingRules
     streams: Streams
-    free: NDArray[np.bool_]
-    """Working memory: whether each actor may be the target, shape (A,)."""
+    free: NDArray[np.bool_]  # Working memory: whether each actor may be the target, shape (A,)
     state: NDArray[np.int64]
     """Working memory: a random stream, see `eyas.lanes.pcg64`, shape (`STATE`,)."""
 
@@ -118,10 +98,8 @@ class EpisodeSampling(NamedTuple):
 class Call(NamedTuple):
     """The input and output of one call."""
 
-    starts: NDArray[np.int64]
-    """Number of trackers that begin an episode, K, shape (1,)."""
-    chosen: NDArray[np.int64]
-    """Those trackers, in the first K of N elements."""
+    starts: NDArray[np.int64]  # Number of trackers that begin an episode, K, shape (1,)
+    chosen: NDArray[np.int64]  # Those trackers, in the first K of N elements
     pitch: NDArray[np.float64]
     """Their sampled camera pitch, positive down [rad], in the first K of N elements; written."""
     problem: NDArray[np.int64]

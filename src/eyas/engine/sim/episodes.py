@@ -32,13 +32,11 @@ from eyas.lanes.pcg64 import STATE
 
 __all__ = ["Episodes", "Sampler"]
 
-Sampler = Callable[[int, EpisodeKey], None]
-"""Draws something for the episode of a tracker."""
+Sampler = Callable[[int, EpisodeKey], None]  # Draws something for the episode of a tracker
 
 _follow = interpreted(follow)
 
-_ATTEMPTS = 100
-"""Starts that are tried for an episode."""
+_ATTEMPTS = 100  # Starts that are tried for an episode
 
 _ATTEMPT = 1 << 24
 """More than the episodes of a tracker: added to their number, it gives another stream."""

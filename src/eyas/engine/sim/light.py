@@ -20,23 +20,17 @@ _UNCHANGED = LightConfig()
 class LightRules(NamedTuple):
     """How light and fog are sampled; 1 means yes, 0 no."""
 
-    changes: int
-    """Whether anything is sampled."""
-    each_reset: int
-    """Whether it is sampled for each episode, not only for the first."""
+    changes: int  # Whether anything is sampled
+    each_reset: int  # Whether it is sampled for each episode, not only for the first
     sky: Rule
     sun: Rule
-    visibility: Rule
-    """[m]"""
+    visibility: Rule  # [m]
     sky_replaces: int
     """Whether the sampled luminosity replaces that of the weather, or is added to it."""
     sun_replaces: int
-    visible: int
-    """Whether the visibility is sampled, or that of the weather."""
-    luminosity: float
-    """Of the weather."""
-    fog_density: float
-    """Of the weather [1/m]."""
+    visible: int  # Whether the visibility is sampled, or that of the weather
+    luminosity: float  # Of the weather
+    fog_density: float  # Of the weather [1/m]
 
 
 @kernel

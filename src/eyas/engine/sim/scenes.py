@@ -48,10 +48,8 @@ class Lenses(Enum):
     """What is drawn of signals that change."""
 
     NONE = 0
-    PLAIN = 1
-    """The lenses that shine."""
-    COVERING = 2
-    """These, and what hides an amber that does not, see `lens_levels`."""
+    PLAIN = 1  # The lenses that shine
+    COVERING = 2  # These, and what hides an amber that does not, see `lens_levels`
 
 
 _LOG = logging.getLogger("eyas")

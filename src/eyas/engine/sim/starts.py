@@ -25,11 +25,9 @@ AROUND_BODY = Margin(aside=0.3, above=0.3, ground=-0.5)
 """Around the middle of the body, which holds the camera; the ground is let off half a metre, as
 cars start on it."""
 
-_APART = 1.0
-"""Least distance of two trackers of a world that follow targets of their own [m]."""
+_APART = 1.0  # Least distance of two trackers of a world that follow targets of their own [m]
 
-_NOWHERE = 1e9
-"""Place of trackers that have not started yet [m]."""
+_NOWHERE = 1e9  # Place of trackers that have not started yet [m]
 
 
 class Starts:
@@ -100,22 +98,16 @@ class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
     snapshot: Snapshot
-    world_of: NDArray[np.int32]
-    """World of each tracker, shape (N,)."""
-    lasting: NDArray[np.bool_]
-    """Whether trackers share each world, shape (W,)."""
+    world_of: NDArray[np.int32]  # World of each tracker, shape (N,)
+    lasting: NDArray[np.bool_]  # Whether trackers share each world, shape (W,)
     motion: Motion
     terrain: Terrain
     solids: Solids
     margin: Margin
-    apart: float
-    """Least distance of two trackers of a world [m]."""
-    starts: NDArray[np.int64]
-    """Number of trackers that begin, K, shape (1,)."""
-    chosen: NDArray[np.int64]
-    """Those trackers, in the first K of N elements."""
-    lift: NDArray[np.float64]
-    """See `Starts.lifts`, in the first K of N elements; written."""
+    apart: float  # Least distance of two trackers of a world [m]
+    starts: NDArray[np.int64]  # Number of trackers that begin, K, shape (1,)
+    chosen: NDArray[np.int64]  # Those trackers, in the first K of N elements
+    lift: NDArray[np.float64]  # See `Starts.lifts`, in the first K of N elements; written.
 
 
 @compiled

@@ -67,26 +67,20 @@ def offset_pose(
 class StepSurroundings(NamedTuple):
     """Everything outside the trackers that a step reads."""
 
-    motion: Motion
-    """Motion of all actors."""
-    terrain: Terrain
-    """The ground."""
+    motion: Motion  # Motion of all actors
+    terrain: Terrain  # The ground
 
 
 class StepState(NamedTuple):
     """Everything that a step reads and writes."""
 
     snapshot: Snapshot
-    memory: Any
-    """Memory of the trackers: the record that their kernels use."""
+    memory: Any  # Memory of the trackers: the record that their kernels use
     around: StepSurroundings
     rules: Rules
-    inertial_share: float
-    """See `eyas.engine.sensors.inertial.smoothing_share`."""
-    mount: Mount
-    """Where cameras are that no gimbal carries."""
-    launched: int
-    """1: episodes begin at the velocity of the target; 0: at rest."""
+    inertial_share: float  # See `eyas.engine.sensors.inertial.smoothing_share`.
+    mount: Mount  # Where cameras are that no gimbal carries
+    launched: int  # 1: episodes begin at the velocity of the target; 0: at rest
 
 
 class Orders(NamedTuple):
@@ -130,12 +124,9 @@ Kernel = Callable[..., Any]
 class Step(NamedTuple):
     """The calls of the step, bound to the state of a simulation."""
 
-    fly: BoundCall
-    """Moves all trackers by their commands."""
-    carry: BoundCall
-    """Moves all trackers with their targets."""
-    begin: BoundCall
-    """Puts the chosen trackers at their start poses."""
+    fly: BoundCall  # Moves all trackers by their commands
+    carry: BoundCall  # Moves all trackers with their targets
+    begin: BoundCall  # Puts the chosen trackers at their start poses
 
 
 class StepKernels(NamedTuple):
@@ -144,10 +135,8 @@ class StepKernels(NamedTuple):
     fly: CompiledCall
     carry: CompiledCall
     begin: CompiledCall
-    fly_one: Kernel
-    """`fly_one(state, orders, n)`: what `fly` does for tracker `n`."""
-    begin_one: Kernel
-    """`begin_one(state, n, pitch)`: what `begin` does for tracker `n`."""
+    fly_one: Kernel  # `fly_one(state, orders, n)`: what `fly` does for tracker `n`
+    begin_one: Kernel  # `begin_one(state, n, pitch)`: what `begin` does for tracker `n`
 
     def bind(self, state: Held[StepState], orders: Held[Orders]) -> Step:
         """Return the calls, bound to a state."""

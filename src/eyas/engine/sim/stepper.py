@@ -35,8 +35,7 @@ __all__ = ["Stepper", "step_kernels", "step_state"]
 
 Floats = NDArray[np.float64]
 
-_FAST = 1e3
-"""Length of all commands together beyond which each is looked at [m/s]."""
+_FAST = 1e3  # Length of all commands together beyond which each is looked at [m/s]
 
 _JUMP, _SPIN = 1e3, 1e2
 """Most speed [m/s] and turn rate [rad/s] that a place far away gives: a flown body could not be

@@ -26,55 +26,41 @@ from eyas.lanes.elementary import power
 
 __all__ = ["wind_field", "winds_over"]
 
-_SPACING = 5.0
-"""Of the grid [m]."""
+_SPACING = 5.0  # Of the grid [m]
 
-_LEVELS, _KEPT = 20, 13
-"""Levels that are computed, and those that are kept: up to 65 m."""
+_LEVELS, _KEPT = 20, 13  # Levels that are computed, and those that are kept: up to 65 m
 
 _MARGIN, _MOST = 12, 400
 """Columns around the buildings that are computed, too, and the most on a side."""
 
 _DIRECTIONS = 16
 
-_SWEEPS = 60
-"""Sweeps of the relaxation; with 16 more the wind changes by less than 1 %."""
+_SWEEPS = 60  # Sweeps of the relaxation; with 16 more the wind changes by less than 1 %
 
-_OVER = 1.7
-"""Its over-relaxation."""
+_OVER = 1.7  # Its over-relaxation
 
-_EXPONENT, _REFERENCE = 0.22, 10.0
-"""The profile over suburbs: a power of the height over 10 m."""
+_EXPONENT, _REFERENCE = 0.22, 10.0  # The profile over suburbs: a power of the height over 10 m
 
-_WALL = 3.0
-"""Height from which on something is a building [m]."""
+_WALL = 3.0  # Height from which on something is a building [m]
 
 _FARTHEST = 60
 """How far upwind buildings are looked for, and how wide they count, in steps of the grid."""
 
-_NEAR = 2
-"""How far around a place its wall is looked at, in steps of the grid."""
+_NEAR = 2  # How far around a place its wall is looked at, in steps of the grid
 
 
 class _Grid(NamedTuple):
     """A wind over a map: C columns, R rows, L levels."""
 
-    height: NDArray[np.float64]
-    """Of the buildings [m], shape (R, C)."""
-    zone: NDArray[np.float64]
-    """Length of the zone behind a building [m], shape (R, C)."""
-    guess: NDArray[np.float64]
-    """First guess, towards east and north [m/s], shape (L, R, C, 2)."""
+    height: NDArray[np.float64]  # Of the buildings [m], shape (R, C)
+    zone: NDArray[np.float64]  # Length of the zone behind a building [m], shape (R, C)
+    guess: NDArray[np.float64]  # First guess, towards east and north [m/s], shape (L, R, C, 2)
     u: NDArray[np.float64]
     """Towards east through the faces between columns [m/s], shape (L, R, C + 1)."""
-    v: NDArray[np.float64]
-    """Towards north through those between rows, shape (L, R + 1, C)."""
-    w: NDArray[np.float64]
-    """Upwards through those between levels, shape (L + 1, R, C)."""
-    potential: NDArray[np.float64]
-    """What the guess is corrected by, shape (L, R, C)."""
-    east: float
-    """Direction of the wind, cosine from east."""
+    v: NDArray[np.float64]  # Towards north through those between rows, shape (L, R + 1, C)
+    w: NDArray[np.float64]  # Upwards through those between levels, shape (L + 1, R, C)
+    potential: NDArray[np.float64]  # What the guess is corrected by, shape (L, R, C)
+    east: float  # Direction of the wind, cosine from east
     north: float
 
 

@@ -27,16 +27,11 @@ __all__ = [
 class DrawStage(IntEnum):
     """Stages of drawing a picture, in order; `eyas bench --stages` stops after each."""
 
-    CULLING = 0
-    """Find the parts of the scene that may be visible."""
-    VERTICES = 1
-    """Project them to the screen, and leave out the triangles that are not seen."""
-    RASTERISING = 2
-    """Find the nearest triangle in each pixel, and write all outputs except colours."""
-    MOVERS_LIGHT = 3
-    """Compute the shadows of moving things and the light of their lamps."""
-    SHADING = 4
-    """Compute the colours, the last stage."""
+    CULLING = 0  # Find the parts of the scene that may be visible
+    VERTICES = 1  # Project them to the screen, and leave out the triangles that are not seen
+    RASTERISING = 2  # Find the nearest triangle in each pixel, and write all outputs except colours
+    MOVERS_LIGHT = 3  # Compute the shadows of moving things and the light of their lamps
+    SHADING = 4  # Compute the colours, the last stage
 
 
 @dataclass(slots=True)
@@ -51,20 +46,16 @@ class PartLibrary:
     is the body of its trailer."""
 
 
-NO_SPRAY = np.zeros((0, 0, 8), np.float32)
-"""`DrawList.spray` where roads are dry."""
+NO_SPRAY = np.zeros((0, 0, 8), np.float32)  # `DrawList.spray` where roads are dry.
 
 
 @dataclass(slots=True)
 class DrawList:
     """Moving parts in W worlds, I slots per world."""
 
-    part: NDArray[np.int32]
-    """Index into the part library, -1 for an empty slot, shape (W, I)."""
-    pose: NDArray[np.float32]
-    """Part to world: rotation and translation [m], shape (W, I, 3, 4)."""
-    colour: NDArray[np.float32]
-    """Body colour, sRGB 0 to 1, shape (W, I, 3)."""
+    part: NDArray[np.int32]  # Index into the part library, -1 for an empty slot, shape (W, I)
+    pose: NDArray[np.float32]  # Part to world: rotation and translation [m], shape (W, I, 3, 4)
+    colour: NDArray[np.float32]  # Body colour, sRGB 0 to 1, shape (W, I, 3)
     object_id: NDArray[np.int32]
     """Object id, `ACTOR_OBJECT + actor`, or that of the scene's object a part is drawn on, shape
     (W, I)."""
@@ -116,16 +107,12 @@ class DrawList:
 class Views:
     """V cameras to draw."""
 
-    position: NDArray[np.float64]
-    """Optical centres, world frame [m], shape (V, 3)."""
-    rotation: NDArray[np.float64]
-    """Camera to world; columns forward, left, up, shape (V, 3, 3)."""
-    world: NDArray[np.int32]
-    """World whose moving parts each view shows, shape (V,)."""
+    position: NDArray[np.float64]  # Optical centres, world frame [m], shape (V, 3)
+    rotation: NDArray[np.float64]  # Camera to world; columns forward, left, up, shape (V, 3, 3)
+    world: NDArray[np.int32]  # World whose moving parts each view shows, shape (V,)
     subject: NDArray[np.int32]
     """Object id of each view's subject, whose box is measured, or -1, shape (V,)."""
-    field_of_view: float | NDArray[np.float64]
-    """Horizontal [rad], of all views, or shape (V,)."""
+    field_of_view: float | NDArray[np.float64]  # Horizontal [rad], of all views, or shape (V,)
     vertical_field_of_view: float | NDArray[np.float64] | None = None
     """[rad], as above; None: pixels are square. Set it to squeeze a wide view into a square
     picture."""
@@ -134,8 +121,7 @@ class Views:
     instant: NDArray[np.float64] | None = None
     """Time at which what falls and what the wind moves is shown [s], shape (V,); None: nothing
     falls, and the air is calm."""
-    falling: bool = True
-    """Whether flakes, drops and leaves are drawn at that time."""
+    falling: bool = True  # Whether flakes, drops and leaves are drawn at that time
     lens: NDArray[np.float64] | None = None
     """The numbers of the lens of each view, see `eyas.engine.core.lens.Lens`, shape (V, 10); None: all
     are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
@@ -268,8 +254,7 @@ class MovingParts(NamedTuple):
     """Row of each pixel's part, -1 for what stands still, and the sky, shape (H, W)."""
     depth: NDArray[np.float32]
     """Distance along the optical axis [m], infinity for the sky, shape (H, W)."""
-    part: NDArray[np.int32]
-    """Index into the part library, -1 where there is none now, shape (I,)."""
+    part: NDArray[np.int32]  # Index into the part library, -1 where there is none now, shape (I,)
     pose: NDArray[np.float32]
     """Part to world: rotation, or shear, and translation [m], shape (I, 3, 4)."""
 

@@ -14,23 +14,16 @@ Integers = NDArray[np.int64]
 class EpisodeState(NamedTuple):
     """The episodes of N trackers: state and results of the task."""
 
-    number: Integers
-    """Number of the episode, from 0; -1 before the first reset, shape (N,)."""
-    tick: Integers
-    """Time in the traffic, in physics steps of 2 ms, shape (N,)."""
-    step_count: Integers
-    """Physics steps since the reset, shape (N,)."""
-    no_reward_count: Integers
-    """Physics steps since the last reward, shape (N,)."""
-    reward: Floats
-    """The built-in reward of this instant, shape (N,)."""
-    reason: Integers
-    """`eyas.engine.task.done.DoneReason`, 0 while the episode goes on, shape (N,)."""
+    number: Integers  # Number of the episode, from 0; -1 before the first reset, shape (N,)
+    tick: Integers  # Time in the traffic, in physics steps of 2 ms, shape (N,)
+    step_count: Integers  # Physics steps since the reset, shape (N,)
+    no_reward_count: Integers  # Physics steps since the last reward, shape (N,)
+    reward: Floats  # The built-in reward of this instant, shape (N,)
+    reason: Integers  # `eyas.engine.task.done.DoneReason`, 0 while the episode goes on, shape (N,).
     breach: Integers
     """`DoneReason` of the limit that the body violates now, whether or not it ends the episode,
     shape (N,)."""
-    not_a_number: NDArray[np.bool_]
-    """Whether a value was not a finite number, shape (N,)."""
+    not_a_number: NDArray[np.bool_]  # Whether a value was not a finite number, shape (N,)
     crash: NDArray[np.bool_]
     """Whether the tracker has crashed, as `done.crash` means it, shape (N,)."""
     contact: Floats
@@ -39,29 +32,23 @@ class EpisodeState(NamedTuple):
     contact_object: Integers
     """Object id of what it has touched there, as in `Picture.object_id`; -1 if nothing,
     shape (N,)."""
-    direction: Integers
-    """`eyas.engine.task.direction.TargetDirection`, shape (N,)."""
+    direction: Integers  # `eyas.engine.task.direction.TargetDirection`, shape (N,).
     observations: Integers
     """Observations of the target since the reset, counted up to 3, shape (N,)."""
     start_offset: Floats
     """Start relative to the target: forward, left, up [m], heading [rad], shape (N, 4)."""
-    offset: Floats
-    """Horizontal distance of the target from the view centre [m], shape (N,)."""
+    offset: Floats  # Horizontal distance of the target from the view centre [m], shape (N,)
     proportion: Floats
     """1 in the middle of the rewarded part of the picture, 0 at its edge and outside, see
     `eyas.engine.task.reward.view_share`, shape (N,)."""
     view_centre: Floats
     """Ground point that the camera looks at, or the point below it [m], shape (N, 3)."""
-    last_target: Floats
-    """Target one step ago: east, north [m] and heading [rad], shape (N, 3)."""
+    last_target: Floats  # Target one step ago: east, north [m] and heading [rad], shape (N, 3)
     first_position: Floats
     """`relative_position` when the target was first observed [m], shape (N, 3)."""
-    relative_position: Floats
-    """The target's centre in the tracker's body frame [m], shape (N, 3)."""
-    relative_velocity: Floats
-    """Change of `relative_position` [m/s], shape (N, 3)."""
-    relative_acceleration: Floats
-    """Change of `relative_velocity` [m/s^2], shape (N, 3)."""
+    relative_position: Floats  # The target's centre in the tracker's body frame [m], shape (N, 3)
+    relative_velocity: Floats  # Change of `relative_position` [m/s], shape (N, 3)
+    relative_acceleration: Floats  # Change of `relative_velocity` [m/s^2], shape (N, 3)
 
     @classmethod
     def create(cls, count: int) -> "EpisodeState":

@@ -41,12 +41,9 @@ sample [m]; present: 1 while the actor is in the world, else 0.
 class Lamp(IntFlag):
     """What a vehicle signals."""
 
-    BRAKE = 1
-    """Its brake lamps are lit."""
-    LEFT = 2
-    """It is going to go left: its indicators on the left blink."""
-    RIGHT = 4
-    """The same on the right."""
+    BRAKE = 1  # Its brake lamps are lit
+    LEFT = 2  # It is going to go left: its indicators on the left blink
+    RIGHT = 4  # The same on the right
 
 
 _DARK: Final = np.zeros((0, 0), np.uint8)
@@ -55,12 +52,10 @@ _DARK: Final = np.zeros((0, 0), np.uint8)
 class Motion(NamedTuple):
     """Sampled motion of A actors, interpolated by kernels (`eyas.engine.traffic.interpolation`)."""
 
-    table: NDArray[np.void]
-    """Samples of dtype `SAMPLE`, shape (S, A), S at least 2."""
+    table: NDArray[np.void]  # Samples of dtype `SAMPLE`, shape (S, A), S at least 2
     kind: NDArray[np.int32]
     """Kind of each actor: index into `eyas.engine.targets.catalogue.KINDS`, shape (A,)."""
-    rate: float
-    """Samples per second [Hz]."""
+    rate: float  # Samples per second [Hz]
     first_time: float
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
     lamps: NDArray[np.uint8] = _DARK
@@ -73,22 +68,17 @@ class ActorState(NamedTuple):
     position: NDArray[np.float64]
     """Reference point on the road, for a vehicle the middle of its SUMO length, world frame [m],
     shape (W, A, 3)."""
-    yaw: NDArray[np.float64]
-    """Heading, counter-clockwise from east [rad], shape (W, A)."""
+    yaw: NDArray[np.float64]  # Heading, counter-clockwise from east [rad], shape (W, A)
     slope: NDArray[np.float64]
     """Pitch of the road along the heading, positive up [rad], shape (W, A)."""
-    speed: NDArray[np.float64]
-    """Horizontal speed [m/s], shape (W, A)."""
-    velocity: NDArray[np.float64]
-    """Change of `position` [m/s], shape (W, A, 3)."""
-    yaw_rate: NDArray[np.float64]
-    """[rad/s], shape (W, A)."""
+    speed: NDArray[np.float64]  # Horizontal speed [m/s], shape (W, A)
+    velocity: NDArray[np.float64]  # Change of `position` [m/s], shape (W, A, 3)
+    yaw_rate: NDArray[np.float64]  # [rad/s], shape (W, A)
     hitch: NDArray[np.float64]
     """Heading of a trailer less that of its truck [rad], shape (W, A); 0 of all others."""
     travelled: NDArray[np.float64]
     """Path length since the motion began [m], shape (W, A); it gives the rotation of wheels."""
-    present: NDArray[np.bool_]
-    """Whether the actor is in the world, shape (W, A)."""
+    present: NDArray[np.bool_]  # Whether the actor is in the world, shape (W, A)
 
     @classmethod
     def create(cls, worlds: int, actors: int) -> "ActorState":
@@ -114,14 +104,10 @@ class ActorState(NamedTuple):
 class ActorView(NamedTuple):
     """All A actors of a tracker's world at the instant that its pictures show."""
 
-    state: ActorState
-    """Of one world."""
-    before: ActorState
-    """A physics step of 2 ms earlier."""
-    model: NDArray[np.int32]
-    """Indices into `eyas.engine.targets.catalogue.MODELS`, shape (A,)."""
-    colour: NDArray[np.float32]
-    """sRGB, 0 to 1, shape (A, 3)."""
+    state: ActorState  # Of one world
+    before: ActorState  # A physics step of 2 ms earlier
+    model: NDArray[np.int32]  # Indices into `eyas.engine.targets.catalogue.MODELS`, shape (A,).
+    colour: NDArray[np.float32]  # sRGB, 0 to 1, shape (A, 3)
 
 
 def joined(motions: Sequence[Motion]) -> Motion:

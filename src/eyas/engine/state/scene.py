@@ -25,8 +25,7 @@ __all__ = [
     "Scene",
 ]
 
-SKY_OBJECT = -1
-"""Object id of a pixel that shows the sky; kernels read it."""
+SKY_OBJECT = -1  # Object id of a pixel that shows the sky; kernels read it
 
 ACTOR_OBJECT = 1 << 16
 """Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are objects of the scene."""
@@ -83,14 +82,10 @@ DRONE_CLASS = max(ObjectClass) + 1
 class Fixtures:
     """Copies of a few meshes that stand in the world (trees, poles). F copies."""
 
-    levels: tuple[tuple[Mesh, ...], ...]
-    """Meshes of each prototype, the finest first."""
-    prototype: NDArray[np.int32]
-    """Prototype of each copy, shape (F,)."""
-    pose: NDArray[np.float32]
-    """Rotation times scale, and translation [m], shape (F, 3, 4)."""
-    object_id: NDArray[np.int32]
-    """Object of the scene, shape (F,)."""
+    levels: tuple[tuple[Mesh, ...], ...]  # Meshes of each prototype, the finest first
+    prototype: NDArray[np.int32]  # Prototype of each copy, shape (F,)
+    pose: NDArray[np.float32]  # Rotation times scale, and translation [m], shape (F, 3, 4)
+    object_id: NDArray[np.int32]  # Object of the scene, shape (F,)
     names: tuple[str, ...] = ()
     """Name of each prototype, for people and tests; drawing does not use it."""
     trees: tuple[int, ...] = ()
@@ -101,40 +96,27 @@ class Fixtures:
 class Colliders:
     """Solid shapes for rays and collisions. B prisms with K corners in all, C capped cylinders."""
 
-    prism_points: NDArray[np.float64]
-    """Corners, counter-clockwise [m], shape (K, 2)."""
-    prism_first: NDArray[np.int32]
-    """Start of each prism's corners, shape (B + 1,)."""
-    prism_bottom: NDArray[np.float64]
-    """z [m], shape (B,)."""
-    prism_top: NDArray[np.float64]
-    """z [m], shape (B,)."""
-    prism_object: NDArray[np.int32]
-    """Object of the scene, shape (B,)."""
-    cylinder_centre: NDArray[np.float64]
-    """[m], shape (C, 2)."""
-    cylinder_radius: NDArray[np.float64]
-    """[m], shape (C,)."""
-    cylinder_bottom: NDArray[np.float64]
-    """z [m], shape (C,)."""
-    cylinder_top: NDArray[np.float64]
-    """z [m], shape (C,)."""
-    cylinder_object: NDArray[np.int32]
-    """Object of the scene, shape (C,)."""
+    prism_points: NDArray[np.float64]  # Corners, counter-clockwise [m], shape (K, 2)
+    prism_first: NDArray[np.int32]  # Start of each prism's corners, shape (B + 1,)
+    prism_bottom: NDArray[np.float64]  # z [m], shape (B,)
+    prism_top: NDArray[np.float64]  # z [m], shape (B,)
+    prism_object: NDArray[np.int32]  # Object of the scene, shape (B,)
+    cylinder_centre: NDArray[np.float64]  # [m], shape (C, 2)
+    cylinder_radius: NDArray[np.float64]  # [m], shape (C,)
+    cylinder_bottom: NDArray[np.float64]  # z [m], shape (C,)
+    cylinder_top: NDArray[np.float64]  # z [m], shape (C,)
+    cylinder_object: NDArray[np.int32]  # Object of the scene, shape (C,)
 
 
 @dataclass(slots=True)
 class Lamps:
     """Street lamps: spotlights that shine when the weather has them on. L lamps."""
 
-    position: NDArray[np.float32]
-    """Position of the light [m], shape (L, 3)."""
-    axis: NDArray[np.float32]
-    """Unit vectors along the middle of the beams, shape (L, 3)."""
+    position: NDArray[np.float32]  # Position of the light [m], shape (L, 3)
+    axis: NDArray[np.float32]  # Unit vectors along the middle of the beams, shape (L, 3)
     intensity: float = 30.0
     """Intensity in the original's unit (its sun has 2.7), per squared distance in metres."""
-    cut_off: float = 1.4
-    """Angle from the axis at which a beam ends [rad]."""
+    cut_off: float = 1.4  # Angle from the axis at which a beam ends [rad]
 
     @classmethod
     def none(cls) -> "Lamps":
@@ -149,10 +131,8 @@ class Footways:
     kerb_points: NDArray[np.float64]
     """Outlines of the asphalt, which lies on their left [m], shape (K, 2); the first point of each
     is also its last. None where pavements lie along the network."""
-    kerb_first: NDArray[np.int32]
-    """Start of each outline's points, shape (R + 1,)."""
-    crossings: NDArray[np.float64]
-    """From kerb to kerb [m], shape (C, 2, 2)."""
+    kerb_first: NDArray[np.int32]  # Start of each outline's points, shape (R + 1,)
+    crossings: NDArray[np.float64]  # From kerb to kerb [m], shape (C, 2, 2)
     lights: tuple[str, ...]
     """Names of the crossings' lights in the network, C; empty where there are none."""
 

@@ -112,39 +112,25 @@ class CameraState(NamedTuple):
 class TargetState(NamedTuple):
     """The targets of N trackers."""
 
-    actor: NDArray[np.int32]
-    """Actor of the tracker's world, -1 before the first reset, shape (N,)."""
-    model: NDArray[np.int32]
-    """Index into `eyas.engine.targets.catalogue.MODELS`, shape (N,)."""
-    size: Floats
-    """Length, width, height [m], shape (N, 3)."""
-    rise: Floats
-    """Height of the reference point above the road [m], shape (N,)."""
-    ahead: Floats
-    """Distance of the centre ahead of the reference point [m], shape (N,)."""
+    actor: NDArray[np.int32]  # Actor of the tracker's world, -1 before the first reset, shape (N,)
+    model: NDArray[np.int32]  # Index into `eyas.engine.targets.catalogue.MODELS`, shape (N,).
+    size: Floats  # Length, width, height [m], shape (N, 3)
+    rise: Floats  # Height of the reference point above the road [m], shape (N,)
+    ahead: Floats  # Distance of the centre ahead of the reference point [m], shape (N,)
     position: Floats
     """Reference point: middle of the SUMO length, one wheel radius above the road [m],
     shape (N, 3)."""
-    yaw: Floats
-    """Heading, counter-clockwise from east [rad], shape (N,)."""
-    speed: Floats
-    """Horizontal [m/s], shape (N,)."""
-    velocity: Floats
-    """Change of `position`, world frame [m/s], shape (N, 3)."""
-    acceleration: Floats
-    """Change of `velocity`, world frame [m/s^2], shape (N, 3)."""
-    yaw_rate: Floats
-    """[rad/s], shape (N,)."""
-    slope: Floats
-    """Pitch of the ground along the heading, positive up [rad], shape (N,)."""
+    yaw: Floats  # Heading, counter-clockwise from east [rad], shape (N,)
+    speed: Floats  # Horizontal [m/s], shape (N,)
+    velocity: Floats  # Change of `position`, world frame [m/s], shape (N, 3)
+    acceleration: Floats  # Change of `velocity`, world frame [m/s^2], shape (N, 3)
+    yaw_rate: Floats  # [rad/s], shape (N,)
+    slope: Floats  # Pitch of the ground along the heading, positive up [rad], shape (N,)
     hitch: Floats
     """Heading of its trailer less that of its truck [rad], shape (N,); 0 of all others."""
-    travelled: Floats
-    """Way since it entered the world [m], shape (N,)."""
-    slowest: Floats
-    """Speed below which it counts as standing [m/s], shape (N,)."""
-    centre: Floats
-    """Visible middle of the target, the point that the reward uses [m], shape (N, 3)."""
+    travelled: Floats  # Way since it entered the world [m], shape (N,)
+    slowest: Floats  # Speed below which it counts as standing [m/s], shape (N,)
+    centre: Floats  # Visible middle of the target, the point that the reward uses [m], shape (N, 3)
     lost: NDArray[np.bool_]
     """Whether the target has left the world since the last reset, shape (N,)."""
 

@@ -47,16 +47,11 @@ class Terrain(NamedTuple):
 class Plane(NamedTuple):
     """The plane that touches the ground at a point."""
 
-    x: float
-    """East coordinate of the point [m]."""
-    y: float
-    """North coordinate of the point [m]."""
-    z: float
-    """Height of the ground there [m]."""
-    rise_east: float
-    """Rise of the plane per metre east."""
-    rise_north: float
-    """Rise of the plane per metre north."""
+    x: float  # East coordinate of the point [m]
+    y: float  # North coordinate of the point [m]
+    z: float  # Height of the ground there [m]
+    rise_east: float  # Rise of the plane per metre east
+    rise_north: float  # Rise of the plane per metre north
 
 
 def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64]:

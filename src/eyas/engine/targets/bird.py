@@ -22,15 +22,12 @@ _BILL = Material(tint=(0.55, 0.38, 0.10))
 
 _MIDDLE = 0.35
 """Height of the body's middle over the reference point, below which wings do not beat [m]."""
-_SHOULDER = (0.04, 0.035, 0.02)
-"""Forward, left and up of the left one, from the middle [m]."""
-_BEAT = 0.62
-"""Largest angle of the wings over the horizontal [rad]."""
+_SHOULDER = (0.04, 0.035, 0.02)  # Forward, left and up of the left one, from the middle [m]
+_BEAT = 0.62  # Largest angle of the wings over the horizontal [rad]
 _STRIDE = 3.2
 """Way in one beat [m]: at 11 m/s they beat 3.4 times a second, as gulls do (Pennycuick, Wingbeat
 frequency of birds in steady cruising flight, Journal of Experimental Biology 199, 1996)."""
-_GLIDING = 11.0
-"""Beats from a glide to the next."""
+_GLIDING = 11.0  # Beats from a glide to the next
 _GRAVITY = 9.81
 
 _HULL = (

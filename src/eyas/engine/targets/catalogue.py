@@ -35,8 +35,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-KINDS: list[Kind] = []
-"""All kinds. In the other rooms, `kind` is the index into this table."""
+KINDS: list[Kind] = []  # All kinds. In the other rooms, `kind` is the index into this table.
 
 MODELS: list[Model] = []
 """All models, kind by kind. In the other rooms, `model` is the index into this table."""

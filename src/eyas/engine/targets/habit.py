@@ -11,39 +11,25 @@ class Behaviour(StrEnum):
 
     POLYLINE = "polyline"
     """Round and round through 2 to 4 random points within 30 m, as the original's pedestrians."""
-    PAVEMENT = "pavement"
-    """Round a block on its pavement, at 1.1 to 1.7 m/s."""
-    VERGE = "verge"
-    """The same along the edges of roads, on grass where there is no pavement."""
-    RIDE = "ride"
-    """Along the kerb, with the traffic, at a cyclist's speed."""
-    WAIT = "wait"
-    """Stands where one waits: at bus stops, at the tables of cafes."""
+    PAVEMENT = "pavement"  # Round a block on its pavement, at 1.1 to 1.7 m/s.
+    VERGE = "verge"  # The same along the edges of roads, on grass where there is no pavement
+    RIDE = "ride"  # Along the kerb, with the traffic, at a cyclist's speed
+    WAIT = "wait"  # Stands where one waits: at bus stops, at the tables of cafes
     CROSSING = "crossing"
     """As on pavements, and over the painted crossings, when no recorded vehicle comes."""
-    STRAIGHT = "straight"
-    """Straight on; turns away where something is in the way."""
-    WANDER = "wander"
-    """As straight, but also turns at random, every few metres."""
-    WEAVE = "weave"
-    """Straight on in a wave."""
-    STOP = "stop"
-    """Straight, perhaps a turn, and then stands still for good."""
+    STRAIGHT = "straight"  # Straight on; turns away where something is in the way
+    WANDER = "wander"  # As straight, but also turns at random, every few metres
+    WEAVE = "weave"  # Straight on in a wave
+    STOP = "stop"  # Straight, perhaps a turn, and then stands still for good
 
 
 class Habit(NamedTuple):
     """The typical motion of a kind."""
 
     behaviour: Behaviour
-    speed: float
-    """[m/s]"""
-    acceleration: float
-    """Also while it brakes [m/s^2]."""
-    yaw_rate: float
-    """Largest [rad/s]; curves are taken no faster."""
-    radius: float
-    """Wanted radius of curves [m]."""
-    distance: float = 5.0
-    """Way to where it stops, if it does [m]."""
-    turn: float = 0.0
-    """Turn before it stops, counter-clockwise [rad]."""
+    speed: float  # [m/s]
+    acceleration: float  # Also while it brakes [m/s^2]
+    yaw_rate: float  # Largest [rad/s]; curves are taken no faster
+    radius: float  # Wanted radius of curves [m]
+    distance: float = 5.0  # Way to where it stops, if it does [m]
+    turn: float = 0.0  # Turn before it stops, counter-clockwise [rad]

@@ -16,36 +16,26 @@ from eyas.engine.targets.habit import Habit
 
 __all__ = ["Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
 
-Colour = tuple[float, float, float]
-"""sRGB, each 0 to 1."""
+Colour = tuple[float, float, float]  # sRGB, each 0 to 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
     """One model of a kind, such as one make of car: all that is known of it."""
 
-    name: str
-    """The original's name of the model; for others, one that no other has."""
-    typename: str
-    """The original's `typename` of a target of this model, which packets tell."""
-    kind: str
-    """Name of its kind."""
-    size: tuple[float, float, float]
-    """Length, width and height, standing, without antennas [m]."""
-    rise: float
-    """Height of the reference point above the ground [m]."""
+    name: str  # The original's name of the model; for others, one that no other has
+    typename: str  # The original's `typename` of a target of this model, which packets tell
+    kind: str  # Name of its kind
+    size: tuple[float, float, float]  # Length, width and height, standing, without antennas [m]
+    rise: float  # Height of the reference point above the ground [m]
     words: tuple[str, ...]
     """Phrases that describe it, from short to long, "a {} car": `{}` is the name of its colour.
     One that is true of two models is a phrase of both: none that holds for others in view tells a
     target."""
-    motion: str
-    """How it usually moves, in words."""
-    speed: float
-    """A usual speed [m/s]."""
-    stride: float
-    """Distance after which its motion repeats [m]: a stride, or a turn of its wheels."""
-    mass: float | None = None
-    """[kg]; None: not known."""
+    motion: str  # How it usually moves, in words
+    speed: float  # A usual speed [m/s]
+    stride: float  # Distance after which its motion repeats [m]: a stride, or a turn of its wheels
+    mass: float | None = None  # [kg]; None: not known
 
     @property
     def length(self) -> float:
@@ -98,36 +88,27 @@ class Block(NamedTuple):
 
     ahead: float
     """Distance of its middle ahead of that of the vehicle when it drives straight on [m]."""
-    size: tuple[float, float, float]
-    """Length, width and height [m]."""
+    size: tuple[float, float, float]  # Length, width and height [m]
 
 
 class Section(NamedTuple):
     """A rigid part of an articulated vehicle, and the upright box around it."""
 
-    name: str
-    """"truck" or "trailer"."""
-    ahead: float
-    """See `Block`."""
-    size: tuple[float, float, float]
-    """See `Block`."""
-    towed: int
-    """1 for a trailer, 0 for what pulls it, see `eyas.engine.traffic.trailer.folded`."""
-    blocks: tuple[Block, ...]
-    """What is solid of it."""
+    name: str  # "truck" or "trailer"
+    ahead: float  # See `Block`
+    size: tuple[float, float, float]  # See `Block`
+    towed: int  # 1 for a trailer, 0 for what pulls it, see `eyas.engine.traffic.trailer.folded`.
+    blocks: tuple[Block, ...]  # What is solid of it
 
 
 class Group(NamedTuple):
     """The G actors of one kind, and their slots in a draw list; kernels read it."""
 
-    actor: NDArray[np.int64]
-    """Indices of the actors, shape (G,)."""
+    actor: NDArray[np.int64]  # Indices of the actors, shape (G,)
     slot: NDArray[np.int64]
     """First slot of each actor, shape (G,); `Rig.slots` is the number of its slots."""
-    first_part: int
-    """Index of the kind's first part in the part library."""
-    first_model: int
-    """Index of the kind's first model in `eyas.engine.targets.catalogue.MODELS`."""
+    first_part: int  # Index of the kind's first part in the part library
+    first_model: int  # Index of the kind's first model in `eyas.engine.targets.catalogue.MODELS`.
 
 
 class Looks(NamedTuple):
@@ -135,8 +116,7 @@ class Looks(NamedTuple):
 
     model: NDArray[np.int32]
     """Index into `eyas.engine.targets.catalogue.MODELS`, shape (W, A); a model of the actor's kind."""
-    colour: NDArray[np.float32]
-    """Body colours, sRGB 0 to 1, shape (W, A, 3)."""
+    colour: NDArray[np.float32]  # Body colours, sRGB 0 to 1, shape (W, A, 3)
 
 
 class Rig(Protocol):
@@ -177,22 +157,15 @@ class Rig(Protocol):
 class Kind:
     """A kind of target: everything that distinguishes it from other kinds."""
 
-    name: str
-    """Name of the kind; for vehicles SUMO's class."""
-    models: tuple[Model, ...]
-    """At least one model."""
-    colours: tuple[Colour, ...]
-    """Body colours to draw from for each actor."""
-    object_class: ObjectClass
-    """Class of its pixels."""
-    rig: Callable[[], Rig]
-    """Returns the rig of all its models."""
+    name: str  # Name of the kind; for vehicles SUMO's class
+    models: tuple[Model, ...]  # At least one model
+    colours: tuple[Colour, ...]  # Body colours to draw from for each actor
+    object_class: ObjectClass  # Class of its pixels
+    rig: Callable[[], Rig]  # Returns the rig of all its models
     ahead: float = 0.0
     """Distance of the middle, the point that the reward uses, ahead of the reference point [m]."""
-    slowest: float = 0.01
-    """Speed below which it counts as standing [m/s]."""
-    lamps: bool = False
-    """Whether it has head and tail lamps that light the road."""
+    slowest: float = 0.01  # Speed below which it counts as standing [m/s]
+    lamps: bool = False  # Whether it has head and tail lamps that light the road
     trailers: tuple[int, ...] = ()
     """Parts of its rig that are towed: they have shadows of their own, and no lamps."""
     sections: tuple[tuple[Section, ...], ...] = ()
@@ -203,5 +176,4 @@ class Kind:
     """Returns the box of a model at a moment, by its name, the way that it has travelled along the
     ground [m] and its speed [m/s]: least and largest x, y and z in the model frame [m], shape
     (2, 3). None: it is always that of its size."""
-    habit: Habit | None = None
-    """How it moves off the traffic by itself; None: it cannot."""
+    habit: Habit | None = None  # How it moves off the traffic by itself; None: it cannot

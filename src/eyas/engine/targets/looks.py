@@ -16,19 +16,14 @@ __all__ = ["LookSampler", "LookTable", "sample_looks"]
 class LookTable(NamedTuple):
     """Possible looks of A actors, G kinds one after the other."""
 
-    actors: NDArray[np.int64]
-    """The actors kind by kind, shape (A,)."""
-    models: NDArray[np.int32]
-    """The models of all kinds, as indices into `MODELS`."""
-    colours: NDArray[np.float32]
-    """The colours of all kinds, sRGB 0 to 1, shape (., 3)."""
+    actors: NDArray[np.int64]  # The actors kind by kind, shape (A,)
+    models: NDArray[np.int32]  # The models of all kinds, as indices into `MODELS`
+    colours: NDArray[np.float32]  # The colours of all kinds, sRGB 0 to 1, shape (., 3).
     first: NDArray[np.int64]
     """Where each kind begins in `actors`, `models` and `colours`, and at last their lengths,
     shape (G + 1, 3)."""
-    fixed: NDArray[np.bool_]
-    """Whether the actors of each kind have one colour, shape (G,)."""
-    colour: NDArray[np.float32]
-    """That colour, shape (3,)."""
+    fixed: NDArray[np.bool_]  # Whether the actors of each kind have one colour, shape (G,)
+    colour: NDArray[np.float32]  # That colour, shape (3,)
 
 
 @kernel
@@ -64,14 +59,10 @@ def sample_looks(
 class _Choice(NamedTuple):
     """Possible looks of the actors of one kind."""
 
-    actors: NDArray[np.intp]
-    """Indices of the actors, shape (G,)."""
-    models: NDArray[np.int32]
-    """Models of the kind, as indices into `MODELS`."""
-    colours: NDArray[np.float32]
-    """Colours to sample from, sRGB 0 to 1, shape (., 3)."""
-    fixed: Colour | None
-    """Colour of all actors; None: sampled."""
+    actors: NDArray[np.intp]  # Indices of the actors, shape (G,)
+    models: NDArray[np.int32]  # Models of the kind, as indices into `MODELS`
+    colours: NDArray[np.float32]  # Colours to sample from, sRGB 0 to 1, shape (., 3).
+    fixed: Colour | None  # Colour of all actors; None: sampled
 
 
 class LookSampler:

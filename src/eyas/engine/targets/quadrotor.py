@@ -23,18 +23,15 @@ _LENS = Material(tint=(0.08, 0.08, 0.10), surface=Surface.GLASS)
 
 _FRONT, _REAR = (0.118, 0.134), (-0.118, 0.130)
 """Forward and left of a motor, the other side mirrored: 0.35 m from corner to corner [m]."""
-_FRONT_TOP, _REAR_TOP = 0.045, 0.03
-"""Height of the rotors [m]."""
+_FRONT_TOP, _REAR_TOP = 0.045, 0.03  # Height of the rotors [m]
 _FRONT_TURN, _REAR_TURN = 0.5, 2.2
 """Where their blades stand [rad]. Discs, as blurred by the turning, hide four times too much."""
-_TIP = 0.11
-"""Length of a blade [m]."""
+_TIP = 0.11  # Length of a blade [m]
 
 _ACROSS, _LIFT = np.array([-1.0, 1.0, 1.0, -1.0]), np.array([0.0, -0.004, 0.001, 0.005])
 """Corners of a section of a blade: aside, in half chords, and up [m]; it is pitched."""
 
-_MIDDLE = 0.055
-"""Height of its middle over its lowest point, where it is as an actor [m]."""
+_MIDDLE = 0.055  # Height of its middle over its lowest point, where it is as an actor [m]
 
 _HULL = (
     (-0.105, 0.026, -0.030, 0.012),

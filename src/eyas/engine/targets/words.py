@@ -14,11 +14,9 @@ from eyas.engine.targets.colour_names import colour_name, with_article
 
 __all__ = ["Seen", "looks_in_words", "phrases", "told_apart", "words_of"]
 
-_TURNING: Final = 0.15
-"""Yaw rate from which on something turns [rad/s]."""
+_TURNING: Final = 0.15  # Yaw rate from which on something turns [rad/s]
 
-_ASIDE: Final = 0.04
-"""Distance in the picture from which on left and right are seen [its width]."""
+_ASIDE: Final = 0.04  # Distance in the picture from which on left and right are seen [its width]
 
 _NUMBERS: Final = ("", "", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
@@ -40,18 +38,12 @@ _AWAY: Final = _Row(("nearer", "farther"), ("nearest", "farthest"), "{} nearest"
 class Seen(NamedTuple):
     """What a camera sees of a moving object."""
 
-    model: int
-    """Index into `MODELS`."""
-    colour: Sequence[float]
-    """sRGB 0 to 1."""
-    speed: float
-    """[m/s]"""
-    yaw_rate: float
-    """Counter-clockwise [rad/s]."""
-    column: float
-    """From the left edge of the picture [its width]."""
-    distance: float
-    """From the camera, along its axis [m]."""
+    model: int  # Index into `MODELS`
+    colour: Sequence[float]  # sRGB 0 to 1
+    speed: float  # [m/s]
+    yaw_rate: float  # Counter-clockwise [rad/s]
+    column: float  # From the left edge of the picture [its width]
+    distance: float  # From the camera, along its axis [m]
 
 
 def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:

@@ -21,22 +21,17 @@ __all__ = ["Clearance", "Margin", "lifted_over"]
 
 Floats = NDArray[np.float64]
 
-_LIFTS = 64
-"""Most things above each other that a column is lifted over."""
+_LIFTS = 64  # Most things above each other that a column is lifted over
 
-_SHORT = 0.2
-"""How much nearer than a point a ray ends, which may lie on a surface [m]."""
+_SHORT = 0.2  # How much nearer than a point a ray ends, which may lie on a surface [m]
 
 
 class Margin(NamedTuple):
     """How near a body may come to things."""
 
-    aside: float
-    """Radius around it that is free [m]."""
-    above: float
-    """Height above and below it that is free [m]."""
-    ground: float
-    """Least height above the ground [m]."""
+    aside: float  # Radius around it that is free [m]
+    above: float  # Height above and below it that is free [m]
+    ground: float  # Least height above the ground [m]
 
 
 class Clearance:

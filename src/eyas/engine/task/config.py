@@ -29,10 +29,8 @@ Steps = Annotated[int, Field(ge=0, le=2**31 - 1)]
 class RewardType(StrEnum):
     """Quantity that the reward depends on."""
 
-    VIEW = "view"
-    """Place of the target in the ground quadrilateral that the camera sees."""
-    DISTANCE = "distance"
-    """Distance of the target from the ground point that the camera looks at."""
+    VIEW = "view"  # Place of the target in the ground quadrilateral that the camera sees
+    DISTANCE = "distance"  # Distance of the target from the ground point that the camera looks at
 
 
 class RewardMode(StrEnum):
@@ -51,17 +49,14 @@ class Crash(StrEnum):
     CONTACT = "contact"
     """The body touches a building, a tree with its crown, the ground, a vehicle or another tracker;
     the episode goes on."""
-    END = "end"
-    """The same, and the episode ends."""
+    END = "end"  # The same, and the episode ends
 
 
 class StartVelocity(StrEnum):
     """How fast a tracker is when its episode begins."""
 
-    TARGET = "target"
-    """As fast as its target, horizontally, in steady flight."""
-    REST = "rest"
-    """It hovers, as in the original."""
+    TARGET = "target"  # As fast as its target, horizontally, in steady flight
+    REST = "rest"  # It hovers, as in the original
 
 
 class StartConfig(Config):

@@ -81,17 +81,13 @@ class _Work(NamedTuple):
     episodes: EpisodeState
     obstacles: Obstacles
     active: NDArray[np.bool_]
-    last: NDArray[np.float64]
-    """Where each body was after the last step [m], shape (N, 3)."""
-    fresh: NDArray[np.bool_]
-    """Whether this is the first step of a command, shape (N,)."""
+    last: NDArray[np.float64]  # Where each body was after the last step [m], shape (N, 3)
+    fresh: NDArray[np.bool_]  # Whether this is the first step of a command, shape (N,)
     touched: NDArray[np.bool_]
     """Whether the body has touched anything since the command began, shape (N,)."""
-    crashed: NDArray[np.bool_]
-    """Whether a crash has ended the episode, shape (N,)."""
+    crashed: NDArray[np.bool_]  # Whether a crash has ended the episode, shape (N,)
     grace_steps: int
-    ends: int
-    """1: a crash ends the episode; 0: it does not."""
+    ends: int  # 1: a crash ends the episode; 0: it does not
 
 
 @compiled

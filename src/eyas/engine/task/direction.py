@@ -10,8 +10,7 @@ from eyas.lanes.elementary import sin_cos
 
 __all__ = ["TargetDirection", "target_centre", "target_direction"]
 
-_TURNING = 1e-4
-"""Change of heading in 2 ms above which the target turns [rad]."""
+_TURNING = 1e-4  # Change of heading in 2 ms above which the target turns [rad]
 
 
 class TargetDirection(IntEnum):

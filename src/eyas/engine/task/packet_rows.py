@@ -36,8 +36,7 @@ _EULER = first_column(BASIC_COLUMNS, "euler")
 _REWARD = first_column(BASIC_COLUMNS, "reward")
 _DONE = first_column(BASIC_COLUMNS, "done")
 
-SENSOR_COLUMNS = slice(_POSITION, _REWARD)
-"""Columns of the basic packet that the sensors measure."""
+SENSOR_COLUMNS = slice(_POSITION, _REWARD)  # Columns of the basic packet that the sensors measure
 SENSOR_COUNT = _REWARD - _POSITION
 
 _WIDTH = first_column(REWARD_COLUMNS, "camera_width")
@@ -89,8 +88,7 @@ class _Packets(NamedTuple):
     """Inputs and outputs of the kernel."""
 
     snapshot: Snapshot
-    floor: float
-    """z of the land frame's ground [m]."""
+    floor: float  # z of the land frame's ground [m]
     basic: NDArray[np.float64]
     reward: NDArray[np.float64]
 

@@ -11,8 +11,7 @@ from eyas.lanes.elementary import sin_cos
 
 __all__ = ["PRIVILEGED", "fill_privileged", "privileged_row"]
 
-PRIVILEGED: Final = 16
-"""Numbers of each tracker."""
+PRIVILEGED: Final = 16  # Numbers of each tracker
 
 
 @kernel(inline=True)

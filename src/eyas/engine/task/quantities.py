@@ -22,8 +22,7 @@ Array = NDArray[np.float64] | NDArray[np.bool_] | NDArray[np.int64]
 class Setting(NamedTuple):
     """What quantities depend on beside the snapshot."""
 
-    aspect: float = 0.75
-    """Height of the camera's picture over its width."""
+    aspect: float = 0.75  # Height of the camera's picture over its width
     early_steps: int = 0
     """Physics steps after a reset in which the original's algorithms overlook a crash."""
 

@@ -12,8 +12,7 @@ from eyas.lanes import exact
 
 __all__ = ["RADAR_FIELDS", "RADAR_POINTS", "RadarPacket", "RadarPoint"]
 
-RADAR_POINTS = 400
-"""Points of the original's lidar."""
+RADAR_POINTS = 400  # Points of the original's lidar
 
 _NUMBERS = ("x", "y", "z", "layer", "time")
 
@@ -25,16 +24,11 @@ RADAR_FIELDS = tuple(f"{name}_{point}" for point in range(RADAR_POINTS) for name
 class RadarPoint:
     """One point, in the frame of the lidar: x forward, y left, z up."""
 
-    x: float
-    """[m]; x and y are infinite where nothing was within range."""
-    y: float
-    """[m]"""
-    z: float
-    """[m]; 0, as all rays are in one plane. (The original tells "nan" where nothing was.)"""
-    layer: int
-    """0: the lidar has one layer."""
-    time: float
-    """When it was measured, in simulated time [s]."""
+    x: float  # [m]; x and y are infinite where nothing was within range
+    y: float  # [m]
+    z: float  # [m]; 0, as all rays are in one plane. (The original tells "nan" where nothing was.)
+    layer: int  # 0: the lidar has one layer
+    time: float  # When it was measured, in simulated time [s]
 
     @property
     def distance(self) -> float:

@@ -29,8 +29,7 @@ __all__ = [
     "view_share",
 ]
 
-_FARTHEST = 1e12
-"""Largest depth of a ground point along the optical axis [m]."""
+_FARTHEST = 1e12  # Largest depth of a ground point along the optical axis [m]
 
 _VIEW_CONTINUOUS, _VIEW_DISCRETE = (
     int(BuiltinReward.VIEW_CONTINUOUS),

@@ -33,12 +33,9 @@ BUILTIN_REWARDS = {
 class Rules(NamedTuple):
     """Settings for the task's kernels; lengths in metres, angles in radians."""
 
-    view_range: float
-    """Share of the picture's width and height within which the target is rewarded."""
-    aspect: float
-    """Height of the picture over its width."""
-    reward: int
-    """`BuiltinReward`."""
+    view_range: float  # Share of the picture's width and height within which the target is rewarded
+    aspect: float  # Height of the picture over its width
+    reward: int  # `BuiltinReward`
     cut_off: float
     distance_scale: float
     distance_range: float

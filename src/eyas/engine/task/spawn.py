@@ -19,16 +19,11 @@ _wrapped = interpreted(wrap_angle)
 class StartValues:
     """A sampled start, relative to the target; the fields of `StartConfig`."""
 
-    pitch: float
-    """SampledDelay camera pitch, positive down [rad], before the gimbal limits it."""
-    height: float
-    """[m]"""
-    direction: float
-    """[rad]"""
-    horizontal_bias: float
-    """[m]"""
-    vertical_bias: float
-    """[m]"""
+    pitch: float  # SampledDelay camera pitch, positive down [rad], before the gimbal limits it
+    height: float  # [m]
+    direction: float  # [rad]
+    horizontal_bias: float  # [m]
+    vertical_bias: float  # [m]
 
 
 @kernel

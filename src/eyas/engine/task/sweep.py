@@ -14,26 +14,21 @@ from eyas.lanes import kernel
 
 __all__ = ["NEVER", "Sweep", "Touch", "sweep_cylinder", "sweep_prism", "while_level"]
 
-NEVER = 2.0
-"""Share of the motion at a touch that does not happen."""
+NEVER = 2.0  # Share of the motion at a touch that does not happen
 
 
 class Sweep(NamedTuple):
     """The motion of a box."""
 
-    x: float
-    """Where its middle begins, world frame [m]."""
+    x: float  # Where its middle begins, world frame [m]
     y: float
     z: float
-    motion_x: float
-    """How far it moves [m]."""
+    motion_x: float  # How far it moves [m]
     motion_y: float
     motion_z: float
-    cosine: float
-    """Of its heading."""
+    cosine: float  # Of its heading
     sine: float
-    half_length: float
-    """[m]"""
+    half_length: float  # [m]
     half_width: float
     half_height: float
 
@@ -41,10 +36,8 @@ class Sweep(NamedTuple):
 class Touch(NamedTuple):
     """The first touch of a solid."""
 
-    share: float
-    """Share of the motion at the touch, 0 to 1, or `NEVER`."""
-    x: float
-    """Place, world frame [m]."""
+    share: float  # Share of the motion at the touch, 0 to 1, or `NEVER`
+    x: float  # Place, world frame [m]
     y: float
 
 

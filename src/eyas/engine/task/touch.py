@@ -19,15 +19,11 @@ __all__ = ["Hit", "touch_ground", "touch_movers", "touch_solids"]
 class Hit(NamedTuple):
     """The first touch of anything."""
 
-    share: float
-    """Share of the motion at the touch, 0 to 1, or `NEVER`."""
-    x: float
-    """Place, world frame [m]."""
+    share: float  # Share of the motion at the touch, 0 to 1, or `NEVER`
+    x: float  # Place, world frame [m]
     y: float
-    thing: int
-    """Object id."""
-    bottom: float
-    """z of the thing there [m]."""
+    thing: int  # Object id
+    bottom: float  # z of the thing there [m]
     top: float
 
 

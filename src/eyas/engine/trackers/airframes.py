@@ -19,8 +19,7 @@ class Model(NamedTuple):
     """An airframe with its rotors and its battery."""
 
     frame: Airframe
-    radius: float
-    """Of a rotor [m]."""
+    radius: float  # Of a rotor [m]
     battery: Battery
 
 

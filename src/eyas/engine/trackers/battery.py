@@ -19,8 +19,7 @@ from eyas.lanes.elementary import exp
 
 __all__ = ["Battery", "discharge", "open_voltage", "strongest_thrust", "within_power"]
 
-FULL_CELL = 4.1031
-"""Voltage of a full cell without a load, see `open_voltage` [V]."""
+FULL_CELL = 4.1031  # Voltage of a full cell without a load, see `open_voltage` [V]
 
 
 class Battery(NamedTuple):
@@ -28,20 +27,16 @@ class Battery(NamedTuple):
 
     cells: float = 0.0
     """Number of cells in a row; 0: there is no battery, and what there is lasts for ever."""
-    capacity: float = 1.0
-    """[A h]"""
-    resistance: float = 0.0
-    """Of all cells and the wires [ohm]."""
+    capacity: float = 1.0  # [A h]
+    resistance: float = 0.0  # Of all cells and the wires [ohm]
     efficiency: float = 0.8
     """Mechanical power of the rotors over electrical power: motors and their controllers; our
     choice, typical of both together."""
-    idle: float = 10.0
-    """Power of everything but the rotors [W]; our choice."""
+    idle: float = 10.0  # Power of everything but the rotors [W]; our choice
     fastest: float = 1000.0
     """Rate of the rotors that full cells reach without sagging; at less voltage, in proportion
     less [rad/s]."""
-    charge: float = 1.0
-    """Charge with which an episode begins, of 1."""
+    charge: float = 1.0  # Charge with which an episode begins, of 1
 
 
 @kernel

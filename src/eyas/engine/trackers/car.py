@@ -24,14 +24,10 @@ __all__ = ["CAR"]
 class CarMemory(NamedTuple):
     """States of the low-pass filters of N cars, and the ground below them."""
 
-    forward: NDArray[np.float64]
-    """Filter of the forward command, shape (N, 2)."""
-    left: NDArray[np.float64]
-    """Filter of the sideways command, shape (N, 2)."""
-    yaw_rate: NDArray[np.float64]
-    """Filter of the yaw rate command, shape (N, 2)."""
-    gimbal: NDArray[np.float64]
-    """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
+    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
+    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
+    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
     terrain: Terrain
 
     @classmethod

@@ -15,10 +15,8 @@ __all__ = ["Flight", "TrackerConfig", "TrackerKind", "WindConfig"]
 class TrackerKind(StrEnum):
     """Kinds of trackers."""
 
-    DRONE = "drone"
-    """A quadrotor with a camera on a gimbal."""
-    CAR = "car"
-    """An ideal robot that keeps its height over the ground."""
+    DRONE = "drone"  # A quadrotor with a camera on a gimbal
+    CAR = "car"  # An ideal robot that keeps its height over the ground
 
 
 class Flight(StrEnum):
@@ -35,14 +33,10 @@ class Flight(StrEnum):
 class AirframeName(StrEnum):
     """Airframes of the flown drone, by size of their propellers."""
 
-    M100 = "m100"
-    """The original's: 3.0 kg, 13 inches."""
-    INCH_5 = "5-inch"
-    """A racer: 0.75 kg, 4.6 times its weight of thrust."""
-    INCH_10 = "10-inch"
-    """A development kit: 2.1 kg."""
-    INCH_20 = "20-inch"
-    """An industrial drone: 6.3 kg."""
+    M100 = "m100"  # The original's: 3.0 kg, 13 inches.
+    INCH_5 = "5-inch"  # A racer: 0.75 kg, 4.6 times its weight of thrust.
+    INCH_10 = "10-inch"  # A development kit: 2.1 kg.
+    INCH_20 = "20-inch"  # An industrial drone: 6.3 kg.
 
 
 def _path(text: str) -> str:

@@ -16,8 +16,7 @@ from eyas.lanes import kernel
 
 __all__ = ["WEIGHT", "driven_drone"]
 
-WEIGHT = ORIGINAL.mass * ORIGINAL.gravity
-"""Of a driven drone [N]."""
+WEIGHT = ORIGINAL.mass * ORIGINAL.gravity  # Of a driven drone [N]
 
 
 @kernel(inline=True)

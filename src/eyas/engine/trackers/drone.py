@@ -31,14 +31,10 @@ __all__ = [
 class DroneMemory(NamedTuple):
     """States of the low-pass filters of N drones."""
 
-    forward: NDArray[np.float64]
-    """Filter of the forward command, shape (N, 2)."""
-    left: NDArray[np.float64]
-    """Filter of the sideways command, shape (N, 2)."""
-    yaw_rate: NDArray[np.float64]
-    """Filter of the yaw rate command, shape (N, 2)."""
-    gimbal: NDArray[np.float64]
-    """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
+    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
+    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
+    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
 
     @classmethod
     def create(cls, count: int, terrain: Terrain) -> "DroneMemory":
@@ -162,5 +158,4 @@ def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
     orientation[3], orientation[0] = sin_cos(0.5 * yaw)
 
 
-DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)
-"""The supervised drone."""
+DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)  # The supervised drone

@@ -18,10 +18,8 @@ Symmetric = tuple[float, float, float, float, float, float]
 class Part(NamedTuple):
     """Something heavy and small."""
 
-    mass: float
-    """[kg]"""
-    place: Vector
-    """Its centre of mass, body frame [m]."""
+    mass: float  # [kg]
+    place: Vector  # Its centre of mass, body frame [m]
 
 
 def _joints() -> tuple[Vector, Vector, Vector]:
@@ -40,16 +38,12 @@ MOUNTED = (*(Part(0.0333, place) for place in _joints()), Part(0.2, (0.0, 0.0, 0
 class Equipment(NamedTuple):
     """An airframe with what it carries."""
 
-    frame: Airframe
-    """Its `mass` is that of all."""
-    centre: Vector = (0.0, 0.0, 0.0)
-    """Centre of mass, body frame [m]."""
+    frame: Airframe  # Its `mass` is that of all
+    centre: Vector = (0.0, 0.0, 0.0)  # Centre of mass, body frame [m]
     inertia: Symmetric = (*ORIGINAL.inertia, 0.0, 0.0, 0.0)
     """Moments of inertia about the centre of mass, body frame [kg m^2]."""
-    inverse: Symmetric = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
-    """Inverse of `inertia`."""
-    radius: float = 0.0
-    """Of the rotors, for the ground effect [m]; 0: there is none."""
+    inverse: Symmetric = (1.0, 1.0, 1.0, 0.0, 0.0, 0.0)  # Inverse of `inertia`
+    radius: float = 0.0  # Of the rotors, for the ground effect [m]; 0: there is none
     battery: Battery = Battery()
 
 

@@ -60,12 +60,9 @@ class EquippedMemory(NamedTuple):
 
     flight: FlightMemory
     equipment: Equipment
-    charge: NDArray[np.float64]
-    """Of their batteries, of 1, shape (N,)."""
-    field: WindField
-    """The mean wind among buildings."""
-    asked: NDArray[np.float64]
-    """Rates that the controller asks of the rotors [rad/s], shape (N, 4)."""
+    charge: NDArray[np.float64]  # Of their batteries, of 1, shape (N,)
+    field: WindField  # The mean wind among buildings
+    asked: NDArray[np.float64]  # Rates that the controller asks of the rotors [rad/s], shape (N, 4)
     voltage: NDArray[np.float64]
     """Of their batteries under load [V], shape (N,); 0 without batteries."""
 

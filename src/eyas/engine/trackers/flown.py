@@ -46,25 +46,19 @@ Vector = tuple[float, float, float]
 class FlightMemory(NamedTuple):
     """What N flown drones remember, and their constants."""
 
-    forward: NDArray[np.float64]
-    """Filter of the forward command, shape (N, 2)."""
-    left: NDArray[np.float64]
-    """Filter of the sideways command, shape (N, 2)."""
-    yaw_rate: NDArray[np.float64]
-    """Filter of the yaw rate command, shape (N, 2)."""
-    gimbal: NDArray[np.float64]
-    """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
+    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
+    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
+    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
     servo: ServoMemory
     last_command: NDArray[np.float64]
     """Commanded velocity of the last step, towards east and north [m/s], shape (N, 2)."""
     measured: NDArray[np.float64]
     """Difference of the last two positions over 2 ms, as the controller knows the velocity [m/s],
     shape (N, 3)."""
-    rotor: NDArray[np.float64]
-    """Rates of the rotors [rad/s], shape (N, 4)."""
+    rotor: NDArray[np.float64]  # Rates of the rotors [rad/s], shape (N, 4)
     wind: WindMemory
-    turbulence: float
-    """See `eyas.engine.trackers.wind.blow`."""
+    turbulence: float  # See `eyas.engine.trackers.wind.blow`.
     frame: Airframe
     terrain: Terrain
 

@@ -26,8 +26,7 @@ __all__ = [
     "set_column",
 ]
 
-SIDEWAYS_LIMIT = 1.7
-"""Largest roll and yaw of the joints [rad]."""
+SIDEWAYS_LIMIT = 1.7  # Largest roll and yaw of the joints [rad]
 
 Limits = tuple[float, float, float, float]
 """Least and largest pitch that may be commanded, then those of the joint, positive down [rad]."""
@@ -35,8 +34,7 @@ Limits = tuple[float, float, float, float]
 DRONE_LIMITS: Limits = (0.5, 1.5, -0.5, 1.5)
 CAR_LIMITS: Limits = (-1.0, 1.5, -1.0, 1.5)
 
-YAW_JOINT = (0.13, -0.00469654, -0.013)
-"""Position of the yaw joint, body frame [m]."""
+YAW_JOINT = (0.13, -0.00469654, -0.013)  # Position of the yaw joint, body frame [m]
 PITCH_JOINT = (0.000625212, -0.00530346, -0.0207448)
 """Position of the pitch joint, frame of the yaw link [m]."""
 ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)

@@ -16,8 +16,7 @@ from eyas.lanes import kernel, specialised
 
 __all__ = ["WIDTH", "WITH_GIMBAL", "turn_gimbal", "with_gimbal"]
 
-WIDTH = 4
-"""Numbers of a command that only flies, see `Tracker.advance`."""
+WIDTH = 4  # Numbers of a command that only flies, see `Tracker.advance`.
 WITH_GIMBAL = 8
 """Numbers of one that also turns the camera: behind the four come the pitch and the yaw to turn to
 [rad], and the largest rates of pitch and yaw [rad/s], which are not negative."""

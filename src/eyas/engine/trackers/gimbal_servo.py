@@ -22,10 +22,8 @@ Vector = tuple[float, float, float]
 class ServoMemory(NamedTuple):
     """The joints' motors of N gimbals; each for roll, pitch, yaw."""
 
-    rate: NDArray[np.float64]
-    """Rates of the joints [rad/s], shape (N, 3)."""
-    integral: NDArray[np.float64]
-    """Integral parts of the torques [N m], shape (N, 3)."""
+    rate: NDArray[np.float64]  # Rates of the joints [rad/s], shape (N, 3)
+    integral: NDArray[np.float64]  # Integral parts of the torques [N m], shape (N, 3)
 
     @classmethod
     def create(cls, count: int) -> "ServoMemory":

@@ -10,8 +10,7 @@ __all__ = ["ROTOR_HEIGHT", "ground_effect"]
 ROTOR_HEIGHT = 0.02305
 """Height of the rotors over the body's middle, as in the original's `M100` [m]."""
 
-_NEAREST = 0.5
-"""Least height over the ground for which the formula is made, in radii of a rotor."""
+_NEAREST = 0.5  # Least height over the ground for which the formula is made, in radii of a rotor
 
 
 @kernel

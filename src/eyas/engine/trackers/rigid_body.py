@@ -35,14 +35,10 @@ Thrusts = tuple[float, float, float, float]
 class RigidBody(NamedTuple):
     """State of a rigid body."""
 
-    position: Vector
-    """World frame [m]."""
-    velocity: Vector
-    """World frame [m/s]."""
-    attitude: Quaternion
-    """Body to world, w, x, y, z."""
-    rate: Vector
-    """Angular velocity, body frame [rad/s]."""
+    position: Vector  # World frame [m]
+    velocity: Vector  # World frame [m/s]
+    attitude: Quaternion  # Body to world, w, x, y, z
+    rate: Vector  # Angular velocity, body frame [rad/s]
 
 
 class Change(NamedTuple):

@@ -20,8 +20,7 @@ from eyas.lanes.elementary import exp, power
 
 __all__ = ["WindMemory", "begin_wind", "blow", "mean_wind"]
 
-_FOOT = 0.3048
-"""[m]"""
+_FOOT = 0.3048  # [m]
 _LOWEST, _HIGHEST = 10.0 * _FOOT, 1000.0 * _FOOT
 """Heights for which the model is made; others count as the nearest [m]."""
 _SLOWEST = 1.0
@@ -37,15 +36,13 @@ _DEVIATION = math.sqrt(12.0)
 class WindMemory(NamedTuple):
     """The wind around N drones."""
 
-    mean: NDArray[np.float64]
-    """Velocity without gusts, towards east and north [m/s], shape (N, 2)."""
+    mean: NDArray[np.float64]  # Velocity without gusts, towards east and north [m/s], shape (N, 2)
     along: NDArray[np.float64]
     """Direction of the mean wind, cosine and sine from east, shape (N, 2)."""
     gust: NDArray[np.float64]
     """Filters: one for the gusts along the wind, two for those to its left, two for those up,
     shape (N, 5)."""
-    random: NDArray[np.uint64]
-    """State of the random numbers, shape (N,)."""
+    random: NDArray[np.uint64]  # State of the random numbers, shape (N,)
 
     @classmethod
     def create(cls, count: int) -> "WindMemory":

@@ -13,8 +13,7 @@ __all__ = ["OPEN", "UNIT", "WindField", "wind_among"]
 
 Vector = tuple[float, float, float]
 
-UNIT = 0.001
-"""Unit of the numbers of a table [m/s]."""
+UNIT = 0.001  # Unit of the numbers of a table [m/s]
 
 
 class WindField(NamedTuple):
@@ -23,15 +22,12 @@ class WindField(NamedTuple):
     table: NDArray[np.int16]
     """Velocity in a wind of 1 m/s, towards east, north and up [mm/s], of D directions towards which
     it blows, counter-clockwise from east, shape (D, levels, rows, columns, 3)."""
-    west: float
-    """East coordinate of the middle of the first column [m]."""
-    south: float
-    """North coordinate of the middle of the first row [m]."""
+    west: float  # East coordinate of the middle of the first column [m]
+    south: float  # North coordinate of the middle of the first row [m]
     spacing: float
     """Between columns, between rows, and between levels, of which the first is half of it over the
     ground [m]."""
-    known: int
-    """0: there is none, the wind is the same everywhere."""
+    known: int  # 0: there is none, the wind is the same everywhere
 
 
 OPEN = WindField(np.zeros((1, 1, 1, 1, 3), np.int16), 0.0, 0.0, 1.0, 0)

@@ -50,17 +50,14 @@ class Mix(Config):
 class Source(StrEnum):
     """Where the traffic comes from."""
 
-    RECORDED = "recorded"
-    """A recording is replayed."""
-    LIVE = "live"
-    """SUMO drives in this process, a little ahead of the trackers."""
+    RECORDED = "recorded"  # A recording is replayed
+    LIVE = "live"  # SUMO drives in this process, a little ahead of the trackers
 
 
 class Demand(StrEnum):
     """When vehicles enter and leave."""
 
-    KEEP_ALIVE = "keep_alive"
-    """All vehicles are present from the start and never leave."""
+    KEEP_ALIVE = "keep_alive"  # All vehicles are present from the start and never leave
     RESPAWN = "respawn"
     """Groups of vehicles enter at intervals, drive a route and leave, and all start and brake in an
     instant, as in the original."""
@@ -69,10 +66,8 @@ class Demand(StrEnum):
 class Drivers(StrEnum):
     """How drivers behave."""
 
-    NORMAL = "normal"
-    """As SUMO's do."""
-    HIDING = "hiding"
-    """Now and then one stays for a few seconds under what hides him from above."""
+    NORMAL = "normal"  # As SUMO's do
+    HIDING = "hiding"  # Now and then one stays for a few seconds under what hides him from above
     EVADING = "evading"
     """Drivers of cars want to be lost: they brake, dash, weave, turn back, and hide."""
 
@@ -80,19 +75,15 @@ class Drivers(StrEnum):
 class Lamps(StrEnum):
     """What vehicles signal with their lamps."""
 
-    DARK = "dark"
-    """Nothing; head and tail lamps shine when it is dark."""
-    WORKING = "working"
-    """Brake lamps are lit, indicators blink, by day too."""
+    DARK = "dark"  # Nothing; head and tail lamps shine when it is dark
+    WORKING = "working"  # Brake lamps are lit, indicators blink, by day too
 
 
 class Signals(StrEnum):
     """What the traffic lights of our own maps show; those of imported towns always work."""
 
-    AMBER = "amber"
-    """Amber, and nobody heeds them."""
-    WORKING = "working"
-    """Red, amber and green, which drivers obey."""
+    AMBER = "amber"  # Amber, and nobody heeds them
+    WORKING = "working"  # Red, amber and green, which drivers obey
 
 
 class TrafficConfig(Config):

@@ -10,16 +10,12 @@ __all__ = ["Cover", "Stretch", "cover_hash"]
 class Stretch(NamedTuple):
     """A part of a lane from end to end of which a car is out of sight."""
 
-    lane: str
-    """SUMO's name of the lane: that of its edge, and its number there from the right."""
-    start: float
-    """Where it begins along the lane [m]."""
-    end: float
-    """Where it ends along the lane [m]."""
+    lane: str  # SUMO's name of the lane: that of its edge, and its number there from the right
+    start: float  # Where it begins along the lane [m]
+    end: float  # Where it ends along the lane [m]
 
 
-Cover = tuple[Stretch, ...]
-"""All of a map, in the order of the lanes."""
+Cover = tuple[Stretch, ...]  # All of a map, in the order of the lanes
 
 
 def cover_hash(cover: Cover) -> str:

@@ -20,21 +20,17 @@ __all__ = [
     "without_turnarounds",
 ]
 
-Route = tuple[str, ...]
-"""Names of the edges, in driving order."""
+Route = tuple[str, ...]  # Names of the edges, in driving order
 
-TRIES = 1000
-"""Number of edge pairs tried for one route before giving up."""
+TRIES = 1000  # Number of edge pairs tried for one route before giving up
 
 
 @dataclass(frozen=True, slots=True)
 class RoadLinks:
     """Connections between edges, for one class of vehicles."""
 
-    successors: dict[str, Route]
-    """Edges that can be entered from each edge."""
-    length: dict[str, float]
-    """[m]"""
+    successors: dict[str, Route]  # Edges that can be entered from each edge
+    length: dict[str, float]  # [m]
 
 
 def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> RoadLinks:

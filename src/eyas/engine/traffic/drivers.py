@@ -31,14 +31,11 @@ vanished, by a drone that waits there [m]."""
 _LONG = 20.0
 """Least length of a stretch for being slow in it: through a shorter one it would be a crawl [m]."""
 
-_LOST = (4.5, 9.0)
-"""Shortest and longest time for which a driver wants to be hidden [s]."""
+_LOST = (4.5, 9.0)  # Shortest and longest time for which a driver wants to be hidden [s]
 
-_CRUISE = 12.0
-"""How fast cars drive here, roughly [m/s]."""
+_CRUISE = 12.0  # How fast cars drive here, roughly [m/s]
 
-_NEAR = 25.0
-"""How far away a larger vehicle may be whose far side a driver takes [m]."""
+_NEAR = 25.0  # How far away a larger vehicle may be whose far side a driver takes [m]
 
 _BESIDE = 12.0
 """Least distance along the road to those on the lane that a driver changes to [m]. SUMO itself
@@ -46,8 +43,7 @@ lets cars that creep or stand there touch."""
 
 _LARGE = {VehicleType.BUS, VehicleType.TRUCK, VehicleType.TRAILER}
 
-_DASH = 1.45
-"""Speed of a dash, as a multiple of the limit of the road."""
+_DASH = 1.45  # Speed of a dash, as a multiple of the limit of the road
 
 _BEFORE_JUNCTION = 40.0
 """Least distance to the junction at which a driver changes lanes or turns back [m]. Nearer, two who

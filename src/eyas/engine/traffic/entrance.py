@@ -78,8 +78,7 @@ class ActorSlots:
     """
 
     def __init__(self, actors: Sequence[VehicleType]) -> None:
-        self.taken: Final[dict[int, int]] = {}
-        """Actor of each vehicle in the world."""
+        self.taken: Final[dict[int, int]] = {}  # Actor of each vehicle in the world
         self._class = tuple(actors)
         self._free: dict[VehicleType, list[int]] = {name: [] for name in actors}
         for actor, name in enumerate(actors):

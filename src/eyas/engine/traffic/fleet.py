@@ -19,15 +19,13 @@ from eyas.engine.traffic.demand import (
 
 __all__ = ["Departure", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
 
-Links = Mapping[VehicleType, RoadLinks]
-"""The roads, as each class of vehicles may use them."""
+Links = Mapping[VehicleType, RoadLinks]  # The roads, as each class of vehicles may use them
 
 
 class Departure(NamedTuple):
     """A vehicle that enters the roads."""
 
-    time: float
-    """When it is due [s]."""
+    time: float  # When it is due [s]
     route: Route
     vehicle_type: VehicleType
 

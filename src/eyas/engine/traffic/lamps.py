@@ -34,26 +34,19 @@ _SINCE, _UNTIL = 0.3, 0.5
 """Time before and after an instant over which its deceleration is a mean [s]: the foot is on the
 pedal before the speed changes."""
 
-_STILL = 0.15
-"""Speed of what stands [m/s]."""
+_STILL = 0.15  # Speed of what stands [m/s]
 
-_LEAST = 0.6
-"""Shortest time for which brake lamps are lit, or out [s]: a foot is no faster."""
+_LEAST = 0.6  # Shortest time for which brake lamps are lit, or out [s]: a foot is no faster
 
-_BEFORE_TURN = 30.0
-"""Distance to a junction at which a driver begins to signal [m]."""
+_BEFORE_TURN = 30.0  # Distance to a junction at which a driver begins to signal [m]
 
-_LEAD = 3.0
-"""Time before a turn or a change of lanes at which he has begun, at the latest [s]."""
+_LEAD = 3.0  # Time before a turn or a change of lanes at which he has begun, at the latest [s]
 
-_TURN = 0.6
-"""Change of the heading at a junction beyond which the way is called a turn [rad]."""
+_TURN = 0.6  # Change of the heading at a junction beyond which the way is called a turn [rad]
 
-_AFTER = 1.0
-"""Time after the line between two lanes is crossed for which he signals on [s]."""
+_AFTER = 1.0  # Time after the line between two lanes is crossed for which he signals on [s]
 
-_LOOK = 0.5
-"""Time from one look at the lane to the next [s]."""
+_LOOK = 0.5  # Time from one look at the lane to the next [s]
 
 _BRAKE, _LEFT, _RIGHT = int(Lamp.BRAKE), int(Lamp.LEFT), int(Lamp.RIGHT)
 

@@ -11,11 +11,9 @@ from eyas.lanes import exact
 
 __all__ = ["LaneMap"]
 
-_CELL = 0.5
-"""Side of a cell [m]."""
+_CELL = 0.5  # Side of a cell [m]
 
-_SHARE = 0.85
-"""Share of its width for which a lane is painted: its border belongs to none."""
+_SHARE = 0.85  # Share of its width for which a lane is painted: its border belongs to none
 
 
 class LaneMap:

@@ -44,8 +44,7 @@ __all__ = [
 
 _LOG = logging.getLogger("eyas")
 
-CANONICAL_SEED = 1
-"""Seed of the shipped recordings, and the default seed of others."""
+CANONICAL_SEED = 1  # Seed of the shipped recordings, and the default seed of others
 
 RESPAWN_GROUPS = (3, 5, 10, 12, 40)
 """Sizes of the groups in the shipped recordings with `respawn`: 3 for one tracker and 12 for the
@@ -63,14 +62,12 @@ DENSE_VEHICLES = 320
 """Vehicles in the shipped recordings of dense traffic: downtown then has eight in a view of 38 x 28
 m now and then (with 160, never), and citystreet, which has room for 399, still flows."""
 
-DENSE_DURATION = 300.0
-"""Length of these: as many vehicle hours as in the others [s]."""
+DENSE_DURATION = 300.0  # Length of these: as many vehicle hours as in the others [s]
 EVADING_MIX = Mix(passenger=0.75, bus=0.15, truck=0.1)
 """Classes of vehicles in the shipped recordings of drivers who evade: no trailers, whose tails
 swing into cars that turn round beside them."""
 
-STANDARD_DURATION = 1260.0
-"""Default length of a recording: 21 minutes [s]."""
+STANDARD_DURATION = 1260.0  # Default length of a recording: 21 minutes [s]
 
 TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
 """Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""

@@ -32,8 +32,7 @@ _AHEAD = {Demand.KEEP_ALIVE: _FILTER + 2, Demand.RESPAWN: 3 * _FILTER}
 """Samples that are driven before one is smooth: the filter, and the differences of its speed. A
 vehicle that is as far along the filtered path as SUMO has it needs more of that path, too."""
 
-_BEFORE = 4 * _FILTER
-"""Samples before those to smooth that are filtered again."""
+_BEFORE = 4 * _FILTER  # Samples before those to smooth that are filtered again
 
 Floats = NDArray[np.float64]
 

@@ -29,11 +29,9 @@ __all__ = [
     "signalled_edges",
 ]
 
-_SHORTEST = 0.05
-"""Points nearer to each other are one [m]."""
+_SHORTEST = 0.05  # Points nearer to each other are one [m]
 
-_LARGEST = 1e9
-"""Largest number that is read."""
+_LARGEST = 1e9  # Largest number that is read
 
 Line = NDArray[np.float64]
 T = TypeVar("T")
@@ -42,14 +40,10 @@ T = TypeVar("T")
 class NetLane(NamedTuple):
     """A lane, sidewalk or path."""
 
-    shape: str
-    """Its points, as the file tells them."""
-    width: float
-    """[m]"""
-    speed: float
-    """[m/s]"""
-    walked: bool
-    """Whether it is a sidewalk or a path, no part of the asphalt."""
+    shape: str  # Its points, as the file tells them
+    width: float  # [m]
+    speed: float  # [m/s]
+    walked: bool  # Whether it is a sidewalk or a path, no part of the asphalt
 
     @property
     def points(self) -> Line:
@@ -61,27 +55,20 @@ class NetEdge(NamedTuple):
     """A street in one direction, or, with a function, a part of a junction."""
 
     name: str
-    function: str | None
-    """None for a street; "internal", "crossing" or "walkingarea"."""
-    start: str
-    """Junction where a street begins."""
+    function: str | None  # None for a street; "internal", "crossing" or "walkingarea"
+    start: str  # Junction where a street begins
     end: str
-    lanes: tuple[NetLane, ...]
-    """From the right."""
-    crossed: tuple[str, ...]
-    """Streets that a crossing crosses."""
+    lanes: tuple[NetLane, ...]  # From the right
+    crossed: tuple[str, ...]  # Streets that a crossing crosses
 
 
 class NetConnection(NamedTuple):
     """A way through a junction."""
 
-    start: str
-    """Its edges."""
+    start: str  # Its edges
     end: str
-    light: str
-    """The program that controls it; empty: none does."""
-    link: int
-    """Place in the states of the program; -1 without one."""
+    light: str  # The program that controls it; empty: none does
+    link: int  # Place in the states of the program; -1 without one
     direction: str
 
 
@@ -89,18 +76,15 @@ class NetPhase(NamedTuple):
     """A phase of a traffic light."""
 
     seconds: float
-    state: str
-    """What each link shows."""
+    state: str  # What each link shows
 
 
 class NetProgram(NamedTuple):
     """The program of a traffic light."""
 
     name: str
-    kind: str
-    """"static" if it depends on the time alone."""
-    offset: float
-    """[s]"""
+    kind: str  # "static" if it depends on the time alone
+    offset: float  # [s]
     phases: tuple[NetPhase, ...]
 
 

@@ -20,14 +20,12 @@ __all__ = ["Arrays", "packed", "unpacked", "unpacked_differences"]
 
 Arrays = dict[str, NDArray[np.generic]]
 
-_TURN = 6_283_185
-"""A full turn [microradians]."""
+_TURN = 6_283_185  # A full turn [microradians]
 
 _GRAIN = 500
 """Step of the table of slopes: the finest that the middle of two headings has [microradians]."""
 
-_SLOPE_BITS = 20
-"""Binary places of a slope."""
+_SLOPE_BITS = 20  # Binary places of a slope
 
 
 def packed(position: NDArray[np.int64], yaw: NDArray[np.int64]) -> Arrays:

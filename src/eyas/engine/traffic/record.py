@@ -27,8 +27,7 @@ __all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved", "roads_
 WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
 
-GROUP_SHARE = 3
-"""Least number of vehicles in a group for each tracker, as in the original."""
+GROUP_SHARE = 3  # Least number of vehicles in a group for each tracker, as in the original
 
 
 def record(  # noqa: PLR0913  # everything a recording depends on

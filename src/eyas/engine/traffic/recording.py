@@ -19,11 +19,9 @@ __all__ = [
     "restored",
 ]
 
-POSITION_UNIT = 0.01
-"""Positions are whole multiples of this [m]."""
+POSITION_UNIT = 0.01  # Positions are whole multiples of this [m]
 
-ANGLE_UNIT = 0.001
-"""Yaws are whole multiples of this [rad]."""
+ANGLE_UNIT = 0.001  # Yaws are whole multiples of this [rad]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,16 +30,11 @@ class Provenance:
 
     map_name: str
     map_seed: int
-    graph_hash: str
-    """Hash of the road graph the vehicles drove on."""
-    config: TrafficConfig
-    """Settings of the traffic; `group_size` and `seed` are numbers."""
-    duration: float
-    """[s]"""
-    warm_up: float
-    """Simulated time before the recording began [s]."""
-    options: tuple[str, ...]
-    """SUMO's options."""
+    graph_hash: str  # Hash of the road graph the vehicles drove on
+    config: TrafficConfig  # Settings of the traffic; `group_size` and `seed` are numbers
+    duration: float  # [s]
+    warm_up: float  # Simulated time before the recording began [s]
+    options: tuple[str, ...]  # SUMO's options
     sumo_version: str
     eyas_version: str
     cover: str = ""

@@ -39,11 +39,9 @@ __all__ = ["FORMAT", "Outline", "RecordingFile", "from_bytes", "load", "save", "
 FORMAT = "eyas traffic recording 3"
 """Format in the header of a file; another layout gets another number."""
 
-_BEFORE = "eyas traffic recording 2"
-"""Format before it, which is read as well."""
+_BEFORE = "eyas traffic recording 2"  # Format before it, which is read as well
 
-_LARGEST = 256 << 20
-"""Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
+_LARGEST = 256 << 20  # Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]
 
 _FILTERS = [
     {
@@ -62,18 +60,15 @@ class Outline(NamedTuple):
     """What the header of a file says."""
 
     provenance: Provenance
-    rate: float
-    """Samples per second [Hz]."""
-    vehicle_types: tuple[VehicleType, ...]
-    """Class of each actor."""
+    rate: float  # Samples per second [Hz]
+    vehicle_types: tuple[VehicleType, ...]  # Class of each actor
 
 
 class RecordingFile(NamedTuple):
     """The content of a file, not unpacked yet: that takes a tenth of a second."""
 
     data: bytes
-    source: str
-    """Name of the file for messages."""
+    source: str  # Name of the file for messages
 
     @classmethod
     def read(cls, path: Path | Traversable) -> "RecordingFile":

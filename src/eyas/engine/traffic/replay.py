@@ -14,8 +14,7 @@ from eyas.engine.traffic.source import Stays
 
 __all__ = ["Replay", "check_time"]
 
-ROUNDING: Final = 1e-9
-"""Tolerance for rounding errors in times that are multiples of 2 ms [s]."""
+ROUNDING: Final = 1e-9  # Tolerance for rounding errors in times that are multiples of 2 ms [s]
 
 
 class Replay:

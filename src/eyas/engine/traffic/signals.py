@@ -48,14 +48,10 @@ class SignalPlan(NamedTuple):
     """The lights at the ends of E edges; a cycle has up to P phases."""
 
     edges: tuple[str, ...]
-    cycle: NDArray[np.float64]
-    """Length of a cycle [s], shape (E,)."""
-    offset: NDArray[np.float64]
-    """When cycles begin, time of the traffic [s], shape (E,)."""
-    end: NDArray[np.float64]
-    """When phases end, from the beginning of a cycle [s], shape (E, P)."""
-    aspect: NDArray[np.int64]
-    """`Aspect` of each phase, shape (E, P)."""
+    cycle: NDArray[np.float64]  # Length of a cycle [s], shape (E,)
+    offset: NDArray[np.float64]  # When cycles begin, time of the traffic [s], shape (E,)
+    end: NDArray[np.float64]  # When phases end, from the beginning of a cycle [s], shape (E, P)
+    aspect: NDArray[np.int64]  # `Aspect` of each phase, shape (E, P)
 
     def at(self, time: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the `Aspect` of all edges at W times of the traffic [s], shape (W, E)."""

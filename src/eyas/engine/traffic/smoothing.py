@@ -37,36 +37,25 @@ __all__ = [
 SIGMA = 0.3
 """Width of the Gaussian [s]: removes SUMO's 0.1 s steps and moves the path by centimetres only."""
 
-REACH = 4.0
-"""Half the length of the filter, in widths."""
+REACH = 4.0  # Half the length of the filter, in widths
 
-WHEELBASE = 0.54
-"""Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car."""
+WHEELBASE = 0.54  # Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car.
 
-LONGEST_WHEELBASE = 6.0
-"""Upper limit of the axle distance [m]."""
+LONGEST_WHEELBASE = 6.0  # Upper limit of the axle distance [m]
 
 
 @dataclass(slots=True)
 class Tracks:
     """Smooth motion of A actors at S samples, world frame. Poses are held while absent."""
 
-    rate: float
-    """Samples per second [Hz]."""
-    position: NDArray[np.float64]
-    """Middle of the vehicle's length [m], shape (S, A, 2)."""
-    velocity: NDArray[np.float64]
-    """[m/s], shape (S, A, 2); 0 while absent."""
-    yaw: NDArray[np.float64]
-    """Heading without jumps at ±180° [rad], shape (S, A)."""
-    yaw_rate: NDArray[np.float64]
-    """[rad/s], shape (S, A)."""
-    hitch: NDArray[np.float64]
-    """Heading of a trailer less that of its truck [rad], shape (S, A)."""
-    travelled: NDArray[np.float64]
-    """Path length since the recording began [m], shape (S, A)."""
-    present: NDArray[np.bool_]
-    """Whether the actor is in the world, shape (S, A)."""
+    rate: float  # Samples per second [Hz]
+    position: NDArray[np.float64]  # Middle of the vehicle's length [m], shape (S, A, 2)
+    velocity: NDArray[np.float64]  # [m/s], shape (S, A, 2); 0 while absent
+    yaw: NDArray[np.float64]  # Heading without jumps at ±180° [rad], shape (S, A)
+    yaw_rate: NDArray[np.float64]  # [rad/s], shape (S, A)
+    hitch: NDArray[np.float64]  # Heading of a trailer less that of its truck [rad], shape (S, A)
+    travelled: NDArray[np.float64]  # Path length since the recording began [m], shape (S, A)
+    present: NDArray[np.bool_]  # Whether the actor is in the world, shape (S, A)
 
     @classmethod
     def create(cls, rate: float, samples: int, actors: int) -> "Tracks":

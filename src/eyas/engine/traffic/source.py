@@ -13,10 +13,8 @@ __all__ = ["Stays", "TrafficSource"]
 class Stays(NamedTuple):
     """When actors that may be targets are in the world; an actor may come and go several times."""
 
-    actor: NDArray[np.int64]
-    """The actor, shape (S,)."""
-    enters: NDArray[np.float64]
-    """Time of its first sample there [s], shape (S,)."""
+    actor: NDArray[np.int64]  # The actor, shape (S,)
+    enters: NDArray[np.float64]  # Time of its first sample there [s], shape (S,)
     leaves: NDArray[np.float64]
     """Last time at which it is there [s]; infinite if that is not known yet, shape (S,)."""
     known: float

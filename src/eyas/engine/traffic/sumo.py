@@ -22,8 +22,7 @@ from eyas.lanes import exact
 
 __all__ = ["RATE", "Drive", "SumoRun", "departures_and_types", "drive", "no_room", "options"]
 
-RATE = 10
-"""SUMO's steps and Eyas's samples per second [Hz], as in the original."""
+RATE = 10  # SUMO's steps and Eyas's samples per second [Hz], as in the original
 
 _SELDOM = ("--default.action-step-length", "0.5")
 """Drivers decide twice a second: smoother, and several times faster. Without it they decide in each
@@ -59,14 +58,10 @@ class Drive:
 
     position: NDArray[np.float64]
     """Middle of the vehicle's length, east and north [m], shape (S, A, 2); 0 while absent."""
-    yaw: NDArray[np.float64]
-    """Heading [rad], shape (S, A); 0 while absent."""
-    present: NDArray[np.bool_]
-    """Whether the actor is in the world, shape (S, A)."""
-    vehicle_types: tuple[VehicleType, ...]
-    """Class of each actor, A."""
-    vehicle_length: NDArray[np.float64]
-    """SUMO's length of each actor's class [m], shape (A,)."""
+    yaw: NDArray[np.float64]  # Heading [rad], shape (S, A); 0 while absent
+    present: NDArray[np.bool_]  # Whether the actor is in the world, shape (S, A)
+    vehicle_types: tuple[VehicleType, ...]  # Class of each actor, A
+    vehicle_length: NDArray[np.float64]  # SUMO's length of each actor's class [m], shape (A,)
 
     @classmethod
     def create(

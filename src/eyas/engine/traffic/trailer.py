@@ -29,23 +29,17 @@ __all__ = [
     "tow",
 ]
 
-BUMPER_AHEAD = 4.75
-"""From the kingpin to the front bumper [m]."""
+BUMPER_AHEAD = 4.75  # From the kingpin to the front bumper [m]
 
-TAIL_BEHIND = 9.55
-"""From the kingpin to the end of the trailer [m]."""
+TAIL_BEHIND = 9.55  # From the kingpin to the end of the trailer [m]
 
-REAR_AXLE = 0.3
-"""From the kingpin back to the truck's rear axle [m]."""
+REAR_AXLE = 0.3  # From the kingpin back to the truck's rear axle [m]
 
-AXLES_BEHIND = 7.1
-"""From the kingpin to the middle of the trailer's axles [m]."""
+AXLES_BEHIND = 7.1  # From the kingpin to the middle of the trailer's axles [m]
 
-_REFERENCE = 1.0
-"""From the middle of the chord to the actor's reference point ahead of it [m]."""
+_REFERENCE = 1.0  # From the middle of the chord to the actor's reference point ahead of it [m]
 
-_SHORTEST_LEAD = 0.1
-"""[m]"""
+_SHORTEST_LEAD = 0.1  # [m]
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", float, NDArray[np.floating])
@@ -54,8 +48,7 @@ Number = TypeVar("Number", float, NDArray[np.floating])
 class Links(NamedTuple):
     """Headings of what follows each other [rad]."""
 
-    lead: float
-    """From the front bumper to SUMO's front, which is a little ahead of it."""
+    lead: float  # From the front bumper to SUMO's front, which is a little ahead of it
     truck: float
     trailer: float
 
@@ -80,10 +73,8 @@ class Articulated(NamedTuple):
 
     centre: Floats
     """Reference point, 1 m ahead of the middle between bumper and tail [m], shape (S, 2)."""
-    heading: Floats
-    """Direction from the tail to the bumper, without jumps [rad], shape (S,)."""
-    hitch: Floats
-    """Heading of the trailer less that of the truck [rad], shape (S,)."""
+    heading: Floats  # Direction from the tail to the bumper, without jumps [rad], shape (S,)
+    hitch: Floats  # Heading of the trailer less that of the truck [rad], shape (S,)
 
 
 def tow(front: Floats, length: float, links: Links) -> Articulated:

@@ -23,11 +23,9 @@ __all__ = ["CameraFlights"]
 Floats = NDArray[np.float64]
 
 _STEP_TICKS = round(STEP / PHYSICS_STEP)
-_MORE = 4
-"""Control points before the first step and after the last one, which lead the spline."""
+_MORE = 4  # Control points before the first step and after the last one, which lead the spline
 
-_COURSE = 5
-"""The target's course is read once in so many control points: its recording has 10 Hz."""
+_COURSE = 5  # The target's course is read once in so many control points: its recording has 10 Hz
 
 
 _BLOCK = 500
@@ -36,16 +34,14 @@ _BLOCK = 500
 _POSE, _ANGLES, _FIELD = slice(0, 4), slice(4, 6), 6
 """Columns: east, north, up, heading; the camera's pitch and yaw; its field of view."""
 
-_SAMPLED = [0, 1, 2, 3, 4, 6]
-"""Those that a flight has: its cameras turn with the body."""
+_SAMPLED = [0, 1, 2, 3, 4, 6]  # Those that a flight has: its cameras turn with the body
 
 
 class _Flown(NamedTuple):
     """The flight of a tracker's episode."""
 
     points: Floats
-    begun: int
-    """Tick of the second control point."""
+    begun: int  # Tick of the second control point
 
 
 class CameraFlights:

@@ -40,8 +40,7 @@ writer is no longer installed."""
 STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
 """Names of the logs in the folder of a recording, outside of the trackers' folders."""
 
-_NOT_PICTURED = ("learning",)
-"""Houses that have no part in a recording."""
+_NOT_PICTURED = ("learning",)  # Houses that have no part in a recording
 
 _OF_DIALECT = (found.file,) if (found := dialect()) else ()
 

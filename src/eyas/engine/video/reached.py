@@ -9,8 +9,7 @@ from eyas.engine.sim.flights.shares import SMALL
 
 __all__ = ["ReachedShares", "missed"]
 
-_NEAR = 0.05
-"""A share that differs by no more from what was asked is reached."""
+_NEAR = 0.05  # A share that differs by no more from what was asked is reached
 
 
 @dataclass(slots=True)

@@ -28,8 +28,7 @@ __all__ = ["Recorder", "WriterThreads"]
 
 Arguments = ParamSpec("Arguments")
 
-MOST_WAITING = 8
-"""Most calls that may wait for a thread; it limits the pictures held in memory."""
+MOST_WAITING = 8  # Most calls that may wait for a thread; it limits the pictures held in memory
 
 
 class WriterThreads:
@@ -95,10 +94,8 @@ class _Going:
     """An episode in progress."""
 
     episode: Episode
-    files: EpisodeFiles | None
-    """None: an earlier run has recorded it completely."""
-    summary: Summary
-    """Of the frames up to now, or of all frames of an earlier run."""
+    files: EpisodeFiles | None  # None: an earlier run has recorded it completely
+    summary: Summary  # Of the frames up to now, or of all frames of an earlier run
 
 
 class Recorder:

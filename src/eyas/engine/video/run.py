@@ -28,8 +28,7 @@ from eyas.engine.video.report import RecordingProgress, print_report, step_log
 
 __all__ = ["run"]
 
-_NEVER = 1e6
-"""A limit that no tracker reaches."""
+_NEVER = 1e6  # A limit that no tracker reaches
 
 
 def run(

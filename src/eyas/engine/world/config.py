@@ -24,8 +24,7 @@ class WorldWindConfig(Config):
     """Direction towards which it blows, counter-clockwise from east [rad]; drawn likewise."""
 
 
-_SIMPLE = "simpleway"
-"""First part of the names of the simple maps."""
+_SIMPLE = "simpleway"  # First part of the names of the simple maps
 
 
 def world_of(path: str) -> tuple[str, str] | None:

@@ -9,8 +9,7 @@ from eyas.lanes import exact
 
 __all__ = ["at_hour", "sun_at", "under_moon"]
 
-Colour = tuple[float, float, float]
-"""Linear red, green and blue; also a direction."""
+Colour = tuple[float, float, float]  # Linear red, green and blue; also a direction
 
 _LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)
 """A day in May at 45 degrees north; the sun stands in the south at 12."""
@@ -42,14 +41,11 @@ _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 the third it is night."""
 _LAMPS = ("lamps", "windows", "daytime_lamps")
 """What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
-_LOWEST = 1.5
-"""Height of the sun below which the formulas of daylight would go on to black [deg]."""
+_LOWEST = 1.5  # Height of the sun below which the formulas of daylight would go on to black [deg]
 
 
-_SIDEREAL = math.radians(15.041)
-"""How far the stars turn in an hour [rad]."""
-_MOONRISE = 3.0
-"""Height of the moon below which it throws no light [deg]."""
+_SIDEREAL = math.radians(15.041)  # How far the stars turn in an hour [rad]
+_MOONRISE = 3.0  # Height of the moon below which it throws no light [deg]
 _STARLIGHT = 0.35
 """Share of the night's ambient light that is not the moon's, but the stars' and the town's."""
 

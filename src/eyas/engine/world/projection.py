@@ -25,18 +25,15 @@ _EP2 = _E2 / (1 - _E2)
 _RADIAN = math.pi / 180
 
 _Numbers = NDArray[np.float64]
-_Some = Any
-"""A number, or as many as there are places."""
+_Some = Any  # A number, or as many as there are places
 
 
 @dataclass(frozen=True, slots=True)
 class Projection:
     """Metres around a place; exact to a millimetre within 10 km."""
 
-    longitude: float
-    """Of the origin, in degrees."""
-    latitude: float
-    """Of the origin, in degrees."""
+    longitude: float  # Of the origin, in degrees
+    latitude: float  # Of the origin, in degrees
 
     @property
     def text(self) -> str:

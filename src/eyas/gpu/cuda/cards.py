@@ -10,8 +10,7 @@ from eyas.gpu.cuda.driver import CudaError, driver
 
 __all__ = ["Card", "card", "gib", "gpu_line"]
 
-_MAJOR, _MINOR = 75, 76
-"""CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR."""
+_MAJOR, _MINOR = 75, 76  # CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR
 
 _VERSION = Path("/sys/module/nvidia/version")
 """Where Linux tells the version of the driver; its library knows only that of its interface."""
@@ -22,11 +21,9 @@ class Card(NamedTuple):
 
     handle: int
     name: str
-    memory: int
-    """[bytes]"""
+    memory: int  # [bytes]
     capability: tuple[int, int]
-    cards: int
-    """How many graphics processors there are."""
+    cards: int  # How many graphics processors there are
 
     def check(self) -> None:
         """Raise a `CudaError` if it is too old."""

@@ -27,16 +27,13 @@ from eyas.lanes.syntax import syntax_of
 
 __all__ = ["ARCHIVE", "OLDEST", "SUFFIX", "Ptx", "archive_of", "ptx_code"]
 
-OLDEST = (8, 0)
-"""The least compute capability of cards that are served: that of the A100, of 2020."""
+OLDEST = (8, 0)  # The least compute capability of cards that are served: that of the A100, of 2020
 
-SUFFIX = ".eyp"
-"""End of the names of files of PTX."""
+SUFFIX = ".eyp"  # End of the names of files of PTX
 
 _ROOM = Path(eyas.lanes.__file__).parent
 
-_MAKERS = ("ptx.py",)
-"""Files that decide what kernels become, beside the language of kernels."""
+_MAKERS = ("ptx.py",)  # Files that decide what kernels become, beside the language of kernels
 
 ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
@@ -45,8 +42,7 @@ ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 class Ptx(NamedTuple):
     """PTX of a kernel."""
 
-    entry: str
-    """Name of its entry."""
+    entry: str  # Name of its entry
     text: bytes
 
 

@@ -27,8 +27,7 @@ from eyas.lanes.vector import BLOCK
 
 __all__ = ["CudaDevice", "cuda_device"]
 
-_SPARE = 4096
-"""Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`."""
+_SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`.
 
 
 class CudaDevice:

@@ -26,8 +26,7 @@ __all__ = ["capsule_of"]
 
 _NAME = b"dltensor"
 
-_CODES = {"i": 0, "u": 1, "f": 2, "c": 5, "b": 6}
-"""DLDataTypeCode by numpy's kind."""
+_CODES = {"i": 0, "u": 1, "f": 2, "c": 5, "b": 6}  # DLDataTypeCode by numpy's kind
 
 
 class _Tensor(Structure):

@@ -17,8 +17,7 @@ __all__ = ["OUT_OF_MEMORY", "VARIABLE", "CudaError", "Driver", "driver"]
 VARIABLE = f"{OWNER.upper()}_LIBCUDA"
 """Environment variable: path of the driver's library, instead of the system's `libcuda.so.1`."""
 
-OUT_OF_MEMORY = 2
-"""CUDA_ERROR_OUT_OF_MEMORY."""
+OUT_OF_MEMORY = 2  # CUDA_ERROR_OUT_OF_MEMORY
 
 _NOT_INITIALIZED, _NO_DEVICE = 3, 100
 

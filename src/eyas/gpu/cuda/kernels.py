@@ -14,11 +14,9 @@ from eyas.lanes.calls import ParallelCall
 
 __all__ = ["Function", "Functions", "function_of"]
 
-_LOCAL_BYTES, _REGISTERS = 3, 4
-"""CU_FUNC_ATTRIBUTE_LOCAL_SIZE_BYTES and _NUM_REGS."""
+_LOCAL_BYTES, _REGISTERS = 3, 4  # CU_FUNC_ATTRIBUTE_LOCAL_SIZE_BYTES and _NUM_REGS
 
-_ERROR_LOG, _ERROR_LOG_SIZE = 5, 6
-"""CU_JIT_ERROR_LOG_BUFFER and _SIZE_BYTES."""
+_ERROR_LOG, _ERROR_LOG_SIZE = 5, 6  # CU_JIT_ERROR_LOG_BUFFER and _SIZE_BYTES
 
 
 class Function(NamedTuple):
@@ -26,10 +24,8 @@ class Function(NamedTuple):
 
     handle: c_void_p
     name: str
-    registers: int
-    """Of a thread."""
-    local: int
-    """Memory of a thread beside its registers [bytes]."""
+    registers: int  # Of a thread
+    local: int  # Memory of a thread beside its registers [bytes]
 
 
 class Functions:

@@ -13,8 +13,7 @@ from eyas.gpu.cuda.order import CudaEvent
 
 __all__ = ["CudaArray"]
 
-_LEGACY_STREAM = 1
-"""The legacy default stream, as `__cuda_array_interface__` and DLPack number it."""
+_LEGACY_STREAM = 1  # The legacy default stream, as `__cuda_array_interface__` and DLPack number it
 
 
 class CudaArray:

@@ -7,14 +7,11 @@ from eyas.gpu.cuda.context import Context
 
 __all__ = ["LEGACY", "CudaEvent", "Graph", "recorded"]
 
-LEGACY = c_void_p(None)
-"""The legacy default stream."""
+LEGACY = c_void_p(None)  # The legacy default stream
 
-_NON_BLOCKING = 1
-"""CU_STREAM_NON_BLOCKING: not ordered with the legacy default stream."""
+_NON_BLOCKING = 1  # CU_STREAM_NON_BLOCKING: not ordered with the legacy default stream
 
-_RELAXED = 2
-"""CU_STREAM_CAPTURE_MODE_RELAXED: memory may be allocated and filled meanwhile."""
+_RELAXED = 2  # CU_STREAM_CAPTURE_MODE_RELAXED: memory may be allocated and filled meanwhile
 
 
 class CudaEvent:

@@ -27,46 +27,31 @@ __all__ = ["DeviceActions"]
 class Numbers(NamedTuple):
     """Actions that are numbers of a table."""
 
-    action: NDArray[np.int64]
-    """Shape (N,)."""
-    table: NDArray[np.float64]
-    """The command of each number, shape (7, 4) or (11, 8)."""
+    action: NDArray[np.int64]  # Shape (N,)
+    table: NDArray[np.float64]  # The command of each number, shape (7, 4) or (11, 8)
 
 
 class Quads(NamedTuple):
     """Actions of four numbers."""
 
-    action: NDArray[np.float64]
-    """Shape (N, 4)."""
-    low: NDArray[np.float64]
-    """They are clipped to this, shape (4,)."""
-    high: NDArray[np.float64]
-    """And to this, shape (4,)."""
-    per_unit: NDArray[np.float64]
-    """What 1 means if it is a share, shape (4,)."""
-    per_minus: NDArray[np.float64]
-    """What -1 means if it is a share, shape (4,)."""
-    units: NDArray[np.float64]
-    """What it is divided by if it is none, shape (4,)."""
-    shares: int
-    """1: they are shares."""
+    action: NDArray[np.float64]  # Shape (N, 4)
+    low: NDArray[np.float64]  # They are clipped to this, shape (4,)
+    high: NDArray[np.float64]  # And to this, shape (4,)
+    per_unit: NDArray[np.float64]  # What 1 means if it is a share, shape (4,)
+    per_minus: NDArray[np.float64]  # What -1 means if it is a share, shape (4,)
+    units: NDArray[np.float64]  # What it is divided by if it is none, shape (4,)
+    shares: int  # 1: they are shares
 
 
 class Turns(NamedTuple):
     """The last two numbers of actions of six."""
 
-    action: NDArray[np.float64]
-    """Shape (N, 6)."""
-    low: NDArray[np.float64]
-    """They are clipped to this, shape (6,)."""
-    high: NDArray[np.float64]
-    """And to this, shape (6,)."""
-    per_unit: NDArray[np.float64]
-    """Rates that 1 means, shape (2,)."""
-    most: NDArray[np.float64]
-    """Where rates that are not negative lead, shape (2,)."""
-    least: NDArray[np.float64]
-    """Where others lead, shape (2,)."""
+    action: NDArray[np.float64]  # Shape (N, 6)
+    low: NDArray[np.float64]  # They are clipped to this, shape (6,)
+    high: NDArray[np.float64]  # And to this, shape (6,)
+    per_unit: NDArray[np.float64]  # Rates that 1 means, shape (2,)
+    most: NDArray[np.float64]  # Where rates that are not negative lead, shape (2,)
+    least: NDArray[np.float64]  # Where others lead, shape (2,)
 
 
 class Commanded(NamedTuple):
@@ -74,8 +59,7 @@ class Commanded(NamedTuple):
 
     commands: NDArray[np.float64]
     """See `eyas.engine.trackers.tracker.Tracker.advance`, shape (N, 4) or (N, 8)."""
-    refused: NDArray[np.int64]
-    """1: one of the actions is not allowed, shape (1,)."""
+    refused: NDArray[np.int64]  # 1: one of the actions is not allowed, shape (1,)
 
 
 class DeviceActions:

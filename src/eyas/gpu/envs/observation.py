@@ -34,39 +34,29 @@ Chosen = NDArray[np.int64]
 class Seen(NamedTuple):
     """Who is observed."""
 
-    views: NDArray[np.int64]
-    """Number of trackers V, shape (1,)."""
-    tracker: NDArray[np.int64]
-    """Which, in the first V of N elements."""
-    begun: NDArray[np.uint8]
-    """1: its episode has just begun, likewise."""
+    views: NDArray[np.int64]  # Number of trackers V, shape (1,)
+    tracker: NDArray[np.int64]  # Which, in the first V of N elements
+    begun: NDArray[np.uint8]  # 1: its episode has just begun, likewise
 
 
 class Pictures(NamedTuple):
     """Pictures that become observations, see `eyas.engine.sensors.stack.FrameStack`."""
 
-    rgb: NDArray[np.uint8]
-    """Of the V trackers, shape (N, H, W, 3)."""
+    rgb: NDArray[np.uint8]  # Of the V trackers, shape (N, H, W, 3)
     before: NDArray[np.uint8]
     """The stacks of all N trackers, shape (N, H, W, planes) or (N, planes, H, W)."""
-    after: NDArray[np.uint8]
-    """Where they are written, for the V trackers; may be the same."""
-    grey: int
-    """1: one channel, the luma."""
+    after: NDArray[np.uint8]  # Where they are written, for the V trackers; may be the same
+    grey: int  # 1: one channel, the luma
     frames: int
-    first: int
-    """1: planes come before rows and columns."""
+    first: int  # 1: planes come before rows and columns
 
 
 class Rows(NamedTuple):
     """Numbers that become observations; arrays of 0 rows are not wanted."""
 
-    packet: NDArray[np.float64]
-    """Working memory: basic packets, shape (N, 22)."""
-    sensors: NDArray[np.float32]
-    """Shape (N, 19)."""
-    privileged: NDArray[np.float32]
-    """Shape (N, 16)."""
+    packet: NDArray[np.float64]  # Working memory: basic packets, shape (N, 22)
+    sensors: NDArray[np.float32]  # Shape (N, 19)
+    privileged: NDArray[np.float32]  # Shape (N, 16)
 
 
 class DeviceObserver:

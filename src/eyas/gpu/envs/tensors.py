@@ -7,8 +7,7 @@ import numpy as np
 
 __all__ = ["as_bool", "copied", "is_tensor", "tensor_of", "torch_of"]
 
-Shared = Any
-"""An array of numpy, or a tensor of PyTorch that shares the memory of a device's array."""
+Shared = Any  # An array of numpy, or a tensor of PyTorch that shares the memory of a device's array
 
 
 def tensor_of(array: Any) -> Shared:  # noqa: ANN401  # a `DeviceArray`

@@ -31,8 +31,7 @@ MEMBERS, MOST_MEMBERS = 4, 128
 """Workers that share a view at least and at most: a warp of a graphics processor is four times
 `WIDTH` threads."""
 
-FILLERS = 64
-"""Workers that share the rows of its triangles at least."""
+FILLERS = 64  # Workers that share the rows of its triangles at least
 
 SEEKING, SHADING = 16384, 4096
 """Warps that keep a card busy while some wait: fewer views are shared by more workers. Those that
@@ -55,16 +54,11 @@ class PictureSize(NamedTuple):
     """What decides how much memory pictures need while they are drawn."""
 
     views: int
-    height: int
-    """[pixels]"""
-    width: int
-    """[pixels]"""
-    across: int = 1
-    """Samples along a row of each pixel."""
-    down: int = 1
-    """Samples along a column of each pixel."""
-    measured: bool = False
-    """Whether subjects or actors are measured."""
+    height: int  # [pixels]
+    width: int  # [pixels]
+    across: int = 1  # Samples along a row of each pixel
+    down: int = 1  # Samples along a column of each pixel
+    measured: bool = False  # Whether subjects or actors are measured
 
     @property
     def members(self) -> tuple[int, int]:

@@ -15,32 +15,23 @@ from eyas.lanes.device import Device
 
 __all__ = ["DeviceDrawer", "DeviceViews", "StagedDrawer"]
 
-Array = Any
-"""An `eyas.lanes.device.DeviceArray`."""
+Array = Any  # An `eyas.lanes.device.DeviceArray`.
 
 
 class DeviceViews(NamedTuple):
     """V cameras. The arrays lie on the device and may have more rows; the first V count."""
 
-    views: int
-    """V."""
-    eye: Array
-    """Optical centres, world frame [m], float64, shape (V, 3)."""
-    axes: Array
-    """Forward, left, up as rows, float64, shape (V, 3, 3)."""
-    world: Array
-    """Row of the draw list that each shows, int32, shape (V,)."""
-    subject: Array
-    """Object id of each view's subject, int32, shape (V,)."""
-    light: LightState
-    """Changes of the light, float32, shape (V,) each."""
+    views: int  # V
+    eye: Array  # Optical centres, world frame [m], float64, shape (V, 3)
+    axes: Array  # Forward, left, up as rows, float64, shape (V, 3, 3)
+    world: Array  # Row of the draw list that each shows, int32, shape (V,)
+    subject: Array  # Object id of each view's subject, int32, shape (V,)
+    light: LightState  # Changes of the light, float32, shape (V,) each
     instant: Array
     """Time for what falls and for the wind [s], float64, shape (V,), or (0,) if neither is
     shown."""
-    focal: Array
-    """Focal length along rows and along columns [pixels], float64, shape (V, 2)."""
-    falling: bool
-    """Whether flakes, drops and leaves are drawn at that time."""
+    focal: Array  # Focal length along rows and along columns [pixels], float64, shape (V, 2)
+    falling: bool  # Whether flakes, drops and leaves are drawn at that time
 
 
 class DeviceDrawer(Protocol):
@@ -67,12 +58,9 @@ class _Made:
     """What draws so many pictures, and what it was last asked to."""
 
     renderer: DeviceRenderer
-    job: Job
-    """Without its cameras."""
-    given: tuple[Any, ...] = ()
-    """The arrays that it was given."""
-    cut: Any = None
-    """The job with the cameras."""
+    job: Job  # Without its cameras
+    given: tuple[Any, ...] = ()  # The arrays that it was given
+    cut: Any = None  # The job with the cameras
     output: Output = NO_OUTPUT
 
 

@@ -43,12 +43,9 @@ __all__ = [
 class Shares(NamedTuple):
     """How work is shared."""
 
-    views: int
-    """Number of views."""
-    members: int
-    """Workers that share a view."""
-    listed: NDArray[np.int32]
-    """Rows of `Scratch.drawn` that each view uses, shape (V,)."""
+    views: int  # Number of views
+    members: int  # Workers that share a view
+    listed: NDArray[np.int32]  # Rows of `Scratch.drawn` that each view uses, shape (V,).
 
 
 @kernel

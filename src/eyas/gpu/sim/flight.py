@@ -44,43 +44,32 @@ class Flown(NamedTuple):
 
     repeat: NDArray[np.int64]
     """Commands of `Orders.steps` physics steps that an action lasts, shape (1,)."""
-    weight: NDArray[np.float64]
-    """Of the built-in reward, shape (1,)."""
-    reward: NDArray[np.float64]
-    """Sum over these commands, shape (N,)."""
-    reason: NDArray[np.int64]
-    """`DoneReason`, shape (N,)."""
-    terminated: NDArray[np.uint8]
-    """1: the episode has ended before its number of steps, shape (N,)."""
-    truncated: NDArray[np.uint8]
-    """1: it has ended by it, shape (N,)."""
+    weight: NDArray[np.float64]  # Of the built-in reward, shape (1,)
+    reward: NDArray[np.float64]  # Sum over these commands, shape (N,)
+    reason: NDArray[np.int64]  # `DoneReason`, shape (N,)
+    terminated: NDArray[np.uint8]  # 1: the episode has ended before its number of steps, shape (N,)
+    truncated: NDArray[np.uint8]  # 1: it has ended by it, shape (N,)
 
 
 class Focal(NamedTuple):
     """The pictures of N trackers."""
 
-    length: NDArray[np.float64]
-    """Focal length along rows and along columns [pixels], shape (N, 2)."""
+    length: NDArray[np.float64]  # Focal length along rows and along columns [pixels], shape (N, 2)
 
 
 class Starts(NamedTuple):
     """K episodes to begin, in the first of N rows."""
 
-    length: NDArray[np.int64]
-    """K, shape (1,)."""
-    row: NDArray[np.void]
-    """Of `START`, shape (N,)."""
-    looks: Looks
-    """Of all actors in the worlds of these trackers, N worlds."""
+    length: NDArray[np.int64]  # K, shape (1,)
+    row: NDArray[np.void]  # Of `START`, shape (N,)
+    looks: Looks  # Of all actors in the worlds of these trackers, N worlds
 
 
 class FlightCalls(NamedTuple):
     """The drivers of the step, for one kind of tracker."""
 
-    act: ParallelCall
-    """`StepState`, `Orders`, `Flown`: moves all active trackers by an action."""
-    begin: ParallelCall
-    """`StepState`, `ModelTable`, `Looks`, `Focal`, `Starts`: begins episodes."""
+    act: ParallelCall  # `StepState`, `Orders`, `Flown`: moves all active trackers by an action
+    begin: ParallelCall  # `StepState`, `ModelTable`, `Looks`, `Focal`, `Starts`: begins episodes
 
 
 def flight_calls(kernels: StepKernels) -> FlightCalls:

@@ -61,11 +61,9 @@ class Surroundings(NamedTuple):
     """What is known of all actors."""
 
     motion: Motion
-    bounds: ActorBounds
-    """All rows are made."""
+    bounds: ActorBounds  # All rows are made
     kinds: KindTable
-    looks: Looks
-    """In the N worlds."""
+    looks: Looks  # In the N worlds
 
 
 class Counts(NamedTuple):
@@ -74,19 +72,15 @@ class Counts(NamedTuple):
     end: NDArray[np.int64]
     """Where the actors of each of K kinds begin in its row of `Listed.state`, and at last their
     number, shape (V, K + 1)."""
-    short: NDArray[np.int64]
-    """Not 0 if there was no room for some, shape (1,)."""
-    slots: int
-    """Number of slots for actors; those of signals follow."""
+    short: NDArray[np.int64]  # Not 0 if there was no room for some, shape (1,)
+    slots: int  # Number of slots for actors; those of signals follow
 
 
 class Cast(NamedTuple):
     """One kind of actors."""
 
-    kind: int
-    """Which of the K."""
-    actors: int
-    """How many there are of it."""
+    kind: int  # Which of the K
+    actors: int  # How many there are of it
 
 
 @parallel

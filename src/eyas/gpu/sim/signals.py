@@ -21,10 +21,8 @@ class SignalTimes(NamedTuple):
 
     first: NDArray[np.int64]
     """Where those of each pole begin, and at last their number, shape (P + 1,)."""
-    tick: NDArray[np.int64]
-    """From when on [physics steps]; 0 for the first of each."""
-    part: NDArray[np.int32]
-    """What part is shown, -1: none."""
+    tick: NDArray[np.int64]  # From when on [physics steps]; 0 for the first of each
+    part: NDArray[np.int32]  # What part is shown, -1: none
 
 
 def signal_times(lights: SignalLights | None, last: int) -> SignalTimes:

@@ -39,8 +39,7 @@ from eyas.gpu.sim.simulation import DeviceSimulation
 
 __all__ = ["DeviceView"]
 
-_ENTRIES, _SLOTS = 8, 64
-"""Actors, and slots, for which there is room at first."""
+_ENTRIES, _SLOTS = 8, 64  # Actors, and slots, for which there is room at first
 
 
 class DeviceView:

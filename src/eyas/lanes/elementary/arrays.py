@@ -51,8 +51,7 @@ _FUNCTIONS: tuple[Callable[..., float], ...] = (
 (_SIN, _COS, _TAN, _ASIN, _ACOS, _ATAN, _EXP, _LOG, _TANH, _ATAN2, _HYPOT, _POWER) = range(12)
 _OF_NUMBERS = tuple(interpreted(function) for function in _FUNCTIONS)
 
-_FEW = 4
-"""So many numbers are computed faster one by one in Python than by a call of a kernel."""
+_FEW = 4  # So many numbers are computed faster one by one in Python than by a call of a kernel
 
 
 @kernel(inline=True)
@@ -140,27 +139,15 @@ def _of_all(function: int, first: Floats, second: Floats) -> Floats:
     return result
 
 
-sin = _OfOne(_SIN)
-"""Sine of angles [rad]."""
-cos = _OfOne(_COS)
-"""Cosine of angles [rad]."""
-tan = _OfOne(_TAN)
-"""Tangent of angles [rad]."""
-asin = _OfOne(_ASIN)
-"""Angles of sines, -pi/2 to pi/2 [rad]; nan beyond -1 to 1."""
-acos = _OfOne(_ACOS)
-"""Angles of cosines, 0 to pi [rad]; nan beyond -1 to 1."""
-atan = _OfOne(_ATAN)
-"""Angles of tangents, -pi/2 to pi/2 [rad]."""
-exp = _OfOne(_EXP)
-"""e to powers."""
-log = _OfOne(_LOG)
-"""Natural logarithms; -inf of 0, nan below."""
-tanh = _OfOne(_TANH)
-"""Hyperbolic tangents."""
-atan2 = _OfTwo(_ATAN2)
-"""Directions of vectors y, x, counter-clockwise from x, -pi to pi [rad]."""
-hypot = _OfTwo(_HYPOT)
-"""Lengths of vectors x, y."""
-power = _OfTwo(_POWER)
-"""Bases, which must not be negative, to the power of exponents."""
+sin = _OfOne(_SIN)  # Sine of angles [rad]
+cos = _OfOne(_COS)  # Cosine of angles [rad]
+tan = _OfOne(_TAN)  # Tangent of angles [rad]
+asin = _OfOne(_ASIN)  # Angles of sines, -pi/2 to pi/2 [rad]; nan beyond -1 to 1
+acos = _OfOne(_ACOS)  # Angles of cosines, 0 to pi [rad]; nan beyond -1 to 1
+atan = _OfOne(_ATAN)  # Angles of tangents, -pi/2 to pi/2 [rad]
+exp = _OfOne(_EXP)  # e to powers
+log = _OfOne(_LOG)  # Natural logarithms; -inf of 0, nan below
+tanh = _OfOne(_TANH)  # Hyperbolic tangents
+atan2 = _OfTwo(_ATAN2)  # Directions of vectors y, x, counter-clockwise from x, -pi to pi [rad]
+hypot = _OfTwo(_HYPOT)  # Lengths of vectors x, y
+power = _OfTwo(_POWER)  # Bases, which must not be negative, to the power of exponents

@@ -31,8 +31,7 @@ _TQ0, _TQ1, _TQ2 = 1.12811678491632931402e2, 2.23548839060100448583e3, 4.8440630
 _TWO_THIRDS, _TWO_THIRDS_REST = 2.0 / 3.0, 2.0 / 3.0 * 2.0**-54
 _LATER = tuple(2.0 / k for k in range(27, 3, -2))
 
-_LARGEST, _SMALLEST = 710.0, -746.0
-"""Above, `exp` is infinite; below, it is 0."""
+_LARGEST, _SMALLEST = 710.0, -746.0  # Above, `exp` is infinite; below, it is 0
 
 
 @kernel(inline=True)

@@ -60,8 +60,7 @@ __all__ = [
     "whole",
 ]
 
-WIDTH = 8
-"""Numbers in lanes."""
+WIDTH = 8  # Numbers in lanes
 
 BLOCK = 32
 """Threads that a graphics processor starts together of a kernel on lanes: one warp, so that none

@@ -11,17 +11,13 @@ from eyas.learning.tracking.driving import Drives
 
 __all__ = ["FARTHEST", "Forecast", "taught_forecast"]
 
-_WIDTH = 64
-"""Numbers of a hidden layer."""
+_WIDTH = 64  # Numbers of a hidden layer
 
-FARTHEST = 6.0
-"""Limit of the scaled numbers of a past: rare ones are no reason for wild answers."""
+FARTHEST = 6.0  # Limit of the scaled numbers of a past: rare ones are no reason for wild answers
 
-_BATCH = 1024
-"""Pasts in a step."""
+_BATCH = 1024  # Pasts in a step
 
-_RATE = 3e-3
-"""Largest rate of learning of Adam; it falls to nothing."""
+_RATE = 3e-3  # Largest rate of learning of Adam; it falls to nothing
 
 _FREEDOM = 3.0
 """Degrees of freedom of Student's distribution of what drivers do otherwise: some surprise."""
@@ -36,8 +32,7 @@ class Forecast(nn.Module):
         self.second = nn.Linear(_WIDTH, _WIDTH)
         self.last = nn.Linear(_WIDTH, 3 * len(HORIZONS))
         self.mean: Tensor
-        self.spread: Tensor
-        """Of each number of the pasts, shape (PAST,)."""
+        self.spread: Tensor  # Of each number of the pasts, shape (PAST,)
         self.register_buffer("mean", torch.zeros(PAST))
         self.register_buffer("spread", torch.ones(PAST))
         unit = torch.tensor(HORIZONS, dtype=torch.float32)

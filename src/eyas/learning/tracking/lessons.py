@@ -14,52 +14,40 @@ from eyas.learning.tracking.samples import GROUP, Sample, Samples
 
 __all__ = ["Loss", "Progress", "loss_of", "taught"]
 
-_GROUPS = LESSON // GROUP
-"""In a step."""
+_GROUPS = LESSON // GROUP  # In a step
 
-_SHOWN = 0.6
-"""Share of the other pictures of a group whose keys make the target's."""
+_SHOWN = 0.6  # Share of the other pictures of a group whose keys make the target's
 
-_UNKNOWN = 0.15
-"""Share of the pictures without any key."""
+_UNKNOWN = 0.15  # Share of the pictures without any key
 
 _IMPOSTORS = 0.5
 """Share of the pictures with a key and a wide expectation that get another target's key instead:
 theirs is not seen. Else places are enough to be right, and keys would tell little."""
 
-_WIDE = 5.0
-"""Least standard deviation of such an expectation [pixels]."""
+_WIDE = 5.0  # Least standard deviation of such an expectation [pixels]
 
-_PLACE = 0.3
-"""Weight of the place within a cell."""
+_PLACE = 0.3  # Weight of the place within a cell
 
-_APART = 0.3
-"""Weight of whose key it is among those of all groups."""
+_APART = 0.3  # Weight of whose key it is among those of all groups
 
-_WARM_UP = 200
-"""Steps in which the rate of learning rises, at most a quarter of all."""
+_WARM_UP = 200  # Steps in which the rate of learning rises, at most a quarter of all
 
 
 class Progress(NamedTuple):
     """How well a network has learned since the last progress."""
 
     step: int
-    loss: float
-    """Cross entropy."""
-    right: float
-    """Share of the pictures whose most probable answer is right, within a cell."""
+    loss: float  # Cross entropy
+    right: float  # Share of the pictures whose most probable answer is right, within a cell
 
 
 class Loss(NamedTuple):
     """How wrong a network is in a sample."""
 
     total: Tensor
-    cells: Tensor
-    """Cross entropy of the cells and "not seen"."""
-    right: Tensor
-    """Whether the most probable answer is right, within a cell, shape (B,)."""
-    off: Tensor
-    """Distance of the place in the true cell [pixels], shape (B,)."""
+    cells: Tensor  # Cross entropy of the cells and "not seen"
+    right: Tensor  # Whether the most probable answer is right, within a cell, shape (B,)
+    off: Tensor  # Distance of the place in the true cell [pixels], shape (B,)
 
 
 def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> Loss:

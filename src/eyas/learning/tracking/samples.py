@@ -18,37 +18,26 @@ _ENOUGH = 0.3
 """Share of a target that must be visible for it to count as seen. Of less the network tells the
 place badly: at the edge of cover, where the target has driven on."""
 
-_EITHER = 0.05
-"""Around that share either answer is right."""
+_EITHER = 0.05  # Around that share either answer is right
 
-_HARD = 0.5
-"""Share of the groups that are chosen for a picture in which it is hard."""
+_HARD = 0.5  # Share of the groups that are chosen for a picture in which it is hard
 
-_AROUND = 7
-"""Farthest second picture of such a group [pictures]."""
+_AROUND = 7  # Farthest second picture of such a group [pictures]
 
-_OWN = 0.55
-"""Share of the pictures with a place that a tracker expected for which it is taken."""
+_OWN = 0.55  # Share of the pictures with a place that a tracker expected for which it is taken
 
-_SPREADS = 0.6, 30.0
-"""Of other expected places, standard deviation [pixels]."""
+_SPREADS = 0.6, 30.0  # Of other expected places, standard deviation [pixels]
 
 
 class Sample(NamedTuple):
     """B pictures."""
 
-    picture: Tensor
-    """Shape (B, 3, H, W)."""
-    place: Tensor
-    """True place, column and row [pixels], shape (B, 2)."""
-    seen: Tensor
-    """Whether the target is seen, shape (B,)."""
-    unclear: Tensor
-    """Whether that is neither right nor wrong, shape (B,)."""
-    expected: Tensor
-    """Shape (B, 2)."""
-    spread: Tensor
-    """Shape (B,)."""
+    picture: Tensor  # Shape (B, 3, H, W)
+    place: Tensor  # True place, column and row [pixels], shape (B, 2)
+    seen: Tensor  # Whether the target is seen, shape (B,)
+    unclear: Tensor  # Whether that is neither right nor wrong, shape (B,)
+    expected: Tensor  # Shape (B, 2)
+    spread: Tensor  # Shape (B,)
 
 
 class Samples:

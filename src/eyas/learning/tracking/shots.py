@@ -20,18 +20,13 @@ Floats = NDArray[np.float32]
 class Shots(NamedTuple):
     """Pictures of E flights at T instants each."""
 
-    picture: NDArray[np.uint8]
-    """Shape (E, T, 3, H, W)."""
+    picture: NDArray[np.uint8]  # Shape (E, T, 3, H, W)
     place: Floats
     """The target's centre, in the picture or outside of it, column and row [pixels], (E, T, 2)."""
-    share: Floats
-    """Share of the target that is visible, shape (E, T)."""
-    expected: Floats
-    """Where the tracker expected it, NaN where none flew [pixels], shape (E, T, 2)."""
-    spread: Floats
-    """Standard deviation of that, or NaN [pixels], shape (E, T)."""
-    flown: NDArray[np.bool_]
-    """Whether the flight was still under way, shape (E, T)."""
+    share: Floats  # Share of the target that is visible, shape (E, T)
+    expected: Floats  # Where the tracker expected it, NaN where none flew [pixels], shape (E, T, 2)
+    spread: Floats  # Standard deviation of that, or NaN [pixels], shape (E, T)
+    flown: NDArray[np.bool_]  # Whether the flight was still under way, shape (E, T)
 
     @classmethod
     def of(cls, instants: Sequence["Shots"]) -> "Shots":

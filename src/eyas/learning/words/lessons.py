@@ -14,11 +14,9 @@ from eyas.learning.words.scenes import Scenes, Vehicles, chosen
 
 __all__ = ["Lesson", "Loss", "lesson", "loss_of"]
 
-_ENOUGH: Final = 0.35
-"""Share of a vehicle that must be visible for it to count as seen."""
+_ENOUGH: Final = 0.35  # Share of a vehicle that must be visible for it to count as seen
 
-_WIDE: Final = 0.7
-"""Standard deviation of a peak [cells]."""
+_WIDE: Final = 0.7  # Standard deviation of a peak [cells]
 
 _JITTER: Final = 0.5
 """Of the cell in which a vehicle's looks are taught, which is not always the peak [cells]."""
@@ -33,18 +31,12 @@ _LIGHT, _TINT, _NOISE = 0.2, 0.04, 3.0
 class Lesson(NamedTuple):
     """B pictures, and what is to be seen in them."""
 
-    picture: Tensor
-    """Shape (B, 3, H, W)."""
-    peaks: Tensor
-    """1 in the middles of vehicles, and less around them, shape (B, C)."""
-    weight: Tensor
-    """0 where a vehicle is hidden for the most part, else 1, shape (B, C)."""
-    vehicle: Tensor
-    """Picture and cell of V vehicles, shape (V, 2)."""
-    cell: Tensor
-    """Where they are taught, shape (V,)."""
-    place: Tensor
-    """Shape (V, 2), as all that follow as in `Vehicles`."""
+    picture: Tensor  # Shape (B, 3, H, W)
+    peaks: Tensor  # 1 in the middles of vehicles, and less around them, shape (B, C)
+    weight: Tensor  # 0 where a vehicle is hidden for the most part, else 1, shape (B, C)
+    vehicle: Tensor  # Picture and cell of V vehicles, shape (V, 2)
+    cell: Tensor  # Where they are taught, shape (V,)
+    place: Tensor  # Shape (V, 2), as all that follow as in `Vehicles`
     heading: Tensor
     colour: Tensor
     body: Tensor
@@ -54,12 +46,9 @@ class Loss(NamedTuple):
     """How wrong a network is."""
 
     total: Tensor
-    found: float
-    """Share of the vehicles whose cells have odds above 1."""
-    colour: float
-    """Share of the vehicles with a named colour whose most probable name is right."""
-    body: float
-    """Share of the vehicles whose most probable body is right."""
+    found: float  # Share of the vehicles whose cells have odds above 1
+    colour: float  # Share of the vehicles with a named colour whose most probable name is right
+    body: float  # Share of the vehicles whose most probable body is right
 
 
 def lesson(

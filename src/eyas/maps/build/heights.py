@@ -5,5 +5,4 @@ __all__ = ["FLOOR_HEIGHT", "KERB_HEIGHT"]
 FLOOR_HEIGHT = -0.1
 """z of the lawn, on which buildings, trees and poles stand; as in the original [m]."""
 
-KERB_HEIGHT = 0.15
-"""z of the pavements [m]."""
+KERB_HEIGHT = 0.15  # z of the pavements [m]

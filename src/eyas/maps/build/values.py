@@ -41,17 +41,12 @@ __all__ = [
     "Unit",
 ]
 
-LARGEST_NUMBER = 1e6
-"""Largest number of a plan: lengths are metres, and no map has 100 km."""
+LARGEST_NUMBER = 1e6  # Largest number of a plan: lengths are metres, and no map has 100 km
 
-Positive = Annotated[float, Gt(0.0)]
-"""A number above 0."""
-Natural = Annotated[int, Ge(0)]
-"""A whole number from 0."""
-Share = Annotated[float, Ge(0.0), Le(1.0)]
-"""A number from 0 to 1."""
-Colour = tuple[Share, Share, Share]
-"""sRGB, or a factor on such a colour."""
+Positive = Annotated[float, Gt(0.0)]  # A number above 0
+Natural = Annotated[int, Ge(0)]  # A whole number from 0
+Share = Annotated[float, Ge(0.0), Le(1.0)]  # A number from 0 to 1
+Colour = tuple[Share, Share, Share]  # sRGB, or a factor on such a colour
 
 _NUMBER = {"type": "number"}
 
@@ -113,10 +108,8 @@ class _Member(_Read):
 class Rows(_Read):
     """An array of numbers that a file holds as a list, or a list of lists."""
 
-    columns: int | None
-    """Numbers in each row; None: one number a row."""
-    count: int | None = None
-    """Number of rows; None: any."""
+    columns: int | None  # Numbers in each row; None: one number a row
+    count: int | None = None  # Number of rows; None: any
     whole: bool = False
 
     def _read(self, value: object) -> NDArray[Any]:
@@ -219,12 +212,9 @@ class MaterialRecord:
 
     texture: Annotated[str, Named(lambda: TEXTURES)] = "plain"
     """Name of its texture; `plain` is white."""
-    tint: Colour = (1.0, 1.0, 1.0)
-    """Factor on the texture, sRGB."""
-    surface: Annotated[Surface, _Member(Surface)] = Surface.MATT
-    """How it reflects or emits light."""
-    emission: Annotated[float, Ge(0.0)] = 0.0
-    """Emitted light, as a factor on the colour."""
+    tint: Colour = (1.0, 1.0, 1.0)  # Factor on the texture, sRGB
+    surface: Annotated[Surface, _Member(Surface)] = Surface.MATT  # How it reflects or emits light
+    emission: Annotated[float, Ge(0.0)] = 0.0  # Emitted light, as a factor on the colour
 
 
 class _MaterialType:
@@ -238,27 +228,16 @@ class _MaterialType:
         return core_schema.no_info_after_validator_function(made, handler(MaterialRecord))
 
 
-Cover = Annotated[Material, _MaterialType]
-"""A material, whose texture must exist."""
+Cover = Annotated[Material, _MaterialType]  # A material, whose texture must exist
 Facade = Annotated[str, Named(lambda: FACADES)]
 """Walls with windows: one of `eyas.engine.world.build.materials.FACADES`."""
-ClassName = Annotated[ObjectClass, _Member(ObjectClass)]
-"""Class of objects."""
-Area = Annotated[shapely.Geometry, Shape(several=True)]
-"""Any number of polygons, with holes [m]."""
-Outline = Annotated[shapely.Polygon, Shape(several=False)]
-"""One polygon, with holes [m]."""
-Curve = Annotated[shapely.LineString, _Line()]
-"""A line [m]."""
-Place = Annotated[NDArray[np.float64], Rows(None, 2)]
-"""East and north [m], shape (2,)."""
-Unit = Annotated[NDArray[np.float64], Rows(None, 2)]
-"""A unit vector, shape (2,)."""
-Line = Annotated[NDArray[np.float64], Rows(2)]
-"""Points of a line, east and north [m], shape (K, 2)."""
-Path = Annotated[NDArray[np.float64], Rows(3)]
-"""Points of a line in space [m], shape (K, 3)."""
-Heights = Annotated[NDArray[np.float64], Rows(None)]
-"""Numbers, shape (K,)."""
-Numbers = Annotated[NDArray[np.int64], Rows(None, whole=True)]
-"""Whole numbers, shape (K,)."""
+ClassName = Annotated[ObjectClass, _Member(ObjectClass)]  # Class of objects
+Area = Annotated[shapely.Geometry, Shape(several=True)]  # Any number of polygons, with holes [m]
+Outline = Annotated[shapely.Polygon, Shape(several=False)]  # One polygon, with holes [m]
+Curve = Annotated[shapely.LineString, _Line()]  # A line [m]
+Place = Annotated[NDArray[np.float64], Rows(None, 2)]  # East and north [m], shape (2,)
+Unit = Annotated[NDArray[np.float64], Rows(None, 2)]  # A unit vector, shape (2,)
+Line = Annotated[NDArray[np.float64], Rows(2)]  # Points of a line, east and north [m], shape (K, 2)
+Path = Annotated[NDArray[np.float64], Rows(3)]  # Points of a line in space [m], shape (K, 3)
+Heights = Annotated[NDArray[np.float64], Rows(None)]  # Numbers, shape (K,)
+Numbers = Annotated[NDArray[np.int64], Rows(None, whole=True)]  # Whole numbers, shape (K,)

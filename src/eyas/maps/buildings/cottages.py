@@ -21,13 +21,10 @@ from eyas.maps.buildings.skyline import FLOOR
 
 __all__ = ["ROOF", "SIDE", "Cottage", "cottage_levels", "outline_at"]
 
-SIDE = 20.0
-"""Length of the walls [m]."""
+SIDE = 20.0  # Length of the walls [m]
 
-ROOF = 3.6
-"""Height of the roof above the eaves [m]."""
-_EAVES = 0.9
-"""From the wall to the edge of the roof [m]."""
+ROOF = 3.6  # Height of the roof above the eaves [m]
+_EAVES = 0.9  # From the wall to the edge of the roof [m]
 
 Points = NDArray[np.float64]
 
@@ -36,14 +33,10 @@ Points = NDArray[np.float64]
 class Cottage:
     """A house in plan view."""
 
-    place: Points
-    """Its middle [m], shape (2,)."""
-    turn: float
-    """Angle of its front from north, counter-clockwise [rad]."""
-    storeys: int
-    """Number of storeys."""
-    look: int
-    """Index of its look."""
+    place: Points  # Its middle [m], shape (2,)
+    turn: float  # Angle of its front from north, counter-clockwise [rad]
+    storeys: int  # Number of storeys
+    look: int  # Index of its look
 
     @property
     def outline(self) -> Points:

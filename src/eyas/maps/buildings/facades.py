@@ -20,17 +20,13 @@ from eyas.maps.plan.plan import BuildingPart
 
 __all__ = ["chance_of", "mesh_of", "prisms_of"]
 
-_LOWEST = 0.3
-"""Lower walls are left out [m]."""
+_LOWEST = 0.3  # Lower walls are left out [m]
 
-_LEDGES = 0.08
-"""How far ledges may lie above or below the edge that they hide [m]."""
+_LEDGES = 0.08  # How far ledges may lie above or below the edge that they hide [m]
 
-_TALL = 10
-"""Number of storeys from which a building has a base and a top."""
+_TALL = 10  # Number of storeys from which a building has a base and a top
 
-_BAND = 11
-"""Number of storeys after which the windows of a high wall start at another bay."""
+_BAND = 11  # Number of storeys after which the windows of a high wall start at another bay
 
 _CROWNS = {
     "facade_brick": "facade_stone",

@@ -39,11 +39,9 @@ _FLATS: tuple[tuple[float, str, Tint], ...] = (
 )
 """Share, texture and tint of flat roofs; high up, grey ones are three times as frequent."""
 
-_HIGH = (20.0, 90.0)
-"""Heights between which grey roofs become more frequent [m]."""
+_HIGH = (20.0, 90.0)  # Heights between which grey roofs become more frequent [m]
 _GREYER = 3.0
-_FADED = 0.92
-"""Least random factor on the brightness of a whole roof."""
+_FADED = 0.92  # Least random factor on the brightness of a whole roof
 
 
 def wall_tint(rng: np.random.Generator) -> Tint:

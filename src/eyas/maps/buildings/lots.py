@@ -14,20 +14,17 @@ from eyas.lanes import exact
 
 __all__ = ["BAY", "Lot", "divide", "footprint_in", "frame_angle", "largest", "turned"]
 
-BAY = 3.0
-"""Width of one window bay; walls are multiples of it where the lot allows [m]."""
+BAY = 3.0  # Width of one window bay; walls are multiples of it where the lot allows [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Lot:
     """A part of a block in the block's frame, whose x axis runs along its longest street."""
 
-    shape: shapely.Polygon
-    """Ground of the lot."""
+    shape: shapely.Polygon  # Ground of the lot
     street: tuple[bool, bool, bool, bool]
     """Whether the west, east, south and north side lies on the block's boundary."""
-    area: float
-    """Ground area that the building should cover [m^2]."""
+    area: float  # Ground area that the building should cover [m^2]
 
 
 def frame_angle(block: shapely.Polygon) -> float:

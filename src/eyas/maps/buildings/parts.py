@@ -21,8 +21,7 @@ __all__ = [
     "window_wall",
 ]
 
-PARAPET = 0.9
-"""Height of the wall around a flat roof [m]."""
+PARAPET = 0.9  # Height of the wall around a flat roof [m]
 
 _PROUD = 0.015
 """How far it stands out from the walls, so that it does not share their planes where a taller part
@@ -30,8 +29,7 @@ of the building rises from its edge [m]."""
 
 Outline = NDArray[np.float64]
 
-_TILE = 12.0
-"""Size of one repeat of a facade, four bays and four storeys [m]."""
+_TILE = 12.0  # Size of one repeat of a facade, four bays and four storeys [m]
 
 
 def window_wall(

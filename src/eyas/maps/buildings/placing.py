@@ -15,11 +15,9 @@ from eyas.maps.plan.plan import BuildingPart
 
 __all__ = ["SETBACK", "place_buildings"]
 
-SETBACK = 4.4
-"""Least distance between a kerb and a building [m]."""
+SETBACK = 4.4  # Least distance between a kerb and a building [m]
 
-_YARD = 0.8
-"""Part of the set-back that `footprint_in` itself keeps from the edge of every lot [m]."""
+_YARD = 0.8  # Part of the set-back that `footprint_in` itself keeps from the edge of every lot [m]
 
 _SMALL = 200.0
 """Larger parts of the kept-free area shape the lots, smaller ones only the footprints [m^2]."""

@@ -23,14 +23,10 @@ __all__ = ["SHAPES", "fullness", "sloping_roof"]
 
 SHAPES = ("gabled", "hipped", "pyramidal", "skillion", "dome")
 
-_EAVES = 0.35
-"""By how much a roof stands out from the walls [m]."""
-_FULL = 0.78
-"""Share of its tightest rectangle that a footprint must fill to have ridges along it."""
-_STEPS = 5
-"""Steps of a roof whose ridges follow an irregular outline, and rings of a dome."""
-_TILE = 6.0
-"""Size of one repeat of the walls below a roof [m]."""
+_EAVES = 0.35  # By how much a roof stands out from the walls [m]
+_FULL = 0.78  # Share of its tightest rectangle that a footprint must fill to have ridges along it
+_STEPS = 5  # Steps of a roof whose ridges follow an irregular outline, and rings of a dome
+_TILE = 6.0  # Size of one repeat of the walls below a roof [m]
 
 Points = NDArray[np.float64]
 
@@ -40,8 +36,7 @@ class _Plane:
     """A slope: z = `level` + `rise` . (x, y), over the area where it is the lowest."""
 
     level: float
-    rise: Points
-    """Change of z for each metre east and north, shape (2,)."""
+    rise: Points  # Change of z for each metre east and north, shape (2,)
     cell: shapely.Polygon
 
     def at(self, points: Points) -> Points:

@@ -9,11 +9,9 @@ from eyas.lanes import exact
 
 __all__ = ["FLOOR", "TOWER_SHARE", "evenly", "ground_areas", "storeys"]
 
-FLOOR = 3.0
-"""Height of a storey [m]."""
+FLOOR = 3.0  # Height of a storey [m]
 
-TOWER_SHARE = 0.22
-"""Share of the buildings that stand on another one."""
+TOWER_SHARE = 0.22  # Share of the buildings that stand on another one
 
 # Quantiles of the original's street city: share of buildings and ground area [m^2] or height [m].
 _AREA = ((0.0, 9), (0.04, 60), (0.25, 445), (0.5, 915), (0.75, 2015), (0.95, 4800), (1.0, 9141))

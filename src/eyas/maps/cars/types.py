@@ -16,31 +16,21 @@ __all__ = ["TYPES", "CarType"]
 class CarType:
     """A type of car; it has all that `eyas.engine.world.cars.frame.Frame` asks."""
 
-    length: float
-    """Overall length [m]."""
-    width: float
-    """Overall width, with mirrors [m]."""
-    height: float
-    """Overall height [m]."""
-    wheel_radius: float
-    """Radius of the wheels [m]."""
-    axles: tuple[Axle, ...]
-    """Its axles, the front one first."""
-    shape: CarShape
-    """Its lines."""
+    length: float  # Overall length [m]
+    width: float  # Overall width, with mirrors [m]
+    height: float  # Overall height [m]
+    wheel_radius: float  # Radius of the wheels [m]
+    axles: tuple[Axle, ...]  # Its axles, the front one first
+    shape: CarShape  # Its lines
 
 
 class _Roof(NamedTuple):
     """What is above the belt line: x as shares of half the length, from the middle."""
 
-    cowl: float
-    """Where the windscreen begins."""
-    front: float
-    """Front edge of the roof."""
-    back: float
-    """Rear edge of the roof."""
-    low: float
-    """Lower edge of the rear window."""
+    cowl: float  # Where the windscreen begins
+    front: float  # Front edge of the roof
+    back: float  # Rear edge of the roof
+    low: float  # Lower edge of the rear window
 
 
 def _car(

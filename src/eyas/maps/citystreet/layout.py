@@ -34,27 +34,21 @@ from eyas.maps.street.car_parks import CarPark, place_car_parks, place_rectangle
 
 __all__ = ["EXTENT", "FLOOR", "CityLayout", "lay_out"]
 
-FLOOR = (900.0, 900.0)
-"""Extent of the floor [m]."""
+FLOOR = (900.0, 900.0)  # Extent of the floor [m]
 
-EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
-"""The floor."""
+EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))  # The floor
 
 _BUILDINGS = 83
 _TREES = 63
 _TREE_SPACING = (15.0, 21.5)
-_BEYOND_KERB = 4.4
-"""From the kerb to the trunks [m]."""
-_TREE_STRIP = 10.0
-"""Strip without buildings beside a row of trees, from the kerb [m]."""
+_BEYOND_KERB = 4.4  # From the kerb to the trunks [m]
+_TREE_STRIP = 10.0  # Strip without buildings beside a row of trees, from the kerb [m]
 _CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
 _POOL = (30.0, 18.8)
 
-_HIGH = 53.5
-"""z of the elevated road [m]."""
+_HIGH = 53.5  # z of the elevated road [m]
 _PILLARS = 18
-_ASIDE = 17.0
-"""From the middle of a street to the middle of the elevated road beside it [m]."""
+_ASIDE = 17.0  # From the middle of a street to the middle of the elevated road beside it [m]
 _RAMP = ((0.0, 0.0), (0.02, 0.1), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
 """Profile of the elevated road: share of its length, and z [m]."""
 
@@ -65,30 +59,18 @@ Points = NDArray[np.float64]
 class CityLayout:
     """Positions in plan view."""
 
-    roads: shapely.Geometry
-    """Asphalt of the streets [m]."""
-    access: shapely.Geometry
-    """Asphalt to the foot of the ramp [m]."""
-    blocks: list[shapely.Polygon]
-    """Ground between streets [m]."""
-    outside: list[shapely.Polygon]
-    """Ground beyond the outer streets [m]."""
-    turn: float
-    """Direction of the streets [rad]."""
-    deck: Points
-    """Centre line of the elevated road [m], shape (K, 3)."""
-    pillars: list[Pillar]
-    """Pillars below the elevated road."""
-    car_parks: list[CarPark]
-    """Car parks with their driveways."""
-    pools: list[shapely.Polygon]
-    """Water [m]."""
-    pavement: shapely.Geometry
-    """Raised pavements beside the streets [m]."""
-    trees: Points
-    """Trunks of the street trees [m], shape (K, 2)."""
-    buildings: list[BuildingPart]
-    """Buildings, towers included."""
+    roads: shapely.Geometry  # Asphalt of the streets [m]
+    access: shapely.Geometry  # Asphalt to the foot of the ramp [m]
+    blocks: list[shapely.Polygon]  # Ground between streets [m]
+    outside: list[shapely.Polygon]  # Ground beyond the outer streets [m]
+    turn: float  # Direction of the streets [rad]
+    deck: Points  # Centre line of the elevated road [m], shape (K, 3)
+    pillars: list[Pillar]  # Pillars below the elevated road
+    car_parks: list[CarPark]  # Car parks with their driveways
+    pools: list[shapely.Polygon]  # Water [m]
+    pavement: shapely.Geometry  # Raised pavements beside the streets [m]
+    trees: Points  # Trunks of the street trees [m], shape (K, 2)
+    buildings: list[BuildingPart]  # Buildings, towers included
 
     @property
     def lots(self) -> shapely.Geometry:

@@ -57,20 +57,16 @@ _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
 _MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
 """The same for the groups of trees beyond the outer streets."""
 _FROM_WALL = 4.5
-_FROM_STREET = 14.0
-"""Least distance of the trees beyond the outer streets from a street [m]."""
-_OCCUPIED = 0.62
-"""Share of the bays with a car."""
-_ISLAND_EVERY = 9
-"""Bays from one planted island to the next."""
+_FROM_STREET = 14.0  # Least distance of the trees beyond the outer streets from a street [m]
+_OCCUPIED = 0.62  # Share of the bays with a car
+_ISLAND_EVERY = 9  # Bays from one planted island to the next
 
 _LAMPS = 48
 _TREE_HEIGHTS = (14.8, 19.8, 27.0)
 _TREE_ODDS = (0.3, 0.5, 0.2)
 _TREES = tuple(f"street tree {k}" for k in range(trees.VARIANTS))
 _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
-_LEGS = 9
-"""Number of pillars beyond the floor, below the descent of the elevated road."""
+_LEGS = 9  # Number of pillars beyond the floor, below the descent of the elevated road
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:

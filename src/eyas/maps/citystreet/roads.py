@@ -14,16 +14,13 @@ __all__ = ["NAME", "road_graph"]
 NAME = "citystreet"
 
 _ROTATION = math.radians(40.0)
-_COLUMNS = (188.0, 126.0, 184.0)
-"""Width of the blocks, along the streets that run north-east [m]."""
+_COLUMNS = (188.0, 126.0, 184.0)  # Width of the blocks, along the streets that run north-east [m]
 _ROWS = (126.0, 190.0, 178.0, 108.0)
 """Depth of the blocks, along the streets that run north-west [m]."""
 _CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
 """Blocks at the corners of the grid: one is built; the outer streets leave the others out."""
-_BENDS = 7
-"""Number of outer streets that bend slightly in the middle."""
-_BEND = (4.0, 9.0)
-"""Distance of that bend from the straight line, outwards [m]."""
+_BENDS = 7  # Number of outer streets that bend slightly in the middle
+_BEND = (4.0, 9.0)  # Distance of that bend from the straight line, outwards [m]
 
 Point = NDArray[np.float64]
 Link = tuple[str, str]

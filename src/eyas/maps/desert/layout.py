@@ -19,14 +19,11 @@ from eyas.maps.land.outlines import blob
 
 __all__ = ["EXTENT", "FLOOR", "HALF", "DesertLayout", "Drift", "lay_out"]
 
-FLOOR = (982.0, 998.0)
-"""Extent of the floor [m]."""
+FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
-HALF = 710.0
-"""Half the side of the square that the dunes fill [m]."""
+HALF = 710.0  # Half the side of the square that the dunes fill [m]
 
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)
-"""That square."""
+EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # That square
 
 _INSIDE, _INSIDE_RADII = 26, (57.0, 84.0, 147.0)
 _RING, _RING_RADII = 24, (111.0, 153.0, 192.0)
@@ -35,15 +32,12 @@ _STEEP, _RING_STEEP = (0.46, 0.60), (0.42, 0.66)
 """Least and largest height of a dune, as a share of its radius."""
 _KERB_TO_FOOT = 6.5
 _RING_GAPS = (8.0, 60.0)
-_WIND = math.radians(-35.0)
-"""Direction in which the wind blows, counter-clockwise from east [rad]."""
+_WIND = math.radians(-35.0)  # Direction in which the wind blows, counter-clockwise from east [rad]
 _LEAN = (0.22, 0.36)
 """From the middle of a dune to its summit, to leeward, as a share of its radius."""
 _DRIFTS = 11
-_DRIFT = (15.0, 32.0)
-"""Extent of a drift along and across the road [m]."""
-_ASKEW = math.radians(40.0)
-"""Most by which a drift is turned from the line across the road [rad]."""
+_DRIFT = (15.0, 32.0)  # Extent of a drift along and across the road [m]
+_ASKEW = math.radians(40.0)  # Most by which a drift is turned from the line across the road [rad]
 _DRIFT_APART = 95.0
 _TONGUE_EVERY, _TONGUES = 24.0, 0.6
 """From one place with sand on the kerb to the next [m], and share of the places that have it."""
@@ -57,28 +51,20 @@ Points = NDArray[np.float64]
 class Drift:
     """Sand that the wind has blown over a road, in plan view."""
 
-    area: shapely.Polygon
-    """Where sand hides the road [m]."""
-    fringe: shapely.Polygon
-    """Where it lies thinly, the area included [m]."""
+    area: shapely.Polygon  # Where sand hides the road [m]
+    fringe: shapely.Polygon  # Where it lies thinly, the area included [m]
 
 
 @dataclass(frozen=True, slots=True)
 class DesertLayout:
     """Positions in plan view."""
 
-    roads: shapely.Geometry
-    """Asphalt [m]."""
-    blocks: list[shapely.Polygon]
-    """Ground between roads [m]."""
-    drifts: list[Drift]
-    """Sand on the roads."""
-    tongues: list[shapely.Polygon]
-    """Sand that reaches over the kerbs [m]."""
-    houses: list[Cottage]
-    """Houses."""
-    dunes: list[Mound]
-    """Dunes between the roads, then those of the ring."""
+    roads: shapely.Geometry  # Asphalt [m]
+    blocks: list[shapely.Polygon]  # Ground between roads [m]
+    drifts: list[Drift]  # Sand on the roads
+    tongues: list[shapely.Polygon]  # Sand that reaches over the kerbs [m]
+    houses: list[Cottage]  # Houses
+    dunes: list[Mound]  # Dunes between the roads, then those of the ring
 
     @property
     def walls(self) -> shapely.Geometry:

@@ -42,14 +42,11 @@ __all__ = [
 SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
 
-_DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)
-"""Asphalt under a thin layer of sand."""
+_DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)  # Asphalt under a thin layer of sand
 
-_SNOW = replace(SAND, surface=Surface.DESERT_SNOW)
-"""Dunes under snow."""
+_SNOW = replace(SAND, surface=Surface.DESERT_SNOW)  # Dunes under snow
 
-_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)
-"""Where wheels have left the road."""
+_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)  # Where wheels have left the road
 
 _HOUSES = (
     (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),
@@ -57,19 +54,16 @@ _HOUSES = (
     (facade("facade_stone", (1.0, 0.96, 0.84)), material("roof_tiles", (0.98, 0.88, 0.78))),
 )
 
-DUNES = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)
-"""What stands beyond the map."""
+DUNES = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)  # What stands beyond the map
 
 _LAMPS = 38
 _CORE = 345.0
 _SPACING = (6.0, 13.0)
 """Half the side of the square with the smaller triangles, and distances of their corners [m]."""
-DRIFT_HEIGHT = 0.03
-"""z of the drifts: above all paint [m]."""
+DRIFT_HEIGHT = 0.03  # z of the drifts: above all paint [m]
 _FRINGE_HEIGHT, _TONGUE_HEIGHT = 0.022, 0.026
 """z of the thin sand around them, and of the tongues at the kerbs, which cross it [m]."""
-_SNOWED = 22
-"""Number of dunes under snow in winter, as in the original."""
+_SNOWED = 22  # Number of dunes under snow in winter, as in the original
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:

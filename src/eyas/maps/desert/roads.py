@@ -16,11 +16,9 @@ __all__ = ["CORNER", "NAME", "road_graph"]
 
 NAME = "desert"
 
-CORNER = 50.0
-"""Radius of the rounded corners [m]."""
+CORNER = 50.0  # Radius of the rounded corners [m]
 
-_SIZE = (543.0, 626.0)
-"""Extent of the middle of the outer road [m]."""
+_SIZE = (543.0, 626.0)  # Extent of the middle of the outer road [m]
 _JUNCTIONS = {"W": (-1.0, 0.36), "S": (-0.36, -1.0), "E": (1.0, -0.36), "N": (0.36, 1.0)}
 """Where the inner roads leave the outer one, as shares of half its extent."""
 _CROSSING = math.radians(-52.0)
@@ -28,8 +26,7 @@ _CROSSING = math.radians(-52.0)
 _REACH = (0.42, 0.36)
 """How far an inner road keeps its direction at its outer end and in the middle, as a share of the
 distance between the two."""
-_STEP = 9.0
-"""Distance between two points of a curve [m]."""
+_STEP = 9.0  # Distance between two points of a curve [m]
 
 _LANES, _LANE_WIDTH = 2, 4.0
 _STRETCH, _SLIDE, _TURN = 0.07, 0.14, math.radians(14.0)

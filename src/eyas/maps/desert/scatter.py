@@ -12,10 +12,8 @@ from eyas.maps.plants import gardens
 
 __all__ = ["scattered_over", "wheel_tracks"]
 
-_REACH = 100.0
-"""From the roads as far as there are stones and plants of their own [m]."""
-_BESIDE, _BESIDE_BOULDERS = 2.8, 9.0
-"""Their least distance from a road [m]."""
+_REACH = 100.0  # From the roads as far as there are stones and plants of their own [m]
+_BESIDE, _BESIDE_BOULDERS = 2.8, 9.0  # Their least distance from a road [m]
 _GROUPS = (13.0, 0.008)
 """Least distance between groups [m], and number of attempts on a square metre."""
 _HIGHEST, _SUNK = 9.0, 0.06
@@ -26,8 +24,7 @@ _BUSHES, _BOULDERS = 0.4, 0.12
 """Share of the plants that are bushes, and of the stones that are boulders."""
 
 _TRACKS, _TRACK_LENGTH = 9, (70.0, 190.0)
-_GAUGE, _RUT = 0.8, 0.25
-"""Half the distance of two ruts, and half the width of one [m]."""
+_GAUGE, _RUT = 0.8, 0.25  # Half the distance of two ruts, and half the width of one [m]
 
 
 def scattered_over(

@@ -20,18 +20,13 @@ __all__ = ["AVENUE_WALK", "STREET_WALK", "block_lots", "built", "inner_blocks", 
 STREET_WALK, AVENUE_WALK = 5.6, 7.0
 """Width of the pavements along streets and avenues, from the kerb to the fronts [m]."""
 
-_FRONT_DEPTH = 24.0
-"""Depth of the buildings beyond the outer streets [m]."""
-_HALF_ROAD = 7.0
-"""Half the width of the outer roads [m]."""
-_PARTY = 0.03
-"""Half the gap between two neighbours, so that their walls are not in one plane [m]."""
-_BEYOND = 90.0
-"""Depth of the blocks beyond the grid [m]."""
+_FRONT_DEPTH = 24.0  # Depth of the buildings beyond the outer streets [m]
+_HALF_ROAD = 7.0  # Half the width of the outer roads [m]
+_PARTY = 0.03  # Half the gap between two neighbours, so that their walls are not in one plane [m]
+_BEYOND = 90.0  # Depth of the blocks beyond the grid [m]
 _STEPPED = ("facade_brick", "facade_stone", "facade_concrete", "facade_plaster", "facade_old")
 """Facades of buildings that step back."""
-_PYRAMID = 0.4
-"""Share of the stepped towers with a roof that rises to a point."""
+_PYRAMID = 0.4  # Share of the stepped towers with a roof that rises to a point
 
 
 def inner_blocks(grid: Grid, sharp: list[shapely.Polygon]) -> dict[Cell, Box]:

@@ -15,25 +15,19 @@ from eyas.maps.downtown.roads import Grid
 
 __all__ = ["Kerbs", "crossing_lamps", "make_kerbs"]
 
-_BAY_DEPTH, _BAY_LENGTH = 2.3, 6.1
-"""Size of a bay along a kerb [m]."""
-_FROM_CROSSING = 17.0
-"""From the end of a street to the nearest bay [m]."""
-_BAYS = (4, 9)
-"""Bays in a row; between two rows the pavement reaches out to the kerb."""
+_BAY_DEPTH, _BAY_LENGTH = 2.3, 6.1  # Size of a bay along a kerb [m]
+_FROM_CROSSING = 17.0  # From the end of a street to the nearest bay [m]
+_BAYS = (4, 9)  # Bays in a row; between two rows the pavement reaches out to the kerb
 _BETWEEN = 11.0
 _OCCUPIED = 0.82
 _GREAT_SPACING, _GREAT_BEYOND = 21.0, 2.6
 """Distances along the park of its great trees, and from the kerb to their trunks [m]."""
 _GREAT = 32
-_SLIM_SPACING, _SLIM_BEYOND = 10.6, 1.5
-"""The same for the slim trees of the street that they line."""
+_SLIM_SPACING, _SLIM_BEYOND = 10.6, 1.5  # The same for the slim trees of the street that they line
 _SLIM = 59
-_SLIM_STREET = 5
-"""The street with slim trees on both sides, counted from the south."""
+_SLIM_STREET = 5  # The street with slim trees on both sides, counted from the south
 _PARK_STREET = 7
-_PAST_LINE = 2.2
-"""From a stop line to the lamp at the crossing for walkers beyond it [m]."""
+_PAST_LINE = 2.2  # From a stop line to the lamp at the crossing for walkers beyond it [m]
 
 Points = NDArray[np.float64]
 
@@ -42,16 +36,11 @@ Points = NDArray[np.float64]
 class Kerbs:
     """What stands along the kerbs, world frame."""
 
-    bays: shapely.Geometry
-    """Asphalt of the parking bays [m]."""
-    lines: list[shapely.Polygon]
-    """Paint between them [m]."""
-    cars: Points
-    """Middle of each parked car [m] and its heading [rad], shape (K, 3)."""
-    great_trees: Points
-    """Trunks of the great trees along the park [m], shape (K, 2)."""
-    slim_trees: Points
-    """Trunks of the slim trees [m], shape (K, 2)."""
+    bays: shapely.Geometry  # Asphalt of the parking bays [m]
+    lines: list[shapely.Polygon]  # Paint between them [m]
+    cars: Points  # Middle of each parked car [m] and its heading [rad], shape (K, 3)
+    great_trees: Points  # Trunks of the great trees along the park [m], shape (K, 2)
+    slim_trees: Points  # Trunks of the slim trees [m], shape (K, 2)
 
 
 def make_kerbs(

@@ -29,17 +29,13 @@ from eyas.maps.things.skyways import Skyway
 
 __all__ = ["EXTENT", "FLOOR", "DowntownLayout", "lay_out"]
 
-FLOOR = (2000.0, 1500.0)
-"""Extent of the floor [m]."""
+FLOOR = (2000.0, 1500.0)  # Extent of the floor [m]
 
-EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
-"""The floor."""
+EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))  # The floor
 
-_OUTER_WALK = 6.5
-"""Width of the pavement on the far side of the outer streets [m]."""
+_OUTER_WALK = 6.5  # Width of the pavement on the far side of the outer streets [m]
 
-_CROWN = 5.0
-"""No skyway comes nearer to a trunk [m]."""
+_CROWN = 5.0  # No skyway comes nearer to a trunk [m]
 
 Points = NDArray[np.float64]
 
@@ -48,22 +44,14 @@ Points = NDArray[np.float64]
 class DowntownLayout:
     """Positions in plan view."""
 
-    grid: Grid
-    """The grid of the streets."""
-    roads: shapely.Geometry
-    """Asphalt of the streets [m]."""
-    park: Park
-    """The park."""
-    kerbs: Kerbs
-    """Parked cars and trees along the streets."""
-    pavement: shapely.Geometry
-    """Raised pavements beside the streets, without parking bays [m]."""
-    buildings: list[list[BuildingPart]]
-    """Parts of each building, the lowest first."""
-    viaduct: Viaduct
-    """The elevated railway."""
-    skyways: list[Skyway]
-    """Bridges between buildings."""
+    grid: Grid  # The grid of the streets
+    roads: shapely.Geometry  # Asphalt of the streets [m]
+    park: Park  # The park
+    kerbs: Kerbs  # Parked cars and trees along the streets
+    pavement: shapely.Geometry  # Raised pavements beside the streets, without parking bays [m]
+    buildings: list[list[BuildingPart]]  # Parts of each building, the lowest first
+    viaduct: Viaduct  # The elevated railway
+    skyways: list[Skyway]  # Bridges between buildings
 
     @property
     def footprints(self) -> list[Points]:

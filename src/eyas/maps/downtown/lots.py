@@ -9,19 +9,13 @@ from eyas.lanes import exact
 
 __all__ = ["Lot", "divided", "frontage"]
 
-_THROUGH = (30.0, 54.0)
-"""Width of a lot that reaches from one street to the next [m]."""
-_STRETCH = (26.0, 58.0)
-"""Length of a stretch of the block with two rows of lots [m]."""
-_ROW_DEPTH = (0.33, 0.44)
-"""Depth of a row as a share of the block's; yards lie between two rows."""
-_WIDTH = 23.0
-"""Median width of a lot in a row [m]."""
+_THROUGH = (30.0, 54.0)  # Width of a lot that reaches from one street to the next [m]
+_STRETCH = (26.0, 58.0)  # Length of a stretch of the block with two rows of lots [m]
+_ROW_DEPTH = (0.33, 0.44)  # Depth of a row as a share of the block's; yards lie between two rows
+_WIDTH = 23.0  # Median width of a lot in a row [m]
 _WIDTHS = (7.5, 40.0)
-_SHALLOW = 30.0
-"""Blocks less deep than this have no yards [m]."""
-_PARTY = 0.06
-"""Gap between two neighbours, so that their walls are not in one plane [m]."""
+_SHALLOW = 30.0  # Blocks less deep than this have no yards [m]
+_PARTY = 0.06  # Gap between two neighbours, so that their walls are not in one plane [m]
 
 Box = tuple[float, float, float, float]
 
@@ -30,12 +24,9 @@ Box = tuple[float, float, float, float]
 class Lot:
     """The ground of one building in the frame of the grid."""
 
-    box: Box
-    """West, south, east, north [m]."""
-    through: bool
-    """Whether it reaches from street to street."""
-    rear: int
-    """Side with a yard: 1 north, -1 south, 0 none."""
+    box: Box  # West, south, east, north [m]
+    through: bool  # Whether it reaches from street to street
+    rear: int  # Side with a yard: 1 north, -1 south, 0 none
 
     @property
     def area(self) -> float:

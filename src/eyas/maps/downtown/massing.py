@@ -13,27 +13,20 @@ from eyas.maps.downtown.lots import Box, Lot
 
 __all__ = ["STOREY", "Part", "stacked"]
 
-STOREY = 3.0
-"""Height of a storey [m]."""
+STOREY = 3.0  # Height of a storey [m]
 
-_PLAIN = 9
-"""Up to so many storeys a house has no set-backs."""
-_NARROWEST = 8.0
-"""Side below which a part is not stepped back further [m]."""
-_SLENDER = 13.0
-"""Greatest height of a tower as a multiple of the shorter side of its shaft."""
+_PLAIN = 9  # Up to so many storeys a house has no set-backs
+_NARROWEST = 8.0  # Side below which a part is not stepped back further [m]
+_SLENDER = 13.0  # Greatest height of a tower as a multiple of the shorter side of its shaft
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
     """A prism of a building."""
 
-    shape: shapely.Polygon
-    """Outline in the frame of the grid [m]."""
-    low: int
-    """Storeys below it."""
-    high: int
-    """Storeys up to its roof."""
+    shape: shapely.Polygon  # Outline in the frame of the grid [m]
+    low: int  # Storeys below it
+    high: int  # Storeys up to its roof
 
 
 def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> list[Part]:

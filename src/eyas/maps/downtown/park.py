@@ -16,23 +16,18 @@ from eyas.maps.plants import gardens
 
 __all__ = ["Park", "make_park"]
 
-_DEPTH = 345.0
-"""From the street along its south side to its far end [m]."""
-_WALK = 4.2
-"""Width of the pavement along its edge [m]."""
-_POND_AREA = 15_325.0
-"""As in the original [m^2]."""
+_DEPTH = 345.0  # From the street along its south side to its far end [m]
+_WALK = 4.2  # Width of the pavement along its edge [m]
+_POND_AREA = 15_325.0  # As in the original [m^2]
 _POND_LINE = ((-72.0, -34.0), (-50.0, 26.0), (4.0, 40.0), (46.0, 10.0), (88.0, 44.0))
 """Backbone of the pond about its middle, in the frame of the grid [m]."""
 _POND_REACH = 34.0
-_FOUNTAIN = 11.3
-"""Radius of the basin of the fountain: 401 m^2, as in the original [m]."""
+_FOUNTAIN = 11.3  # Radius of the basin of the fountain: 401 m^2, as in the original [m]
 _SMALL_PONDS = ((0.10, 0.72, 9.0, 6.0), (0.82, 0.74, 12.0, 7.0), (0.60, 0.90, 8.0, 8.0), (0.30, 0.92, 10.0, 5.0))  # noqa: E501  # fmt: skip
 """Position as a share of width and depth, and half axes [m]."""
 _PATH = 3.6
 _TREES = 243
-_GROUPS = 34
-"""Number of groups in which the trees of the park stand."""
+_GROUPS = 34  # Number of groups in which the trees of the park stand
 
 Points = NDArray[np.float64]
 
@@ -41,24 +36,15 @@ Points = NDArray[np.float64]
 class Park:
     """The park in plan view, world frame [m]."""
 
-    ground: shapely.Polygon
-    """All of it, from the kerbs on."""
-    walk: shapely.Geometry
-    """Raised pavement along the kerbs."""
-    water: shapely.Geometry
-    """Ponds, and the basin of the fountain."""
-    rim: shapely.Geometry
-    """Stone around the water."""
-    paths: shapely.Geometry
-    """Paths and the square around the fountain."""
-    fountain: tuple[float, float]
-    """Middle of the fountain."""
-    trees: Points
-    """Trunks, shape (K, 2)."""
-    shrubs: Points
-    """Middle of each group of shrubs and its direction [rad], shape (K, 3)."""
-    benches: Points
-    """Position of each bench and direction that it faces [rad], shape (K, 3)."""
+    ground: shapely.Polygon  # All of it, from the kerbs on
+    walk: shapely.Geometry  # Raised pavement along the kerbs
+    water: shapely.Geometry  # Ponds, and the basin of the fountain
+    rim: shapely.Geometry  # Stone around the water
+    paths: shapely.Geometry  # Paths and the square around the fountain
+    fountain: tuple[float, float]  # Middle of the fountain
+    trees: Points  # Trunks, shape (K, 2)
+    shrubs: Points  # Middle of each group of shrubs and its direction [rad], shape (K, 3)
+    benches: Points  # Position of each bench and direction that it faces [rad], shape (K, 3)
 
 
 def make_park(

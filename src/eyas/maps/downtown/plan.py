@@ -56,16 +56,12 @@ high."""
 _PARK_HEIGHTS = (3.6, 8.8)
 _SHRUBS = ("border", "tall border")
 _TAXI = "parked taxi"
-_TAXIS = 0.2
-"""Share of taxis among the parked cars."""
+_TAXIS = 0.2  # Share of taxis among the parked cars
 _LIGHT = LampLight(axis=(0.3, 0.0, -0.954), intensity=96.0)
 """Three times the usual intensity: one lamp has to light a whole crossing."""
-_ENTRANCES = 0.3
-"""Share of the ends of wide roads with an entrance of the subway."""
-_APART = 2.2
-"""Factor on the distances in the clutter of a city with so many streets."""
-_FROM_END, _BEYOND = 9.0, 2.3
-"""From the end of the road, and from the kerb, to its middle [m]."""
+_ENTRANCES = 0.3  # Share of the ends of wide roads with an entrance of the subway
+_APART = 2.2  # Factor on the distances in the clutter of a city with so many streets
+_FROM_END, _BEYOND = 9.0, 2.3  # From the end of the road, and from the kerb, to its middle [m]
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:

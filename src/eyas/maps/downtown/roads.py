@@ -36,10 +36,8 @@ _MASK = """
 """The blocks, north on top: what lies within the original's rectangle, without the park."""
 _TWO_WAY = 3
 """Avenue with traffic both ways all along; the others have it where they are outer roads."""
-_NARROW_AVENUE = (2, 5)
-"""Avenues of three lanes instead of four."""
-_WIDE_STREETS = (2, 4, 7)
-"""Inner streets of two lanes each way; the others have one."""
+_NARROW_AVENUE = (2, 5)  # Avenues of three lanes instead of four
+_WIDE_STREETS = (2, 4, 7)  # Inner streets of two lanes each way; the others have one
 _LANE = 3.5
 
 Cell = tuple[int, int]
@@ -49,14 +47,10 @@ Cell = tuple[int, int]
 class Grid:
     """The grid in its own frame: u along the streets, v along the avenues."""
 
-    turn: float
-    """Direction of u [rad]."""
-    avenues: tuple[float, ...]
-    """u of the middle of each avenue [m]."""
-    streets: tuple[float, ...]
-    """v of the middle of each street [m]."""
-    blocks: frozenset[Cell]
-    """Column and row of each block that has streets all round."""
+    turn: float  # Direction of u [rad]
+    avenues: tuple[float, ...]  # u of the middle of each avenue [m]
+    streets: tuple[float, ...]  # v of the middle of each street [m]
+    blocks: frozenset[Cell]  # Column and row of each block that has streets all round
 
     def world(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points (u, v) in the world frame, in whole millimetres, shape (K, 2) [m]."""

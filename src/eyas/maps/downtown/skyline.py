@@ -18,8 +18,7 @@ _HEIGHT = ((0.0, 6.0), (0.25, 19.0), (0.5, 28.0), (0.75, 58.0), (0.88, 105.0), (
 """Share of the buildings and height [m]: quantiles of the original's downtown."""
 _CORES = ((-60.0, -40.0, 190.0), (290.0, 90.0, 150.0))
 """Where towers stand: u, v and reach of each quarter [m]."""
-_SLENDER = 12.0
-"""Greatest height as a multiple of the shorter side of the lot."""
+_SLENDER = 12.0  # Greatest height as a multiple of the shorter side of the lot
 
 _OLD = (("facade_brick", 0.38), ("facade_stone", 0.18), ("facade_concrete", 0.12),
         ("facade_red_white", 0.09), ("facade_old", 0.10), ("facade_plaster", 0.13))  # fmt: skip

@@ -13,16 +13,11 @@ from eyas.maps.things.skyways import FLOORS_UNDER, Skyway
 
 __all__ = ["make_skyways"]
 
-_COUNT = 46
-"""Number of skyways, if there are so many places."""
-_APART = 44.0
-"""Least distance between two [m]."""
-_WIDEST_STREET = 32.0
-"""Fronts farther apart than this are not joined [m]."""
-_FROM_CORNER = 5.0
-"""From the corners of blocks to the side of a skyway [m]."""
-_STEP = 3.0
-"""Distance between the places tried along a street [m]."""
+_COUNT = 46  # Number of skyways, if there are so many places
+_APART = 44.0  # Least distance between two [m]
+_WIDEST_STREET = 32.0  # Fronts farther apart than this are not joined [m]
+_FROM_CORNER = 5.0  # From the corners of blocks to the side of a skyway [m]
+_STEP = 3.0  # Distance between the places tried along a street [m]
 
 Points = NDArray[np.float64]
 _Gap = tuple[Box, int, int, bool]

@@ -32,19 +32,15 @@ __all__ = ["backdrop", "surfaces"]
 
 _STEP = (72.0, 66.0)
 """Distances between the middles of neighbours, along the streets and the avenues [m]."""
-_REACH = 420.0
-"""From the outermost roads to the farthest [m]."""
-_APART = 36.0
-"""Least distance from blocks, fronts and the park [m]."""
+_REACH = 420.0  # From the outermost roads to the farthest [m]
+_APART = 36.0  # Least distance from blocks, fronts and the park [m]
 _FROM_EDGE = 30.0
-_SHARE = 0.7
-"""Share of the places that are built on."""
+_SHARE = 0.7  # Share of the places that are built on
 _SIDES = (17.0, 40.0)
 _MEDIAN, _SPREAD, _HIGHEST = 26.0, 0.75, 150.0
 """Median height [m], spread of its logarithm, and limit [m]."""
 
-_KERB_WIDTH = 0.8
-"""As wide as the original's [m]."""
+_KERB_WIDTH = 0.8  # As wide as the original's [m]
 _KERB = material("paving", (1.0, 0.94, 0.90))
 _SLABS = material("paving", (0.84, 0.91, 0.95))
 _COURT = material("concrete", (0.97, 0.97, 0.93))
@@ -52,8 +48,7 @@ _TRAIL = material("asphalt_light", (1.0, 0.97, 0.90))
 _RIM = material("stone", (0.98, 0.95, 0.92))
 _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
 _STONES = material("stone", (0.80, 0.78, 0.76))
-_WALL, _WALL_TOP = 0.5, 1.0
-"""Thickness of the wall around the park, and z of its top [m]."""
+_WALL, _WALL_TOP = 0.5, 1.0  # Thickness of the wall around the park, and z of its top [m]
 _LAND = (
     material("concrete", (0.90, 0.90, 0.87)),
     material("concrete", (0.80, 0.80, 0.79)),

@@ -15,18 +15,12 @@ from eyas.maps.things.railway import BESIDE, SECTION, Viaduct
 
 __all__ = ["cut", "make_viaduct"]
 
-_COLUMN = 4
-"""The column of blocks in whose middle it runs."""
-_STOP = 4
-"""The street over which the station lies."""
-_REACH = 1248.0
-"""From the middle of the floor to either end, beyond its edges [m]."""
-_BESIDE_ROAD = 3.2
-"""From a kerb to the columns beside it: behind parked cars [m]."""
-_BETWEEN = 15.0
-"""Greatest distance between columns off the roads [m]."""
-_NARROWEST = 8.0
-"""Narrower rests of lots that it cuts stay empty [m]."""
+_COLUMN = 4  # The column of blocks in whose middle it runs
+_STOP = 4  # The street over which the station lies
+_REACH = 1248.0  # From the middle of the floor to either end, beyond its edges [m]
+_BESIDE_ROAD = 3.2  # From a kerb to the columns beside it: behind parked cars [m]
+_BETWEEN = 15.0  # Greatest distance between columns off the roads [m]
+_NARROWEST = 8.0  # Narrower rests of lots that it cuts stay empty [m]
 
 Points = NDArray[np.float64]
 

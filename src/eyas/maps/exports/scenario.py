@@ -35,15 +35,13 @@ _VEHICLES = {
     ObjectClass.MOTORCYCLE: "motorbike",
     ObjectClass.BICYCLE: "bicycle",
 }
-_DRONE = (0.806, 0.806, 0.366)
-"""Length, width and height of a tracker [m]."""
+_DRONE = (0.806, 0.806, 0.366)  # Length, width and height of a tracker [m]
 
 
 class _Moment(NamedTuple):
     """What a frame tells."""
 
-    time: float
-    """Since the reset [s]."""
+    time: float  # Since the reset [s]
     tracker: RecordedBody
     traffic: ActorView
 
@@ -51,14 +49,12 @@ class _Moment(NamedTuple):
 class _Place(NamedTuple):
     """Where something is at a time."""
 
-    time: float
-    """Since the first frame [s]."""
+    time: float  # Since the first frame [s]
     x: float
     y: float
     z: float
     yaw: float
-    pitch: float
-    """Positive down, as OpenSCENARIO has it [rad]."""
+    pitch: float  # Positive down, as OpenSCENARIO has it [rad]
 
 
 class _Entity(NamedTuple):
@@ -68,13 +64,10 @@ class _Entity(NamedTuple):
     model: str
     kind: ObjectClass
     size: tuple[float, float, float]
-    ahead: float
-    """Distance of its middle ahead of its reference point [m]."""
-    bottom: float
-    """z of its lowest point less that of its reference point [m]."""
+    ahead: float  # Distance of its middle ahead of its reference point [m]
+    bottom: float  # z of its lowest point less that of its reference point [m]
     mass: float
-    stays: tuple[tuple[_Place, ...], ...]
-    """Stretches of frames in which it is there."""
+    stays: tuple[tuple[_Place, ...], ...]  # Stretches of frames in which it is there
 
 
 class ScenarioWriter(Writer):

@@ -15,22 +15,18 @@ __all__ = ["Copies", "Part", "copies_of", "parts_of", "prototypes_of", "subset"]
 class Part(NamedTuple):
     """An object that is there once."""
 
-    name: str
-    """Its own, such as `building-12`."""
+    name: str  # Its own, such as `building-12`
     object_class: ObjectClass
-    mesh: Mesh
-    """World-space triangles."""
+    mesh: Mesh  # World-space triangles
 
 
 class Copies(NamedTuple):
     """All copies of a prototype that are of one class."""
 
-    name: str
-    """Of the prototype, such as `street lamp`."""
+    name: str  # Of the prototype, such as `street lamp`
     object_class: ObjectClass
     prototype: int
-    pose: NDArray[np.float32]
-    """Rotation times scale, and translation [m], shape (K, 3, 4)."""
+    pose: NDArray[np.float32]  # Rotation times scale, and translation [m], shape (K, 3, 4)
 
 
 def parts_of(scene: Scene) -> Iterator[Part]:

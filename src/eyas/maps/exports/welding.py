@@ -9,8 +9,7 @@ from eyas.engine.state.mesh import Mesh
 
 __all__ = ["Indexed", "Welded", "distinct", "welded"]
 
-_LEAST = 1e-8
-"""Area below which a triangle is left out [m^2]: a tenth of a millimetre squared."""
+_LEAST = 1e-8  # Area below which a triangle is left out [m^2]: a tenth of a millimetre squared
 
 Floats = NDArray[np.float64]
 Number = TypeVar("Number", bound=np.floating)
@@ -19,23 +18,18 @@ Number = TypeVar("Number", bound=np.floating)
 class Indexed(NamedTuple):
     """Vectors at the corners of triangles."""
 
-    values: NDArray[np.floating]
-    """The different ones, shape (K, parts)."""
-    corners: NDArray[np.int64]
-    """Index of that of each corner, shape (T, 3)."""
+    values: NDArray[np.floating]  # The different ones, shape (K, parts)
+    corners: NDArray[np.int64]  # Index of that of each corner, shape (T, 3)
 
 
 class Welded(NamedTuple):
     """T triangles whose corners share points, normals and texture coordinates."""
 
-    points: Indexed
-    """[m]"""
+    points: Indexed  # [m]
     normals: Indexed
     uvs: Indexed
-    materials: NDArray[np.int32]
-    """Index into the mesh's palette, shape (T,)."""
-    across: Floats
-    """Unit vectors on the faces, shape (T, 3)."""
+    materials: NDArray[np.int32]  # Index into the mesh's palette, shape (T,)
+    across: Floats  # Unit vectors on the faces, shape (T, 3)
 
 
 def welded(mesh: Mesh, step: float = 0.0) -> Welded:

@@ -14,8 +14,7 @@ __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
 _BY_DAY = 0.35
 """Lamps by day: as in the original they are never off, and leave a warm glow on the road."""
-_CLEAR = 1.0 / 18_000.0
-"""Density of air in which the mountains are seen."""
+_CLEAR = 1.0 / 18_000.0  # Density of air in which the mountains are seen
 
 
 def _roads(seed: int) -> "RoadGraph":

@@ -14,10 +14,8 @@ from eyas.maps.farmland.roads import ROAD_WIDTH
 
 __all__ = ["CROPS", "SIDE", "VERGE", "Crop", "FieldLot", "lay_out"]
 
-SIDE = 80.0
-"""Largest side of a field [m]."""
-VERGE = 1.6
-"""Soil between a road and a field, and the least between two fields [m]."""
+SIDE = 80.0  # Largest side of a field [m]
+VERGE = 1.6  # Soil between a road and a field, and the least between two fields [m]
 _FEWEST = 64.0
 """A strip between roads gets another row of fields when each keeps at least this side [m]."""
 
@@ -29,10 +27,8 @@ class Crop:
     name: str
     summer: Material
     winter: Material
-    height: float
-    """z of its top [m]."""
-    share: float
-    """Share of the fields on which it grows, as in the original."""
+    height: float  # z of its top [m]
+    share: float  # Share of the fields on which it grows, as in the original
 
     def look(self, season: Season) -> Material:
         """Return its material in a season."""
@@ -61,14 +57,10 @@ CROPS = (
 class FieldLot:
     """A rectangular field."""
 
-    area: shapely.Polygon
-    """[m]"""
-    crop: int
-    """Index into `CROPS`."""
-    north: bool
-    """Whether its rows run north, not east."""
-    shade: float
-    """Factor on its colour, near 1."""
+    area: shapely.Polygon  # [m]
+    crop: int  # Index into `CROPS`
+    north: bool  # Whether its rows run north, not east
+    shade: float  # Factor on its colour, near 1
 
 
 def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[FieldLot]:

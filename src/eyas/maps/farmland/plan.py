@@ -35,11 +35,9 @@ from eyas.maps.plants.gardens import scattered
 
 __all__ = ["FLOOR", "MOUNTAINS", "SOIL", "make_plan"]
 
-FLOOR = (982.0, 998.0)
-"""Extent of the floor, as in the original [m]."""
+FLOOR = (982.0, 998.0)  # Extent of the floor, as in the original [m]
 
-SOIL = material("soil", (1.0, 0.90, 0.66))
-"""The ground between fields."""
+SOIL = material("soil", (1.0, 0.90, 0.66))  # The ground between fields
 _MEADOW = material("lawn", (0.9, 0.94, 0.84))
 
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
@@ -52,10 +50,8 @@ _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 """The beams lean over the road, as in the original."""
 _BALES_APART, _BALES = 17.0, 0.0035
 """Least distance between bales of hay [m], and number of attempts on a square metre."""
-_SEASONS = (Season.SUMMER, Season.WINTER)
-"""Seasons in which crops differ."""
-_FROM_EDGE = 7.0
-"""From the edge of a field to its bales [m]."""
+_SEASONS = (Season.SUMMER, Season.WINTER)  # Seasons in which crops differ
+_FROM_EDGE = 7.0  # From the edge of a field to its bales [m]
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:

@@ -10,13 +10,10 @@ __all__ = ["NAME", "ROAD_WIDTH", "road_graph"]
 
 NAME = "farmland"
 
-ROAD_WIDTH = 16.0
-"""Four lanes [m]."""
+ROAD_WIDTH = 16.0  # Four lanes [m]
 
-_COLUMNS = (178.0, 158.0, 261.0)
-"""Distances between the roads that run north [m]."""
-_ROWS = (214.0, 203.0, 209.0)
-"""Distances between the roads that run east [m]."""
+_COLUMNS = (178.0, 158.0, 261.0)  # Distances between the roads that run north [m]
+_ROWS = (214.0, 203.0, 209.0)  # Distances between the roads that run east [m]
 _LEAST, _MOST = 150.0, 285.0
 
 

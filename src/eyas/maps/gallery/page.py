@@ -47,8 +47,7 @@ class Shown:
     map_name: str
     weather: str
     views: Sequence[Viewpoint]
-    pictures: Sequence[NDArray[np.uint8]]
-    """sRGB of each view, shape (H, W, 3)."""
+    pictures: Sequence[NDArray[np.uint8]]  # sRGB of each view, shape (H, W, 3)
 
     @property
     def folder(self) -> str:

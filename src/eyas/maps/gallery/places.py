@@ -14,15 +14,12 @@ from eyas.maps.gallery.still import StillScene, Viewpoint, is_inside, solids
 
 __all__ = ["CAMERA", "POSES", "STOPS", "Cars", "all_cars", "beside_most", "on_open_roads", "stop"]
 
-CAMERA = 0.7854
-"""Horizontal field of view of the drone's camera [rad]."""
+CAMERA = 0.7854  # Horizontal field of view of the drone's camera [rad]
 POSES = ((22.0, 1.37, "down"), (15.0, 0.6, "ahead"))
 """Height [m], pitch [rad] and name of the drone's starts."""
 
-_TIMES = (60.0, 20.0)
-"""First time at which cars are looked for, and the step to the next [s]."""
-_TRIES = 40
-"""Number of cars tried for each stop."""
+_TIMES = (60.0, 20.0)  # First time at which cars are looked for, and the step to the next [s]
+_TRIES = 40  # Number of cars tried for each stop
 
 Points = NDArray[np.float64]
 
@@ -31,14 +28,10 @@ Points = NDArray[np.float64]
 class Cars:
     """K cars, each at one time."""
 
-    time: Points
-    """[s], shape (K,)."""
-    actor: NDArray[np.int64]
-    """Shape (K,)."""
-    position: Points
-    """[m], shape (K, 2)."""
-    yaw: Points
-    """[rad], shape (K,)."""
+    time: Points  # [s], shape (K,)
+    actor: NDArray[np.int64]  # Shape (K,)
+    position: Points  # [m], shape (K, 2)
+    yaw: Points  # [rad], shape (K,)
 
 
 def all_cars(still: StillScene) -> Cars:
@@ -93,18 +86,12 @@ def drone_view(
     )
 
 
-_TREE = 12.0
-"""Height of a street tree, whose mesh is 1 m high [m]."""
-_TALL = 30.0
-"""Height of a tower [m]."""
-_SPAN = (4.0, 14.0)
-"""Heights of the underside of a bridge [m]."""
-_SOON = (4.0, 9.0)
-"""No bridge is so far ahead, and one is so far [m]."""
-_RATED = 240
-"""Number of cars of which a small picture is drawn."""
-_PLAIN = 0.225
-"""Least rate of a place worth a stop; a road alone has an eighth."""
+_TREE = 12.0  # Height of a street tree, whose mesh is 1 m high [m]
+_TALL = 30.0  # Height of a tower [m]
+_SPAN = (4.0, 14.0)  # Heights of the underside of a bridge [m]
+_SOON = (4.0, 9.0)  # No bridge is so far ahead, and one is so far [m]
+_RATED = 240  # Number of cars of which a small picture is drawn
+_PLAIN = 0.225  # Least rate of a place worth a stop; a road alone has an eighth
 
 
 def near_trees(scene: Scene, cars: Cars) -> Points:

@@ -22,8 +22,7 @@ from eyas.maps.gallery.still import StillScene, Viewpoint
 
 __all__ = ["INDEX", "SHEET", "choose_viewpoints", "conditions", "run"]
 
-_PLAIN = 2.0
-"""Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]."""
+_PLAIN = 2.0  # Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]
 
 
 def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> list[Viewpoint]:

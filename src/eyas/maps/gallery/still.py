@@ -43,30 +43,18 @@ _SIGHTS = (ObjectClass.ROAD, ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BU
 class Viewpoint:
     """A camera and the time of the traffic that it shows."""
 
-    name: str
-    """Name of the picture file, without its extension."""
-    title: str
-    """Short title."""
-    caption: str
-    """Description of the picture."""
-    time: float
-    """Time of the traffic [s]."""
-    position: tuple[float, float, float]
-    """Optical centre, world frame [m]."""
-    yaw: float
-    """Counter-clockwise from east [rad]."""
-    pitch: float
-    """Positive down [rad]."""
-    field_of_view: float
-    """Horizontal [rad]; the view is 4:3 whatever shape the picture has."""
-    actor: int = -1
-    """The car that the picture is meant to show, or -1."""
-    size: tuple[int, int] = (480, 640)
-    """Height and width of the picture [pixels]."""
-    samples: int = 4
-    """Samples for each pixel."""
-    enlarged: int = 1
-    """Factor by which the finished picture is enlarged, without smoothing."""
+    name: str  # Name of the picture file, without its extension
+    title: str  # Short title
+    caption: str  # Description of the picture
+    time: float  # Time of the traffic [s]
+    position: tuple[float, float, float]  # Optical centre, world frame [m]
+    yaw: float  # Counter-clockwise from east [rad]
+    pitch: float  # Positive down [rad]
+    field_of_view: float  # Horizontal [rad]; the view is 4:3 whatever shape the picture has
+    actor: int = -1  # The car that the picture is meant to show, or -1
+    size: tuple[int, int] = (480, 640)  # Height and width of the picture [pixels]
+    samples: int = 4  # Samples for each pixel
+    enlarged: int = 1  # Factor by which the finished picture is enlarged, without smoothing
 
 
 class StillScene:

@@ -21,12 +21,10 @@ from eyas.maps.street.car_parks import CarPark, place_car_parks
 
 __all__ = ["EXTENT", "FLOOR", "LakeLayout", "Strip", "lay_out"]
 
-FLOOR = (5000.0, 5000.0)
-"""Extent of the floor, as in the original [m]."""
+FLOOR = (5000.0, 5000.0)  # Extent of the floor, as in the original [m]
 EXTENT = shapely.box(-FLOOR[0] / 2, -FLOOR[1] / 2, FLOOR[0] / 2, FLOOR[1] / 2)
 
-MIXED = len(SPECIES)
-"""Number of the strip with trees of all kinds."""
+MIXED = len(SPECIES)  # Number of the strip with trees of all kinds
 
 _POND_WIDTH, _POND_LENGTH = 35.0, (150.0, 180.0)
 _ODD_PONDS = ((60.0, 35.0), (70.0, 90.0), (110.0, 60.0), (160.0, 70.0))
@@ -45,22 +43,17 @@ Points = NDArray[np.float64]
 class Strip:
     """A strip of forest."""
 
-    area: shapely.Polygon
-    """[m]"""
-    kind: int
-    """Index into `SPECIES`, or `MIXED`."""
+    area: shapely.Polygon  # [m]
+    kind: int  # Index into `SPECIES`, or `MIXED`
 
 
 @dataclass(frozen=True, slots=True)
 class LakeLayout:
     """Positions in plan view."""
 
-    roads: shapely.Geometry
-    """Asphalt of the roads [m]."""
-    ponds: list[shapely.Polygon]
-    """[m]"""
-    lakes: list[shapely.Polygon]
-    """[m]"""
+    roads: shapely.Geometry  # Asphalt of the roads [m]
+    ponds: list[shapely.Polygon]  # [m]
+    lakes: list[shapely.Polygon]  # [m]
     strips: list[Strip]
     car_parks: list[CarPark]
     houses: list[BuildingPart]

@@ -50,8 +50,7 @@ _LEAVES = material("dry_leaves")
 _KERB = material("stone", (1.0, 0.92, 0.85))
 _APRON = material("concrete", (0.92, 0.90, 0.88))
 _KERB_WIDTH = 0.8
-_BEACH = 7.0
-"""Width of the shores [m]."""
+_BEACH = 7.0  # Width of the shores [m]
 _TUFTS, _TUFTS_BESIDE = (6.0, 0.006), (1.3, 14.0)
 """Least distance between two groups of tufts [m], and number of attempts on a square metre; their
 least and largest distance from a road [m]."""
@@ -60,13 +59,10 @@ _SHRUBS, _BESIDE = (16.0, 0.004), 7.0
 distance from a road [m]."""
 _SHORE_SHRUBS, _BANK = (3.5, 0.03), 1.4
 """The same of those along shores, which stand closer; their least distance from a basin [m]."""
-_NEAR = 90.0
-"""Reach of the ground that is cut into small squares beside a road [m]."""
+_NEAR = 90.0  # Reach of the ground that is cut into small squares beside a road [m]
 _LAMPS = 48
-_ZEBRAS_EVERY = 4
-"""One stop line in so many has a crossing."""
-_STANDS = 3
-"""Different stands of each kind of tree."""
+_ZEBRAS_EVERY = 4  # One stop line in so many has a crossing
+_STANDS = 3  # Different stands of each kind of tree
 _OCCUPIED = 0.45
 
 

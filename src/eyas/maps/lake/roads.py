@@ -14,19 +14,14 @@ __all__ = ["COLUMNS", "NAME", "ROWS", "Lattice", "lattice", "road_graph"]
 
 NAME = "lake"
 
-COLUMNS, ROWS = 11, 3
-"""Blocks of the grid, from west to east and from south to north."""
+COLUMNS, ROWS = 11, 3  # Blocks of the grid, from west to east and from south to north
 
-_COLUMN, _ROW = 78.0, 215.0
-"""Mean distances between the streets of the grid [m]."""
-_SOUTH_WEST = (-420.0, -640.0)
-"""Corner of the grid [m]."""
+_COLUMN, _ROW = 78.0, 215.0  # Mean distances between the streets of the grid [m]
+_SOUTH_WEST = (-420.0, -640.0)  # Corner of the grid [m]
 _WEST, _EAST, _NORTH = -620.0, 870.0, 815.0
 """The main road, and the outer roads in the east and north [m]."""
-_MIDDLE = 400.0
-"""Height of the road through the north [m]."""
-_STEPS = 9
-"""Points of a winding street."""
+_MIDDLE = 400.0  # Height of the road through the north [m]
+_STEPS = 9  # Points of a winding street
 
 _MAIN, _STREET, _LANE = (2, 3.5), (1, 4.0), (1, 3.5)
 """Lanes in each direction and their width: main roads, streets, winding streets [m]."""
@@ -38,12 +33,9 @@ Kind = tuple[int, float]
 class Lattice:
     """The streets of the grid."""
 
-    x: NDArray[np.float64]
-    """Of those that run north, from the west, shape (COLUMNS + 1,) [m]."""
-    y: NDArray[np.float64]
-    """Of those that run east, from the south, shape (ROWS + 1,) [m]."""
-    double: tuple[int, int]
-    """Column and row of the western half of the block that is twice as wide."""
+    x: NDArray[np.float64]  # Of those that run north, from the west, shape (COLUMNS + 1,) [m]
+    y: NDArray[np.float64]  # Of those that run east, from the south, shape (ROWS + 1,) [m]
+    double: tuple[int, int]  # Column and row of the western half of the block that is twice as wide
 
 
 def lattice(seed: int) -> Lattice:

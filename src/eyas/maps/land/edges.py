@@ -12,8 +12,7 @@ from eyas.engine.world.roads.areas import polygons_of, split_on_grid
 
 __all__ = ["edged"]
 
-_CELL = 64.0
-"""Side of the squares into which it is cut [m]."""
+_CELL = 64.0  # Side of the squares into which it is cut [m]
 _RINGS = (0.0, 1.2, 3.0, 6.0, 10.0)
 _INSETS = (0.0, 0.35)
 """Distances where it is cut too, so that u is right between them [m]: from what it lies beside,

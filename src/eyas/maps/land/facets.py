@@ -25,10 +25,8 @@ Points = NDArray[np.float64]
 class Relief:
     """The ground where it rises above the floor. V points, T triangles."""
 
-    points: Points
-    """East, north, and height above the floor [m], shape (V, 3)."""
-    triangles: NDArray[np.int64]
-    """Indices of points, counter-clockwise from above, shape (T, 3)."""
+    points: Points  # East, north, and height above the floor [m], shape (V, 3)
+    triangles: NDArray[np.int64]  # Indices of points, counter-clockwise from above, shape (T, 3)
 
     @property
     def corners(self) -> Points:

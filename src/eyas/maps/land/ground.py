@@ -19,11 +19,9 @@ __all__ = [
     "yards",
 ]
 
-PAVEMENT_WIDTH = 2.6
-"""From the kerb to the lawn [m]."""
+PAVEMENT_WIDTH = 2.6  # From the kerb to the lawn [m]
 
-_VERGE = 1.5
-"""Width of the pavement along the outer side of the outer streets [m]."""
+_VERGE = 1.5  # Width of the pavement along the outer side of the outer streets [m]
 
 _YARDS = (
     material("paving", (0.92, 0.92, 0.93)),
@@ -32,12 +30,9 @@ _YARDS = (
 )
 _GRASS = ((0.96, 0.97, 0.90), (0.97, 0.93, 0.80), (0.92, 0.96, 0.91), (0.84, 0.91, 0.83))
 """Tints of slightly drier, dry, slightly lusher and lush grass."""
-_PATCHES = 34
-"""Number of dry or lush patches on the floor."""
-_PATCH = (12.0, 48.0)
-"""Mean radius of a patch [m]."""
-_FADE = 0.7
-"""Size of the inner part of a patch, whose tint is stronger, as a share of the patch."""
+_PATCHES = 34  # Number of dry or lush patches on the floor
+_PATCH = (12.0, 48.0)  # Mean radius of a patch [m]
+_FADE = 0.7  # Size of the inner part of a patch, whose tint is stronger, as a share of the patch
 
 
 def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:

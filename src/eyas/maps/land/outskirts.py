@@ -34,12 +34,9 @@ _BELOW = 0.05
 _LAND_LINES = (1000.0, 1400.0, 2100.0, 3200.0, 5000.0, 10000.0)
 """Borders of the land around a city, from the middle of its floor [m]."""
 
-_BACK = 26.0
-"""From the foot of a ramp back to the bend of its access road towards the street [m]."""
-_BEND = 19.0
-"""Radius of that bend [m]."""
-_TAIL = 621.0
-"""Length of an elevated road's descent, a slope of 9 % on average [m]."""
+_BACK = 26.0  # From the foot of a ramp back to the bend of its access road towards the street [m]
+_BEND = 19.0  # Radius of that bend [m]
+_TAIL = 621.0  # Length of an elevated road's descent, a slope of 9 % on average [m]
 
 Points = NDArray[np.float64]
 

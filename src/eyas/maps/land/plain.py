@@ -14,8 +14,7 @@ from eyas.maps.build.heights import FLOOR_HEIGHT
 
 __all__ = ["blob", "far_plain", "plain", "rectangle"]
 
-_CELL, _WIDE_CELL = 128.0, 1280.0
-"""Sides of the squares near roads and elsewhere [m]."""
+_CELL, _WIDE_CELL = 128.0, 1280.0  # Sides of the squares near roads and elsewhere [m]
 _FAR, _FAR_CELL = 28_000.0, 1750.0
 """Extent of the ground beyond the floor, and the side of its squares [m]."""
 _BELOW = 0.05

@@ -14,14 +14,10 @@ from eyas.maps.plan import plan
 
 __all__ = ["kinds_of", "relief_of", "snow_over"]
 
-_TOP = 45.0
-"""Height from which the last cover lies [m]."""
-_SNOW_LINE = 4.0
-"""Height from which snow lies on a white mound [m]."""
-_MARGIN = 1.0
-"""How much higher than a mound beside it a white one is there [m]."""
-_WAVE = 1.5
-"""By how much the line rises and falls [m]."""
+_TOP = 45.0  # Height from which the last cover lies [m]
+_SNOW_LINE = 4.0  # Height from which snow lies on a white mound [m]
+_MARGIN = 1.0  # How much higher than a mound beside it a white one is there [m]
+_WAVE = 1.5  # By how much the line rises and falls [m]
 
 
 def relief_of(layer: plan.Hills, seed: int) -> Relief:

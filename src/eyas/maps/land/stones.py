@@ -12,10 +12,8 @@ from eyas.lanes import exact
 
 __all__ = ["BOULDER", "STONES", "boulder_levels", "stone_levels"]
 
-STONES = 1.5
-"""Radius of a scatter of stones [m]."""
-BOULDER = 0.8
-"""Height of the highest boulder [m]."""
+STONES = 1.5  # Radius of a scatter of stones [m]
+BOULDER = 0.8  # Height of the highest boulder [m]
 
 _LOOKS = (
     material("stone", (0.80, 0.66, 0.47)),
@@ -27,8 +25,7 @@ _LOOKS = (
 _COUNT, _SIZES = 13, (0.05, 0.3)
 """Number of stones in a scatter; their least and largest radius [m]. In between there are as many
 as of a power law: mostly small ones."""
-_CUTS = 6
-"""Planes at which a stone has broken."""
+_CUTS = 6  # Planes at which a stone has broken
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 __all__ = ["Bounds", "OsmData", "Relation", "Tags", "Way"]
 
 Tags = dict[str, str]
-Bounds = tuple[float, float, float, float]
-"""West, south, east and north, in degrees."""
+Bounds = tuple[float, float, float, float]  # West, south, east and north, in degrees
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,9 +33,7 @@ class OsmData:
 
     places: dict[int, tuple[float, float]] = field(default_factory=dict)
     """Longitude and latitude of each node, in degrees."""
-    nodes: dict[int, Tags] = field(default_factory=dict)
-    """Tags of the nodes that have some."""
+    nodes: dict[int, Tags] = field(default_factory=dict)  # Tags of the nodes that have some
     ways: dict[int, Way] = field(default_factory=dict)
     relations: list[Relation] = field(default_factory=list)
-    bounds: Bounds | None = None
-    """The area that the file says it covers."""
+    bounds: Bounds | None = None  # The area that the file says it covers

@@ -25,8 +25,7 @@ _ROOFS: dict[str, Roof] = {
 """The shape that each value of `roof:shape` is drawn as."""
 
 _NO_HOUSES = {"no", "proposed", "construction", "demolished", "ruins", "none"}
-_COVERED = 0.85
-"""Share of an outline from which on its parts are the whole building."""
+_COVERED = 0.85  # Share of an outline from which on its parts are the whole building
 _HIGHEST = 900.0
 _PART = "building:part"
 

@@ -71,11 +71,9 @@ Pictures, films and data sets made from it must show this notice; a data base ma
 offered under the same licence.
 """
 
-_LARGEST = 6000.0
-"""Longest side of a map [m]."""
+_LARGEST = 6000.0  # Longest side of a map [m]
 _SMALLEST = 40.0
-_MARGIN = 30.0
-"""Floor beyond the imported area [m]."""
+_MARGIN = 30.0  # Floor beyond the imported area [m]
 
 
 def run(

@@ -8,8 +8,7 @@ from eyas.maps.osm.data import Tags
 
 __all__ = ["Odd", "colour", "length", "number"]
 
-Odd = Callable[[str], None]
-"""Called with the name of a tag whose value makes no sense."""
+Odd = Callable[[str], None]  # Called with the name of a tag whose value makes no sense
 
 Colour = tuple[float, float, float]
 

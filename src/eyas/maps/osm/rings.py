@@ -12,8 +12,7 @@ from eyas.maps.osm.data import OsmData, Relation, Tags, Way
 
 __all__ = ["Shapes"]
 
-_LEAST = 0.5
-"""Areas below this are left out [m^2]."""
+_LEAST = 0.5  # Areas below this are left out [m^2]
 
 
 class Shapes:

@@ -29,8 +29,7 @@ _NOT_WALKED = ("motorway", "motorway_link", "living_street", "service")
 _WALKED_BESIDE = (21.0, 51.0)
 """Usual streets with sidewalks are faster than the first and no faster than the second [km/h]."""
 
-_TURNS = ("type", "restriction", "except")
-"""Tags of turn restrictions that netconvert uses."""
+_TURNS = ("type", "restriction", "except")  # Tags of turn restrictions that netconvert uses
 
 _SPEED = re.compile(r"\d{1,3}(\.\d+)?( ?(km/h|kmh|mph|knots))?")
 

@@ -37,18 +37,15 @@ from eyas.maps.things.kinds import SOLIDS, THINGS
 
 __all__ = ["build_scene"]
 
-_NEAR = 80.0
-"""Reach of the ground that is cut into small squares beside streets [m]."""
-_SLOPE = 1.4
-"""Width of the slope around a heap [m]."""
+_NEAR = 80.0  # Reach of the ground that is cut into small squares beside streets [m]
+_SLOPE = 1.4  # Width of the slope around a heap [m]
 _SNOW_FRINGE = 12.0
 """Depth below the line where snow begins down to which there are patches of it [m]."""
 _SUNK = 0.015
 """How far the sides of a slab stand back from its edge, clear of those of others beside it [m]."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height on which something else stands carry nothing: no camera sees it [m]."""
-_LAMP_HEIGHTS = (6.75, 6.6)
-"""z of the lamps in a tunnel, and of their lights [m]."""
+_LAMP_HEIGHTS = (6.75, 6.6)  # z of the lamps in a tunnel, and of their lights [m]
 
 
 def build_scene(plan: p.MapPlan, network: RoadNetwork, season: Season = Season.SUMMER) -> Scene:
@@ -73,8 +70,7 @@ class _Work:
     network: RoadNetwork
     season: Season
     builder: SceneBuilder = field(init=False)
-    lights: list[tuple[Any, Any]] = field(default_factory=list)
-    """Position and axis of each lamp."""
+    lights: list[tuple[Any, Any]] = field(default_factory=list)  # Position and axis of each lamp
 
     def __post_init__(self) -> None:
         plan = self.plan

@@ -35,15 +35,11 @@ __all__ = [
     "write_plan",
 ]
 
-FORMAT = "eyas-plan-1"
-"""Value of `format` in the files of this version."""
+FORMAT = "eyas-plan-1"  # Value of `format` in the files of this version
 
-_LARGEST = 256 << 20
-"""Largest file that is read, unpacked [bytes]."""
-TAGS = ("layer", "form")
-"""Fields that tell which record it is."""
-_MOST = 20
-"""Number of errors that are told of a file."""
+_LARGEST = 256 << 20  # Largest file that is read, unpacked [bytes]
+TAGS = ("layer", "form")  # Fields that tell which record it is
+_MOST = 20  # Number of errors that are told of a file
 
 
 def text_of(plan: MapPlan) -> str:

@@ -27,8 +27,7 @@ orange as maples, still green, nearly bare, red, ... Trees take them in turn."""
 
 _PALE = {"leaves": "pale_leaves", "foliage": "pale_foliage"}
 
-_TWIGS: Tint = (0.46, 0.40, 0.34)
-"""Colour of a crown without leaves, seen from afar."""
+_TWIGS: Tint = (0.46, 0.40, 0.34)  # Colour of a crown without leaves, seen from afar
 
 
 def in_autumn(levels: Levels, which: int) -> Levels:

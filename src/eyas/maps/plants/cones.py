@@ -12,8 +12,7 @@ from eyas.maps.plants.foliage import Crown, leaf_cards
 
 __all__ = ["VARIANTS", "cone_tree_levels"]
 
-VARIANTS = 3
-"""Number of shapes."""
+VARIANTS = 3  # Number of shapes
 
 Array = NDArray[np.float64]
 
@@ -25,8 +24,7 @@ _GREENS = (
 _CORE = (0.34, 0.42, 0.34)
 _HALF_WIDTH = (0.46, 0.40, 0.43)
 """Half the width of the crown, as a share of the height: in the original, 0.5."""
-_LOW = 0.10
-"""Height of the lowest branches."""
+_LOW = 0.10  # Height of the lowest branches
 _RINGS = 6
 
 

@@ -13,20 +13,16 @@ __all__ = ["Crown", "leaf_cards", "shell"]
 
 Array = NDArray[np.float64]
 
-_ATLAS = 2
-"""Clusters in each direction of the texture `leaves`."""
+_ATLAS = 2  # Clusters in each direction of the texture `leaves`
 
 
 @dataclass(frozen=True, slots=True)
 class Crown:
     """The space that leaves fill: a union of B balls."""
 
-    centres: Array
-    """Shape (B, 3)."""
-    radii: Array
-    """Shape (B,)."""
-    middle: Array
-    """Centre from which shading normals point outwards, shape (3,)."""
+    centres: Array  # Shape (B, 3)
+    radii: Array  # Shape (B,)
+    middle: Array  # Centre from which shading normals point outwards, shape (3,)
 
     def depth(self, points: Array) -> Array:
         """Return the depth of points within the crown, negative outside, shape (P,)."""

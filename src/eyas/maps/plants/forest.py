@@ -21,14 +21,11 @@ from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
 __all__ = ["FROSTED", "SPECIES", "STAND", "TREES", "Species", "stand_levels"]
 
-STAND = 10.0
-"""Side of the square of a stand [m]."""
-TREES = 20
-"""Trees in a stand: one on five square metres."""
+STAND = 10.0  # Side of the square of a stand [m]
+TREES = 20  # Trees in a stand: one on five square metres
 
 _COLUMNS, _ROWS = 5, 4
-_SHAPES = 5
-"""Different trees in a stand; the others are copies of another size and turn."""
+_SHAPES = 5  # Different trees in a stand; the others are copies of another size and turn
 
 Tint = tuple[float, float, float]
 Array = NDArray[np.float64]
@@ -39,17 +36,12 @@ class Species:
     """A kind of tree."""
 
     name: str
-    shape: str
-    """`round`, `cone` or `palm`."""
-    heights: tuple[float, float]
-    """Least and largest height [m]."""
-    width: float
-    """Of the crown, as a share of the height."""
-    leaves: Tint
-    """Colour of the sunlit leaves, sRGB."""
+    shape: str  # `round`, `cone` or `palm`
+    heights: tuple[float, float]  # Least and largest height [m]
+    width: float  # Of the crown, as a share of the height
+    leaves: Tint  # Colour of the sunlit leaves, sRGB
     bark: Tint = (0.80, 0.76, 0.70)
-    autumn: Tint | None = None
-    """The same in autumn; None: it is evergreen."""
+    autumn: Tint | None = None  # The same in autumn; None: it is evergreen
 
     def look(self, season: Season) -> Tint:
         """Return the colour of its leaves in a season."""
@@ -71,8 +63,7 @@ SPECIES = (
 )
 """The kinds of the original's strips of forest, from the west."""
 
-FROSTED: Tint = (0.84, 0.82, 0.90)
-"""Colour of leaves under frost."""
+FROSTED: Tint = (0.84, 0.82, 0.90)  # Colour of leaves under frost
 
 
 def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, season: Season) -> Levels:

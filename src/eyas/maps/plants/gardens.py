@@ -23,25 +23,17 @@ __all__ = [
     "sown",
 ]
 
-_APRON = 0.9
-"""Width of the paving at the foot of walls [m]."""
-_PATH = 2.2
-"""Width of a path to a door [m]."""
+_APRON = 0.9  # Width of the paving at the foot of walls [m]
+_PATH = 2.2  # Width of a path to a door [m]
 _LONGEST_PATH = 16.0
-_DOOR_WALL = 7.0
-"""Walls shorter than this have no door [m]."""
+_DOOR_WALL = 7.0  # Walls shorter than this have no door [m]
 
-_BORDER = 1.85
-"""Distance of the plants along a wall from it [m]."""
-_PLANTED = 0.45
-"""Share of the walls with plants along them."""
-_CLIPPED = 0.4
-"""Share of those walls with a hedge instead of shrubs."""
-_ROOM = 0.9
-"""Radius of the space that a plant needs [m]."""
+_BORDER = 1.85  # Distance of the plants along a wall from it [m]
+_PLANTED = 0.45  # Share of the walls with plants along them
+_CLIPPED = 0.4  # Share of those walls with a hedge instead of shrubs
+_ROOM = 0.9  # Radius of the space that a plant needs [m]
 
-BORDERS = ("border", "low border", "tall border")
-"""Kinds of borders of shrubs."""
+BORDERS = ("border", "low border", "tall border")  # Kinds of borders of shrubs
 
 Points = NDArray[np.float64]
 

@@ -15,8 +15,7 @@ from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
 __all__ = ["DECIDUOUS", "PIECE", "PLANTS"]
 
-PIECE = 4.0
-"""Length of a piece of a hedge or of a border of shrubs, along x [m]."""
+PIECE = 4.0  # Length of a piece of a hedge or of a border of shrubs, along x [m]
 
 Array = NDArray[np.float64]
 Tints = tuple[tuple[float, float, float], ...]
@@ -99,5 +98,4 @@ PLANTS: dict[str, Callable[[np.random.Generator], Levels]] = {
 }
 """Makers of borders of shrubs along walls, hedges, beds in car parks."""
 
-DECIDUOUS = ("border", "low border", "tall border")
-"""Those whose leaves turn in autumn."""
+DECIDUOUS = ("border", "low border", "tall border")  # Those whose leaves turn in autumn

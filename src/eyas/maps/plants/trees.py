@@ -13,8 +13,7 @@ from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
 __all__ = ["VARIANTS", "place_along", "street_tree_levels"]
 
-VARIANTS = 4
-"""Number of shapes; variants k and k + 4 differ only by chance."""
+VARIANTS = 4  # Number of shapes; variants k and k + 4 differ only by chance
 
 Array = NDArray[np.float64]
 Tints = tuple[tuple[float, float, float], ...]

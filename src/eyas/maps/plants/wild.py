@@ -14,8 +14,7 @@ from eyas.maps.plants.foliage import Crown, leaf_cards
 
 __all__ = ["BED", "WILD"]
 
-BED = 3.4
-"""Length of a piece of a bed of reeds, along x [m]."""
+BED = 3.4  # Length of a piece of a bed of reeds, along x [m]
 
 Array = NDArray[np.float64]
 Tint = tuple[float, float, float]

@@ -16,20 +16,13 @@ __all__ = ["MAP_FORMATS", "ExportOptions", "MapFormat", "export"]
 class ExportOptions(NamedTuple):
     """What is exported, and how fine."""
 
-    name: str
-    """Name of the map."""
-    seed: int = 0
-    """Seed of the map."""
-    detail: int = 1
-    """Level of detail of trees and furniture; 0 is the finest."""
-    lamps: bool = True
-    """Whether street lamps are lights."""
-    cell: float | None = None
-    """Side of a raster cell [m]; None: 0.5, or 1 on a large map."""
-    weather: str | None = None
-    """Weather of a world of Webots; None: the map's first."""
-    hour: float | None = None
-    """Its hour, 0 to 24; None: the weather's own."""
+    name: str  # Name of the map
+    seed: int = 0  # Seed of the map
+    detail: int = 1  # Level of detail of trees and furniture; 0 is the finest
+    lamps: bool = True  # Whether street lamps are lights
+    cell: float | None = None  # Side of a raster cell [m]; None: 0.5, or 1 on a large map.
+    weather: str | None = None  # Weather of a world of Webots; None: the map's first
+    hour: float | None = None  # Its hour, 0 to 24; None: the weather's own
 
 
 class MapFormat(NamedTuple):

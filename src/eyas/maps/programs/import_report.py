@@ -14,13 +14,10 @@ class Report:
 
     name: str
     folder: Path
-    registered: bool
-    """Whether it is known by its name; otherwise by its folder."""
-    size: tuple[float, float] = (0.0, 0.0)
-    """Extent of the floor [m]."""
+    registered: bool  # Whether it is known by its name; otherwise by its folder
+    size: tuple[float, float] = (0.0, 0.0)  # Extent of the floor [m]
     lanes: int = 0
-    signals: int = 0
-    """Programs of traffic lights."""
+    signals: int = 0  # Programs of traffic lights
     buildings: int = 0
     trees: int = 0
     guessed: Counter[str] = field(default_factory=Counter)
@@ -29,8 +26,7 @@ class Report:
     """Number of values that made no sense, by tag."""
     broken: Counter[str] = field(default_factory=Counter)
     """Number of outlines that were mended or left out, by what was wrong."""
-    traffic: str = ""
-    """What was recorded, or why nothing was."""
+    traffic: str = ""  # What was recorded, or why nothing was
     seconds: float = 0.0
 
     @property

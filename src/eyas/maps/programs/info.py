@@ -25,24 +25,17 @@ __all__ = ["About", "Figures", "about", "describe", "figures_of", "make_another"
 class Figures:
     """Figures of a scene."""
 
-    size: tuple[float, float]
-    """Extent of the floor [m]."""
-    area: float
-    """Of the rectangle around the streets [km^2]."""
+    size: tuple[float, float]  # Extent of the floor [m]
+    area: float  # Of the rectangle around the streets [km^2]
     road: float
     """Length of the streets from the middle of one junction to that of the next, both directions
     counted once [km]."""
-    between: float
-    """The same without what lies within junctions [km]."""
-    lanes: float
-    """Length of all lanes [km]."""
+    between: float  # The same without what lies within junctions [km]
+    lanes: float  # Length of all lanes [km]
     buildings: int
-    height: float
-    """Median height of the buildings [m]."""
-    trees: int
-    """Trees by themselves and in stands; no shrubs or hedges."""
-    stands: int
-    """Copies that are several trees each."""
+    height: float  # Median height of the buildings [m]
+    trees: int  # Trees by themselves and in stands; no shrubs or hedges
+    stands: int  # Copies that are several trees each
     lamps: int
 
 
@@ -128,17 +121,12 @@ class About:
     seed: int
     weathers: tuple[str, ...]
     figures: Figures
-    crossings: int
-    """From pavement to pavement."""
+    crossings: int  # From pavement to pavement
     crossings_with_lights: int
-    original: Original | None
-    """Figures of the map of the DAT benchmark that it stands for."""
-    recorded_traffic: list[str]
-    """Names of the recordings that ship with it."""
-    folder: str | None
-    """Where the files of an imported map are."""
-    attribution: list[str]
-    """Whose data it is."""
+    original: Original | None  # Figures of the map of the DAT benchmark that it stands for
+    recorded_traffic: list[str]  # Names of the recordings that ship with it
+    folder: str | None  # Where the files of an imported map are
+    attribution: list[str]  # Whose data it is
 
 
 def about(name: str, seed: int) -> About:

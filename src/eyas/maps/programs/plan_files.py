@@ -41,13 +41,10 @@ _VALUES = {
     ObjectClass.WATER: 6,
 }  # fmt: skip
 
-_FEW = 12
-"""Number of cells up to which numbers one by one are quicker than arrays."""
+_FEW = 12  # Number of cells up to which numbers one by one are quicker than arrays
 
-_FINE, _COARSE = 0.5, 1.0
-"""Side of a cell unless another is asked for [m]."""
-_MOST = 40_000_000
-"""Number of fine cells of a map from which on they are coarse."""
+_FINE, _COARSE = 0.5, 1.0  # Side of a cell unless another is asked for [m]
+_MOST = 40_000_000  # Number of fine cells of a map from which on they are coarse
 
 Points = NDArray[np.float64]
 

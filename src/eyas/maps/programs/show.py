@@ -19,10 +19,8 @@ from eyas.engine.world.maps import MAPS
 
 __all__ = ["run"]
 
-_MARGIN = 60.0
-"""Around streets and buildings [m]."""
-_SHARP = 2
-"""The picture is drawn this much larger, and made smaller at the end."""
+_MARGIN = 60.0  # Around streets and buildings [m]
+_SHARP = 2  # The picture is drawn this much larger, and made smaller at the end
 _PAPER, _BUILDING, _EDGE = (244, 243, 238), (176, 168, 160), (128, 120, 114)
 _TREE, _TRACK = (122, 168, 104), (206, 66, 40)
 _SUN = np.array([-0.53, 0.53, 0.66])

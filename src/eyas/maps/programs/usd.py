@@ -30,11 +30,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ENDINGS", "run"]
 
-ENDINGS = (".usdc", ".usda", ".usd")
-"""Binary, text, either."""
+ENDINGS = (".usdc", ".usda", ".usd")  # Binary, text, either
 
-_RADIUS = 0.1
-"""Of the sphere that shines in a street lamp [m]."""
+_RADIUS = 0.1  # Of the sphere that shines in a street lamp [m]
 
 _TOUCHED = {ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT}
 """What is solid by its triangles; all else that is solid has colliders of its own."""
@@ -81,8 +79,7 @@ def _png(pixels: NDArray[np.uint8]) -> bytes:
     return png.getvalue()
 
 
-_FEW = 0.1
-"""Share of the faces of a smooth solid whose normals may point away from their front."""
+_FEW = 0.1  # Share of the faces of a smooth solid whose normals may point away from their front
 
 
 class _Stage:

@@ -18,22 +18,16 @@ from eyas.maps.roads.painting import RoadPaint, Stripe, stripes
 __all__ = ["crossings_of", "frame_of", "paint_of", "placed", "road_paint"]
 
 _DASH, _GAP = 3.0, 6.0
-_LINE = 0.18
-"""Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]."""
+_LINE = 0.18  # Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]
 _CENTRE_LINE = 0.2
-_DOUBLE = 0.18
-"""From the middle of the road to each of two yellow lines [m]."""
+_DOUBLE = 0.18  # From the middle of the road to each of two yellow lines [m]
 _EDGE_LINE = 0.2
-_EDGE = 0.3
-"""From the kerb to the edge line [m]."""
-_STOP_LINE = 0.4
-"""Width of a stop line [m]."""
+_EDGE = 0.3  # From the kerb to the edge line [m]
+_STOP_LINE = 0.4  # Width of a stop line [m]
 _ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
 """From the stop line to a crossing, and its extent along the road, as in the original [m]."""
-_WALKED = 3.0
-"""From the stop line to the line on which people cross [m]."""
-_BAR = 0.55
-"""Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
+_WALKED = 3.0  # From the stop line to the line on which people cross [m]
+_BAR = 0.55  # Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]
 
 Line = NDArray[np.float64]
 
@@ -218,8 +212,7 @@ _HEAD = [(-3.4, -0.08), (-2.2, -0.08), (-2.2, -0.3), (-1.0, 0.0), (-2.2, 0.3), (
          (-3.4, 0.08)]  # fmt: skip
 _HOOK = [(-4.2, 0.0), (-3.4, 0.0), (-2.9, 0.55), (-2.65, 0.4), (-2.6, 1.05), (-3.2, 0.95),
          (-3.05, 0.72), (-3.5, 0.16), (-4.2, 0.16)]  # fmt: skip
-_ARROW_BACK = 4.0
-"""From the stop line back to the origin of an arrow, 1 m ahead of its tip [m]."""
+_ARROW_BACK = 4.0  # From the stop line back to the origin of an arrow, 1 m ahead of its tip [m]
 
 
 def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:

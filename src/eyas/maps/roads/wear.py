@@ -31,31 +31,25 @@ _LANES = (
     material("asphalt_lane", (1.0, 0.98, 0.96)),
 )
 """Asphalt of the lanes, which were not all paved in the same year."""
-_LANE_HALF = 1.6
-"""Half the width of the strip in which tyres run [m]."""
+_LANE_HALF = 1.6  # Half the width of the strip in which tyres run [m]
 
 _PATCH = material("asphalt_patch")
-_PATCH_EVERY = 46.0
-"""Mean distance between two patches along a lane [m]."""
+_PATCH_EVERY = 46.0  # Mean distance between two patches along a lane [m]
 _PATCH_LENGTH, _PATCH_WIDTH = (1.5, 6.5), (0.9, 2.6)
-_WAITING = (0.5, 13.0)
-"""Range in which cars wait, backwards from the end of a lane [m]."""
+_WAITING = (0.5, 13.0)  # Range in which cars wait, backwards from the end of a lane [m]
 _OIL = material("asphalt_oil")
 _OIL_HALF = 0.8
 
 _LID = material("manhole")
 _LID_EVERY = 62.0
-_LID_HALF = 0.48
-"""Half the side of a lid with the asphalt around it [m]."""
+_LID_HALF = 0.48  # Half the side of a lid with the asphalt around it [m]
 
 _SEAL = material("asphalt_patch", (0.62, 0.62, 0.64))
-_SEAL_EVERY = 120.0
-"""Mean distance between two sealed cracks along a lane [m]."""
+_SEAL_EVERY = 120.0  # Mean distance between two sealed cracks along a lane [m]
 _SEAL_HALF = 0.045
 _SEAL_STEPS = 6
 
-_NARROWEST = 3.0
-"""Narrower lanes of towns have no wear [m]."""
+_NARROWEST = 3.0  # Narrower lanes of towns have no wear [m]
 
 Line = NDArray[np.float64]
 

@@ -10,16 +10,11 @@ from eyas.lanes import exact
 
 __all__ = ["sand_bars"]
 
-_ROWS = 7
-"""Bars on each road."""
-_REACH = 1110.0
-"""From the middle of a road to its first and last bar [m]."""
-_LENGTH = (10.0, 25.0)
-"""Extent of a bar along the road [m]."""
-_HALF = 50.0
-"""Half its extent across [m]."""
-_TUFTS = 9
-"""Small drifts before and behind each bar."""
+_ROWS = 7  # Bars on each road
+_REACH = 1110.0  # From the middle of a road to its first and last bar [m]
+_LENGTH = (10.0, 25.0)  # Extent of a bar along the road [m]
+_HALF = 50.0  # Half its extent across [m]
+_TUFTS = 9  # Small drifts before and behind each bar
 
 
 def sand_bars(

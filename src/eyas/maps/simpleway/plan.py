@@ -29,15 +29,11 @@ from eyas.maps.simpleway.skins import SKINS, Skin
 
 __all__ = ["FLOOR", "make_plan", "paved"]
 
-FLOOR = (7000.0, 5000.0)
-"""Extent of the floor, as in the original [m]."""
-_BANK = 2.5
-"""Bare ground between a road and a strip, at least [m]."""
-_BAR_HEIGHT = 0.03
-"""z of the bars of sand [m]."""
+FLOOR = (7000.0, 5000.0)  # Extent of the floor, as in the original [m]
+_BANK = 2.5  # Bare ground between a road and a strip, at least [m]
+_BAR_HEIGHT = 0.03  # z of the bars of sand [m]
 _SPOTS = 320
-_SPOT = (8.0, 40.0)
-"""Number and mean radius of the patches of another tint [m]."""
+_SPOT = (8.0, 40.0)  # Number and mean radius of the patches of another tint [m]
 _DRIFTS = ((0.975, 0.98, 0.985), (0.985, 0.985, 0.98))
 """Their tints in snow: no grass shows through it."""
 

@@ -13,19 +13,15 @@ __all__ = ["NAME", "ROADS", "ROAD_WIDTH", "is_loop", "road_graph", "road_lines"]
 NAME = "simpleway"
 
 ROADS = 16
-ROAD_WIDTH = 12.0
-"""Four lanes of 3 m."""
+ROAD_WIDTH = 12.0  # Four lanes of 3 m
 
-_APART = (340.0, 400.0)
-"""Least and largest distance from one road to the next [m]."""
+_APART = (340.0, 400.0)  # Least and largest distance from one road to the next [m]
 _LENGTH = (2576.0, 2612.0)
-_LEAN = 14.0
-"""Largest distance of a road's ends from its mean line [m]."""
+_LEAN = 14.0  # Largest distance of a road's ends from its mean line [m]
 
 _LOOP, _HALF = 42.0, 9.0
 """Length of a turning loop up to its round end, and half its inner width [m]."""
-_LOOP_SPEED = 7.5
-"""[m/s]"""
+_LOOP_SPEED = 7.5  # [m/s]
 
 Points = NDArray[np.float64]
 

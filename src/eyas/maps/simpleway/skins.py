@@ -16,14 +16,10 @@ __all__ = ["SKINS", "Patch", "Skin"]
 
 Points = NDArray[np.float64]
 
-_STRIP_REACH = 2000.0
-"""From the middle of the map to the ends of coloured strips [m]."""
-_OUTER_STRIP = 350.0
-"""Width of the strips beyond the outer roads [m]."""
-_FROM_ROAD = (7.5, 16.0)
-"""From the middle of a road to the strips beside it, least and most [m]."""
-_SQUARES, _SQUARE = 35, 300.0
-"""Number and side of the white squares in the desert's winter [m]."""
+_STRIP_REACH = 2000.0  # From the middle of the map to the ends of coloured strips [m]
+_OUTER_STRIP = 350.0  # Width of the strips beyond the outer roads [m]
+_FROM_ROAD = (7.5, 16.0)  # From the middle of a road to the strips beside it, least and most [m]
+_SQUARES, _SQUARE = 35, 300.0  # Number and side of the white squares in the desert's winter [m]
 _SQUARE_ROWS = 7
 
 
@@ -31,11 +27,9 @@ _SQUARE_ROWS = 7
 class Patch:
     """A part of the ground that looks different."""
 
-    area: shapely.Geometry
-    """[m]"""
+    area: shapely.Geometry  # [m]
     cover: Material
-    in_winter: bool = False
-    """Whether it is there only in winter."""
+    in_winter: bool = False  # Whether it is there only in winter
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +45,7 @@ class Skin:
     """Returns what else lies between the roads, given their ends."""
     winter: Material = field(default_factory=lambda: material("snow"))
     """Ground in winter; sand under bars stays bare."""
-    bars: bool = False
-    """Whether bars of sand lie across the roads."""
+    bars: bool = False  # Whether bars of sand lie across the roads
     horizon: Horizon = field(default_factory=Horizon)
 
 

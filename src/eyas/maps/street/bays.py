@@ -10,13 +10,10 @@ from eyas.maps.buildings.lots import frame_angle, turned
 
 __all__ = ["bays_in"]
 
-_MODULE = 16.4
-"""Depth of two rows of bays and the aisle between them [m]."""
+_MODULE = 16.4  # Depth of two rows of bays and the aisle between them [m]
 _BAY_LENGTH, _BAY_WIDTH = 5.1, 2.6
-_EDGE = 0.4
-"""From the edge of the car park to the bays [m]."""
-_PAINT = 0.12
-"""Width of a line between bays [m]."""
+_EDGE = 0.4  # From the edge of the car park to the bays [m]
+_PAINT = 0.12  # Width of a line between bays [m]
 
 Bays = NDArray[np.float64]
 

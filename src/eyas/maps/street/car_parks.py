@@ -14,12 +14,10 @@ from eyas.maps.land.ground import PAVEMENT_WIDTH
 
 __all__ = ["CarPark", "place_car_parks", "place_rectangle"]
 
-_MODULE = 17.0
-"""Depth of two rows of bays and the aisle between them [m]."""
+_MODULE = 17.0  # Depth of two rows of bays and the aisle between them [m]
 _BAY_LENGTH, _BAY_WIDTH = 5.2, 2.6
 _DRIVEWAY = 6.5
-_LAWN = 2.5
-"""Width of the lawn between the pavement and the car park [m]."""
+_LAWN = 2.5  # Width of the lawn between the pavement and the car park [m]
 _SPOTS = ((0.12, 0), (0.88, 0), (0.5, 0), (0.12, 1), (0.88, 1), (0.5, 1))
 """Positions to try: share of the free length along the block, and which of its long sides."""
 
@@ -30,8 +28,7 @@ class CarPark:
 
     area: shapely.Polygon
     """Asphalt for the cars and the driveway, which ends slightly beyond the kerb [m]."""
-    lines: list[shapely.Polygon]
-    """Paint between the bays [m]."""
+    lines: list[shapely.Polygon]  # Paint between the bays [m]
     bays: NDArray[np.float64]
     """Centre of each bay [m] and heading of a car in it [rad], shape (K, 3)."""
 

@@ -21,8 +21,7 @@ from eyas.lanes import exact
 
 __all__ = ["CLUTTER"]
 
-_ABOVE: Final = 0.02
-"""Height of flat things above the ground, which keeps two surfaces apart [m]."""
+_ABOVE: Final = 0.02  # Height of flat things above the ground, which keeps two surfaces apart [m]
 
 _LAYER: Final = 0.003
 """Height between scraps of different colours, of which one may lie on another [m]."""
@@ -49,8 +48,7 @@ _PAPER = (
 _FALLEN = ((0.44, 0.31, 0.15), (0.52, 0.41, 0.20), (0.33, 0.23, 0.12), (0.47, 0.45, 0.22))
 _SIGNS = ((0.10, 0.26, 0.60), (0.72, 0.10, 0.10), (0.13, 0.38, 0.24))
 
-_SPREAD: Final = (1.1, 0.35)
-"""Half the length and half the width of a patch of litter [m]."""
+_SPREAD: Final = (1.1, 0.35)  # Half the length and half the width of a patch of litter [m]
 
 
 def _part(

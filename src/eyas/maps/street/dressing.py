@@ -21,14 +21,12 @@ from eyas.lanes import exact
 
 __all__ = ["CITY_KERBS", "SHOP_FRONTS", "VILLAGE_KERBS", "Ground", "along_kerbs", "at_fronts"]
 
-_CLEAR: Final = 0.3
-"""Room between two things [m]."""
+_CLEAR: Final = 0.3  # Room between two things [m]
 
 _FROM_WALL: Final = 0.75
 """From a wall to the middle of what stands before it, besides half its depth [m]."""
 
-_FROM_CORNER: Final = 2.0
-"""Least distance from the corner of a house [m]."""
+_FROM_CORNER: Final = 2.0  # Least distance from the corner of a house [m]
 
 Points = NDArray[np.float64]
 
@@ -36,10 +34,8 @@ Points = NDArray[np.float64]
 class Ground(NamedTuple):
     """Where things may stand."""
 
-    area: shapely.Geometry
-    """In plan view [m]."""
-    height: float
-    """z [m]."""
+    area: shapely.Geometry  # In plan view [m]
+    height: float  # z [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +43,11 @@ class _Rule:
     """Spacing of things along kerbs or walls; which of several is drawn for each place."""
 
     kinds: tuple[str, ...]
-    where: str
-    """Name of the ground on which they stand."""
-    beyond: float
-    """From the kerb, or from the wall, to the middle [m]; negative on the road."""
-    every: float
-    """Mean distance to the next [m]."""
-    room: float
-    """Radius of the space that each needs [m]."""
-    from_end: float = 6.0
-    """Least distance to the end of the street [m]."""
+    where: str  # Name of the ground on which they stand
+    beyond: float  # From the kerb, or from the wall, to the middle [m]; negative on the road
+    every: float  # Mean distance to the next [m]
+    room: float  # Radius of the space that each needs [m]
+    from_end: float = 6.0  # Least distance to the end of the street [m]
     row: tuple[int, int] = (1, 1)
     """Least and largest number of the same kind that stand side by side."""
 

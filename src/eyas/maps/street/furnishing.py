@@ -14,22 +14,17 @@ from eyas.lanes import exact
 
 __all__ = ["furniture_along"]
 
-_CLEAR = 0.5
-"""Room around each thing [m]."""
+_CLEAR = 0.5  # Room around each thing [m]
 
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
     """Spacing of one kind of furniture along a kerb."""
 
-    beyond_kerb: float
-    """From the kerb to its centre [m]."""
-    every: float
-    """Mean distance to the next [m]."""
-    room: float
-    """Radius of the space that it needs [m]."""
-    from_end: float
-    """Least distance to the end of the street [m]."""
+    beyond_kerb: float  # From the kerb to its centre [m]
+    every: float  # Mean distance to the next [m]
+    room: float  # Radius of the space that it needs [m]
+    from_end: float  # Least distance to the end of the street [m]
 
 
 _RULES = {

@@ -15,8 +15,7 @@ from eyas.engine.world.build.scene_builder import Levels
 
 __all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels"]
 
-BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3
-"""Of a bale of hay [m]."""
+BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Of a bale of hay [m]
 
 _HAY = material("crops_tan", (0.98, 0.9, 0.66))
 _JET = material("plain", (0.93, 0.95, 0.97))

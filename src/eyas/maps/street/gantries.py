@@ -10,16 +10,12 @@ from eyas.engine.world.build.scene_builder import Levels
 
 __all__ = ["KINDS", "POST_RADIUS", "POST_TOP", "SPAN", "boards_of", "gantry_levels"]
 
-SPAN = 16.6
-"""Distance of the two posts, as in the original [m]."""
+SPAN = 16.6  # Distance of the two posts, as in the original [m]
 
 POST_RADIUS = 0.2
-_BEAM = 6.0
-"""Height of the beam [m]."""
-POST_TOP = _BEAM + 0.4
-"""z of the top of the solid posts [m]."""
-_UNDER = 5.6
-"""z of the lowest edge of a board: higher than any vehicle [m]."""
+_BEAM = 6.0  # Height of the beam [m]
+POST_TOP = _BEAM + 0.4  # z of the top of the solid posts [m]
+_UNDER = 5.6  # z of the lowest edge of a board: higher than any vehicle [m]
 _STEEL = material("plain", (0.62, 0.64, 0.66))
 _BLUE = material("plain", (0.08, 0.22, 0.62))
 _WHITE = material("plain", (0.95, 0.95, 0.95))
@@ -31,8 +27,7 @@ _BOARDS: tuple[tuple[tuple[float, float, float], ...], ...] = (
 )
 """Boards of each kind: middle across the road, width, height [m]."""
 
-KINDS = len(_BOARDS)
-"""Number of kinds."""
+KINDS = len(_BOARDS)  # Number of kinds
 
 
 def boards_of(number: int) -> tuple[float, float]:

@@ -26,14 +26,11 @@ __all__ = [
     "lit_by",
 ]
 
-POLE_HEIGHT = 7.35
-"""Height of the poles, as in the original [m]."""
+POLE_HEIGHT = 7.35  # Height of the poles, as in the original [m]
 
-POLE_RADIUS = 0.12
-"""Radius at the foot [m]."""
+POLE_RADIUS = 0.12  # Radius at the foot [m]
 
-BEYOND_KERB = 2.0
-"""From the kerb to the poles; the median of the original [m]."""
+BEYOND_KERB = 2.0  # From the kerb to the poles; the median of the original [m]
 
 LIGHT = (3.1, 0.0, 7.2)
 """Position of the light relative to the foot of its pole, as in the original [m]."""
@@ -44,12 +41,9 @@ _APART = (53.0, 44.0, 35.0)
 
 The smaller ones are for cities in which the first leaves room for too few lamps.
 """
-_STEP = 3.0
-"""Distance between the candidate positions along a kerb [m]."""
-_FROM_CROSSING = 7.0
-"""Least distance from the end of a street [m]."""
-_CLEAR = 1.2
-"""Room around a pole [m]."""
+_STEP = 3.0  # Distance between the candidate positions along a kerb [m]
+_FROM_CROSSING = 7.0  # Least distance from the end of a street [m]
+_CLEAR = 1.2  # Room around a pole [m]
 _STEEL = material("plain", (0.20, 0.21, 0.22))
 _LENS = Material(tint=(1.0, 0.90, 0.72), surface=Surface.LAMP, emission=6.0)
 

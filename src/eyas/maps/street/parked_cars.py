@@ -32,16 +32,12 @@ _COLOURS = {
 class ParkedKind(NamedTuple):
     """A car as it stands there."""
 
-    type: str
-    """A name in `eyas.maps.cars.types.TYPES`."""
-    colour: str
-    """Of the paint."""
+    type: str  # A name in `eyas.maps.cars.types.TYPES`.
+    colour: str  # Of the paint
     look: str = ""
     """What it has: `sunroof`, `worn`, `rack`, `dark` bumpers; `covered` by a tarpaulin; none."""
-    steer: float = 0.0
-    """Angle of the front wheels, to the left [rad]."""
-    rims: int = 0
-    """Design of its wheel discs."""
+    steer: float = 0.0  # Angle of the front wheels, to the left [rad]
+    rims: int = 0  # Design of its wheel discs
 
 
 KINDS: tuple[ParkedKind, ...] = (
@@ -86,20 +82,16 @@ counted there among the compact and the middle class, and the shares of the othe
 Paint: of those built in 2020 for Europe, the Middle East and Africa, 28 % were white, 76 % white,
 black, grey or silver, and 11 % blue (BASF Color Report 2020)."""
 
-VARIANTS = len(KINDS)
-"""Number of kinds of cars."""
-CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
-"""Names of these kinds."""
+VARIANTS = len(KINDS)  # Number of kinds of cars
+CARS = tuple(f"parked car {k}" for k in range(VARIANTS))  # Names of these kinds
 
 _TAXI = ParkedKind("saloon", "taxi", rims=1)
 _YELLOW = (0.93, 0.70, 0.08)
 _TARPAULIN = Material(tint=(0.47, 0.48, 0.49))
 
-_UNDERSIDE = 0.45
-"""What faces down below this height is not drawn [m]."""
+_UNDERSIDE = 0.45  # What faces down below this height is not drawn [m]
 
-_AGED = 0.97
-"""Factor on the tints of all that is not paint: materials of the traffic bear no snow."""
+_AGED = 0.97  # Factor on the tints of all that is not paint: materials of the traffic bear no snow
 
 _UNLIT = {Surface.LAMP, *range(Surface.TAIL_LAMP, len(Surface))}
 """Surfaces that are matt on a car without anybody in it."""

@@ -25,11 +25,9 @@ _SHOPS = ("facade_brick", "facade_red_white", "facade_old", "facade_plaster", "f
 _BRICK = ("facade_brick", "facade_red_white", "facade_old")
 _AWNED, _ESCAPED = 0.5, 0.75
 """Shares of these fronts with awnings, and of old walls with a fire escape."""
-_TALLEST = 27.0
-"""Height of the highest wall with a fire escape [m]."""
+_TALLEST = 27.0  # Height of the highest wall with a fire escape [m]
 _STOREY = _BAY = 3.0
-_ROOM = 5.0
-"""A front is longer than this and has a pavement at three fifths of it [m]."""
+_ROOM = 5.0  # A front is longer than this and has a pavement at three fifths of it [m]
 _CLOTH = (
     (0.16, 0.34, 0.22),
     (0.58, 0.12, 0.12),
@@ -40,8 +38,7 @@ _CLOTH = (
 )
 _IRON = material("plain", (0.13, 0.13, 0.14))
 
-_TANK, _LEGS, _DRUM, _CAP = 1.9, 3.0, 3.6, 1.3
-"""Radius, and heights of legs, drum and roof [m]."""
+_TANK, _LEGS, _DRUM, _CAP = 1.9, 3.0, 3.6, 1.3  # Radius, and heights of legs, drum and roof [m]
 _STAVES = material("bark", (0.78, 0.60, 0.46))
 _TANK_IRON = material("plain", (0.17, 0.16, 0.16))
 _TAR = material("plain", (0.30, 0.28, 0.27))

@@ -13,10 +13,8 @@ from eyas.engine.world.build.scene_builder import Levels
 
 __all__ = ["BESIDE", "LONG", "boat_levels", "jetty_levels"]
 
-LONG = 9.0
-"""Length of a jetty, of which a part is over land."""
-BESIDE = 1.9
-"""From the middle of a jetty to that of a boat beside it."""
+LONG = 9.0  # Length of a jetty, of which a part is over land
+BESIDE = 1.9  # From the middle of a jetty to that of a boat beside it
 
 _WIDE, _DECK = 1.5, 0.42
 _PLANKS = material("bark", (0.98, 0.90, 0.80))

@@ -41,12 +41,9 @@ class Thing:
 
     levels: Callable[["ThingKind", np.random.Generator, Season], Levels]
     """Returns its shape, the finest level of detail first; the origin is its foot."""
-    kind: ObjectClass
-    """Its class: what a detector would name it, if it has such a name."""
-    solid: str = "nothing"
-    """What of it is solid, a row of `SOLIDS`."""
-    trees: int = 0
-    """Number of trees in it; shrubs do not count."""
+    kind: ObjectClass  # Its class: what a detector would name it, if it has such a name
+    solid: str = "nothing"  # What of it is solid, a row of `SOLIDS`
+    trees: int = 0  # Number of trees in it; shrubs do not count
     light: tuple[float, float] | None = None
     """Distance along its arm and height of its light [m]; None: it gives none."""
 

@@ -25,15 +25,11 @@ Tint = tuple[float, float, float]
 class _Guess:
     """What a kind of building is like."""
 
-    levels: tuple[int, int]
-    """Least and largest usual number of storeys."""
+    levels: tuple[int, int]  # Least and largest usual number of storeys
     facades: tuple[str, ...]
-    sloping: float = 0.0
-    """Share of sloping roofs."""
-    shops: float = 0.0
-    """Share with shop windows or a lobby at street level."""
-    storey: float = FLOOR
-    """Height of a storey [m]."""
+    sloping: float = 0.0  # Share of sloping roofs
+    shops: float = 0.0  # Share with shop windows or a lobby at street level
+    storey: float = FLOOR  # Height of a storey [m]
 
 
 _HOUSE = _Guess((1, 2), ("facade_plaster", "facade_brick", "facade_old"), sloping=0.95)
@@ -71,17 +67,14 @@ _PITCH = {"gabled": 0.42, "hipped": 0.36, "pyramidal": 0.5, "skillion": 0.12, "d
 """Height of a roof as a share of the width of the building."""
 _NO_PARAPET, _NO_EQUIPMENT = 60.0, 250.0
 """Smaller flat roofs have no parapet, and carry nothing [m^2]."""
-_SEEN_BELOW = 2.0
-"""Height of the foot from which one may see a building from below [m]."""
-_SLAB = 0.5
-"""Thickness of a roof on posts [m]."""
+_SEEN_BELOW = 2.0  # Height of the foot from which one may see a building from below [m]
+_SLAB = 0.5  # Thickness of a roof on posts [m]
 _OPEN = ("roof", "carport")
 _LEVEL = ("roof_gravel", "roof_gravel", "roof_membrane", "bitumen", "bitumen", "roof_terrace")
 _AGES: tuple[Tint, ...] = (
     (1.0, 1.0, 1.0), (0.97, 0.94, 0.88), (0.82, 0.83, 0.85), (0.90, 0.86, 0.80), (0.70, 0.71, 0.73),
 )  # fmt: skip
-_RED = 1.15
-"""A colour whose red is stronger than its blue by this factor suits tiles."""
+_RED = 1.15  # A colour whose red is stronger than its blue by this factor suits tiles
 
 
 def is_small(house: House) -> bool:

@@ -55,10 +55,8 @@ __all__ = ["completed"]
 
 _TREES = tuple(f"street tree {k}" for k in range(trees.VARIANTS))
 _WATER = Material("water", (0.16, 0.38, 0.50), Surface.WATER)
-_WATER_DEPTH = 0.15
-"""Depth of water below the road [m]."""
-_BELOW_BANK = 0.4
-"""How far water reaches below its banks, so that no gap is seen [m]."""
+_WATER_DEPTH = 0.15  # Depth of water below the road [m]
+_BELOW_BANK = 0.4  # How far water reaches below its banks, so that no gap is seen [m]
 
 _COVERS: dict[str, tuple[ObjectClass, tuple[Material, ...]]] = {
     "plaza": (ObjectClass.PAVEMENT, (material("paving", (0.98, 0.96, 0.92)),)),
@@ -90,17 +88,13 @@ _YARDS = (
     material("asphalt_light", (0.97, 0.96, 0.95)),
 )
 _RAIL = Material(tint=(0.36, 0.33, 0.31))
-_GAUGE = 0.72
-"""Half the distance between the rails of a track [m]."""
+_GAUGE = 0.72  # Half the distance between the rails of a track [m]
 _RAIL_HEIGHT = 0.12
 _BESIDE_ROAD, _BESIDE_WALL = 6.0, 4.0
 """From streets with their pavements, and from walls, to the feet of hills [m]."""
-_WORN_FROM = 30.0
-"""Shorter lanes have no wear [m]."""
-_USUAL = (6.5, 12.5)
-"""Heights of trees of which the map tells none [m]."""
-_TRUNK = 1.0
-"""Room around a trunk [m]."""
+_WORN_FROM = 30.0  # Shorter lanes have no wear [m]
+_USUAL = (6.5, 12.5)  # Heights of trees of which the map tells none [m]
+_TRUNK = 1.0  # Room around a trunk [m]
 _GUESSED: dict[str, tuple[tuple[float, float], float, float]] = {
     "forest": ((8.0, 15.0), 6.5, 0.03),
     "park": ((6.0, 13.0), 12.0, 0.0022),
@@ -109,22 +103,14 @@ _GUESSED: dict[str, tuple[tuple[float, float], float, float]] = {
     "grass": ((4.0, 9.0), 18.0, 0.0007),
 }
 """Heights, least distance [m] and attempts on a square metre, by the kind of ground."""
-_MOST = 6000
-"""Largest number of trees that are guessed."""
-_KNOWN = 1 / 900.0
-"""Ground with more trees of the map than this on a square metre gets no others."""
-_OCCUPIED = 0.6
-"""Share of the bays with a car."""
-_WIDE = 3.5
-"""Width of pavements from which things may stand anywhere on them [m]."""
-_AT_KERB = 1.3
-"""On narrower ones they stand nearer to the kerb [m]."""
-_EVERY = 62.0
-"""From one lamp to the next along a kerb [m]."""
-_APART = 24.0
-"""Least distance between two lamps [m]."""
-_FROM_END = 8.0
-"""Least distance of lamps from the end of a street [m]."""
+_MOST = 6000  # Largest number of trees that are guessed
+_KNOWN = 1 / 900.0  # Ground with more trees of the map than this on a square metre gets no others
+_OCCUPIED = 0.6  # Share of the bays with a car
+_WIDE = 3.5  # Width of pavements from which things may stand anywhere on them [m]
+_AT_KERB = 1.3  # On narrower ones they stand nearer to the kerb [m]
+_EVERY = 62.0  # From one lamp to the next along a kerb [m]
+_APART = 24.0  # Least distance between two lamps [m]
+_FROM_END = 8.0  # Least distance of lamps from the end of a street [m]
 
 
 _CHANCES = ("town trees", "town gardens")

@@ -18,69 +18,48 @@ from eyas.maps.towns.crossings import Crosswalk, crosswalks_of
 
 __all__ = ["Given", "Town", "lay_out"]
 
-_CLEARANCE = 4.6
-"""What begins higher than this may stand over a street [m]."""
+_CLEARANCE = 4.6  # What begins higher than this may stand over a street [m]
 
-_FROM_ROAD = 0.35
-"""From the asphalt to walls [m]."""
+_FROM_ROAD = 0.35  # From the asphalt to walls [m]
 _LEFT = 0.35
 """Share of a footprint that must be left beside the streets; otherwise the building is left out."""
-_APRON = 0.8
-"""Width of the paving at the foot of houses [m]."""
+_APRON = 0.8  # Width of the paving at the foot of houses [m]
 _YARD, _INSET = 9.0, 6.0
 """Gaps between buildings of a town up to twice the first are paved, except beside lawns [m]."""
-_STRIP = 3.5
-"""Strips between streets and buildings up to twice this wide are paved [m]."""
+_STRIP = 3.5  # Strips between streets and buildings up to twice this wide are paved [m]
 _BUILT_ON = ("industrial", "commercial", "residential")
 """Kinds of ground that yards are cut out of; the last of `AREA_KINDS`."""
-_REACH = 6.0
-"""From junctions and bends to where the rounding of their corners begins, at most [m]."""
-_CORNER_WALK = 2.0
-"""Width of the pavement round a corner [m]."""
-_SHARP = 0.5
-"""Angle of a sharp bend of a street, at least [rad]."""
-_BEND = 7.0
-"""Radius of the surroundings of a bend [m]."""
-_SLIVER = 0.3
-"""Smaller additions are left out [m^2]."""
-_NEEDLE = 0.02
-"""Slivers narrower than twice this do not count as asphalt [m]."""
+_REACH = 6.0  # From junctions and bends to where the rounding of their corners begins, at most [m]
+_CORNER_WALK = 2.0  # Width of the pavement round a corner [m]
+_SHARP = 0.5  # Angle of a sharp bend of a street, at least [rad]
+_BEND = 7.0  # Radius of the surroundings of a bend [m]
+_SLIVER = 0.3  # Smaller additions are left out [m^2]
+_NEEDLE = 0.02  # Slivers narrower than twice this do not count as asphalt [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Given:
     """What layers of a plan have already put somewhere."""
 
-    built: shapely.Geometry
-    """Where buildings stand on the ground [m]."""
-    covered: shapely.Geometry
-    """Ground that has its cover [m]."""
+    built: shapely.Geometry  # Where buildings stand on the ground [m]
+    covered: shapely.Geometry  # Ground that has its cover [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Town:
     """Positions in plan view."""
 
-    extent: shapely.Polygon
-    """The floor [m]."""
-    roads: shapely.Geometry
-    """Asphalt of the streets [m]."""
-    pavement: shapely.Geometry
-    """Raised pavements beside the streets [m]."""
-    crosswalks: list[Crosswalk]
-    """Crossings of the streets."""
+    extent: shapely.Polygon  # The floor [m]
+    roads: shapely.Geometry  # Asphalt of the streets [m]
+    pavement: shapely.Geometry  # Raised pavements beside the streets [m]
+    crosswalks: list[Crosswalk]  # Crossings of the streets
     ground: dict[str, shapely.Geometry]
     """Ground of each of `AREA_KINDS`, cut out of each other and of the streets [m]."""
-    yards: shapely.Geometry
-    """Paved ground between buildings [m]."""
-    lawn: shapely.Geometry
-    """Everything else [m]."""
-    houses: list[House]
-    """All buildings, without what would stand on streets."""
-    gardens: list[shapely.Polygon]
-    """Footprints of houses with gardens [m]."""
-    built: shapely.Geometry
-    """Where buildings stand on the ground [m]."""
+    yards: shapely.Geometry  # Paved ground between buildings [m]
+    lawn: shapely.Geometry  # Everything else [m]
+    houses: list[House]  # All buildings, without what would stand on streets
+    gardens: list[shapely.Polygon]  # Footprints of houses with gardens [m]
+    built: shapely.Geometry  # Where buildings stand on the ground [m]
 
 
 def lay_out(

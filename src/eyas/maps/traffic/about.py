@@ -16,27 +16,20 @@ from eyas.engine.traffic.smoothing import Tracks, runs, smooth
 
 __all__ = ["About", "Vehicles", "about", "lines_of"]
 
-_STANDING = 0.1
-"""Vehicles slower than this stand [m/s]."""
+_STANDING = 0.1  # Vehicles slower than this stand [m/s]
 
-_LASTING = 60.0
-"""Tracks of this length can be followed for a long episode [s]."""
+_LASTING = 60.0  # Tracks of this length can be followed for a long episode [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Vehicles:
     """Figures of some vehicles; those of a recording in which none of them is are 0."""
 
-    most: int
-    """That are there at once at most."""
-    mean: float
-    """That are there on average."""
-    mean_speed: float
-    """[m/s]"""
-    top_speed: float
-    """[m/s]"""
-    standing: float
-    """Share of their time in which they stand."""
+    most: int  # That are there at once at most
+    mean: float  # That are there on average
+    mean_speed: float  # [m/s]
+    top_speed: float  # [m/s]
+    standing: float  # Share of their time in which they stand
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,27 +38,18 @@ class About:
 
     map: str
     map_seed: int
-    roads: str
-    """Hash of the road graph."""
-    traffic: dict[str, Any]
-    """Demand, and the settings that are not the default ones."""
+    roads: str  # Hash of the road graph
+    traffic: dict[str, Any]  # Demand, and the settings that are not the default ones
     sumo_version: str
     eyas_version: str
-    duration: float
-    """[s]"""
-    rate: float
-    """Samples per second [Hz]."""
-    warm_up: float
-    """Time before the recording, which is left out [s]."""
-    vehicles: dict[str, Vehicles]
-    """By class; of several classes also `all`."""
+    duration: float  # [s]
+    rate: float  # Samples per second [Hz]
+    warm_up: float  # Time before the recording, which is left out [s]
+    vehicles: dict[str, Vehicles]  # By class; of several classes also `all`
     tracks: int
-    lasting_tracks: int
-    """Those of a minute or longer."""
-    whole_tracks: int
-    """Those as long as the recording."""
-    median_track: float
-    """Median length of a track [s]."""
+    lasting_tracks: int  # Those of a minute or longer
+    whole_tracks: int  # Those as long as the recording
+    median_track: float  # Median length of a track [s]
 
 
 def about(path: Path) -> About:

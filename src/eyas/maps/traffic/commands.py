@@ -24,8 +24,7 @@ __all__ = ["app"]
 
 app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
 
-_MOST = 10_000
-"""Largest number of seeds at once."""
+_MOST = 10_000  # Largest number of seeds at once
 
 
 @app.callback()

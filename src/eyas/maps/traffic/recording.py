@@ -44,8 +44,7 @@ from eyas.maps.traffic.seeds import RecordingJob, record_all
 
 __all__ = ["run", "run_canonical"]
 
-_CITIES = ("citystreet", "downtown")
-"""Maps that ship a recording of a mixed fleet."""
+_CITIES = ("citystreet", "downtown")  # Maps that ship a recording of a mixed fleet
 
 _TESTED = ("citystreet", "desert", "downtown", "farmland", "lake", "village")
 """Maps that ship traffic for the protocol `standard`."""

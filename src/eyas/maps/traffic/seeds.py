@@ -20,11 +20,9 @@ from eyas.engine.world.maps import MAPS
 
 __all__ = ["RecordingJob", "record_all"]
 
-_LOOK = 0.2
-"""Time between two looks at the progress [s]."""
+_LOOK = 0.2  # Time between two looks at the progress [s]
 
-_shares: Any = ()
-"""Completed share of each job, in memory that the processes share."""
+_shares: Any = ()  # Completed share of each job, in memory that the processes share
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,8 +31,7 @@ class RecordingJob:
 
     world: WorldConfig
     config: TrafficConfig
-    duration: float
-    """[s]"""
+    duration: float  # [s]
     seed: int
     path: Path
 

@@ -23,32 +23,24 @@ from eyas.maps.village.roads import road_graph
 
 __all__ = ["EXTENT", "FLOOR", "HALF", "VillageLayout", "lay_out"]
 
-FLOOR = (982.0, 998.0)
-"""Extent of the floor [m]."""
+FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
-HALF = 730.0
-"""Half the side of the square that the hills fill [m]."""
+HALF = 730.0  # Half the side of the square that the hills fill [m]
 
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)
-"""That square."""
+EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # That square
 
 _INSIDE, _INSIDE_RADII = 15, (60.0, 86.0, 134.0)
 _RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
 """Numbers of hills, and their smallest, median and largest radius [m]."""
 _STEEP, _RING_STEEP = (0.72, 0.86), (0.73, 0.84)
 """Least and largest height of a hill, as a share of its radius."""
-_KERB_TO_FOOT = 7.0
-"""Least distance from a kerb to the foot of a hill [m]."""
+_KERB_TO_FOOT = 7.0  # Least distance from a kerb to the foot of a hill [m]
 _RING_GAPS = (14.0, 73.0)
-_LAKESIDE = "o14"
-"""Node of the outer road beside the lake's block."""
-_LAKE = 41_979.0
-"""Area of the lake, as in the original [m^2]."""
-_LAKE_SHARE = 0.64
-"""Most that the lake takes of its block."""
+_LAKESIDE = "o14"  # Node of the outer road beside the lake's block
+_LAKE = 41_979.0  # Area of the lake, as in the original [m^2]
+_LAKE_SHARE = 0.64  # Most that the lake takes of its block
 _TREES, _TREE_SPACING = 41, (11.0, 17.0)
-_BEYOND_KERB = 5.0
-"""From the kerb to the trunks [m]."""
+_BEYOND_KERB = 5.0  # From the kerb to the trunks [m]
 
 Points = NDArray[np.float64]
 
@@ -57,22 +49,15 @@ Points = NDArray[np.float64]
 class VillageLayout:
     """Positions in plan view."""
 
-    roads: shapely.Geometry
-    """Asphalt [m]."""
-    blocks: list[shapely.Polygon]
-    """Ground between roads [m]."""
-    lake: shapely.Polygon
-    """Water [m]."""
-    tunnels: list[Tunnel]
-    """Tunnels over the roads."""
-    cottages: list[Cottage]
-    """Houses."""
-    trees: Points
-    """Trunks [m], shape (K, 2)."""
+    roads: shapely.Geometry  # Asphalt [m]
+    blocks: list[shapely.Polygon]  # Ground between roads [m]
+    lake: shapely.Polygon  # Water [m]
+    tunnels: list[Tunnel]  # Tunnels over the roads
+    cottages: list[Cottage]  # Houses
+    trees: Points  # Trunks [m], shape (K, 2)
     gantries: list[tuple[Points, float]]
     """Middle of the road [m] and its direction [rad] at each gantry."""
-    hills: list[Mound]
-    """Hills between the roads, then those of the ring."""
+    hills: list[Mound]  # Hills between the roads, then those of the ring
 
     @property
     def walls(self) -> shapely.Geometry:

@@ -18,10 +18,8 @@ STONE_KINDS = ("stones 2", "stones 3", "boulder 2", "boulder 3")
 
 _PATHS, _STEPS, _STEP = 20, (6, 16), 6.0
 """Number of paths, of their pieces, and the length of a piece [m]."""
-_WIDTHS = (0.55, 0.8)
-"""Half the width of a path [m]."""
-_ROUND_LAKE = 7.5
-"""Distance of the path round the lake from the water [m]."""
+_WIDTHS = (0.55, 0.8)  # Half the width of a path [m]
+_ROUND_LAKE = 7.5  # Distance of the path round the lake from the water [m]
 _TUFTS, _BESIDE = (5.0, 0.014), (1.8, 16.0)
 """Least distance between groups of tufts [m], and number of attempts on a square metre; their
 least and largest distance from a road [m]."""

@@ -15,23 +15,16 @@ from eyas.maps.roads.tunnels import Tunnel
 
 __all__ = ["cottages_along", "gantries_along", "tunnels_along"]
 
-_TUNNEL = 40.0
-"""Length of a tunnel [m]."""
+_TUNNEL = 40.0  # Length of a tunnel [m]
 _PAIRS, _SINGLE = 2, 6
 """Number of roads with two tunnels one after the other, and of those with one."""
-_BETWEEN = 5.0
-"""Distance of the two tunnels of a pair [m]."""
-_FROM_BEND = 13.0
-"""Least distance from a tunnel to the end of its road [m]."""
+_BETWEEN = 5.0  # Distance of the two tunnels of a pair [m]
+_FROM_BEND = 13.0  # Least distance from a tunnel to the end of its road [m]
 
-_CLUSTERS = (8, 6, 4, 3, 3)
-"""Houses in each cluster."""
-_SETBACKS = (4.2, 8.0)
-"""Least and largest distance from the kerb to a house [m]."""
-_EVERY = 29.0
-"""From one house to the next [m]."""
-_APART = 6.5
-"""Least distance of two houses [m]."""
+_CLUSTERS = (8, 6, 4, 3, 3)  # Houses in each cluster
+_SETBACKS = (4.2, 8.0)  # Least and largest distance from the kerb to a house [m]
+_EVERY = 29.0  # From one house to the next [m]
+_APART = 6.5  # Least distance of two houses [m]
 
 _GANTRIES = 7
 

@@ -55,8 +55,7 @@ _SHORE = replace(GRASS, surface=Surface.HILLSIDE_SHORE)
 _BANK = material("soil", (0.60, 0.56, 0.50))
 _SHOULDER = replace(GRASS, surface=Surface.HILLSIDE_VERGE)
 _PATH = replace(GRASS, surface=Surface.HILLSIDE_PATH)
-_ROCK = material("stone", (0.50, 0.52, 0.47))
-"""Inside of the tunnels."""
+_ROCK = material("stone", (0.50, 0.52, 0.47))  # Inside of the tunnels
 
 _WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
 
@@ -66,23 +65,18 @@ _HOUSES = (
     (facade("facade_concrete", (1.0, 0.99, 0.97)), material("roof_tiles", (1.0, 0.92, 0.86))),
 )
 
-VALLEY = Horizon(name="village", height=0.05, woods=0.6)
-"""What stands beyond the hills."""
+VALLEY = Horizon(name="village", height=0.05, woods=0.6)  # What stands beyond the hills
 
-_LAMPS = 47
-"""Street lamps, and two in each tunnel."""
-_CORE = 345.0
-"""Half the side of the square with the smaller facets [m]."""
-_FACETS = (6.5, 12.5)
-"""Distance between the corners of facets in the middle and outside of it [m]."""
+_LAMPS = 47  # Street lamps, and two in each tunnel
+_CORE = 345.0  # Half the side of the square with the smaller facets [m]
+_FACETS = (6.5, 12.5)  # Distance between the corners of facets in the middle and outside of it [m]
 _ROUGH = 0.045
 """Most by which a corner lies above or below the smooth shape, as a share of its height."""
 _WOODS, _WOOD_TREES, _WOOD_RADIUS = 40, (5, 14), 24.0
 """Number of groups of trees on the hills, of trees in each, and radius of a group [m]."""
 _BESIDE_WOODS, _FARTHEST_WOODS = 30.0, 240.0
 """Least and largest distance of these trees from a road [m]."""
-_ROOTS = 0.5
-"""How deep a tree stands in a slope [m]."""
+_ROOTS = 0.5  # How deep a tree stands in a slope [m]
 _BUSHES = (26.0, 0.004)
 """Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)

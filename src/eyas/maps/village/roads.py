@@ -51,10 +51,8 @@ _WAYS = (
 """The loop, and the inner roads."""
 
 _LANES, _LANE_WIDTH = 2, 3.0
-_STRETCH = 0.06
-"""Most by which another seed is longer or shorter along each axis, as a share."""
-_SHIFT = 13.0
-"""Most by which a node of another seed is moved along each axis [m]."""
+_STRETCH = 0.06  # Most by which another seed is longer or shorter along each axis, as a share
+_SHIFT = 13.0  # Most by which a node of another seed is moved along each axis [m]
 
 
 def road_graph(seed: int) -> RoadGraph:

@@ -15,16 +15,12 @@ from eyas.maps.plants import gardens
 __all__ = ["yard_things"]
 
 _GARDEN = ("trampoline", "washing line", "garden pool", "logs", "cafe table 1", "cafe table 2")
-_REACH = 17.0
-"""Largest distance of these from a wall [m]."""
-_ROOM = 3.2
-"""Room that each of them needs [m]."""
+_REACH = 17.0  # Largest distance of these from a wall [m]
+_ROOM = 3.2  # Room that each of them needs [m]
 _APART, _DENSITY = 7.0, 0.02
 """Least distance between two of them [m], and number of attempts on a square metre."""
-_BESIDE_PATH = 2.6
-"""From the middle of the path to a house to what stands beside it [m]."""
-_FROM_DOOR = 12.5
-"""From the middle of a house to its bins and its bicycles [m]."""
+_BESIDE_PATH = 2.6  # From the middle of the path to a house to what stands beside it [m]
+_FROM_DOOR = 12.5  # From the middle of a house to its bins and its bicycles [m]
 
 
 def yard_things(

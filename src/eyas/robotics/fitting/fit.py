@@ -25,17 +25,13 @@ __all__ = ["Estimate", "Fit", "fit"]
 
 Floats = NDArray[np.float64]
 
-_HELD_OUT = 0.25
-"""Share of the flight, its end, on which the fit is tried."""
+_HELD_OUT = 0.25  # Share of the flight, its end, on which the fit is tried
 
-_BLOCKS = 20
-"""Parts of the rest, each left out once for the intervals."""
+_BLOCKS = 20  # Parts of the rest, each left out once for the intervals
 
-_QUANTILE = 2.093
-"""Student's t of 19 degrees of freedom at 95 %."""
+_QUANTILE = 2.093  # Student's t of 19 degrees of freedom at 95 %
 
-_LONGEST_LAG, _STEPS = 0.4, 33
-"""The longest time constant [s], and how many are tried at first."""
+_LONGEST_LAG, _STEPS = 0.4, 33  # The longest time constant [s], and how many are tried at first
 
 _NOTHING = "the flight tells neither thrust nor drag: its rotors never turned, or it never moved"
 
@@ -47,8 +43,7 @@ _DOWN = (
 _GRAVITY = ORIGINAL.gravity
 _DENSITY = ORIGINAL.air_density
 
-_AHEAD = 1.0
-"""How far ahead velocities are predicted, if half of what is held out is as long [s]."""
+_AHEAD = 1.0  # How far ahead velocities are predicted, if half of what is held out is as long [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,24 +70,16 @@ class Fit:
 
     thrust: Estimate
     """Thrust of a rotor over its squared rate and over the mass [m, if rates are in rad/s]."""
-    drag: Estimate
-    """Drag coefficient times area over the mass [m^2/kg]."""
-    lag: Estimate
-    """Time constant of the rotors [s]."""
-    hover: float
-    """Rate of the rotors in hover, in the unit of the log."""
-    seconds: float
-    """Length of the flight [s]."""
-    rate: float
-    """Rows per second."""
+    drag: Estimate  # Drag coefficient times area over the mass [m^2/kg]
+    lag: Estimate  # Time constant of the rotors [s]
+    hover: float  # Rate of the rotors in hover, in the unit of the log
+    seconds: float  # Length of the flight [s]
+    rate: float  # Rows per second
     error: float
     """Root of the mean squared error of the specific force in what was held out [m/s^2]."""
-    spread: float
-    """The same if it were always its mean in what was fitted [m/s^2]."""
-    ahead: float
-    """How far ahead velocities are predicted there [s]."""
-    speed_error: float
-    """Root of the mean squared error of those velocities [m/s]."""
+    spread: float  # The same if it were always its mean in what was fitted [m/s^2]
+    ahead: float  # How far ahead velocities are predicted there [s]
+    speed_error: float  # Root of the mean squared error of those velocities [m/s]
 
 
 def fit(log: FlightLog) -> Fit:

@@ -18,20 +18,15 @@ __all__ = ["FlightLog", "read_log"]
 
 Floats = NDArray[np.float64]
 
-_LARGEST = 1 << 30
-"""Largest size of a file [bytes]."""
+_LARGEST = 1 << 30  # Largest size of a file [bytes]
 
-_LARGEST_NUMBER = 1e10
-"""Largest number in a table: the seconds since 1970 are less."""
+_LARGEST_NUMBER = 1e10  # Largest number in a table: the seconds since 1970 are less
 
-_LONGEST = 86_400.0
-"""Longest flight [s]."""
+_LONGEST = 86_400.0  # Longest flight [s]
 
-_LEAST_ROWS = 200
-"""Fewer say nothing about a lag."""
+_LEAST_ROWS = 200  # Fewer say nothing about a lag
 
-_UNIT = 1e-2
-"""By how much the length of a quaternion may differ from 1."""
+_UNIT = 1e-2  # By how much the length of a quaternion may differ from 1
 
 
 class FlightLog(NamedTuple):
@@ -39,19 +34,14 @@ class FlightLog(NamedTuple):
     up.
     """
 
-    time: Floats
-    """[s], shape (K,); rising."""
-    velocity: Floats
-    """World frame [m/s], shape (K, 3)."""
-    attitude: Floats
-    """Body to world, quaternion w, x, y, z, shape (K, 4)."""
-    rotors: Floats
-    """Rates that are asked of the rotors until that time, in any unit, shape (K, 4)."""
+    time: Floats  # [s], shape (K,); rising
+    velocity: Floats  # World frame [m/s], shape (K, 3)
+    attitude: Floats  # Body to world, quaternion w, x, y, z, shape (K, 4)
+    rotors: Floats  # Rates that are asked of the rotors until that time, in any unit, shape (K, 4)
     felt: Floats | None
     """What an accelerometer in the middle reads, body frame [m/s^2], shape (K, 3); None: there is
     none."""
-    wind: Floats
-    """Velocity of the air, world frame [m/s], shape (K, 3)."""
+    wind: Floats  # Velocity of the air, world frame [m/s], shape (K, 3)
 
 
 def read_log(path: Path) -> FlightLog:

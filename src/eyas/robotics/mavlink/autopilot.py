@@ -14,8 +14,7 @@ from eyas.robotics.mavlink.setpoints import Goal
 
 __all__ = ["COMPONENT", "Autopilot"]
 
-COMPONENT = 1
-"""Component id of the autopilot."""
+COMPONENT = 1  # Component id of the autopilot
 
 _NO_POSITION, _NO_VELOCITY = 0b111, 0b111_000
 _NO_YAW, _NO_YAW_RATE = 1 << 10, 1 << 11

@@ -13,41 +13,31 @@ from eyas.robotics.mavlink.telemetry import degrees_e7
 
 __all__ = ["COMPONENT", "Camera", "Lens", "Subject"]
 
-COMPONENT = 100
-"""Component id of the camera."""
+COMPONENT = 100  # Component id of the camera
 
 _IDLE, _ACTIVE, _ERROR = 0, 1, 2
 _NONE, _POINT, _RECTANGLE = 0, 1, 2
 _IN_STATUS = 4
 _STATUSES = ("camera_tracking_image_status", "camera_tracking_geo_status")
-_STATUS_RATE = 10.0
-"""While it tracks, unless someone asks for another rate [Hz]."""
-_SENSOR = 6.0
-"""Width of the sensor that is told [mm]: what matters is the field of view."""
+_STATUS_RATE = 10.0  # While it tracks, unless someone asks for another rate [Hz]
+_SENSOR = 6.0  # Width of the sensor that is told [mm]: what matters is the field of view
 
 
 class Lens(NamedTuple):
     """A camera's picture."""
 
-    width: int
-    """[pixels]"""
-    height: int
-    """[pixels]"""
-    field_of_view: float
-    """Horizontal [rad]."""
-    rate: float
-    """Pictures per second [Hz]."""
-    port: int
-    """To which they are sent; 0: they are not."""
+    width: int  # [pixels]
+    height: int  # [pixels]
+    field_of_view: float  # Horizontal [rad]
+    rate: float  # Pictures per second [Hz]
+    port: int  # To which they are sent; 0: they are not
 
 
 class Subject(NamedTuple):
     """What is tracked, world frame."""
 
-    position: tuple[float, float, float]
-    """[m]"""
-    velocity: tuple[float, float, float]
-    """[m/s]"""
+    position: tuple[float, float, float]  # [m]
+    velocity: tuple[float, float, float]  # [m/s]
 
 
 class Camera:

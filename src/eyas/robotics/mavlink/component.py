@@ -11,13 +11,10 @@ from eyas.robotics.mavlink.dialect import Packer, dialect
 
 __all__ = ["Command", "Component", "Fields", "Result"]
 
-Fields = dict[str, Any]
-"""The fields of a message, by name."""
+Fields = dict[str, Any]  # The fields of a message, by name
 
-FASTEST = 0.001
-"""Shortest interval that may be asked for [s]."""
-SLOWEST = 2000.0
-"""Longest; messages hold not much more [s]."""
+FASTEST = 0.001  # Shortest interval that may be asked for [s]
+SLOWEST = 2000.0  # Longest; messages hold not much more [s]
 
 
 class Result(IntEnum):
@@ -33,14 +30,11 @@ class Result(IntEnum):
 class Command(NamedTuple):
     """A `COMMAND_LONG` or `COMMAND_INT`."""
 
-    number: int
-    """`MAV_CMD`."""
+    number: int  # `MAV_CMD`
     p: tuple[float, float, float, float, float, float, float]
     """Parameters 1 to 7; latitude and longitude, 5 and 6, in degrees."""
-    sender: tuple[int, int]
-    """System and component id."""
-    frame: int | None
-    """`MAV_FRAME` of a `COMMAND_INT`; None: none is told."""
+    sender: tuple[int, int]  # System and component id
+    frame: int | None  # `MAV_FRAME` of a `COMMAND_INT`; None: none is told
 
 
 Handler = Callable[[Command], Result]

@@ -16,10 +16,8 @@ _LOG = logging.getLogger("eyas")
 
 _FORMS = "udp:HOST:PORT (send to it, and hear answers) or udpin:HOST:PORT (listen on it)"
 _LARGEST = 65_535
-_MOST = 256
-"""Largest number of datagrams that are read at once."""
-_FORGET = 10.0
-"""Time after which one who has said nothing is no longer sent anything [s]."""
+_MOST = 256  # Largest number of datagrams that are read at once
+_FORGET = 10.0  # Time after which one who has said nothing is no longer sent anything [s]
 _MOST_PEERS = 16
 
 Address = tuple[str, int]

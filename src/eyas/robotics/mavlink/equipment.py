@@ -17,14 +17,11 @@ class Quantity(NamedTuple):
     """What a message has room for."""
 
     unit: str
-    width: int
-    """How many numbers it is."""
-    usual: str
-    """Name of the sensor that measures it if there is no other."""
+    width: int  # How many numbers it is
+    usual: str  # Name of the sensor that measures it if there is no other
 
 
-FIELD = Quantity("gauss", 3, "compass")
-"""The magnetic field, forward-left-up."""
+FIELD = Quantity("gauss", 3, "compass")  # The magnetic field, forward-left-up
 PRESSURE = Quantity("hPa", 1, "barometer")
 
 

@@ -28,13 +28,11 @@ __all__ = ["Fleet"]
 
 _LOG = logging.getLogger("eyas")
 
-_DATAGRAM = 1200
-"""Packets are gathered up to this size [bytes]."""
+_DATAGRAM = 1200  # Packets are gathered up to this size [bytes]
 _TOGETHER = 4
 """Most pictures that are drawn at once: of 20 vehicles, 320x240 pixels, one takes 6.4 ms so, 9.0 ms
 alone."""
-_PATIENCE = 10.0
-"""How long time stands still for a vehicle without a set point [s]."""
+_PATIENCE = 10.0  # How long time stands still for a vehicle without a set point [s]
 
 
 class Fleet(Face):

@@ -111,12 +111,9 @@ def on_earth(latitude: float, longitude: float, altitude: float) -> bool:
 class Geodesy(NamedTuple):
     """Where the origin of the world is on the earth."""
 
-    latitude: float
-    """[degrees]"""
-    longitude: float
-    """[degrees]"""
-    altitude: float
-    """Above mean sea level [m]."""
+    latitude: float  # [degrees]
+    longitude: float  # [degrees]
+    altitude: float  # Above mean sea level [m]
 
     def degrees(self, east: float, north: float) -> tuple[float, float]:
         """Return latitude and longitude of a place of the world [degrees]."""

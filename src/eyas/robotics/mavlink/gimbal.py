@@ -14,16 +14,12 @@ from eyas.robotics.mavlink.readings import Instant
 
 __all__ = ["DEVICE", "Gimbal"]
 
-DEVICE = 154
-"""Component id of the gimbal."""
+DEVICE = 154  # Component id of the gimbal
 
-_PITCH = (-1.5, 0.5)
-"""Limits of the pitch [rad]."""
-_YAW = (-1.7, 1.7)
-"""Limits of the yaw from the vehicle's heading [rad]."""
+_PITCH = (-1.5, 0.5)  # Limits of the pitch [rad]
+_YAW = (-1.7, 1.7)  # Limits of the yaw from the vehicle's heading [rad]
 _LOCK, _NEUTRAL, _RETRACT = 16, 2, 1
-_LEVEL = 4 | 8
-"""Roll and pitch are always those against the horizon."""
+_LEVEL = 4 | 8  # Roll and pitch are always those against the horizon
 _IN_VEHICLE_FRAME, _IN_EARTH_FRAME = 32, 64
 _CAN = 0x1 | 0x2 | 0x20 | 0x80 | 0x100 | 0x200 | 0x400 | 0x1000 | 0x20000
 """Retract, neutral; pitch: axis, lock; yaw: axis, follow, lock, in earth frame; look at places."""

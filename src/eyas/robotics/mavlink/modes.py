@@ -8,16 +8,13 @@ __all__ = ["Landed", "Mode"]
 class Mode(Enum):
     """A flight mode: PX4's main mode and sub mode."""
 
-    POSITION = (3, 0)
-    """A stick moves it."""
+    POSITION = (3, 0)  # A stick moves it
     TAKEOFF = (4, 2)
     HOLD = (4, 3)
     RETURN = (4, 5)
     LAND = (4, 6)
-    FOLLOW = (4, 8)
-    """It follows what `FOLLOW_TARGET` tells."""
-    OFFBOARD = (6, 0)
-    """A program outside tells where or how fast to fly."""
+    FOLLOW = (4, 8)  # It follows what `FOLLOW_TARGET` tells
+    OFFBOARD = (6, 0)  # A program outside tells where or how fast to fly
 
     @property
     def custom(self) -> int:

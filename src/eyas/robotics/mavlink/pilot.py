@@ -15,27 +15,19 @@ __all__ = ["FEET", "Body", "Pilot"]
 
 FEET = 0.183
 """Height of the middle of the body over its feet, see `eyas.engine.trackers.airframe` [m]."""
-_STANDS = 0.1
-"""Height of the feet over the ground up to which a vehicle stands [m]."""
-_NEAR = 0.3
-"""Distance at which a place is reached [m]."""
-_CLIMB_ACCELERATION = 4.0
-"""[m/s^2]"""
+_STANDS = 0.1  # Height of the feet over the ground up to which a vehicle stands [m]
+_NEAR = 0.3  # Distance at which a place is reached [m]
+_CLIMB_ACCELERATION = 4.0  # [m/s^2]
 
 
 class Body(NamedTuple):
     """What a pilot knows of its vehicle, world frame."""
 
-    position: Vector
-    """[m]"""
-    commanded: Vector
-    """Where the commands so far should have brought it [m]."""
-    yaw: float
-    """[rad]"""
-    commanded_yaw: float
-    """[rad]"""
-    ground: float
-    """z of the ground below [m]."""
+    position: Vector  # [m]
+    commanded: Vector  # Where the commands so far should have brought it [m]
+    yaw: float  # [rad]
+    commanded_yaw: float  # [rad]
+    ground: float  # z of the ground below [m]
 
     @property
     def height(self) -> float:

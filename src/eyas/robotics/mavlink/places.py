@@ -14,16 +14,11 @@ from eyas.robotics.mavlink.pilot import FEET
 
 __all__ = ["standing_places"]
 
-_FREE = 2.0
-"""Radius without things [m]."""
-_ROAD = 5.0
-"""From the middle of the nearest lane [m]."""
-_APART = 4.0
-"""From each other [m]."""
-_REACH = 120.0
-"""How far from the first target places are looked for [m]."""
-_RING = 4.0
-"""Between rings of places, and between the places of one [m]."""
+_FREE = 2.0  # Radius without things [m]
+_ROAD = 5.0  # From the middle of the nearest lane [m]
+_APART = 4.0  # From each other [m]
+_REACH = 120.0  # How far from the first target places are looked for [m]
+_RING = 4.0  # Between rings of places, and between the places of one [m]
 
 
 def standing_places(simulation: Simulation) -> NDArray[np.float64]:

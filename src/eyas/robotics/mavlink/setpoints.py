@@ -8,12 +8,9 @@ from eyas.robotics.mavlink.frames import Vector, wrapped
 
 __all__ = ["Goal", "Limits", "Place", "Wanted", "toward"]
 
-_GAIN = 1.2
-"""Speed for a distance [1/s]."""
-_YAW_GAIN = 2.0
-"""Yaw rate for an error of the heading [1/s]."""
-_FASTEST_TURN = math.radians(90.0)
-"""[rad/s]"""
+_GAIN = 1.2  # Speed for a distance [1/s]
+_YAW_GAIN = 2.0  # Yaw rate for an error of the heading [1/s]
+_FASTEST_TURN = math.radians(90.0)  # [rad/s]
 
 
 class Place(Protocol):
@@ -35,25 +32,19 @@ class Place(Protocol):
 class Limits(NamedTuple):
     """Largest speeds [m/s]."""
 
-    cruise: float
-    """Horizontal, on the way to a place."""
-    most: float
-    """Horizontal, of any kind."""
+    cruise: float  # Horizontal, on the way to a place
+    most: float  # Horizontal, of any kind
     up: float
     down: float
-    acceleration: float
-    """Horizontal, with which it may be braked [m/s^2]."""
+    acceleration: float  # Horizontal, with which it may be braked [m/s^2]
 
 
 class Wanted(NamedTuple):
     """What is to be followed."""
 
-    position: Vector
-    """[m]"""
-    velocity: Vector
-    """[m/s]"""
-    time: float
-    """When it was there [s]."""
+    position: Vector  # [m]
+    velocity: Vector  # [m/s]
+    time: float  # When it was there [s]
 
 
 class Goal(NamedTuple):
@@ -62,16 +53,11 @@ class Goal(NamedTuple):
     With a place and a velocity, the velocity is that of the place.
     """
 
-    position: Vector | None = None
-    """World frame [m]."""
-    velocity: Vector | None = None
-    """[m/s]"""
-    yaw: float | None = None
-    """[rad]"""
-    yaw_rate: float | None = None
-    """[rad/s]"""
-    body: bool = False
-    """Whether the velocity is forward, left, up; else east, north, up."""
+    position: Vector | None = None  # World frame [m]
+    velocity: Vector | None = None  # [m/s]
+    yaw: float | None = None  # [rad]
+    yaw_rate: float | None = None  # [rad/s]
+    body: bool = False  # Whether the velocity is forward, left, up; else east, north, up
 
 
 def toward(goal: Goal, place: Place, limits: Limits) -> tuple[Vector, float]:

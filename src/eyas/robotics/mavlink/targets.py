@@ -11,8 +11,7 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 
 __all__ = ["Seen", "Sights"]
 
-_REACH = 0.03
-"""How far from a point the thing that is meant may be, as a share of the width."""
+_REACH = 0.03  # How far from a point the thing that is meant may be, as a share of the width
 
 
 class Seen(NamedTuple):
@@ -22,8 +21,7 @@ class Seen(NamedTuple):
     top: float
     right: float
     bottom: float
-    share: float
-    """Of its pixels, those that are visible."""
+    share: float  # Of its pixels, those that are visible
 
 
 class Sights:

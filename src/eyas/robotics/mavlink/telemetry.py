@@ -30,8 +30,7 @@ RATES = {
 }
 """Messages a second [Hz]; `SET_MESSAGE_INTERVAL` changes them."""
 
-_EPOCH = 1_767_225_600_000_000
-"""Simulated time begins with the year 2026 [us since 1970]."""
+_EPOCH = 1_767_225_600_000_000  # Simulated time begins with the year 2026 [us since 1970]
 _UNKNOWN_CELL = 65535
 _NO_TILT = (1.0, 0.0, 0.0, 0.0)
 

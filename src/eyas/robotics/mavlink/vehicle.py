@@ -16,8 +16,7 @@ from eyas.robotics.mavlink.telemetry import Telemetry
 
 __all__ = ["Vehicle"]
 
-CUSTOM_MODE = 1
-"""`MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`"""
+CUSTOM_MODE = 1  # `MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`
 _COMMANDS = ("COMMAND_LONG", "COMMAND_INT")
 
 

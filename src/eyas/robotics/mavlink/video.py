@@ -15,14 +15,10 @@ from eyas.engine.core.pyav import pyav
 
 __all__ = ["RtpPacker", "Stream", "VideoSender"]
 
-_LONGEST = 1200
-"""Largest packet, well below what networks carry whole [bytes]."""
-_CLOCK = 90_000
-"""Of the time stamps [Hz]."""
-_TYPE = 96
-"""Payload type, the first of those that are free."""
-_FRAGMENT = 28
-"""FU-A."""
+_LONGEST = 1200  # Largest packet, well below what networks carry whole [bytes]
+_CLOCK = 90_000  # Of the time stamps [Hz]
+_TYPE = 96  # Payload type, the first of those that are free
+_FRAGMENT = 28  # FU-A
 _ENCODER = "libx264"
 
 
@@ -73,16 +69,11 @@ def _fragments(part: bytes) -> list[bytes]:
 class Stream(NamedTuple):
     """How pictures are sent."""
 
-    address: tuple[str, int]
-    """Host and port."""
-    height: int
-    """[pixels]"""
-    width: int
-    """[pixels]"""
-    rate: float
-    """Pictures per second [Hz]."""
-    quality: int
-    """Constant rate factor of x264."""
+    address: tuple[str, int]  # Host and port
+    height: int  # [pixels]
+    width: int  # [pixels]
+    rate: float  # Pictures per second [Hz]
+    quality: int  # Constant rate factor of x264
 
 
 class VideoSender:

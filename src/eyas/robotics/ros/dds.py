@@ -20,8 +20,7 @@ _WORDS = {
 }
 """Types of fields that have other names in Cyclone DDS."""
 _LATCHED = "/tf_static"
-_KEPT = 10
-"""Messages of a topic that are kept for slow listeners, as by ROS."""
+_KEPT = 10  # Messages of a topic that are kept for slow listeners, as by ROS
 
 
 class Bus:

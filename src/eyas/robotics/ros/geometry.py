@@ -29,10 +29,8 @@ Floats = NDArray[np.float64]
 class Pose(NamedTuple):
     """A place, and how what is there is turned."""
 
-    position: Floats
-    """[m], shape (3,)."""
-    rotation: Floats
-    """Columns are its axes in the frame of the parent, shape (3, 3)."""
+    position: Floats  # [m], shape (3,)
+    rotation: Floats  # Columns are its axes in the frame of the parent, shape (3, 3)
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
@@ -46,8 +44,7 @@ class Pose(NamedTuple):
         return found
 
 
-STILL = Pose(np.zeros(3), np.eye(3))
-"""At the origin of the parent, turned as it is."""
+STILL = Pose(np.zeros(3), np.eye(3))  # At the origin of the parent, turned as it is
 
 OPTICAL = Pose(np.zeros(3), np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]))
 """The optical frame (right, down, forward) in that of the camera (forward, left, up)."""

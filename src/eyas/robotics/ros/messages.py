@@ -36,8 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["NOWHERE", "TOPICS", "Messages", "nanoseconds"]
 
 Floats = NDArray[np.float64]
-Message = Any
-"""A message, of a class that `rosbags` makes of the text of its type."""
+Message = Any  # A message, of a class that `rosbags` makes of the text of its type
 
 TOPICS = {
     "/clock": "rosgraph_msgs/msg/Clock",
@@ -64,8 +63,7 @@ class _Quantity(NamedTuple):
     type: str
     field: str
     width: int
-    scale: float
-    """What ROS has for 1 of the unit."""
+    scale: float  # What ROS has for 1 of the unit
 
 
 _QUANTITIES = {

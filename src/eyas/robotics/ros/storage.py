@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["McapStorage", "SqliteStorage", "Storage", "Topic", "described_bag"]
 
-_VERSION = 8
-"""Of the description: the newest that all releases from Humble on read."""
+_VERSION = 8  # Of the description: the newest that all releases from Humble on read
 
 _LATCHED = (
     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
@@ -54,16 +53,11 @@ class Topic:
     """A topic of a bag."""
 
     name: str
-    type: str
-    """Type of its messages, `package/msg/Name`."""
-    definition: str
-    """Text of this type and of all types in it."""
-    digest: str
-    """Hash of the type (REP 2016)."""
-    latched: bool = False
-    """Whether it is told once and kept for late listeners."""
-    times: list[int] = field(default_factory=list)
-    """Those of its messages [ns]."""
+    type: str  # Type of its messages, `package/msg/Name`
+    definition: str  # Text of this type and of all types in it
+    digest: str  # Hash of the type (REP 2016)
+    latched: bool = False  # Whether it is told once and kept for late listeners
+    times: list[int] = field(default_factory=list)  # Those of its messages [ns]
 
     @property
     def quality(self) -> str:
@@ -79,8 +73,7 @@ class Storage(Protocol):
         topics: All topics.
     """
 
-    kind: str
-    """Name of this kind in descriptions of bags."""
+    kind: str  # Name of this kind in descriptions of bags
 
     def __init__(self, path: Path, topics: Sequence[Topic]) -> None: ...
 

@@ -14,26 +14,21 @@ __all__ = ["Candidates", "Seen"]
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_MOST: Final = 64
-"""Vehicles that are followed at once."""
+_MOST: Final = 64  # Vehicles that are followed at once
 
-_NOISE: Final = 0.5
-"""Standard deviation of a place that the network finds [m]."""
+_NOISE: Final = 0.5  # Standard deviation of a place that the network finds [m]
 
-_ACCELERATION: Final = 4.0
-"""Of vehicles, in each direction [m/s^2]."""
+_ACCELERATION: Final = 4.0  # Of vehicles, in each direction [m/s^2]
 
 _SPEED: Final = 8.0
 """Of vehicles that have just been seen for the first time, in each direction [m/s]."""
 
-_WIDEST: Final = 8.0
-"""Largest standard deviation of a place [m]."""
+_WIDEST: Final = 8.0  # Largest standard deviation of a place [m]
 
 _GATE: Final = 3.5
 """Largest distance of a vehicle from where it is expected, in standard deviations."""
 
-_FAR: Final = 3.0
-"""The same [m]."""
+_FAR: Final = 3.0  # The same [m]
 
 _OTHER: Final = -4.0
 """Logarithm of how alike two looks are, below which they are not of the same vehicle, if one of
@@ -41,34 +36,27 @@ them is known from so many pictures."""
 
 _LOOKED: Final = 5
 
-_ALIKE: Final = 0.7
-"""Weight of its looks, against that of its place."""
+_ALIKE: Final = 0.7  # Weight of its looks, against that of its place
 
-_UNLIKE: Final = -6.0
-"""Least logarithm of how alike two looks are."""
+_UNLIKE: Final = -6.0  # Least logarithm of how alike two looks are
 
 _KNOWN, _LONG = 0.25, 12.0
 """How much rather one is taken that has been seen so often before, up to so many looks: for that
 one, if another has begun on the same vehicle."""
 
-_SURER: Final = 1.5
-"""Share of vehicles among things in which the network believes by 1."""
+_SURER: Final = 1.5  # Share of vehicles among things in which the network believes by 1
 
-_NEW: Final = 0.35
-"""Least belief in a vehicle that has not been seen before."""
+_NEW: Final = 0.35  # Least belief in a vehicle that has not been seen before
 
 _FORGOTTEN: Final = 1.0
 """Time unseen after which a vehicle is forgotten, unless it is the target [s]."""
 
-_YOUNG: Final = 0.07
-"""The same for each look at which it has been seen [s]."""
+_YOUNG: Final = 0.07  # The same for each look at which it has been seen [s]
 
-_REMEMBERED: Final = 0.05
-"""Least share of the latest look in what is known of a vehicle's looks."""
+_REMEMBERED: Final = 0.05  # Least share of the latest look in what is known of a vehicle's looks
 
 
-_MISSED: Final = 0.2
-"""Time unseen after which another one may be the target [s]."""
+_MISSED: Final = 0.2  # Time unseen after which another one may be the target [s]
 
 _NEAR, _WIDER = 3.0, 4.0
 """How far it may be from where the target is expected [m], and how much farther for each second in
@@ -77,8 +65,7 @@ which that is not seen [m/s]."""
 _SHADOW: Final = 1.0
 """How long before the target vanished it may have come: a second one on the same vehicle [s]."""
 
-_CONFIRMED: Final = 2
-"""Looks at which it must have been seen."""
+_CONFIRMED: Final = 2  # Looks at which it must have been seen
 
 _SURELY: Final = -4.5
 """Least logarithm of how alike they are, less twice the distance by the farthest."""
@@ -87,20 +74,13 @@ _SURELY: Final = -4.5
 class Seen(NamedTuple):
     """K vehicles."""
 
-    row: Rows
-    """Their numbers, shape (K,)."""
-    colour: Floats
-    """Logarithms of probabilities of `NAMES`, shape (K, 22)."""
-    body: Floats
-    """Logarithms of probabilities of `BODIES`, shape (K, 9)."""
-    heading: Floats
-    """Mean direction east and north, and of twice the angle, shape (K, 4)."""
-    first: Floats
-    """When each was seen first [s], shape (K,)."""
-    begin: Floats
-    """Where each was then, east and north [m], shape (K, 2)."""
-    velocity: Floats
-    """[m/s], shape (K, 2)."""
+    row: Rows  # Their numbers, shape (K,)
+    colour: Floats  # Logarithms of probabilities of `NAMES`, shape (K, 22)
+    body: Floats  # Logarithms of probabilities of `BODIES`, shape (K, 9)
+    heading: Floats  # Mean direction east and north, and of twice the angle, shape (K, 4)
+    first: Floats  # When each was seen first [s], shape (K,)
+    begin: Floats  # Where each was then, east and north [m], shape (K, 2)
+    velocity: Floats  # [m/s], shape (K, 2)
     ways: list[Floats]
     """Of each all looks: time [s], east and north [m], direction of its axis [rad], (L, 4)."""
 

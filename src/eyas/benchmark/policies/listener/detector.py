@@ -40,11 +40,9 @@ Floats = NDArray[np.float64]
 
 OUTPUTS: Final = ("vehicles", "places", "headings", "colours", "bodies")
 
-STRIDE: Final = 4
-"""Side of a cell [pixels]."""
+STRIDE: Final = 4  # Side of a cell [pixels]
 
-NAMES: Final = tuple(COLOUR_NAMES)
-"""Of colours."""
+NAMES: Final = tuple(COLOUR_NAMES)  # Of colours
 
 BODIES: Final = (
     BodyWord.SEDAN,
@@ -59,8 +57,7 @@ BODIES: Final = (
 )
 """Own words of all that drives on roads."""
 
-_LEAST: Final = -1.4
-"""Least logarithm of the odds of a vehicle: a fifth."""
+_LEAST: Final = -1.4  # Least logarithm of the odds of a vehicle: a fifth
 
 _APART: Final = 0.8, 1.5
 """Two vehicles' middles are at least so far apart, as shares of half the length and half the width
@@ -70,16 +67,11 @@ of one of them."""
 class Detections(NamedTuple):
     """The D vehicles that a picture shows, the surest first."""
 
-    belief: Floats
-    """Probability that it is one, shape (D,)."""
-    place: Floats
-    """Column and row [pixels], shape (D, 2)."""
-    heading: Floats
-    """As the output, shape (D, 4)."""
-    colour: Floats
-    """Logarithms of probabilities of `NAMES`, shape (D, 22)."""
-    body: Floats
-    """Logarithms of probabilities of `BODIES`, shape (D, 9)."""
+    belief: Floats  # Probability that it is one, shape (D,)
+    place: Floats  # Column and row [pixels], shape (D, 2)
+    heading: Floats  # As the output, shape (D, 4)
+    colour: Floats  # Logarithms of probabilities of `NAMES`, shape (D, 22)
+    body: Floats  # Logarithms of probabilities of `BODIES`, shape (D, 9)
 
 
 class VehicleDetector:

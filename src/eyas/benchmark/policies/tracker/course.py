@@ -26,18 +26,15 @@ PAST = 1 + 4 * len(LAGS)
 """Numbers of `past`: the speed, then the velocity at each lag and the way since, all in the frame
 of the present velocity [m/s, m]."""
 
-_KEPT = 64
-"""States: two seconds of looks of 32 ms."""
+_KEPT = 64  # States: two seconds of looks of 32 ms
 
-_SLOWEST = 0.5
-"""Of targets that have a course [m/s]."""
+_SLOWEST = 0.5  # Of targets that have a course [m/s]
 
 _COVERED = 2.0
 """How long a target is followed as the network says [s]. One that is hidden for longer is below a
 tunnel, a deck or a row of trees: had it turned off, it would have been seen."""
 
-_STRAIGHTENING = 1.0
-"""How long it then takes until it is expected straight on [s]."""
+_STRAIGHTENING = 1.0  # How long it then takes until it is expected straight on [s]
 
 _PACE = 2.0
 """How many times as fast it is expected from then on, until it is waited for: a drone that is ahead
@@ -55,13 +52,11 @@ class Course:
         self._now = np.zeros(count)
         self._noted = np.full((count, _KEPT), np.inf)
         """When the states were [s]; infinite: there is none."""
-        self._states = np.zeros((count, _KEPT, 4))
-        """Place and velocity, east and north [m, m/s]."""
+        self._states = np.zeros((count, _KEPT, 4))  # Place and velocity, east and north [m, m/s]
         self._next = np.zeros(count, np.int64)
         self.seen = np.full(count, np.nan)
         """When each was seen last with a course [s]; NaN: it has none."""
-        self._from = np.zeros((count, 4))
-        """Its state then."""
+        self._from = np.zeros((count, 4))  # Its state then
         self._ahead = np.full((count, len(HORIZONS), 3), np.nan)
         """What the network said of that; NaN: it was not asked yet."""
         self.past = np.zeros((count, PAST), np.float32)

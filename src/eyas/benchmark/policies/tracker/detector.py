@@ -31,29 +31,21 @@ Floats = NDArray[np.float64]
 
 OUTPUTS = ("scores", "places", "keys", "ahead")
 
-STRIDE = 4
-"""Side of a cell [pixels]."""
+STRIDE = 4  # Side of a cell [pixels]
 
-_NEAR = 2
-"""Cells around the best one that are the same target."""
+_NEAR = 2  # Cells around the best one that are the same target
 
-_LEAST = np.finfo(np.float64).tiny
-"""Belief that is as good as none."""
+_LEAST = np.finfo(np.float64).tiny  # Belief that is as good as none
 
 
 class Clue(NamedTuple):
     """What is known of N targets before a picture is seen."""
 
-    expected: Floats
-    """Column and row [pixels], shape (N, 2)."""
-    spread: Floats
-    """Standard deviation of both [pixels], shape (N,)."""
-    key: NDArray[np.float32]
-    """Shape (N, K)."""
-    known: NDArray[np.bool_]
-    """Whether there is a key, shape (N,)."""
-    past: NDArray[np.float32]
-    """How each has moved of late, shape (N, 21)."""
+    expected: Floats  # Column and row [pixels], shape (N, 2)
+    spread: Floats  # Standard deviation of both [pixels], shape (N,)
+    key: NDArray[np.float32]  # Shape (N, K)
+    known: NDArray[np.bool_]  # Whether there is a key, shape (N,)
+    past: NDArray[np.float32]  # How each has moved of late, shape (N, 21)
 
 
 class Found(NamedTuple):
@@ -64,12 +56,9 @@ class Found(NamedTuple):
     shape (N, 2)."""
     spread: Floats
     """Standard deviation of both, the network's own and that of the cells [pixels], (N,)."""
-    belief: Floats
-    """Probability that it is there, shape (N,)."""
-    key: NDArray[np.float32]
-    """How it looks, shape (N, K)."""
-    ahead: NDArray[np.float32]
-    """Where its motion leads, shape (N, 7, 3)."""
+    belief: Floats  # Probability that it is there, shape (N,)
+    key: NDArray[np.float32]  # How it looks, shape (N, K)
+    ahead: NDArray[np.float32]  # Where its motion leads, shape (N, 7, 3)
 
 
 class Detector:

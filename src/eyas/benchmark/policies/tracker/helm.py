@@ -12,8 +12,7 @@ __all__ = ["Helm", "turned"]
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_CONTROL_STEP = 0.008
-"""Of all protocols [s]."""
+_CONTROL_STEP = 0.008  # Of all protocols [s]
 
 
 class Helm:
@@ -36,12 +35,9 @@ class Helm:
         self.period = _CONTROL_STEP * env.action_repeat
         self._ground, self._gain, self._lag = ground, gain, lag
         self._fastest = env.speeds.forward_speed
-        self._looked = np.full(count, np.nan)
-        """When each looked last [s]; NaN: not yet."""
-        self._command = np.zeros((count, 2))
-        """Latest command of each, east and north [m/s]."""
-        self._told = np.zeros((count, 2))
-        """Where the commands of each bring it, east and north [m]."""
+        self._looked = np.full(count, np.nan)  # When each looked last [s]; NaN: not yet
+        self._command = np.zeros((count, 2))  # Latest command of each, east and north [m/s]
+        self._told = np.zeros((count, 2))  # Where the commands of each bring it, east and north [m]
 
     def time_since(self, rows: Rows, clock: float | None) -> Floats:
         """Return the time since the last look of each [s], shape (K,); NaN: there was none.

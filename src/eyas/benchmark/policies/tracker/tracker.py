@@ -47,8 +47,7 @@ _LEAST_RENEWAL = 0.001
 _SURE_PIXELS = 8.0
 """Largest standard deviation of the expected place at which that memory is renewed [pixels]."""
 
-_FIRST_SPREAD = 0.5
-"""Of the place that the first box tells [m]."""
+_FIRST_SPREAD = 0.5  # Of the place that the first box tells [m]
 
 
 class Tracker:

@@ -16,8 +16,7 @@ from eyas.dat.webots.controllers.tracking import STEP, Camera, Target, Tracker, 
 
 __all__ = ["Drone", "main"]
 
-_GONE = 5_000.0
-"""East coordinate beyond which vehicles wait [m]."""
+_GONE = 5_000.0  # East coordinate beyond which vehicles wait [m]
 _QUALITY = 100
 
 

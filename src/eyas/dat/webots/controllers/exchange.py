@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 __all__ = ["Exchange", "Request", "parsed"]
 
-_PAUSE = 0.0005
-"""Between two looks at a file [s]."""
+_PAUSE = 0.0005  # Between two looks at a file [s]
 
 
 class Request(NamedTuple):

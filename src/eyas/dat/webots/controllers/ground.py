@@ -10,8 +10,7 @@ __all__ = ["Ground", "ground_of", "settings_of"]
 class Ground(NamedTuple):
     """Heights of the ground, as the world file has them."""
 
-    floor: float
-    """z where the relief is 0 [m]."""
+    floor: float  # z where the relief is 0 [m]
     relief: list[list[float]]
     """Heights above the floor, from south to north, then from west to east [m]; empty: flat."""
     west: float

@@ -15,8 +15,7 @@ from eyas.dat.webots.controllers.ground import Ground, ground_of, settings_of
 
 __all__ = ["Traffic", "main", "pose_of"]
 
-_STEP = 2
-"""[ms]"""
+_STEP = 2  # [ms]
 _AWAY = 10_000.0
 
 

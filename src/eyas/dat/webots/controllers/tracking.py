@@ -9,16 +9,14 @@ from typing import Any, NamedTuple
 
 __all__ = ["STEP", "Camera", "LowPass", "Target", "Tracker", "line"]
 
-STEP = 0.002
-"""Of physics [s]."""
+STEP = 0.002  # Of physics [s]
 
 _GRAVITY = 9.81
 _YAW = (0.13, -0.00469654, -0.013)
 _PITCH = (0.000625212, -0.00530346, -0.0207448)
 _ROLL = (0.00754686, 0.0160388, -0.00586401)
 """Joints of the gimbal, each in the frame of the one before [m]; the camera is in the last."""
-_LEAST, _MOST = 0.5, 1.5
-"""Limits of the camera's pitch, positive down [rad]."""
+_LEAST, _MOST = 0.5, 1.5  # Limits of the camera's pitch, positive down [rad]
 _TURNING, _SLOWEST = 1e-4, 0.5
 """Change of heading in a step above which a target turns [rad], speed below which it stands."""
 
@@ -30,19 +28,15 @@ class Camera(NamedTuple):
 
     width: int
     height: int
-    field_of_view: float
-    """Horizontal [rad]."""
+    field_of_view: float  # Horizontal [rad]
 
 
 class Target(NamedTuple):
     """What is followed, at an instant."""
 
-    position: Vector
-    """Of its node [m]."""
-    yaw: float
-    """Counter-clockwise from east [rad]."""
-    ground: float
-    """z of the ground below it [m]."""
+    position: Vector  # Of its node [m]
+    yaw: float  # Counter-clockwise from east [rad]
+    ground: float  # z of the ground below it [m]
     typename: str
 
 

@@ -24,8 +24,7 @@ __all__ = ["Content", "array_file", "let_go", "map_arrays"]
 class Content(NamedTuple):
     """Content of a file."""
 
-    flat: Json
-    """Everything except the arrays."""
+    flat: Json  # Everything except the arrays
     arrays: list[Array]
 
 

@@ -25,8 +25,7 @@ __all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 
 _DAY = 86_400.0
 
-_KERNELS_LAST = 30 * _DAY
-"""Time for which kernels are kept after their last use [s]."""
+_KERNELS_LAST = 30 * _DAY  # Time for which kernels are kept after their last use [s]
 
 _PARTS_LAST = _DAY
 """Longest time to write an entry [s]; an older part was left by a process that was killed."""
@@ -53,10 +52,8 @@ class Entry:
 
     kind: Kind
     path: Path
-    size: int
-    """[bytes]"""
-    used: float
-    """Time of the last use [s since 1970]."""
+    size: int  # [bytes]
+    used: float  # Time of the last use [s since 1970]
 
 
 def entries(folder: Path) -> list[Entry]:

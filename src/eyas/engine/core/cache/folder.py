@@ -20,8 +20,7 @@ __all__ = [
     "cache_limit",
 ]
 
-LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"
-"""Environment variable: largest size of the cache."""
+LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"  # Environment variable: largest size of the cache
 
 _DEFAULT_LIMIT = 2 << 30
 

@@ -26,17 +26,13 @@ if TYPE_CHECKING:
 
 __all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
 
-TEXEL = 1.0
-"""Side of a texel [m]."""
+TEXEL = 1.0  # Side of a texel [m]
 
-LARGEST = 2048
-"""Largest number of texels along a side."""
+LARGEST = 2048  # Largest number of texels along a side
 
-_LOWEST = 1.5
-"""Things less high than this above the ground hide no sky [m]."""
+_LOWEST = 1.5  # Things less high than this above the ground hide no sky [m]
 
-_DECK = 3.0
-"""Elevated roads less high than this are taken for the ground [m]."""
+_DECK = 3.0  # Elevated roads less high than this are taken for the ground [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +43,7 @@ class AmbientMap:
     """Low byte: share of the sky's light that arrives there, 0 to 255; high byte: where row +
     column is even, height of what hides the rest, else height of the roof, 0 on the ground [m above
     the ground]; shape (rows, columns)."""
-    frame: NDArray[np.float64]
-    """West and south edge [m], texels per metre, z of the ground [m]."""
+    frame: NDArray[np.float64]  # West and south edge [m], texels per metre, z of the ground [m]
 
 
 def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:

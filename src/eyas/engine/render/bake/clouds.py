@@ -14,10 +14,8 @@ from eyas.lanes import Held, exact, thread_count
 __all__ = ["build_clouds", "plan_directions"]
 
 _ROWS, _COLUMNS = 208, 2048
-_SEEN = 0.65
-"""Correction of the cover: clouds hide more when seen from the side than from below."""
-_TEXEL = 9.0 / SIZE
-"""Side of a texel of the cloud heights [km]."""
+_SEEN = 0.65  # Correction of the cover: clouds hide more when seen from the side than from below
+_TEXEL = 9.0 / SIZE  # Side of a texel of the cloud heights [km]
 
 
 @functools.lru_cache(maxsize=4)

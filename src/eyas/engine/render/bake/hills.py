@@ -19,8 +19,7 @@ __all__ = ["build_hills", "far_ground"]
 
 _ROWS, _COLUMNS = 96, 4096
 _STEPS = 96
-_TEXEL = 9.0 / SIZE
-"""Side of a texel of the land [km]."""
+_TEXEL = 9.0 / SIZE  # Side of a texel of the land [km]
 
 
 @functools.lru_cache(maxsize=4)

@@ -14,11 +14,9 @@ from eyas.engine.state.scene import ObjectClass, Scene
 
 __all__ = ["land_map", "no_land"]
 
-_BUILT = 1.5
-"""Height from which a building keeps mist away [m]."""
+_BUILT = 1.5  # Height from which a building keeps mist away [m]
 
-_OPEN = 0.72
-"""How open to mist fields are, where water is 1."""
+_OPEN = 0.72  # How open to mist fields are, where water is 1
 
 _AROUND, _SHORE, _LITTER = 70.0, 16.0, 5.0
 """Lengths over which buildings, water and crowns are blurred [m]: mist flows from the open into

@@ -26,11 +26,9 @@ from eyas.lanes.vector import WIDTH
 
 __all__ = ["ShadowMap", "bake_shadows"]
 
-TEXEL = 0.2
-"""Side of a texel, unless the tiles would become too many [m]."""
+TEXEL = 0.2  # Side of a texel, unless the tiles would become too many [m]
 
-MOST_TILES = 40_000
-"""Largest number of tiles: 83 MiB."""
+MOST_TILES = 40_000  # Largest number of tiles: 83 MiB
 
 _FLAT = 0.5
 """Static triangles less high than this above the floor cast no shadow [m]. A point is looked up
@@ -51,10 +49,8 @@ class ShadowMap:
     the next one, so that four neighbours always lie in one tile. Tile 0 is empty."""
     tile: NDArray[np.int32]
     """Number of each tile of the map, shape (rows, columns); those at its edges are empty."""
-    rows: NDArray[np.float64]
-    """World [m] to column, line and height of the map, shape (3, 4)."""
-    texel: float
-    """Side of a texel [m]."""
+    rows: NDArray[np.float64]  # World [m] to column, line and height of the map, shape (3, 4)
+    texel: float  # Side of a texel [m]
 
     @classmethod
     def empty(cls) -> "ShadowMap":

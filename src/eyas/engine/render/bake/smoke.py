@@ -8,8 +8,7 @@ from eyas.engine.state.scene import ObjectClass, Scene
 
 __all__ = ["chimneys"]
 
-_HIGHEST = 45.0
-"""Buildings that are higher have no chimney [m]."""
+_HIGHEST = 45.0  # Buildings that are higher have no chimney [m]
 
 
 def chimneys(scene: Scene, count: int) -> NDArray[np.float32]:

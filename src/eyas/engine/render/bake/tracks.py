@@ -13,11 +13,9 @@ from eyas.lanes import exact
 
 __all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "blurred", "track_map"]
 
-TEXEL = 0.3
-"""Side of a texel, unless there would be too many [m]."""
+TEXEL = 0.3  # Side of a texel, unless there would be too many [m]
 
-MOST_TEXELS = 30_000_000
-"""Largest number of texels: 57 MiB."""
+MOST_TEXELS = 30_000_000  # Largest number of texels: 57 MiB
 
 TRACK_ASIDE = 0.78
 """Distance of a track from the middle of the lane [m]; same as the dark tracks in the asphalt."""
@@ -25,8 +23,7 @@ TRACK_ASIDE = 0.78
 _STEP = 0.2
 """Distance between the points of a lane whose texels are marked [m]; small enough to miss none."""
 
-_HALF = 1.7
-"""Distance from the middle of a lane up to which cars drive on the snow [m]."""
+_HALF = 1.7  # Distance from the middle of a lane up to which cars drive on the snow [m]
 
 _OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
 """Paths of cars: distance beside the usual path [m], and relative wear."""
@@ -38,14 +35,11 @@ _NEAR, _FAR = 0.9, 2.4
 """Lengths over which the map is blurred, and blurred again for distant views: slightly more than a
 lane's tracks [m]."""
 
-_STREAK = 4.0, 0.6
-"""Length and width of the streaks of slush that wheels draw out along a lane [m]."""
+_STREAK = 4.0, 0.6  # Length and width of the streaks of slush that wheels draw out along a lane [m]
 
-_ROOF = (3.0, 12.0)
-"""Least and largest height of what keeps the snow off the road below it [m]."""
+_ROOF = (3.0, 12.0)  # Least and largest height of what keeps the snow off the road below it [m]
 
-_MARGIN = 6.0
-"""Between the lanes and the edges of the map [m]."""
+_MARGIN = 6.0  # Between the lanes and the edges of the map [m]
 
 Line = NDArray[np.float64]
 
@@ -57,8 +51,7 @@ class TrackMap:
     worn: NDArray[np.uint8]
     """0 for fresh snow to 255 for wet asphalt; then the same blurred, for pixels that are larger
     than tracks; shape (rows, columns, 2)."""
-    frame: NDArray[np.float64]
-    """West and south edge [m], texels per metre."""
+    frame: NDArray[np.float64]  # West and south edge [m], texels per metre
 
     @classmethod
     def empty(cls) -> "TrackMap":

@@ -13,24 +13,16 @@ __all__ = ["Rays", "camera_axes", "place_in_face", "place_in_tile", "ray_of", "r
 class Rays(NamedTuple):
     """A camera, of float32."""
 
-    eye: Direction
-    """Optical centre [m]."""
-    ahead: Direction
-    """Unit vector along the optical axis; the next two are to the left and up."""
+    eye: Direction  # Optical centre [m]
+    ahead: Direction  # Unit vector along the optical axis; the next two are to the left and up
     left: Direction
     up: Direction
-    across: float
-    """One over the focal length along rows [1/samples]."""
-    down: float
-    """The same along columns."""
-    middle: float
-    """Column of the optical axis [samples]."""
-    centre_line: float
-    """Its row in the picture [samples]."""
-    top: float
-    """First row of the band [samples]."""
-    pixel: float
-    """Angle that a pixel spans [rad]."""
+    across: float  # One over the focal length along rows [1/samples]
+    down: float  # The same along columns
+    middle: float  # Column of the optical axis [samples]
+    centre_line: float  # Its row in the picture [samples]
+    top: float  # First row of the band [samples]
+    pixel: float  # Angle that a pixel spans [rad]
 
 
 @kernel(inline=True)

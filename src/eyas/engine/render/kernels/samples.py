@@ -33,11 +33,9 @@ class ScreenBox(NamedTuple):
 class LocalCamera(NamedTuple):
     """A camera in the frame of a thing, see `local_camera`; of float32."""
 
-    eye: Direction
-    """Optical centre [m]."""
+    eye: Direction  # Optical centre [m]
     ahead: Direction
-    left: Direction
-    """To the left by one sample at distance 1; the next one upwards."""
+    left: Direction  # To the left by one sample at distance 1; the next one upwards
     up: Direction
 
 

@@ -13,14 +13,12 @@ from eyas.lanes import exact
 
 __all__ = ["box_of", "columns_of", "group_boxes", "posed_boxes", "silhouette", "sphere_of"]
 
-WAIST = 0.6
-"""Upper end of the lower box, as a share of the height."""
+WAIST = 0.6  # Upper end of the lower box, as a share of the height
 
 CHEST = 0.75
 """Height above which the upper box is measured, as a share: cabins grow narrower upwards."""
 
-_GRID = 6
-"""Number of points along the edge of a triangle."""
+_GRID = 6  # Number of points along the edge of a triangle
 
 
 def box_of(positions: NDArray[np.float32]) -> NDArray[np.float32]:

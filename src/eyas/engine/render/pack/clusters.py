@@ -28,11 +28,9 @@ __all__ = [
     "filled_up",
 ]
 
-NOWHERE = 1e9
-"""Boxes from this to minus this in all directions [m] are inside no plane."""
+NOWHERE = 1e9  # Boxes from this to minus this in all directions [m] are inside no plane
 
-_WIDEST = 0.2
-"""Cosine of the largest angle between the axis of a cone and a normal."""
+_WIDEST = 0.2  # Cosine of the largest angle between the axis of a cone and a normal
 
 
 TURN = 0.5

@@ -20,24 +20,20 @@ from eyas.engine.state.scene import ObjectClass, Scene
 
 __all__ = ["CHUNK", "PackedScene", "build_geometry", "packed_scene"]
 
-CHUNK = 32.0
-"""Side of the squares into which static triangles are sorted [m]."""
+CHUNK = 32.0  # Side of the squares into which static triangles are sorted [m]
 
 _FIXTURE_CELL = 6.0
 """Side of the squares by which fixtures are sorted, so that groups of them are small [m]."""
 
-_HIGH = 4.0
-"""Height above which things are grouped separately [m]."""
+_HIGH = 4.0  # Height above which things are grouped separately [m]
 
 
 @dataclass(frozen=True, slots=True)
 class PackedScene:
     """What of a `Geometry` a scene decides alone."""
 
-    ground: PackedMeshes
-    """Its static mesh, square by square."""
-    chunk_box: NDArray[np.float32]
-    """Around each square, shape (C, 6)."""
+    ground: PackedMeshes  # Its static mesh, square by square
+    chunk_box: NDArray[np.float32]  # Around each square, shape (C, 6)
     fixtures: Prototypes
 
 

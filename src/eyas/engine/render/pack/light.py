@@ -35,8 +35,7 @@ from eyas.lanes import exact
 
 __all__ = ["Baked", "build_light", "encoded_tone", "lamp_grid", "tile_starts", "tone_table"]
 
-CELL = 8.0
-"""Side of a square of the grid of street lamps [m]."""
+CELL = 8.0  # Side of a square of the grid of street lamps [m]
 
 _WALLS = np.array((1.03, 1.0, 0.95))
 """Colour of walls and pavements on average, whose brightness does not matter here."""
@@ -44,11 +43,9 @@ _WALLS = np.array((1.03, 1.0, 0.95))
 _LUMA = np.array((0.2126, 0.7152, 0.0722))
 """Weights of linear red, green and blue in luminance (ITU-R BT.709)."""
 
-REACH = 32.0
-"""Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it."""
+REACH = 32.0  # Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it
 
-MOST = 8
-"""Most lamps that are listed for a square."""
+MOST = 8  # Most lamps that are listed for a square
 
 PAPER = 1.05
 """Intensity over squared distance [m] that lights paper as the sun does: the original's lamps of
@@ -60,8 +57,7 @@ class Baked(NamedTuple):
 
     shadows: ShadowMap
     ambient: AmbientMap
-    land: NDArray[np.uint16]
-    """See `eyas.engine.render.bake.land`."""
+    land: NDArray[np.uint16]  # See `eyas.engine.render.bake.land`.
     tracks: TrackMap
 
 

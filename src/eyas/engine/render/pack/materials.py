@@ -18,11 +18,9 @@ _POROUS = {"lawn", "lawn_mown", "soil", "sand", "dry_leaves"}
 """Textures of ground into which rain soaks; crops let none be seen."""
 
 _SIGNALS = range(Surface.TAIL_LAMP, Surface.INDICATOR_RIGHT + 1)
-_BARE = {Surface.WATER, Surface.LAMP, Surface.SIGNAL, *_SIGNALS}
-"""Surfaces on which snow melts."""
+_BARE = {Surface.WATER, Surface.LAMP, Surface.SIGNAL, *_SIGNALS}  # Surfaces on which snow melts
 
-_MIDDLE = 0.3
-"""Height of a crown's middle between its lower end and its top: crowns are flat below."""
+_MIDDLE = 0.3  # Height of a crown's middle between its lower end and its top: crowns are flat below
 
 
 @dataclass(frozen=True, slots=True)

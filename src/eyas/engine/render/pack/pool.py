@@ -36,13 +36,11 @@ class PackedMeshes:
     clusters: NDArray[np.float32]
     bounds: NDArray[np.float32]
     corner_uvs: NDArray[np.float32]
-    slopes: NDArray[np.float32]
-    """From `gradients`."""
+    slopes: NDArray[np.float32]  # From `gradients`
     material: NDArray[np.int32]
     """Of each triangle, an index into the palette; -1 of what fills clusters up."""
     objects: NDArray[np.int32]
-    ranges: NDArray[np.int32]
-    """Of each mesh as in `Geometry.mesh_range`, shape (M, 3)."""
+    ranges: NDArray[np.int32]  # Of each mesh as in `Geometry.mesh_range`, shape (M, 3).
     palette: tuple[Material, ...]
 
 
@@ -51,14 +49,11 @@ class Prototypes:
     """Meshes of which there are copies, with all their levels of detail."""
 
     meshes: PackedMeshes
-    levels: NDArray[np.int32]
-    """Number of levels of each."""
+    levels: NDArray[np.int32]  # Number of levels of each
     box: NDArray[np.float32]
     """Around all levels of each, shape (P, 6): what is culled must not stick out."""
-    sphere: NDArray[np.float32]
-    """Shape (P, 4)."""
-    silhouette: NDArray[np.float32]
-    """Of the finest level, shape (P, 7)."""
+    sphere: NDArray[np.float32]  # Shape (P, 4)
+    silhouette: NDArray[np.float32]  # Of the finest level, shape (P, 7)
 
 
 def packed_prototypes(prototypes: Iterable[tuple[Mesh, ...]]) -> Prototypes:

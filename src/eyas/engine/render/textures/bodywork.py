@@ -38,13 +38,10 @@ Texture = NDArray[np.uint8]
 
 _SEAM = 0.015
 _BLACK = 0.03
-_FILM = 0.08
-"""Deviation of the brightness of paint, as a share."""
-_DUST = 0.12
-"""Deviation of what dust adds to the brightness of panes."""
+_FILM = 0.08  # Deviation of the brightness of paint, as a share
+_DUST = 0.12  # Deviation of what dust adds to the brightness of panes
 
-_LONG = 4.6
-"""Length of the body that is painted [m]."""
+_LONG = 4.6  # Length of the body that is painted [m]
 
 
 def bodywork(style: str) -> Texture:
@@ -295,8 +292,7 @@ _TOPS = {
     "bus": _bus_top,
 }
 
-_GLASS = 0.05
-"""Brightness of what is seen through a pane, as a share of the tint."""
+_GLASS = 0.05  # Brightness of what is seen through a pane, as a share of the tint
 
 
 def panes() -> Texture:

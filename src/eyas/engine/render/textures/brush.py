@@ -20,14 +20,10 @@ Line = Sequence[tuple[float, float]]
 class Sheet:
     """A region under the brush; all of it is changed in place."""
 
-    tone: Field
-    """Brightness, linear, shape (H, W)."""
-    x: Field
-    """Place from the left [m], shape (H, W)."""
-    y: Field
-    """Place from below [m], shape (H, W)."""
-    texel: float
-    """Mean size of a texel [m]."""
+    tone: Field  # Brightness, linear, shape (H, W)
+    x: Field  # Place from the left [m], shape (H, W)
+    y: Field  # Place from below [m], shape (H, W)
+    texel: float  # Mean size of a texel [m]
 
     def line(self, points: Line, width: float, tone: float, strength: float = 1.0) -> None:
         """Draw a line through points [m]."""

@@ -27,8 +27,7 @@ __all__ = [
     "white",
 ]
 
-SIZE = 256
-"""Pixels on each side of a texture."""
+SIZE = 256  # Pixels on each side of a texture
 
 Field = NDArray[np.float64]
 Picture = NDArray[np.float64]
@@ -105,14 +104,10 @@ def cracks(rng: np.random.Generator, width: float, share: float) -> Field:
 class Masonry:
     """A wall or floor of rectangular pieces in rows."""
 
-    shade: Field
-    """One value for each piece, mean 0, deviation 1."""
-    joint: Field
-    """1 in the joints, 0 on the pieces."""
-    across: Field
-    """Position within the piece from left to right, 0 to 1."""
-    down: Field
-    """Position within the piece from top to bottom, 0 to 1."""
+    shade: Field  # One value for each piece, mean 0, deviation 1
+    joint: Field  # 1 in the joints, 0 on the pieces
+    across: Field  # Position within the piece from left to right, 0 to 1
+    down: Field  # Position within the piece from top to bottom, 0 to 1
 
 
 def masonry(

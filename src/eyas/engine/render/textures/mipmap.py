@@ -11,8 +11,7 @@ from eyas.lanes import exact
 
 __all__ = ["SIDE", "linear", "packed_layers"]
 
-SIDE = 256
-"""Texels along a side of a texture."""
+SIDE = 256  # Texels along a side of a texture
 
 
 def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -21,8 +20,7 @@ def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.where(values <= 0.04045, values / 12.92, exact.power((values + 0.055) / 1.055, 2.4))
 
 
-_LINEAR = linear(np.arange(256) / 255.0)
-"""Linear value of each byte of sRGB."""
+_LINEAR = linear(np.arange(256) / 255.0)  # Linear value of each byte of sRGB
 
 
 def packed_layers(

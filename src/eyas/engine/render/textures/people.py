@@ -26,10 +26,8 @@ __all__ = ["PAINTERS", "clothes", "heads"]
 Texture = NDArray[np.uint8]
 
 _SEAM = 0.35 * BASE
-_AROUND, _HIGH = 1.1, 0.7
-"""Size of the painted torso [m]."""
-_FRONT, _RIGHT, _LEFT = 0.55, 0.275, 0.825
-"""Places around it [m]."""
+_AROUND, _HIGH = 1.1, 0.7  # Size of the painted torso [m]
+_FRONT, _RIGHT, _LEFT = 0.55, 0.275, 0.825  # Places around it [m]
 
 
 def clothes(cut: str) -> Texture:
@@ -211,8 +209,7 @@ _CUTS = {
     "coat": _coat_cut,
 }
 
-_HEAD = (0.54, 0.235)
-"""Size of the painted head [m]."""
+_HEAD = (0.54, 0.235)  # Size of the painted head [m]
 
 
 def heads() -> Texture:

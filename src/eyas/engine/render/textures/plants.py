@@ -11,11 +11,9 @@ from eyas.lanes import exact
 
 __all__ = ["bark", "foliage", "leaves", "pale_foliage", "pale_leaves"]
 
-_CLUSTER = 128
-"""Side of one cluster of leaves; the texture holds two by two [pixels]."""
+_CLUSTER = 128  # Side of one cluster of leaves; the texture holds two by two [pixels]
 
-_BEHIND = (46.0, 60.0, 28.0)
-"""Colour under the holes, which is mixed in at coarse levels of detail."""
+_BEHIND = (46.0, 60.0, 28.0)  # Colour under the holes, which is mixed in at coarse levels of detail
 
 
 def bark() -> NDArray[np.uint8]:
@@ -118,14 +116,10 @@ def _leaf_colour(rng: np.random.Generator) -> NDArray[np.float64]:
 class _Leaf(NamedTuple):
     """A leaf within R x C pixels."""
 
-    rows: NDArray[np.int64]
-    """Row indices, shape (R,)."""
-    columns: NDArray[np.int64]
-    """Column indices, shape (C,)."""
-    inside: NDArray[np.bool_]
-    """Pixels of the leaf, shape (R, C)."""
-    colour: NDArray[np.float64]
-    """RGBA, shape (R, C, 4)."""
+    rows: NDArray[np.int64]  # Row indices, shape (R,)
+    columns: NDArray[np.int64]  # Column indices, shape (C,)
+    inside: NDArray[np.bool_]  # Pixels of the leaf, shape (R, C)
+    colour: NDArray[np.float64]  # RGBA, shape (R, C, 4)
 
 
 def _leaf(

@@ -13,8 +13,7 @@ from eyas.lanes import exact
 
 __all__ = ["BAY", "Opening", "Wall"]
 
-BAY = 64
-"""Pixels in a bay and in a storey: 3 m."""
+BAY = 64  # Pixels in a bay and in a storey: 3 m
 
 Colour = tuple[float, float, float]
 
@@ -35,18 +34,12 @@ class Opening:
     top: int
     right: int
     bottom: int
-    frame: Colour = (226.0, 224.0, 218.0)
-    """Colour of frame and bars."""
-    thick: int = 2
-    """Width of the frame."""
-    upright: int = 1
-    """Number of vertical bars."""
-    level: int = 0
-    """Number of horizontal bars."""
-    glass: Colour = (46.0, 56.0, 66.0)
-    """Colour of a dark room behind it."""
-    curtained: float = 0.45
-    """Share of windows with a blind or curtains."""
+    frame: Colour = (226.0, 224.0, 218.0)  # Colour of frame and bars
+    thick: int = 2  # Width of the frame
+    upright: int = 1  # Number of vertical bars
+    level: int = 0  # Number of horizontal bars
+    glass: Colour = (46.0, 56.0, 66.0)  # Colour of a dark room behind it
+    curtained: float = 0.45  # Share of windows with a blind or curtains
 
 
 class Wall:

@@ -23,19 +23,15 @@ between take one of their neighbours at random, which makes the variance at most
 
 _STEP = math.sqrt(FEW / (_ROWS * _ROWS))
 
-_MOST = 32
-"""Counts are below this: of the mean `FEW`, all but two in a million."""
+_MOST = 32  # Counts are below this: of the mean `FEW`, all but two in a million
 
-_BITS = 24
-"""Of the random number that is looked up."""
+_BITS = 24  # Of the random number that is looked up
 
-_PART_BITS = 17
-"""Lower bits of it, within one of the parts of a table."""
+_PART_BITS = 17  # Lower bits of it, within one of the parts of a table
 
 _PARTS = 1 << (_BITS - _PART_BITS)
 
-_OFTEN = 1 << 24
-"""Set in a part in which the count changes more than once, as at the ends."""
+_OFTEN = 1 << 24  # Set in a part in which the count changes more than once, as at the ends
 
 
 class Counts(NamedTuple):
@@ -44,8 +40,7 @@ class Counts(NamedTuple):
     parts: NDArray[np.int32]
     """For each part of the random numbers its lowest count, from bit 25 on, `_OFTEN`, and from
     where on in the part it is one more, shape (rows, parts)."""
-    below: NDArray[np.int32]
-    """Random numbers up to each count, shape (rows, `_MOST`)."""
+    below: NDArray[np.int32]  # Random numbers up to each count, shape (rows, `_MOST`)
 
 
 @cache

@@ -12,11 +12,9 @@ from eyas.lanes.vector import WIDTH, load, splat, store
 
 __all__ = ["LARGEST", "defocused", "disc"]
 
-LARGEST = 64.0
-"""Largest diameter of the disc [pixels]."""
+LARGEST = 64.0  # Largest diameter of the disc [pixels]
 
-_FINE = 16
-"""Points along a side of a pixel by which the disc's share of it is counted."""
+_FINE = 16  # Points along a side of a pixel by which the disc's share of it is counted
 
 
 def disc(diameter: float) -> NDArray[np.float32]:
@@ -63,10 +61,8 @@ def defocused(radiance: NDArray[np.float32], diameter: NDArray[np.float64]) -> N
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    padded: NDArray[np.float32]
-    """Shape (V, 3, rows * columns)."""
-    out: NDArray[np.float32]
-    """Shape (V, 3, height * columns)."""
+    padded: NDArray[np.float32]  # Shape (V, 3, rows * columns)
+    out: NDArray[np.float32]  # Shape (V, 3, height * columns)
     weight: NDArray[np.float32]
     height: int
     width: int

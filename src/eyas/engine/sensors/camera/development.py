@@ -48,14 +48,12 @@ from eyas.lanes.vector import (
 
 __all__ = ["TONE_STEPS", "Development", "tone_of_sensor"]
 
-TONE_STEPS = 16384
-"""Entries of the tone curve, from black to saturation."""
+TONE_STEPS = 16384  # Entries of the tone curve, from black to saturation
 
 _WHITE = 1.0 / 0.71
 """Exposed radiance that saturates the sensor, where that of white paper is 1: see `TARGET`."""
 
-_BAND = 64
-"""Rows that are developed at a time."""
+_BAND = 64  # Rows that are developed at a time
 
 
 def tone_of_sensor() -> NDArray[np.uint8]:
@@ -186,10 +184,8 @@ class _Work(NamedTuple):
     binning: int
     grey: bool
     finds_white: bool
-    uneven: bool
-    """Whether there is a fixed pattern."""
-    mosaic: int
-    """Number of the demosaicking; 0: none."""
+    uneven: bool  # Whether there is a fixed pattern
+    mosaic: int  # Number of the demosaicking; 0: none
     counts: Counts
 
 
@@ -200,8 +196,7 @@ class _Developed(NamedTuple):
     rgb: NDArray[np.uint8]
     trackers: NDArray[np.int64]
     step: NDArray[np.int64]
-    bands: int
-    """Of each picture."""
+    bands: int  # Of each picture
     raw: NDArray[np.float32]
     """Working memory of each worker for a mosaic, with `HALO` rows above and below a band, and
     `MARGIN` columns beside it."""

@@ -14,8 +14,7 @@ from eyas.lanes.vector import WIDTH, lane, load, splat
 
 __all__ = ["Dirt", "DirtConfig"]
 
-MOST = 64
-"""Most spots, and most drops, on a lens."""
+MOST = 64  # Most spots, and most drops, on a lens
 
 Count = Annotated[Variation, AfterValidator(within(0, MOST))]
 Size = Annotated[Variation, AfterValidator(within(0.005, 1.0))]
@@ -44,10 +43,8 @@ class DirtConfig(Config):
 class _Spots(NamedTuple):
     """What is on the lenses of N trackers. Places and radii are shares of the height and width."""
 
-    number: NDArray[np.int64]
-    """How many, shape (N,)."""
-    row: NDArray[np.float64]
-    """Shape (N, MOST), as all below."""
+    number: NDArray[np.int64]  # How many, shape (N,)
+    row: NDArray[np.float64]  # Shape (N, MOST), as all below
     column: NDArray[np.float64]
     radius: NDArray[np.float64]
     strength: NDArray[np.float64]
@@ -121,8 +118,7 @@ class _Work(NamedTuple):
 
     spots: _Spots
     drops: _Spots
-    radiance: NDArray[np.float32]
-    """Shape (V, 3, H, W)."""
+    radiance: NDArray[np.float32]  # Shape (V, 3, H, W)
     before: NDArray[np.float32]
     """Working memory of each worker: the light without drops, shape (workers, 3, H, W); empty where
     there are none."""

@@ -50,31 +50,21 @@ class EventSettings(NamedTuple):
     leak: float
     shot: float
     dark: float
-    width: int
-    """Pixels in a row."""
+    width: int  # Pixels in a row
 
 
 class EventPixels(NamedTuple):
     """The pixels of N sensors, and the events that they have emitted."""
 
-    reference: Single
-    """Logarithm of the light at the last event, shape (N, pixels)."""
-    last: Single
-    """Logarithm of the light when it was last seen, shape (N, pixels)."""
-    positive: Single
-    """Threshold of more light, shape (N, pixels)."""
-    negative: Single
-    """Threshold of less light, shape (N, pixels)."""
-    blind: Floats
-    """Until when it emits nothing [s], shape (N, pixels)."""
-    time: Floats
-    """When each sensor has last seen [s], shape (N,)."""
-    seen: Integers
-    """How often each has seen in its episode, shape (N,); 0: it is to begin."""
-    seed: Integers
-    """Seed of the noise of each in its episode, shape (N,)."""
-    number: Integers
-    """Number of events of each, shape (N,)."""
+    reference: Single  # Logarithm of the light at the last event, shape (N, pixels)
+    last: Single  # Logarithm of the light when it was last seen, shape (N, pixels)
+    positive: Single  # Threshold of more light, shape (N, pixels)
+    negative: Single  # Threshold of less light, shape (N, pixels)
+    blind: Floats  # Until when it emits nothing [s], shape (N, pixels)
+    time: Floats  # When each sensor has last seen [s], shape (N,)
+    seen: Integers  # How often each has seen in its episode, shape (N,); 0: it is to begin
+    seed: Integers  # Seed of the noise of each in its episode, shape (N,)
+    number: Integers  # Number of events of each, shape (N,)
     emitted: NDArray[np.void]
     """Its events, of dtype `EVENT`, in the first elements of its row, those of each pixel in the
     order of their times, shape (N, room)."""
@@ -100,19 +90,14 @@ class EventPixels(NamedTuple):
 class Look(NamedTuple):
     """P pictures of the light that V of the sensors see, those of each in the order of time."""
 
-    sensor: Integers
-    """Which sensors, shape (V,)."""
+    sensor: Integers  # Which sensors, shape (V,)
     next: Integers
     """The first picture of each; written: the first that was not seen, since there is no room for
     its events, shape (V,)."""
-    end: Integers
-    """Where those of each end, shape (V,)."""
-    radiance: Single
-    """Linear, red, green and blue, shape (P, 3, pixels)."""
-    time: Floats
-    """[s], shape (P,)"""
-    light: Single
-    """Working memory, shape (V, pixels)."""
+    end: Integers  # Where those of each end, shape (V,)
+    radiance: Single  # Linear, red, green and blue, shape (P, 3, pixels)
+    time: Floats  # [s], shape (P,)
+    light: Single  # Working memory, shape (V, pixels)
 
 
 @parallel
@@ -233,8 +218,7 @@ def _none_changed(pixels: EventPixels, n: int, light: Single, first: int) -> boo
     return not changed
 
 
-_LEAST = 0.05
-"""Least threshold of any pixel, as a share: v2e's 0.01 of 0.2."""
+_LEAST = 0.05  # Least threshold of any pixel, as a share: v2e's 0.01 of 0.2.
 
 _BRIGHT = -1.6
 """Logarithm of the light, of white paper in the sun, of what is bright for shot noise."""

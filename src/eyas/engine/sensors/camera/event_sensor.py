@@ -115,12 +115,9 @@ class _Counting(NamedTuple):
     """Inputs and outputs of the kernel."""
 
     chosen: Integers
-    begin: Floats
-    """When each sensor began to collect [s], shape (N,)."""
-    width: int
-    """Pixels in a row."""
-    out: NDArray[np.uint8]
-    """Shape (V, 2 bins * pixels)."""
+    begin: Floats  # When each sensor began to collect [s], shape (N,)
+    width: int  # Pixels in a row
+    out: NDArray[np.uint8]  # Shape (V, 2 bins * pixels)
 
 
 @parallel

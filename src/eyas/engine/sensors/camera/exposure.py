@@ -30,13 +30,11 @@ TARGET = 10.0 / SATURATION
 """Mean that is aimed at, as a share of saturation: a mean exposure of 10 / S lux seconds on the
 sensor (ISO 12232:2019, 6.3). White paper then reaches 0.71 of saturation."""
 
-GUESS = 0.18
-"""Mean radiance that is expected before the first picture: a grey card's."""
+GUESS = 0.18  # Mean radiance that is expected before the first picture: a grey card's
 
 _LN2 = 0.6931471805599453
 
-_DARKEST = 1e-7
-"""Least share of saturation that is told from nothing."""
+_DARKEST = 1e-7  # Least share of saturation that is told from nothing
 
 Seconds = Annotated[float, Field(ge=1e-6, le=10)]
 Speed = Annotated[float, Field(ge=1, le=1e7)]
@@ -80,20 +78,13 @@ class ExposureState(NamedTuple):
 
     step: NDArray[np.int64]
     """Physics step, since the reset, of the picture that it was set for; -1: none yet."""
-    metered: NDArray[np.int64]
-    """The step of the last picture that was metered; -1: none yet."""
-    value: NDArray[np.float64]
-    """Logarithm to base 2 of time [s] times gain."""
-    error: NDArray[np.float64]
-    """What the meter wants added to it."""
-    speed: NDArray[np.float64]
-    """[s]"""
-    target: NDArray[np.float64]
-    """Mean that is aimed at, as a share of saturation."""
-    time: NDArray[np.float64]
-    """Exposure time [s]."""
-    iso: NDArray[np.float64]
-    """Speed (ISO 12232)."""
+    metered: NDArray[np.int64]  # The step of the last picture that was metered; -1: none yet
+    value: NDArray[np.float64]  # Logarithm to base 2 of time [s] times gain
+    error: NDArray[np.float64]  # What the meter wants added to it
+    speed: NDArray[np.float64]  # [s]
+    target: NDArray[np.float64]  # Mean that is aimed at, as a share of saturation
+    time: NDArray[np.float64]  # Exposure time [s]
+    iso: NDArray[np.float64]  # Speed (ISO 12232)
     tint: NDArray[np.float64]
     """Logarithms to base 2 of the factors on red and blue of the white balance, and what the
     meter wants added to them, shape (N, 4)."""
@@ -202,8 +193,7 @@ def answer_meter(state: ExposureState, n: int, mean: tuple[float, float, float, 
 class Zones(NamedTuple):
     """How much each row and column of a picture count for the meter; pixels have the product."""
 
-    rows: NDArray[np.float32]
-    """Shape (H,)."""
+    rows: NDArray[np.float32]  # Shape (H,)
     columns: NDArray[np.float32]
     """Of eight columns in a row, one after the other; the last eight are the picture's last, and
     count for nothing where others hold them. Shape (W rounded up to a multiple of eight,)."""

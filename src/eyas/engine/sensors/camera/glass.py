@@ -89,17 +89,12 @@ def change_light(
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    front: NDArray[np.float32]
-    """Shape (V, 3, pixels)."""
-    behind: NDArray[np.float32]
-    """The same, behind the lens."""
-    in_place: int
-    """1: the two are the same, as they may be where there are no fringes."""
+    front: NDArray[np.float32]  # Shape (V, 3, pixels)
+    behind: NDArray[np.float32]  # The same, behind the lens
+    in_place: int  # 1: the two are the same, as they may be where there are no fringes
     width: int
-    middle: Floats
-    """Column and row of the principal point [pixels], shape (V, 2)."""
-    shrink: Floats
-    """One over the size of each colour, shape (V, 3)."""
+    middle: Floats  # Column and row of the principal point [pixels], shape (V, 2)
+    shrink: Floats  # One over the size of each colour, shape (V, 3)
     fall: Floats
     """How light falls off, and one over the square of half the diagonal [1/pixels^2], shape
     (V, 2)."""

@@ -106,10 +106,8 @@ class ImagerState(NamedTuple):
     hot_pixels: NDArray[np.float64]
     base_iso: NDArray[np.float64]
     """Speed at gain 1, which turns a full well into the largest number."""
-    fixed_seed: NDArray[np.int64]
-    """Seed of the fixed pattern."""
-    noise_seed: NDArray[np.int64]
-    """Seed of what differs from picture to picture."""
+    fixed_seed: NDArray[np.int64]  # Seed of the fixed pattern
+    noise_seed: NDArray[np.int64]  # Seed of what differs from picture to picture
 
     @classmethod
     def create(cls, count: int) -> "ImagerState":

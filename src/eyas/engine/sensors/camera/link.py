@@ -38,8 +38,7 @@ class LinkConfig(Config):
 class _Links(NamedTuple):
     """What is sampled for each episode, of N trackers."""
 
-    tables: NDArray[np.float32]
-    """See `quantisation`, shape (N, 2, 64)."""
+    tables: NDArray[np.float32]  # See `quantisation`, shape (N, 2, 64)
     slice_loss: NDArray[np.float64]
     freezes: NDArray[np.float64]
     freeze_time: NDArray[np.float64]
@@ -49,15 +48,12 @@ class _Links(NamedTuple):
 class _Shown(NamedTuple):
     """What N receivers have shown, of pictures of one size."""
 
-    step: NDArray[np.int64]
-    """Physics step of the last picture, -1: none yet, shape (N,)."""
-    until: NDArray[np.int64]
-    """Step at which the last freeze ends, shape (N,)."""
+    step: NDArray[np.int64]  # Physics step of the last picture, -1: none yet, shape (N,)
+    until: NDArray[np.int64]  # Step at which the last freeze ends, shape (N,)
     last: NDArray[np.uint8]
     """The last picture as it was shown, shape (N, H, W, 3); without pixels where nothing is lost.
     """
-    before: NDArray[np.uint8]
-    """The one shown before it."""
+    before: NDArray[np.uint8]  # The one shown before it
 
     @classmethod
     def create(cls, count: int, height: int, width: int) -> "_Shown":
@@ -142,8 +138,7 @@ class _Work(NamedTuple):
     slices: int
     planes: NDArray[np.float32]
     """Working memory of each worker, see `code`; empty where pictures are not coded."""
-    halves: NDArray[np.float32]
-    """The same."""
+    halves: NDArray[np.float32]  # The same
 
 
 @parallel

@@ -23,8 +23,7 @@ __all__ = ["Exposed", "Metered", "expose", "meter"]
 _ROUNDS = 12
 """Corrections of the exposure before the first picture; each is exact unless light is clipped."""
 
-_METERED_ROWS = 128
-"""At least so many rows are metered; of more, every second, third or so."""
+_METERED_ROWS = 128  # At least so many rows are metered; of more, every second, third or so
 
 
 class Exposed(NamedTuple):
@@ -32,8 +31,7 @@ class Exposed(NamedTuple):
 
     imagers: ImagerState
     exposure: ExposureState
-    limits: NDArray[np.float64]
-    """Shortest and longest time [s], lowest and highest speed."""
+    limits: NDArray[np.float64]  # Shortest and longest time [s], lowest and highest speed
 
 
 class Metered(NamedTuple):

@@ -20,11 +20,9 @@ from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, t
 
 __all__ = ["HALO", "MARGIN", "demosaicked", "read_mosaic"]
 
-HALO = 2
-"""Rows above and below those of a picture that finding their colours takes."""
+HALO = 2  # Rows above and below those of a picture that finding their colours takes
 
-MARGIN = 8
-"""Columns beside them in the working memory, of which two are used."""
+MARGIN = 8  # Columns beside them in the working memory, of which two are used
 
 Colours = tuple[float, float, float]
 

@@ -33,20 +33,16 @@ _SKY, _WATER, _TREE = (
 )
 _GROUND = i4(int(ObjectClass.GROUND))
 
-_LEAVES = f4(4.0)
-"""By how much leaves are brighter than in green light, less one."""
+_LEAVES = f4(4.0)  # By how much leaves are brighter than in green light, less one
 _RAYLEIGH = f4(0.175)
-_DEEP = f4(0.25)
-"""Share of red light that water gives back in near infrared."""
+_DEEP = f4(0.25)  # Share of red light that water gives back in near infrared
 
 
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    radiance: NDArray[np.float32]
-    """Shape (V, 3, pixels); written in place."""
-    class_id: NDArray[np.uint8]
-    """Shape (V, pixels)."""
+    radiance: NDArray[np.float32]  # Shape (V, 3, pixels); written in place
+    class_id: NDArray[np.uint8]  # Shape (V, pixels)
 
 
 def near_infrared(radiance: NDArray[np.float32], class_id: NDArray[np.uint8]) -> None:

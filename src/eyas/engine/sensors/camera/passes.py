@@ -19,16 +19,11 @@ Single = NDArray[np.float32]
 class Pieces(NamedTuple):
     """P passes of V exposures, and the K bands in which they are drawn, pass by pass."""
 
-    view: Integers
-    """Exposure of each pass, shape (P,)."""
-    share: Single
-    """Share of each in the mean of its exposure, shape (P,)."""
-    passed: Integers
-    """Pass of each band, shape (K,)."""
-    rows: NDArray[np.int32]
-    """First row of each band, and the row after the last, shape (K, 2)."""
-    later: Floats
-    """Time of each band after the instant of its exposure [s], shape (K,)."""
+    view: Integers  # Exposure of each pass, shape (P,)
+    share: Single  # Share of each in the mean of its exposure, shape (P,)
+    passed: Integers  # Pass of each band, shape (K,)
+    rows: NDArray[np.int32]  # First row of each band, and the row after the last, shape (K, 2)
+    later: Floats  # Time of each band after the instant of its exposure [s], shape (K,)
 
     def some(self, begin: int, end: int) -> "Pieces":
         """Return some of the passes, numbered from 0."""
@@ -76,13 +71,10 @@ def _numbered(counts: Integers) -> Integers:
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    radiance: Single
-    """Of P passes, shape (P, numbers)."""
-    into: Integers
-    """Exposure of each."""
+    radiance: Single  # Of P passes, shape (P, numbers)
+    into: Integers  # Exposure of each
     share: Single
-    out: Single
-    """Of V exposures, shape (V, numbers); added to."""
+    out: Single  # Of V exposures, shape (V, numbers); added to
 
 
 def add_passes(radiance: Single, pieces: Pieces, out: Single) -> None:
@@ -99,8 +91,7 @@ def add_passes(radiance: Single, pieces: Pieces, out: Single) -> None:
     _add(min(thread_count(), -(-flat[0].shape[1] // _PIECE)), work)
 
 
-_PIECE = 4096
-"""Numbers that a worker adds in a row: they stay in its cache from pass to pass."""
+_PIECE = 4096  # Numbers that a worker adds in a row: they stay in its cache from pass to pass
 
 
 @parallel

@@ -20,16 +20,11 @@ Vector = tuple[float, float, float]
 class Ways(NamedTuple):
     """The ways of V cameras, without their vibration."""
 
-    first: CameraState
-    """Where they were, with velocities."""
-    last: CameraState
-    """Where they are."""
-    shake: Shake
-    """Their vibration."""
-    begin: Floats
-    """Time of the first pose [s], shape (V,)."""
-    end: Floats
-    """Time of the last one [s], shape (V,)."""
+    first: CameraState  # Where they were, with velocities
+    last: CameraState  # Where they are
+    shake: Shake  # Their vibration
+    begin: Floats  # Time of the first pose [s], shape (V,)
+    end: Floats  # Time of the last one [s], shape (V,)
 
 
 @kernel(inline=True)

@@ -39,47 +39,29 @@ _DEVIATION_OF_FOUR, _DEVIATION_OF_TWO = 147.8, 104.5
 
 _LN2 = 0.6931471805599453
 
-_FULLEST = 16.0
-"""Light beyond so many full wells changes nothing."""
+_FULLEST = 16.0  # Light beyond so many full wells changes nothing
 
 
 class Readout(NamedTuple):
     """How the photosites of a picture are exposed and read; electrons, float32."""
 
-    electrons: tuple[float, float, float]
-    """Of radiance 1 in red, green and blue."""
-    most: float
-    """Most electrons of light that a photosite holds beside those of the dark."""
-    dark: float
-    """Electrons of the dark and variance of a reading, over the number of photosites."""
-    unlit: float
-    """Electrons of the dark in a photosite."""
-    reading: float
-    """Standard deviation of a reading, averaged."""
-    share: float
-    """One over the number of photosites that are averaged."""
-    sites: float
-    """Their number."""
-    uneven: bool
-    """Whether photosites have a fixed pattern."""
-    uneven_gain: float
-    """Standard deviation of the gain from photosite to photosite, averaged."""
-    uneven_dark: float
-    """The same of the dark level."""
-    hot: float
-    """Share of photosites that read as full."""
-    row: float
-    """Standard deviation that a row shares."""
-    steps: float
-    """Steps of the converter for each electron."""
-    levels: float
-    """Steps at saturation."""
-    balance: tuple[float, float, float]
-    """Value of a step in red, green and blue: 1 is white."""
-    noise: int
-    """Seed of the picture's noise."""
-    pattern: int
-    """Seed of the fixed pattern."""
+    electrons: tuple[float, float, float]  # Of radiance 1 in red, green and blue
+    most: float  # Most electrons of light that a photosite holds beside those of the dark
+    dark: float  # Electrons of the dark and variance of a reading, over the number of photosites
+    unlit: float  # Electrons of the dark in a photosite
+    reading: float  # Standard deviation of a reading, averaged
+    share: float  # One over the number of photosites that are averaged
+    sites: float  # Their number
+    uneven: bool  # Whether photosites have a fixed pattern
+    uneven_gain: float  # Standard deviation of the gain from photosite to photosite, averaged
+    uneven_dark: float  # The same of the dark level
+    hot: float  # Share of photosites that read as full
+    row: float  # Standard deviation that a row shares
+    steps: float  # Steps of the converter for each electron
+    levels: float  # Steps at saturation
+    balance: tuple[float, float, float]  # Value of a step in red, green and blue: 1 is white
+    noise: int  # Seed of the picture's noise
+    pattern: int  # Seed of the fixed pattern
 
 
 @kernel

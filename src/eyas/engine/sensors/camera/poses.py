@@ -24,32 +24,24 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
-Lens = tuple[float, float]
-"""Focal length, and half the width of the picture [pixels]."""
+Lens = tuple[float, float]  # Focal length, and half the width of the picture [pixels]
 
 
 class Exposure(NamedTuple):
     """V cameras at the instants of their pictures, without their vibration."""
 
-    cameras: CameraState
-    """With velocities."""
-    shake: Shake
-    """Their vibration."""
-    instant: Floats
-    """Time of each for its vibration [s], shape (V,)."""
+    cameras: CameraState  # With velocities
+    shake: Shake  # Their vibration
+    instant: Floats  # Time of each for its vibration [s], shape (V,)
 
 
 class Moments(NamedTuple):
     """K moments of V cameras."""
 
-    of: NDArray[np.int64]
-    """Whose, shape (K,)."""
-    later: Floats
-    """Time after the instant of its picture [s], shape (K,)."""
-    position: Floats
-    """Written: optical centre [m], shape (K, 3)."""
-    rotation: Floats
-    """Written: camera to world, shape (K, 3, 3)."""
+    of: NDArray[np.int64]  # Whose, shape (K,)
+    later: Floats  # Time after the instant of its picture [s], shape (K,)
+    position: Floats  # Written: optical centre [m], shape (K, 3)
+    rotation: Floats  # Written: camera to world, shape (K, 3, 3)
 
 
 @kernel(inline=True)
@@ -99,14 +91,10 @@ def poses_at(exposure: Exposure, moments: Moments) -> None:
 class Moving(NamedTuple):
     """E things that V views may show, with their motion."""
 
-    first: NDArray[np.int64]
-    """Where the things of each view begin, shape (V,)."""
-    end: NDArray[np.int64]
-    """Where they end, shape (V,)."""
-    position: Floats
-    """Reference points, world frame [m], shape (E, 3)."""
-    velocity: Floats
-    """[m/s], shape (E, 3)."""
+    first: NDArray[np.int64]  # Where the things of each view begin, shape (V,)
+    end: NDArray[np.int64]  # Where they end, shape (V,)
+    position: Floats  # Reference points, world frame [m], shape (E, 3)
+    velocity: Floats  # [m/s], shape (E, 3)
     reach: Floats
     """How far they reach from there, a few metres at most [m], shape (E,). Those that reach into a
     view must be the same whatever other views there are."""
@@ -115,29 +103,22 @@ class Moving(NamedTuple):
 class Seen(NamedTuple):
     """What V cameras see, as far as its motion in the picture is asked."""
 
-    window: Floats
-    """Length of the time around the instant [s], shape (V,)."""
-    floor: Floats
-    """Height of the ground ahead [m], shape (V,)."""
+    window: Floats  # Length of the time around the instant [s], shape (V,)
+    floor: Floats  # Height of the ground ahead [m], shape (V,)
     frame: Floats
     """Width of the picture [pixels]; height over width of what it shows; its rows over those that
     it had if its pixels were square; shape (3,)."""
     things: Moving
-    place: Floats
-    """Working memory, shape (INSTANTS, 3)."""
-    axes: Floats
-    """The same, shape (INSTANTS, 3, 3)."""
-    motion: Floats
-    """Written: the longest way of anything in the picture [pixels], shape (V,)."""
+    place: Floats  # Working memory, shape (INSTANTS, 3)
+    axes: Floats  # The same, shape (INSTANTS, 3, 3)
+    motion: Floats  # Written: the longest way of anything in the picture [pixels], shape (V,)
 
 
-INSTANTS = 5
-"""Instants of the time that are compared: vibration goes to and fro within it."""
+INSTANTS = 5  # Instants of the time that are compared: vibration goes to and fro within it
 
 _FARTHEST = 1000.0
 _NEAREST = 1.0
-_WIDE = 1.0
-"""Roundings must not move the ground at the edge of the picture out of it [m]."""
+_WIDE = 1.0  # Roundings must not move the ground at the edge of the picture out of it [m]
 
 
 @kernel(inline=True)

@@ -41,12 +41,9 @@ DIRECTIONS = 31
 class Warmth(NamedTuple):
     """How a surface warms up and cools down."""
 
-    sun: float
-    """Above the air after long, steady and vertical sunshine [K]."""
-    hours: float
-    """Time in which two thirds of that are reached, or lost."""
-    sky: float
-    """Below the air, facing a clear night sky [K]."""
+    sun: float  # Above the air after long, steady and vertical sunshine [K]
+    hours: float  # Time in which two thirds of that are reached, or lost
+    sky: float  # Below the air, facing a clear night sky [K]
 
 
 _WARMTH = {
@@ -71,25 +68,19 @@ _WARMTH = {
     ObjectClass.TRAIN: Warmth(18.0, 0.6, 5.0),
 }
 
-_WARM, _COLD = 22.0, -3.0
-"""Mean temperature of the air in summer, and while snow lies [Celsius]."""
+_WARM, _COLD = 22.0, -3.0  # Mean temperature of the air in summer, and while snow lies [Celsius]
 _SWING, _WARMEST = 5.0, 15.0
 """Half of the difference between day and night [K], and the hour at which it is warmest."""
-_DAY_HOUR, _NIGHT_HOUR = 14.0, 23.0
-"""Hours that stand for weathers without one."""
-_CLEAR_SUN = 0.97
-"""Luminance of the light of a clear day's sun, in the units of `Lighting`."""
-_STEP, _BACK = 0.5, 12.0
-"""Steps back in time, and how far [h]."""
+_DAY_HOUR, _NIGHT_HOUR = 14.0, 23.0  # Hours that stand for weathers without one
+_CLEAR_SUN = 0.97  # Luminance of the light of a clear day's sun, in the units of `Lighting`
+_STEP, _BACK = 0.5, 12.0  # Steps back in time, and how far [h]
 
 
 class MoverHeat(NamedTuple):
     """What warms a moving thing from inside [K above the air]."""
 
-    engine: float
-    """At its hottest spot, on the body's skin."""
-    wheels: float
-    """Tyres that roll."""
+    engine: float  # At its hottest spot, on the body's skin
+    wheels: float  # Tyres that roll
 
 
 ENGINE_HEAT = {

@@ -127,28 +127,18 @@ class ThermalFrames(NamedTuple):
 
     object_id: NDArray[np.int32]
     """Object of each pixel; `ACTOR_OBJECT` + its slot of moving things, shape (V, H, W)."""
-    depth: NDArray[np.float32]
-    """[m], shape (V, H, W)."""
-    normal: NDArray[np.uint8]
-    """See `Picture.normal`, shape (V, H, W, 3)."""
-    eye: NDArray[np.float64]
-    """Optical centres [m], shape (V, 3)."""
-    rotation: NDArray[np.float64]
-    """Camera to world, shape (V, 3, 3)."""
+    depth: NDArray[np.float32]  # [m], shape (V, H, W)
+    normal: NDArray[np.uint8]  # See `Picture.normal`, shape (V, H, W, 3).
+    eye: NDArray[np.float64]  # Optical centres [m], shape (V, 3)
+    rotation: NDArray[np.float64]  # Camera to world, shape (V, 3, 3)
     ray: NDArray[np.float64]
     """One over the focal length along rows and along columns [1/pixel], shape (V, 2)."""
-    lens: NDArray[np.float64]
-    """The numbers of `Lens`, shape (V, 10), or (0, 10): pinholes."""
-    world: NDArray[np.int32]
-    """Row of each view in `heat`, shape (V,)."""
-    heat: NDArray[np.void]
-    """See `slot_heat`, shape (W, I)."""
-    fog: NDArray[np.float32]
-    """Density of the air [1/m], shape (V,)."""
-    seed: NDArray[np.int64]
-    """Seed of each view's episode, shape (V,)."""
-    step: NDArray[np.int64]
-    """Physics steps since its reset, shape (V,)."""
+    lens: NDArray[np.float64]  # The numbers of `Lens`, shape (V, 10), or (0, 10): pinholes
+    world: NDArray[np.int32]  # Row of each view in `heat`, shape (V,)
+    heat: NDArray[np.void]  # See `slot_heat`, shape (W, I)
+    fog: NDArray[np.float32]  # Density of the air [1/m], shape (V,)
+    seed: NDArray[np.int64]  # Seed of each view's episode, shape (V,)
+    step: NDArray[np.int64]  # Physics steps since its reset, shape (V,)
 
 
 class ThermalImager:
@@ -191,11 +181,9 @@ _BINS = 512
 _COLDEST, _WARMEST = -70.0, 130.0
 """Temperatures that are told apart where black and white are chosen [Celsius]."""
 
-_CLEARER = 0.5
-"""Long waves pass fog twice as far as light does."""
+_CLEARER = 0.5  # Long waves pass fog twice as far as light does
 
-_SKY_AT_HORIZON = 0.12
-"""Sine of the elevation below which the sky is nearly as warm as the air."""
+_SKY_AT_HORIZON = 0.12  # Sine of the elevation below which the sky is nearly as warm as the air
 
 
 class _Scene(NamedTuple):

@@ -46,13 +46,10 @@ class ToneCurve:
 class _Work(NamedTuple):
     """Inputs and outputs of the kernel."""
 
-    radiance: NDArray[np.float32]
-    """Shape (V, 3, pixels)."""
-    rgb: NDArray[np.uint8]
-    """Shape (V, bytes of a picture)."""
+    radiance: NDArray[np.float32]  # Shape (V, 3, pixels)
+    rgb: NDArray[np.uint8]  # Shape (V, bytes of a picture)
     table: NDArray[np.uint8]
-    scale: float
-    """Steps of the table in a unit of radiance."""
+    scale: float  # Steps of the table in a unit of radiance
 
 
 @kernel(inline=True)

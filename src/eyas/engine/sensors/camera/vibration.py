@@ -19,8 +19,7 @@ __all__ = ["Shake", "Vibration", "VibrationConfig", "no_shake", "shaken_axes"]
 
 Floats = NDArray[np.float64]
 
-AXES = 3
-"""Roll, pitch and yaw."""
+AXES = 3  # Roll, pitch and yaw
 
 
 class VibrationConfig(Config):
@@ -49,12 +48,9 @@ class VibrationConfig(Config):
 class Shake(NamedTuple):
     """Vibration of N cameras: sums of T sinusoids about roll, pitch and yaw."""
 
-    amplitude: Floats
-    """[rad], shape (N, 3, T)."""
-    pulsation: Floats
-    """2 pi times the frequency [rad/s], shape (N, 3, T)."""
-    phase: Floats
-    """[rad], shape (N, 3, T)."""
+    amplitude: Floats  # [rad], shape (N, 3, T)
+    pulsation: Floats  # 2 pi times the frequency [rad/s], shape (N, 3, T)
+    phase: Floats  # [rad], shape (N, 3, T)
 
 
 def no_shake(count: int) -> Shake:
@@ -104,8 +100,7 @@ class _Shaken(NamedTuple):
     """Cameras at their instants, and the same with their vibration."""
 
     steady: CameraState
-    tick: NDArray[np.int64]
-    """Time of the world in physics steps, shape (N,)."""
+    tick: NDArray[np.int64]  # Time of the world in physics steps, shape (N,)
     shaken: CameraState
 
 
@@ -166,8 +161,7 @@ class Vibration:
             _shake_all(self.shake, one)
 
 
-_TONES = 12
-"""Sinusoids about each axis: enough that the motion does not repeat within an episode."""
+_TONES = 12  # Sinusoids about each axis: enough that the motion does not repeat within an episode
 
 
 @compiled

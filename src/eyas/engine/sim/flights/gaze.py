@@ -24,10 +24,8 @@ _SHALLOW = 0.6
 class Glances(NamedTuple):
     """When the camera looks past the target; M samples each."""
 
-    cut: Floats
-    """1 while the target is to be at the border of the picture, else 0, shape (M,)."""
-    away: Floats
-    """1 while it is to be outside, else 0, shape (M,)."""
+    cut: Floats  # 1 while the target is to be at the border of the picture, else 0, shape (M,)
+    away: Floats  # 1 while it is to be outside, else 0, shape (M,)
 
     def after(self, count: int) -> "Glances":
         """Return the same after some samples, in which all is as it is at first."""
@@ -37,14 +35,10 @@ class Glances(NamedTuple):
 class Aside(NamedTuple):
     """How the camera looks past the target in one flight."""
 
-    side: float
-    """1: to its left, so that it is on the right of the picture; -1: to its right."""
-    margin: float
-    """How far outside the picture it is while the camera looks away, in half pictures."""
-    searches: bool
-    """Whether the camera looks around meanwhile."""
-    sweep: float
-    """How far it then turns [rad]."""
+    side: float  # 1: to its left, so that it is on the right of the picture; -1: to its right
+    margin: float  # How far outside the picture it is while the camera looks away, in half pictures
+    searches: bool  # Whether the camera looks around meanwhile
+    sweep: float  # How far it then turns [rad]
 
 
 def glances(

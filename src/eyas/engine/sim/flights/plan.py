@@ -35,14 +35,10 @@ Floats = NDArray[np.float64]
 class Limits(NamedTuple):
     """The most that a flight does. Where a limit is not met, it is smoothed once more."""
 
-    acceleration: float
-    """Of the drone [m/s^2]."""
-    jerk: float
-    """Of the drone [m/s^3]."""
-    turn: float
-    """Of the camera, about each axis [rad/s]."""
-    turn_acceleration: float
-    """[rad/s^2]"""
+    acceleration: float  # Of the drone [m/s^2]
+    jerk: float  # Of the drone [m/s^3]
+    turn: float  # Of the camera, about each axis [rad/s]
+    turn_acceleration: float  # [rad/s^2]
 
 
 LIMITS = Limits(acceleration=8.0, jerk=25.0, turn=2.5, turn_acceleration=10.0)
@@ -57,14 +53,11 @@ _BENDS = (1.0, 0.7, 0.45, 0.25)
 _FLATTEST = 0.1
 """Least pitch at which a target is followed; below it the drone would be far away [rad]."""
 
-_STRAIGHT = Aside(side=1.0, margin=0.0, searches=False, sweep=0.0)
-"""The camera looks past nothing."""
+_STRAIGHT = Aside(side=1.0, margin=0.0, searches=False, sweep=0.0)  # The camera looks past nothing
 
-_LIFT = 2.0
-"""What is no higher than this is flown over instead of around [m]."""
+_LIFT = 2.0  # What is no higher than this is flown over instead of around [m]
 
-_WIDER = 1.5
-"""Factor on the reach of a smoothing that was not enough."""
+_WIDER = 1.5  # Factor on the reach of a smoothing that was not enough
 
 _CANDIDATES, _GOOD = 12, 0.03
 """Most flights that are tried, and the cost below which one is taken at once."""
@@ -72,41 +65,31 @@ _CANDIDATES, _GOOD = 12, 0.03
 _FOR_HIDDEN = 4
 """How many times as many are tried for a share of hidden frames, which only chance brings."""
 
-_CORRECTION = 0.7
-"""Share of an error that the next flight makes up for."""
+_CORRECTION = 0.7  # Share of an error that the next flight makes up for
 
 
 class Wishes(NamedTuple):
     """What the settings ask of flights."""
 
     path: CameraPath
-    height: Variation
-    """Above the target [m]."""
-    pitch: Variation
-    """At which the camera looks down at it [rad]."""
+    height: Variation  # Above the target [m]
+    pitch: Variation  # At which the camera looks down at it [rad]
     shares: Asked
 
 
 class Surroundings(NamedTuple):
     """What is known of an episode before it is flown; M samples `STEP` apart."""
 
-    target: Floats
-    """Middle of the target's body [m], shape (M, 3)."""
-    heading: Floats
-    """[rad], shape (M,)."""
-    ground: Floats
-    """z of the ground below it [m], shape (M,)."""
-    size: Floats
-    """Length, width, height of the target [m], shape (3,)."""
-    field_of_view: float
-    """Horizontal [rad]."""
-    picture: tuple[int, int]
-    """Width and height [pixels]."""
+    target: Floats  # Middle of the target's body [m], shape (M, 3)
+    heading: Floats  # [rad], shape (M,)
+    ground: Floats  # z of the ground below it [m], shape (M,)
+    size: Floats  # Length, width, height of the target [m], shape (3,)
+    field_of_view: float  # Horizontal [rad]
+    picture: tuple[int, int]  # Width and height [pixels]
     clearance: Clearance
     others: tuple[Floats, ...] = ()
     """Where other drones of the world will be meanwhile [m], shape (M, 3) each."""
-    unseen: int = 0
-    """Samples before the first picture."""
+    unseen: int = 0  # Samples before the first picture
 
 
 class Plan(NamedTuple):
@@ -114,10 +97,8 @@ class Plan(NamedTuple):
 
     points: Floats
     """Control points: x, y, z [m], yaw, pitch positive down, field of view [rad], shape (M, 6)."""
-    shares: Shares
-    """Foreseen."""
-    cost: float
-    """How far it is from what was asked; 0 is perfect."""
+    shares: Shares  # Foreseen
+    cost: float  # How far it is from what was asked; 0 is perfect
 
 
 class _Aimed(NamedTuple):

@@ -13,31 +13,24 @@ __all__ = ["SMALL", "Asked", "Shares", "foreseen", "mean"]
 
 Floats = NDArray[np.float64]
 
-SMALL = 32 * 32
-"""A box with fewer pixels is small, as COCO has it."""
+SMALL = 32 * 32  # A box with fewer pixels is small, as COCO has it
 
 _SHAPE = 0.88
 """Size of a box whose corners span what a body of that box covers in a picture: bodies are round.
 With it, foreseen and recorded shares of 16 flights differ by some 0.02."""
 
-_BODY = 0.6
-"""Size of the box at whose corners it is looked whether something hides the body."""
+_BODY = 0.6  # Size of the box at whose corners it is looked whether something hides the body
 
-_NEAR = 0.1
-"""Depth from which on points are projected [m]."""
+_NEAR = 0.1  # Depth from which on points are projected [m]
 
 
 class Asked(NamedTuple):
     """Shares of frames that a user asks for, 0 to 1; None: as it comes."""
 
-    in_view: float | None
-    """Target in the picture, hidden or not."""
-    hidden: float | None
-    """Half of it or more is hidden, in the picture."""
-    cut: float | None
-    """Cut by the border of the picture."""
-    small: float | None
-    """Its box has fewer than `SMALL` pixels."""
+    in_view: float | None  # Target in the picture, hidden or not
+    hidden: float | None  # Half of it or more is hidden, in the picture
+    cut: float | None  # Cut by the border of the picture
+    small: float | None  # Its box has fewer than `SMALL` pixels
 
 
 class Shares(NamedTuple):

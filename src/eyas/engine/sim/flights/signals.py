@@ -28,8 +28,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-STEP = 0.04
-"""Time between two control points [s]."""
+STEP = 0.04  # Time between two control points [s]
 
 
 class Rates(NamedTuple):

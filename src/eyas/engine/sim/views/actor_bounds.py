@@ -14,19 +14,15 @@ from eyas.lanes.vector import WIDTH
 
 __all__ = ["ActorBounds", "bounds_of", "made_row", "make_rows"]
 
-NOWHERE = -1e30
-"""Radius around actors that are absent: it reaches no view."""
+NOWHERE = -1e30  # Radius around actors that are absent: it reaches no view
 
 
 class ActorBounds(NamedTuple):
     """Spheres around A actors in each of S seconds."""
 
-    actor: NDArray[np.int64]
-    """The actors, in the order of the columns, shape (A,)."""
-    ready: NDArray[np.bool_]
-    """Whether each row is made, shape (S,)."""
-    samples: NDArray[np.int64]
-    """Steps between samples of the motion in a row, shape (1,)."""
+    actor: NDArray[np.int64]  # The actors, in the order of the columns, shape (A,)
+    ready: NDArray[np.bool_]  # Whether each row is made, shape (S,)
+    samples: NDArray[np.int64]  # Steps between samples of the motion in a row, shape (1,)
     sphere: NDArray[np.float32]
     """Centre x, y, z and radius [m], shape (S, 4, A, filled up for lanes)."""
 

@@ -16,8 +16,7 @@ from eyas.lanes import interpreted
 
 __all__ = ["SignalLights", "TrackerBodies", "lights_of", "signal_poles"]
 
-_SAME = 0.01
-"""Poles nearer to each other are one [m]."""
+_SAME = 0.01  # Poles nearer to each other are one [m]
 
 _rotate = interpreted(rotate)  # of scalars, but arrays do as well
 
@@ -37,8 +36,7 @@ class TrackerBodies:
     ) -> None:
         self._part, self._actors = part, actors
         others = [own[own != n] for n, own in enumerate(mates)]
-        self.any = visible and any(map(len, others))
-        """Whether any tracker sees another."""
+        self.any = visible and any(map(len, others))  # Whether any tracker sees another
         self._others = np.full((len(others), max(map(len, others), default=0)), -1)
         for row, own in zip(self._others, others, strict=True):
             row[: len(own)] = own
@@ -100,14 +98,10 @@ class SignalLights:
     """The lights on the P poles of a scene whose programs are known."""
 
     plan: SignalPlan
-    row: NDArray[np.int64]
-    """Edge of the plan that each pole is for, shape (P,)."""
-    pose: NDArray[np.float32]
-    """Poles, to world, shape (P, 3, 4)."""
-    object_id: NDArray[np.int32]
-    """Objects of the scene, shape (P,)."""
-    first_part: int
-    """Part that shows `Aspect.RED`; the other aspects follow."""
+    row: NDArray[np.int64]  # Edge of the plan that each pole is for, shape (P,)
+    pose: NDArray[np.float32]  # Poles, to world, shape (P, 3, 4)
+    object_id: NDArray[np.int32]  # Objects of the scene, shape (P,)
+    first_part: int  # Part that shows `Aspect.RED`; the other aspects follow.
 
     def parts(self, time: NDArray[np.float64], pole: NDArray[np.int64]) -> NDArray[np.int32]:
         """Return what poles show at times of the traffic [s], of shapes that fit; -1: nothing."""

@@ -18,8 +18,7 @@ __all__ = ["EventViews"]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-_LIGHT = 8 << 20
-"""Bytes of light that are drawn before they are seen."""
+_LIGHT = 8 << 20  # Bytes of light that are drawn before they are seen
 
 
 class EventViews:

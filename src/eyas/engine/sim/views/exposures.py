@@ -44,12 +44,9 @@ _LIGHT = 32 << 20
 class Moment(NamedTuple):
     """K views of trackers' cameras at moments of their own."""
 
-    trackers: Chosen
-    """The tracker of each, shape (K,)."""
-    cameras: CameraState
-    """K cameras."""
-    later: Floats
-    """How long each is after the instant of its tracker's picture [s], shape (K,)."""
+    trackers: Chosen  # The tracker of each, shape (K,)
+    cameras: CameraState  # K cameras
+    later: Floats  # How long each is after the instant of its tracker's picture [s], shape (K,)
 
 
 class Stage(Protocol):

@@ -36,8 +36,7 @@ __all__ = [
     "write_entry",
 ]
 
-SLACK = 0.05
-"""Distance outside a view at which actors are still posed: more than roundings [m]."""
+SLACK = 0.05  # Distance outside a view at which actors are still posed: more than roundings [m]
 
 CAMERA: Final = np.dtype(
     [
@@ -57,10 +56,8 @@ depth of 1 m, and the lengths of the rays to its left and upper edge at that dep
 class KindTable(NamedTuple):
     """K kinds of actors, whose columns in the bounds follow each other."""
 
-    end: NDArray[np.int64]
-    """Where the actors of each kind end, shape (K,)."""
-    slots: NDArray[np.int64]
-    """Slots that an actor of each kind needs, shape (K,)."""
+    end: NDArray[np.int64]  # Where the actors of each kind end, shape (K,)
+    slots: NDArray[np.int64]  # Slots that an actor of each kind needs, shape (K,)
     reach: NDArray[np.float64]
     """Distance up to which an actor of each kind may matter [m], shape (K,)."""
 
@@ -68,22 +65,14 @@ class KindTable(NamedTuple):
 class ViewQuery(NamedTuple):
     """W worlds at their times, with V views."""
 
-    worlds: NDArray[np.int64]
-    """W, shape (1,)."""
-    aspect: NDArray[np.float64]
-    """Height of what the cameras show over its width, shape (1,)."""
-    world: NDArray[np.int64]
-    """Which worlds, shape (W,)."""
-    time: NDArray[np.float64]
-    """[s], shape (W,)"""
-    end: NDArray[np.int64]
-    """Where the views of each world end, shape (W,)."""
-    eye: NDArray[np.float64]
-    """Optical centres of the views, world by world [m], shape (V, 3)."""
-    rotation: NDArray[np.float64]
-    """Camera to world; columns forward, left, up, shape (V, 3, 3)."""
-    field_of_view: NDArray[np.float64]
-    """Horizontal [rad], shape (V,)."""
+    worlds: NDArray[np.int64]  # W, shape (1,)
+    aspect: NDArray[np.float64]  # Height of what the cameras show over its width, shape (1,)
+    world: NDArray[np.int64]  # Which worlds, shape (W,)
+    time: NDArray[np.float64]  # [s], shape (W,)
+    end: NDArray[np.int64]  # Where the views of each world end, shape (W,)
+    eye: NDArray[np.float64]  # Optical centres of the views, world by world [m], shape (V, 3)
+    rotation: NDArray[np.float64]  # Camera to world; columns forward, left, up, shape (V, 3, 3)
+    field_of_view: NDArray[np.float64]  # Horizontal [rad], shape (V,)
     camera: NDArray[np.void]
     """Working memory: the same as the test needs it, of `CAMERA`, shape (V,)."""
 
@@ -93,22 +82,15 @@ class Listed(NamedTuple):
 
     needed: NDArray[np.int64]
     """Number of these actors, and the most slots that a world needs, shape (2,)."""
-    end: NDArray[np.int64]
-    """Where the actors of each kind end, shape (K,)."""
-    used: NDArray[np.int64]
-    """Slots used in each world, shape (W,)."""
+    end: NDArray[np.int64]  # Where the actors of each kind end, shape (K,)
+    used: NDArray[np.int64]  # Slots used in each world, shape (W,)
     slot: NDArray[np.int64]
     """First slot of each actor, counted through the lists of all worlds, shape (E,)."""
-    state: ActorState
-    """As of one world, shape (1, E)."""
-    looks: Looks
-    """The same."""
-    part: NDArray[np.int32]
-    """See `DrawList`; emptied, shape (W, I)."""
-    object_id: NDArray[np.int32]
-    """See `DrawList`, shape (W, I)."""
-    lamps: NDArray[np.uint8]
-    """See `DrawList`."""
+    state: ActorState  # As of one world, shape (1, E)
+    looks: Looks  # The same
+    part: NDArray[np.int32]  # See `DrawList`; emptied, shape (W, I)
+    object_id: NDArray[np.int32]  # See `DrawList`, shape (W, I)
+    lamps: NDArray[np.uint8]  # See `DrawList`
 
 
 @kernel(inline=True)
@@ -175,16 +157,11 @@ class Entry(NamedTuple):
     """An actor that is listed."""
 
     actor: int
-    world: int
-    """Whose looks it has."""
-    row: int
-    """Of the list of that world."""
-    slots: int
-    """How many it needs."""
-    place: int
-    """Its place in `Listed.slot`."""
-    state_row: int
-    """Its place in `Listed.state` and `Listed.looks`."""
+    world: int  # Whose looks it has
+    row: int  # Of the list of that world
+    slots: int  # How many it needs
+    place: int  # Its place in `Listed.slot`.
+    state_row: int  # Its place in `Listed.state` and `Listed.looks`.
     state_column: int
     first: int
     """What is added to the number of its first slot in the list, to be told in `Listed.slot`."""

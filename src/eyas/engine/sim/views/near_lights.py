@@ -30,12 +30,9 @@ class _Found(NamedTuple):
     and `Listed.needed` tells how many slots there must be.
     """
 
-    number: NDArray[np.int64]
-    """Shape (1,)."""
-    pole: NDArray[np.int64]
-    """Shape (F,)."""
-    slot: NDArray[np.int64]
-    """Slot, counted through the lists of all worlds, shape (F,)."""
+    number: NDArray[np.int64]  # Shape (1,)
+    pole: NDArray[np.int64]  # Shape (F,)
+    slot: NDArray[np.int64]  # Slot, counted through the lists of all worlds, shape (F,)
 
 
 @compiled

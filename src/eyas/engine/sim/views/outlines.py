@@ -25,34 +25,23 @@ Floats = NDArray[np.float64]
 class _Vertices(NamedTuple):
     """The vertices of the finest meshes of all parts, each once."""
 
-    position: Floats
-    """In the frame of their part [m], shape (V, 3)."""
-    first: NDArray[np.int64]
-    """First vertex of each part, and the number of all, shape (K + 1,)."""
+    position: Floats  # In the frame of their part [m], shape (V, 3)
+    first: NDArray[np.int64]  # First vertex of each part, and the number of all, shape (K + 1,)
 
 
 class _Query(NamedTuple):
     """The actors of a world, and a camera."""
 
-    wanted: NDArray[np.int64]
-    """Actors whose boxes are wanted, shape (B,)."""
-    first_slot: NDArray[np.int64]
-    """See `Rigs`, shape (A + 1,)."""
-    part: NDArray[np.int32]
-    """See `DrawList`, shape (1, I)."""
-    pose: NDArray[np.float32]
-    """See `DrawList`, shape (1, I, 3, 4)."""
-    eye: Floats
-    """Optical centre [m], shape (3,)."""
-    axes: Floats
-    """Camera to world; columns forward, left, up, shape (3, 3)."""
-    camera: Floats
-    """Focal length, and the principal point [pixels], shape (3,)."""
-    bent: int
-    """1: `lens` bends the picture."""
+    wanted: NDArray[np.int64]  # Actors whose boxes are wanted, shape (B,)
+    first_slot: NDArray[np.int64]  # See `Rigs`, shape (A + 1,)
+    part: NDArray[np.int32]  # See `DrawList`, shape (1, I)
+    pose: NDArray[np.float32]  # See `DrawList`, shape (1, I, 3, 4)
+    eye: Floats  # Optical centre [m], shape (3,)
+    axes: Floats  # Camera to world; columns forward, left, up, shape (3, 3)
+    camera: Floats  # Focal length, and the principal point [pixels], shape (3,)
+    bent: int  # 1: `lens` bends the picture
     lens: Lens
-    box: Floats
-    """Left, top, right, bottom of each wanted actor [pixels], shape (B, 4)."""
+    box: Floats  # Left, top, right, bottom of each wanted actor [pixels], shape (B, 4)
 
 
 class Outlines:

@@ -21,23 +21,18 @@ _APART = 0.1
 """What hides an object is nearer than it by more than this [m]; less is rounding of its edges."""
 
 
-_FAR = 1e9
-"""Columns and rows beyond this are no places [pixels]."""
+_FAR = 1e9  # Columns and rows beyond this are no places [pixels]
 
 
 class ParkedObject(NamedTuple):
     """A parked object: a car in a bay, a boat, a train, or a rack of bicycles."""
 
     object_id: int
-    type: str
-    """Name of its kind on the map."""
+    type: str  # Name of its kind on the map
     object_class: ObjectClass
-    foot: tuple[float, float, float]
-    """Middle of its underside, world frame [m]."""
-    size: tuple[float, float, float]
-    """Length, width, height [m]."""
-    yaw: float
-    """Heading, counter-clockwise from east [rad]."""
+    foot: tuple[float, float, float]  # Middle of its underside, world frame [m]
+    size: tuple[float, float, float]  # Length, width, height [m]
+    yaw: float  # Heading, counter-clockwise from east [rad]
 
 
 class SeenParked(NamedTuple):
@@ -54,18 +49,14 @@ class SeenParked(NamedTuple):
 class _Copies(NamedTuple):
     """The copies that R parked objects are made of, object by object."""
 
-    row: NDArray[np.int32]
-    """Row of the parked object with each id, -1 for other ids, shape (ids,)."""
+    row: NDArray[np.int32]  # Row of the parked object with each id, -1 for other ids, shape (ids,)
     first_copy: NDArray[np.int64]
     """First copy of each object, and the number of all, shape (R + 1,)."""
-    pose: NDArray[np.float32]
-    """See `Fixtures`, shape (C, 3, 4)."""
-    prototype: NDArray[np.int64]
-    """Prototype of each copy, one of the P that are used, shape (C,)."""
+    pose: NDArray[np.float32]  # See `Fixtures`, shape (C, 3, 4)
+    prototype: NDArray[np.int64]  # Prototype of each copy, one of the P that are used, shape (C,)
     first_vertex: NDArray[np.int64]
     """First vertex of each prototype, and the number of all, shape (P + 1,)."""
-    vertex: NDArray[np.float32]
-    """Of their finest meshes [m], shape (V, 3)."""
+    vertex: NDArray[np.float32]  # Of their finest meshes [m], shape (V, 3)
     first_triangle: NDArray[np.int64]
     """First triangle of each prototype, and the number of all, shape (P + 1,)."""
     triangle: NDArray[np.int32]
@@ -75,31 +66,22 @@ class _Copies(NamedTuple):
 class _Query(NamedTuple):
     """A picture, its camera, and what it shows of the R objects."""
 
-    shown: NDArray[np.int32]
-    """Object of each pixel, shape (H, W)."""
-    depth: NDArray[np.float32]
-    """Distance of each pixel along the optical axis [m], shape (H, W)."""
-    eye: Floats
-    """Optical centre [m], shape (3,)."""
-    axes: Floats
-    """Camera to world; columns forward, left, up, shape (3, 3)."""
-    camera: Floats
-    """Focal length, and the principal point [pixels], shape (3,)."""
-    bent: int
-    """1: `lens` bends the picture."""
+    shown: NDArray[np.int32]  # Object of each pixel, shape (H, W)
+    depth: NDArray[np.float32]  # Distance of each pixel along the optical axis [m], shape (H, W)
+    eye: Floats  # Optical centre [m], shape (3,)
+    axes: Floats  # Camera to world; columns forward, left, up, shape (3, 3)
+    camera: Floats  # Focal length, and the principal point [pixels], shape (3,)
+    bent: int  # 1: `lens` bends the picture
     lens: Lens
     near: NDArray[np.float32]
     """Inverse distances of one object at a time [1/m]; all 0 before and after, shape (H, W)."""
     place: Floats
     """Column, row and inverse distance [1/m] of the vertices of a copy, shape (most, 3)."""
-    pixels: NDArray[np.int32]
-    """Visible and hidden pixels of each object, shape (R, 2)."""
+    pixels: NDArray[np.int32]  # Visible and hidden pixels of each object, shape (R, 2)
     visible_box: NDArray[np.int32]
     """Left, top, right, bottom of the visible ones [pixels], shape (R, 4)."""
-    box: NDArray[np.int32]
-    """The same of all of them, shape (R, 4)."""
-    whole_box: Floats
-    """The same of its vertices, shape (R, 4)."""
+    box: NDArray[np.int32]  # The same of all of them, shape (R, 4)
+    whole_box: Floats  # The same of its vertices, shape (R, 4)
 
 
 class ParkedObjects:

@@ -19,11 +19,9 @@ __all__ = ["SPRAY_REACH", "spray_of", "throwing"]
 SPRAY_REACH = 14.0
 """Distance from a vehicle beyond which its spray is not seen [m], see `sky.plumes`."""
 
-_SLOWEST = 8.0
-"""Speed up to which none is thrown up [m/s]."""
+_SLOWEST = 8.0  # Speed up to which none is thrown up [m/s]
 
-_AXLE = 0.32
-"""Distance of the rear axle behind the middle, as a share of the length."""
+_AXLE = 0.32  # Distance of the rear axle behind the middle, as a share of the length
 
 _VEHICLES = (ObjectClass.CAR, ObjectClass.TRUCK, ObjectClass.BUS, ObjectClass.MOTORCYCLE)
 

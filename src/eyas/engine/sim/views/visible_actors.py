@@ -41,8 +41,7 @@ __all__ = ["VisibleActors"]
 _LONGEST = 3.0
 """Reach of a thing beyond which it is not said to move in a picture: half a long car [m]."""
 
-_CHOICES = 32
-"""Groups of actors that are kept: those of one picture are mostly those of the next."""
+_CHOICES = 32  # Groups of actors that are kept: those of one picture are mostly those of the next
 
 
 @compiled

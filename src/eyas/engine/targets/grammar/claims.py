@@ -28,8 +28,7 @@ class Doing(StrEnum):
 
     STANDING = "standing"
     MOVING = "moving"
-    STRAIGHT = "straight"
-    """It moves straight on."""
+    STRAIGHT = "straight"  # It moves straight on
     LEFT_TURN = "left_turn"
     RIGHT_TURN = "right_turn"
 
@@ -61,14 +60,11 @@ class Claim(NamedTuple):
     """What a phrase says. Something that has only a body is "the car"."""
 
     body: BodyWord
-    colour: str | None = None
-    """A name in `COLOUR_NAMES`."""
+    colour: str | None = None  # A name in `COLOUR_NAMES`
     doing: Doing | None = None
     place: PicturePlace | None = None
-    bearing: Bearing | None = None
-    """Only with a reference."""
-    other_body: BodyWord | None = None
-    """The reference, of which there is one only in view."""
+    bearing: Bearing | None = None  # Only with a reference
+    other_body: BodyWord | None = None  # The reference, of which there is one only in view
     other_colour: str | None = None
 
     @property
@@ -172,8 +168,7 @@ def _does(doing: Doing, view: InView, *, strict: bool) -> Mask:
             return moves & (-view.yaw_rate >= turn)
 
 
-_ASIDE: Final = 0.06
-"""Distance in the picture that decides a place [its width or height]."""
+_ASIDE: Final = 0.06  # Distance in the picture that decides a place [its width or height]
 
 _SIDES = {
     PicturePlace.LEFT: (0, 1.0),
@@ -205,8 +200,7 @@ def _is_placed(place: PicturePlace, view: InView, among: Mask, *, strict: bool) 
     return shown & (where < first - margin)
 
 
-_GAP: Final = 10.0
-"""Longest free road between something and what it is behind or ahead of [m]."""
+_GAP: Final = 10.0  # Longest free road between something and what it is behind or ahead of [m]
 
 
 def _bears(claim: Claim, view: InView, *, strict: bool) -> Mask:

@@ -18,10 +18,8 @@ Floats = NDArray[np.float64]
 class BodyWord(StrEnum):
     """Words for what something is."""
 
-    VEHICLE = "vehicle"
-    """Anything that drives on roads."""
-    CAR = "car"
-    """A sedan, an SUV, a hatchback or a small car."""
+    VEHICLE = "vehicle"  # Anything that drives on roads
+    CAR = "car"  # A sedan, an SUV, a hatchback or a small car
     SEDAN = "sedan"
     SUV = "suv"
     HATCHBACK = "hatchback"
@@ -99,22 +97,14 @@ class InView(NamedTuple):
     The phrases of one picture speak of these, and of nothing that does not move by itself.
     """
 
-    actor: NDArray[np.int64]
-    """Actor of the tracker's world, shape (A,)."""
-    model: NDArray[np.int64]
-    """Index into `MODELS`, shape (A,)."""
-    colour: Floats
-    """sRGB 0 to 1, shape (A, 3)."""
-    speed: Floats
-    """[m/s], shape (A,)."""
-    yaw_rate: Floats
-    """Counter-clockwise [rad/s], shape (A,)."""
-    heading: Floats
-    """Counter-clockwise from east [rad], shape (A,)."""
-    middle: Floats
-    """East and north of its middle [m], shape (A, 2)."""
-    size: Floats
-    """Length and width [m], shape (A, 2)."""
+    actor: NDArray[np.int64]  # Actor of the tracker's world, shape (A,)
+    model: NDArray[np.int64]  # Index into `MODELS`, shape (A,)
+    colour: Floats  # sRGB 0 to 1, shape (A, 3)
+    speed: Floats  # [m/s], shape (A,)
+    yaw_rate: Floats  # Counter-clockwise [rad/s], shape (A,)
+    heading: Floats  # Counter-clockwise from east [rad], shape (A,)
+    middle: Floats  # East and north of its middle [m], shape (A, 2)
+    size: Floats  # Length and width [m], shape (A, 2)
     place: Floats
     """Its middle from the left and from the upper edge of the picture [its width, its height],
     shape (A, 2)."""

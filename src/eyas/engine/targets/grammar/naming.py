@@ -48,12 +48,9 @@ class PhraseKind(StrEnum):
 class Phrase(NamedTuple):
     """A target in words."""
 
-    words: str
-    """A sentence in small letters; empty: nothing is said."""
-    claim: Claim | None
-    """What it says; None: nothing."""
-    kind: PhraseKind | None
-    """None: nothing is said."""
+    words: str  # A sentence in small letters; empty: nothing is said
+    claim: Claim | None  # What it says; None: nothing
+    kind: PhraseKind | None  # None: nothing is said
 
     @property
     def attributes(self) -> NDArray[np.float32]:
@@ -61,8 +58,7 @@ class Phrase(NamedTuple):
         return attributes_of(self.claim)
 
 
-NO_PHRASE: Final = Phrase("", None, None)
-"""No words."""
+NO_PHRASE: Final = Phrase("", None, None)  # No words
 
 
 def phrase_about(

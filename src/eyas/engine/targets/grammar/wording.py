@@ -16,11 +16,9 @@ from eyas.engine.targets.grammar.in_view import BodyWord
 
 __all__ = ["CHARACTERS", "LONGEST", "WORDINGS", "Wording", "in_words"]
 
-CHARACTERS: Final = "abcdefghijklmnopqrstuvwxyz ,'"
-"""All characters of phrases."""
+CHARACTERS: Final = "abcdefghijklmnopqrstuvwxyz ,'"  # All characters of phrases
 
-LONGEST: Final = 192
-"""No phrase is longer [characters]."""
+LONGEST: Final = 192  # No phrase is longer [characters]
 
 _NOUNS: Mapping[BodyWord, tuple[str, ...]] = {
     BodyWord.VEHICLE: ("vehicle",),
@@ -49,14 +47,11 @@ class Wording(StrEnum):
 class WordingSet(NamedTuple):
     """Expressions, each of which one is sampled from; `{}` is replaced."""
 
-    sentences: tuple[str, ...]
-    """Around "the red car"."""
+    sentences: tuple[str, ...]  # Around "the red car"
     doing: Mapping[Doing, tuple[str, ...]]
     """After the noun; `{}` is "driving", "walking" or "moving"."""
-    place: Mapping[PicturePlace, tuple[str, ...]]
-    """After that."""
-    bearing: Mapping[Bearing, tuple[str, ...]]
-    """`{}` is the reference: "the bus"."""
+    place: Mapping[PicturePlace, tuple[str, ...]]  # After that
+    bearing: Mapping[Bearing, tuple[str, ...]]  # `{}` is the reference: "the bus"
 
 
 WORDINGS: Mapping[Wording, WordingSet] = {

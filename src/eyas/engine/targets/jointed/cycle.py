@@ -17,8 +17,7 @@ from eyas.lanes import exact
 
 __all__ = ["frames_of", "shapes_of", "skeleton_of", "table_of"]
 
-_FLAT = (0.15, 0.5)
-"""Part of the time on the ground during which the sole lies flat."""
+_FLAT = (0.15, 0.5)  # Part of the time on the ground during which the sole lies flat
 
 _SLACK = 0.999
 """Share of their lengths to which bones stretch: a straight leg's knee would point anywhere."""

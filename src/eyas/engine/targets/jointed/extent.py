@@ -13,8 +13,7 @@ from eyas.engine.targets.jointed.figure import Figure
 
 __all__ = ["Extents", "extents_of"]
 
-_INTERVALS = 32
-"""Moments of a cycle; between two of them, parts move along straight lines."""
+_INTERVALS = 32  # Moments of a cycle; between two of them, parts move along straight lines
 
 Floats = NDArray[np.float64]
 
@@ -22,15 +21,12 @@ Floats = NDArray[np.float64]
 class Extents(NamedTuple):
     """The boxes of a figure: least and largest x, y and z in the model frame [m]."""
 
-    rest: Floats
-    """While it stands, shape (2, 3)."""
+    rest: Floats  # While it stands, shape (2, 3)
     cycle: Floats
     """While it moves, at the beginnings of K intervals of a cycle and at its end,
     shape (K + 1, 2, 3)."""
-    stride: float
-    """Distance travelled in a cycle [m]."""
-    slowest: float
-    """Speed from which it moves fully [m/s]."""
+    stride: float  # Distance travelled in a cycle [m]
+    slowest: float  # Speed from which it moves fully [m/s]
 
     def at(self, travelled: float, speed: float) -> Floats:
         """Return the box at a moment, shape (2, 3).

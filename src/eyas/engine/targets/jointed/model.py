@@ -18,12 +18,9 @@ __all__ = ["JointedModel", "robot"]
 class JointedModel(Model):
     """One model of a person or robot."""
 
-    figure: Figure
-    """How it is built and how it moves."""
-    habit: Habit
-    """How it moves by itself."""
-    colours: tuple[Colour, ...]
-    """Colours that it may have, sRGB."""
+    figure: Figure  # How it is built and how it moves
+    habit: Habit  # How it moves by itself
+    colours: tuple[Colour, ...]  # Colours that it may have, sRGB
     part_colours: tuple[Colour | None, ...] = ()
     """Colours of its drawn parts, sRGB, in the order of `cycle.shapes_of`; None, or none at all:
     the one that it has of `colours`."""

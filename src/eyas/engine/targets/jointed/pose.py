@@ -17,8 +17,7 @@ from eyas.lanes.elementary import sin_cos, tan
 
 __all__ = ["BODY", "PART", "CycleTable", "pose_figure", "pose_jointed"]
 
-_TIGHTEST = 0.3
-"""Radius of the tightest curve that wheels steer [m]."""
+_TIGHTEST = 0.3  # Radius of the tightest curve that wheels steer [m]
 
 
 PART: Final = np.dtype(
@@ -59,10 +58,8 @@ of what spins [m], 0 if nothing does; upright: whether it stays upright on slope
 class CycleTable(NamedTuple):
     """Data of M models with S slots each, for the kernel."""
 
-    part: NDArray[np.void]
-    """Parts of dtype `PART`, shape (M, S)."""
-    body: NDArray[np.void]
-    """Models of dtype `BODY`, shape (M,)."""
+    part: NDArray[np.void]  # Parts of dtype `PART`, shape (M, S)
+    body: NDArray[np.void]  # Models of dtype `BODY`, shape (M,)
     rest: NDArray[np.float32]
     """Frames of the parts of a standing model: x, y and z axis and origin, shape (M, S, 4, 3)."""
     cycle: NDArray[np.float32]

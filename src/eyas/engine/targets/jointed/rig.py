@@ -16,18 +16,15 @@ from eyas.lanes import exact
 
 __all__ = ["JointedRig", "Layout", "layout_of"]
 
-_INTERVALS = 32
-"""Intervals of a cycle; within one, parts move along straight lines."""
+_INTERVALS = 32  # Intervals of a cycle; within one, parts move along straight lines
 
-_SHEARED = 1.25
-"""Factor by which what stays upright on a slope may be farther from its origin."""
+_SHEARED = 1.25  # Factor by which what stays upright on a slope may be farther from its origin
 
 
 class Layout(NamedTuple):
     """The parts of the models of one kind, and where they are; made once for all rigs of it."""
 
-    place: dict[Shape, int]
-    """The shapes, numbered."""
+    place: dict[Shape, int]  # The shapes, numbered
     table: CycleTable
 
 

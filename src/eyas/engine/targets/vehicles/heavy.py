@@ -35,13 +35,10 @@ from eyas.lanes import exact
 
 __all__ = ["HALF", "TRACTOR_BASE", "facing", "trailer_frame", "truck"]
 
-HALF = 1.25
-"""Half the width of cab and trailer [m]."""
-_OVERHANG = 1.35
-"""From the front axle of a truck to its bumper [m]."""
+HALF = 1.25  # Half the width of cab and trailer [m]
+_OVERHANG = 1.35  # From the front axle of a truck to its bumper [m]
 _TRAILER_AXLES = (-3.4, -4.7, -6.0)
-TRACTOR_BASE = BUMPER_AHEAD + REAR_AXLE - _OVERHANG
-"""Wheelbase of a truck that pulls a trailer [m]."""
+TRACTOR_BASE = BUMPER_AHEAD + REAR_AXLE - _OVERHANG  # Wheelbase of a truck that pulls a trailer [m]
 
 
 def truck(

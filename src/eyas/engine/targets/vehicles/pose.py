@@ -15,11 +15,9 @@ from eyas.lanes.elementary import sin_cos, tan
 
 __all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle", "pose_vehicles"]
 
-STEER_LIMIT = 0.6
-"""Largest steering angle [rad]."""
+STEER_LIMIT = 0.6  # Largest steering angle [rad]
 
-_SLOWEST = 1.0
-"""Smallest speed used to compute the curvature from the yaw rate [m/s]."""
+_SLOWEST = 1.0  # Smallest speed used to compute the curvature from the yaw rate [m/s]
 
 
 SLOT: Final = np.dtype(
@@ -48,10 +46,8 @@ AXLES: Final = np.dtype(
 class RigTable(NamedTuple):
     """Data of M models with V variants of S slots each, for the kernel; slot 0 is the body."""
 
-    slot: NDArray[np.void]
-    """Parts of dtype `SLOT`, shape (M, V, S)."""
-    axles: NDArray[np.void]
-    """Dimensions of dtype `AXLES`, shape (M,)."""
+    slot: NDArray[np.void]  # Parts of dtype `SLOT`, shape (M, V, S)
+    axles: NDArray[np.void]  # Dimensions of dtype `AXLES`, shape (M,)
 
 
 @kernel

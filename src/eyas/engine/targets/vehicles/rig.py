@@ -75,16 +75,13 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
 class _Wheels(NamedTuple):
     radius: float
     width: float
-    track: float
-    """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
-    design: int
-    """Of the discs."""
+    track: float  # Distance between the two wheels of an axle [m]; 0 for a single wheel
+    design: int  # Of the discs
 
 
 class _Body(NamedTuple):
     vehicle: VehicleModel
-    variant: int
-    """0 for `VehicleModel.body`, from 1 on for one of `VehicleModel.variants`."""
+    variant: int  # 0 for `VehicleModel.body`, from 1 on for one of `VehicleModel.variants`.
 
 
 class _Towed(NamedTuple):

@@ -26,17 +26,13 @@ VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
 
-CAB = 2.5
-"""Length of the cab of a truck above the wheels [m]."""
+CAB = 2.5  # Length of the cab of a truck above the wheels [m]
 
-CHASSIS_BEHIND = 1.0
-"""From the rear axle of a truck with a trailer to the end of its chassis [m]."""
+CHASSIS_BEHIND = 1.0  # From the rear axle of a truck with a trailer to the end of its chassis [m]
 
-_EXHAUST = 0.25
-"""How far the exhaust is behind the cab [m]."""
+_EXHAUST = 0.25  # How far the exhaust is behind the cab [m]
 
-_CHASSIS = 2.5, 1.26
-"""Width and height of a truck behind its cab [m]."""
+_CHASSIS = 2.5, 1.26  # Width and height of a truck behind its cab [m]
 
 BODY_COLOURS: tuple[Colour, ...] = (
     (0.43, 0.11, 0.10),
@@ -67,8 +63,7 @@ ochre, green, plum."""
 class Trailer:
     """What a truck pulls."""
 
-    size: tuple[float, float, float]
-    """Length, width and height [m]."""
+    size: tuple[float, float, float]  # Length, width and height [m]
     shape: "Callable[[Shell, VehicleModel, int], None]"
     """Adds it to a shell, where it is behind a truck that drives straight on, by the detail."""
 
@@ -79,18 +74,14 @@ class VehicleModel(Model):
     middle of the overall length and width.
     """
 
-    wheelbase: float
-    """Distance from the steered axle to the driven one [m]."""
-    wheel_radius: float
-    """Radius of all wheels [m]."""
-    axles: tuple[Axle, ...]
-    """Axles, the front one first."""
+    wheelbase: float  # Distance from the steered axle to the driven one [m]
+    wheel_radius: float  # Radius of all wheels [m]
+    axles: tuple[Axle, ...]  # Axles, the front one first
     body: "Callable[[VehicleModel], tuple[Mesh, ...]]"
     """Returns the meshes of a model without its wheels, the finest first, in the model frame."""
     variants: "tuple[Callable[[VehicleModel], tuple[Mesh, ...]], ...]" = ()
     """Return further bodies of the model, of the same size, as `body` does."""
-    lean: float = 0.0
-    """Largest lean in a curve [rad]."""
+    lean: float = 0.0  # Largest lean in a curve [rad]
     trailer: Trailer | None = None
 
     @property

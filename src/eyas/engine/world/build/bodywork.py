@@ -39,15 +39,12 @@ __all__ = [
     "body_paint",
 ]
 
-_SIDE = 256
-"""Texels along a side of a texture."""
+_SIDE = 256  # Texels along a side of a texture
 
-BASE = 0.8
-"""Brightness of plain paint in the textures, linear: edges are brighter."""
+BASE = 0.8  # Brightness of plain paint in the textures, linear: edges are brighter
 
 
-RAISED = 1.1028
-"""sRGB value of 1 / `BASE`: a tint that makes up for it."""
+RAISED = 1.1028  # sRGB value of 1 / `BASE`: a tint that makes up for it
 
 
 class Region(NamedTuple):
@@ -75,27 +72,21 @@ BAND = Region(4, 176, 252, 196)
 """The side windows with their pillars from the first window to the last, and upwards."""
 REAR = Region(4, 202, 124, 253)
 """The rear end from the middle to its side, and from below to the height of the belt line."""
-FRONT = Region(132, 202, 252, 253)
-"""The front end, likewise."""
+FRONT = Region(132, 202, 252, 253)  # The front end, likewise
 
 WINDSCREEN = Region(4, 4, 252, 124)
 """A windscreen from right to left, as seen from outside ahead, and upwards; in the panes."""
-REAR_WINDOW = Region(4, 132, 252, 196)
-"""A rear window; in the panes."""
-SIDE_PANE = Region(4, 204, 252, 252)
-"""A side window; in the panes."""
+REAR_WINDOW = Region(4, 132, 252, 196)  # A rear window; in the panes
+SIDE_PANE = Region(4, 204, 252, 252)  # A side window; in the panes
 
 BOX_SIDE = Region(4, 4, 252, 92)
 """A side of a box on wheels from its rear end forward, and upwards; this and those that follow are
 in the texture `freight`."""
 BOX_ROOF = Region(4, 98, 180, 150)
 """Its roof from the rear end forward, and from the middle to the edge."""
-BOX_DOORS = Region(4, 158, 124, 252)
-"""Its doors from left to right, and upwards."""
-CAB_SIDE = Region(132, 158, 252, 252)
-"""A side of a truck's cab forward, and upwards."""
-COOLER = Region(188, 98, 252, 150)
-"""An air conditioner from above."""
+BOX_DOORS = Region(4, 158, 124, 252)  # Its doors from left to right, and upwards
+CAB_SIDE = Region(132, 158, 252, 252)  # A side of a truck's cab forward, and upwards
+COOLER = Region(188, 98, 252, 150)  # An air conditioner from above
 
 PLAIN = CAB_SIDE.at(np.full(4, 0.1), np.full(4, 0.9))
 """A panel without anything on it, in the texture `freight`."""
@@ -116,8 +107,7 @@ STYLES = (
 )
 """Kinds of bodywork."""
 
-BODYWORK = (*(f"bodywork_{style}" for style in STYLES), "freight")
-"""Textures of paint."""
+BODYWORK = (*(f"bodywork_{style}" for style in STYLES), "freight")  # Textures of paint
 
 
 def body_paint(texture: str) -> Material:

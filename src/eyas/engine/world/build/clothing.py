@@ -26,24 +26,18 @@ __all__ = [
 
 TORSO = Region(4, 4, 252, 110)
 """Around a torso, from the hem to the neck: waist at .35, armpits at .7, shoulders at .85."""
-HIPS = Region(4, 118, 252, 150)
-"""Around the upper end of trousers, from the crotch to the belt."""
+HIPS = Region(4, 118, 252, 150)  # Around the upper end of trousers, from the crotch to the belt
 SLEEVE = Region(4, 158, 124, 252)
 """Around an arm, from the wrist over the elbow (.5) to the shoulder; the body is on its right."""
 LEG = Region(132, 158, 252, 252)
 """Around a leg, from the ankle over the knee (.5) to the hip; the other leg is on its right."""
 
-FACE = Region(4, 4, 252, 110)
-"""Around a head, from the chin to the crown."""
-SKIN = Region(4, 118, 124, 172)
-"""Bare limbs, around and upwards."""
-NECK = Region(132, 118, 252, 172)
-"""A neck, in the shade of the chin above."""
-HAIR = Region(4, 180, 252, 252)
-"""Around a head of hair, upwards."""
+FACE = Region(4, 4, 252, 110)  # Around a head, from the chin to the crown
+SKIN = Region(4, 118, 124, 172)  # Bare limbs, around and upwards
+NECK = Region(132, 118, 252, 172)  # A neck, in the shade of the chin above
+HAIR = Region(4, 180, 252, 252)  # Around a head of hair, upwards
 
-CLOTHES = ("plain", "striped", "checked", "jacket", "quilted", "coat")
-"""Cuts and patterns."""
+CLOTHES = ("plain", "striped", "checked", "jacket", "quilted", "coat")  # Cuts and patterns
 
 PEOPLE_TEXTURES = (*(f"clothes_{cut}" for cut in CLOTHES), "heads")
 

@@ -14,16 +14,12 @@ __all__ = ["Placed"]
 class Placed(NamedTuple):
     """A copy of a kind of thing."""
 
-    kind: str
-    """Name of the kind."""
+    kind: str  # Name of the kind
     x: float
     y: float
-    z: float
-    """Its foot [m]."""
-    turn: float = 0.0
-    """Angle, counter-clockwise about z [rad]."""
-    scale: float = 1.0
-    """Factor on its size."""
+    z: float  # Its foot [m]
+    turn: float = 0.0  # Angle, counter-clockwise about z [rad]
+    scale: float = 1.0  # Factor on its size
 
     @classmethod
     def at(

@@ -17,8 +17,7 @@ from eyas.lanes import exact
 
 __all__ = ["Levels", "Prototype", "SceneBuilder"]
 
-Levels = tuple[Mesh, ...]
-"""A shape in levels of detail, the finest first."""
+Levels = tuple[Mesh, ...]  # A shape in levels of detail, the finest first
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +25,8 @@ class Prototype:
     """A shape that is copied within a scene; made by `SceneBuilder.prototype`."""
 
     name: str
-    number: int
-    """Index among the scene's fixtures."""
-    trees: int = 0
-    """Number of trees in it."""
+    number: int  # Index among the scene's fixtures
+    trees: int = 0  # Number of trees in it
 
 
 class SceneBuilder:

@@ -38,12 +38,10 @@ __all__ = ["TRACK", "body_levels"]
 class _Detail:
     """Resolution of a body."""
 
-    points: tuple[int, ...]
-    """Points of the sections that are used."""
+    points: tuple[int, ...]  # Points of the sections that are used
     columns: tuple[float, ...]
     """Limits of the columns of panels at the ends, as shares of the half width."""
-    lamps: tuple[float, ...]
-    """Limits of those at the height of the lamps."""
+    lamps: tuple[float, ...]  # Limits of those at the height of the lamps
     arches: bool
 
 
@@ -55,8 +53,7 @@ _LAMPS, _INDICATORS = 0.62, 0.74
 """Inner limits of the lamps at the ends, and of those beside the indicators, as shares of the half
 width."""
 
-_TALL = 0.78
-"""Inner limit of lamps beside a rear window, likewise."""
+_TALL = 0.78  # Inner limit of lamps beside a rear window, likewise
 
 _ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
 _LIT = (-1.0, -_INDICATORS, -_LAMPS, _LAMPS, _INDICATORS, 1.0)

@@ -13,17 +13,13 @@ from eyas.engine.world.cars.wrap import Wrap
 
 __all__ = ["AHEAD", "add_bumpers"]
 
-AHEAD = 0.04
-"""How far a bumper stands out from the end of the body [m]."""
+AHEAD = 0.04  # How far a bumper stands out from the end of the body [m]
 
-_ASIDE = 0.025
-"""How far it stands out from the sides [m]."""
+_ASIDE = 0.025  # How far it stands out from the sides [m]
 
-_TOP = 0.565
-"""Height of its upper edge, as a share of that of the belt line above the floor."""
+_TOP = 0.565  # Height of its upper edge, as a share of that of the belt line above the floor
 
-_TALLEST = 0.5
-"""Height of a bumper at most [m]: those of vans are no taller than those of cars."""
+_TALLEST = 0.5  # Height of a bumper at most [m]: those of vans are no taller than those of cars
 
 
 def add_bumpers(shell: Shell, frame: Frame, shape: CarShape, wrap: Wrap, paint: Material) -> None:

@@ -10,16 +10,11 @@ __all__ = ["Axle", "Frame"]
 class Axle:
     """One or two wheels that turn together."""
 
-    x: float
-    """Position along the vehicle [m]."""
-    track: float
-    """Distance between the middles of the two wheels [m]; 0 for a single wheel."""
-    width: float
-    """Width of a tyre [m]."""
-    steered: bool = False
-    """Whether the wheels steer."""
-    towed: bool = False
-    """Whether it is a trailer's."""
+    x: float  # Position along the vehicle [m]
+    track: float  # Distance between the middles of the two wheels [m]; 0 for a single wheel
+    width: float  # Width of a tyre [m]
+    steered: bool = False  # Whether the wheels steer
+    towed: bool = False  # Whether it is a trailer's
 
 
 class Frame(Protocol):

@@ -29,54 +29,33 @@ __all__ = [
 Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
 
-_WIDE_OF_BODY = 0.01
-"""Distance by which the mirrors stand out from the body on each side [m]."""
+_WIDE_OF_BODY = 0.01  # Distance by which the mirrors stand out from the body on each side [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarShape:
     """Lines of a car. x forward from the middle [m], in increasing order."""
 
-    top: Points
-    """Centre line of boot, roof and bonnet (x, z)."""
-    belt: Points
-    """Lower edge of the side windows (x, z)."""
-    plan: Points
-    """Half width as a share of the body's (x, share)."""
-    windscreen: Range
-    """x at the roof and at the bonnet."""
-    rear_window: Range
-    """x at its lower edge and at the roof."""
-    windows: tuple[Range, ...]
-    """Side windows; pillars are between them."""
-    lean: float = 0.28
-    """Inward lean of the side windows: width per height."""
-    clearance: float = 0.2
-    """z of the floor [m]."""
-    head_lamps: float = 0.3
-    """Length of the front lamps along the sides [m]."""
-    tail_lamps: float = 0.2
-    """Length of the rear lamps along the sides [m]."""
-    tall_tail_lamps: bool = False
-    """Whether the rear lamps reach up beside the rear window."""
-    tail_window: bool = False
-    """Whether the rear end is upright and has a window."""
-    nose_window: bool = False
-    """Whether the front end is upright and has a window."""
-    roof: Material = PAINT
-    """Material of the roof."""
-    rails: Material = PAINT
-    """Material of the edges of the roof and the pillars at its corners."""
-    sill: Material = PAINT
-    """Material of the lowest part of the sides."""
-    bodywork: str = "hatch"
-    """Its paint, see `eyas.engine.world.build.bodywork.BODYWORK`."""
-    dark_bumpers: bool = False
-    """Whether the bumpers are not painted."""
-    rack: bool = False
-    """Whether it has rails on the roof."""
-    bed: Range | None = None
-    """Where it has an open bed behind the cab, under a dark cover (x)."""
+    top: Points  # Centre line of boot, roof and bonnet (x, z)
+    belt: Points  # Lower edge of the side windows (x, z)
+    plan: Points  # Half width as a share of the body's (x, share)
+    windscreen: Range  # x at the roof and at the bonnet
+    rear_window: Range  # x at its lower edge and at the roof
+    windows: tuple[Range, ...]  # Side windows; pillars are between them
+    lean: float = 0.28  # Inward lean of the side windows: width per height
+    clearance: float = 0.2  # z of the floor [m]
+    head_lamps: float = 0.3  # Length of the front lamps along the sides [m]
+    tail_lamps: float = 0.2  # Length of the rear lamps along the sides [m]
+    tall_tail_lamps: bool = False  # Whether the rear lamps reach up beside the rear window
+    tail_window: bool = False  # Whether the rear end is upright and has a window
+    nose_window: bool = False  # Whether the front end is upright and has a window
+    roof: Material = PAINT  # Material of the roof
+    rails: Material = PAINT  # Material of the edges of the roof and the pillars at its corners
+    sill: Material = PAINT  # Material of the lowest part of the sides
+    bodywork: str = "hatch"  # Its paint, see `eyas.engine.world.build.bodywork.BODYWORK`.
+    dark_bumpers: bool = False  # Whether the bumpers are not painted
+    rack: bool = False  # Whether it has rails on the roof
+    bed: Range | None = None  # Where it has an open bed behind the cab, under a dark cover (x)
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 

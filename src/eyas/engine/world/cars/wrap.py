@@ -25,19 +25,15 @@ __all__ = ["Wrap"]
 
 Points = NDArray[np.float64]
 
-_DOOR = 0.5
-"""Side windows that are shorter are not those of doors [m]."""
+_DOOR = 0.5  # Side windows that are shorter are not those of doors [m]
 
 
 class _Marks(NamedTuple):
     """Landmarks of a model: x [m]."""
 
-    side: Points
-    """See `SIDE_SHARES`."""
-    top: Points
-    """See `TOP_SHARES`."""
-    band: Points
-    """See `BEAMS`."""
+    side: Points  # See `SIDE_SHARES`
+    top: Points  # See `TOP_SHARES`
+    band: Points  # See `BEAMS`
 
 
 def _marks(frame: Frame, shape: CarShape) -> _Marks:

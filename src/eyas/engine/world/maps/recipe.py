@@ -42,17 +42,13 @@ __all__ = [
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 
-PLAN_FILE = "map.plan.json"
-"""File in the folder of an imported map with its plan."""
+PLAN_FILE = "map.plan.json"  # File in the folder of an imported map with its plan
 
-PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")
-"""Endings of the names of files with plans."""
+PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")  # Endings of the names of files with plans
 
-NETWORK_FILE = "network.npz"
-"""File in a map's package with the processed roads of its seed 0."""
+NETWORK_FILE = "network.npz"  # File in a map's package with the processed roads of its seed 0
 
-TRAFFIC_FILE = "traffic.npz"
-"""File in a map's package with the canonical recording of its traffic."""
+TRAFFIC_FILE = "traffic.npz"  # File in a map's package with the canonical recording of its traffic
 
 
 MIXED_FILE = "traffic-mixed.npz"
@@ -65,8 +61,7 @@ DENSE_FILE = "traffic-dense.npz"
 SIGNALS_TRAFFIC_FILE = "traffic-signals.npz"
 """File in a map's package with the canonical recording of drivers who obey its traffic lights."""
 
-SIGNALS_FILE = "signals.npz"
-"""File in a map's package with what these lights show."""
+SIGNALS_FILE = "signals.npz"  # File in a map's package with what these lights show
 
 TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
 """Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
@@ -101,11 +96,9 @@ def respawn_file(group_size: int) -> str:
 class Original:
     """Figures of the map of the DAT benchmark that a map re-creates."""
 
-    road: float
-    """Length of its roads [km]."""
+    road: float  # Length of its roads [km]
     buildings: int = 0
-    height: float = 0.0
-    """Median height of the buildings [m]; 0 if there are none."""
+    height: float = 0.0  # Median height of the buildings [m]; 0 if there are none
     trees: int = 0
 
 

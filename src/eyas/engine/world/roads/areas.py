@@ -38,8 +38,7 @@ GRID = 32.0
 _FEW, _AT_ONCE = 400, 8.0
 """Shapes with more corners than this are first cut into squares larger by this factor."""
 
-_AT_CORNER = 5.0
-"""From the centre of the asphalt that a round corner adds, to buildings [m]."""
+_AT_CORNER = 5.0  # From the centre of the asphalt that a round corner adds, to buildings [m]
 
 Line = NDArray[np.float64]
 
@@ -48,16 +47,11 @@ Line = NDArray[np.float64]
 class Street:
     """One direction of a road between two junctions. Lines run with the traffic, shape (K, 2)."""
 
-    start: str
-    """Node it leaves."""
-    end: str
-    """Node it reaches."""
-    left: Line
-    """Middle of the road, where the other direction begins [m]."""
-    dividers: tuple[Line, ...]
-    """Between its lanes, the rightmost first [m]."""
-    right: Line
-    """Kerb [m]."""
+    start: str  # Node it leaves
+    end: str  # Node it reaches
+    left: Line  # Middle of the road, where the other direction begins [m]
+    dividers: tuple[Line, ...]  # Between its lanes, the rightmost first [m]
+    right: Line  # Kerb [m]
 
     @property
     def lines(self) -> tuple[Line, ...]:

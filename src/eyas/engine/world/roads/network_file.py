@@ -56,8 +56,7 @@ def load_network(path: Path) -> RoadNetwork:
     return network
 
 
-_LARGEST = 256 << 20
-"""Largest size of the arrays [bytes]."""
+_LARGEST = 256 << 20  # Largest size of the arrays [bytes]
 
 _ARRAYS = {
     "graph_hash": ("U", 0), "builder": ("U", 0),

@@ -24,17 +24,13 @@ __all__ = [
     "bicycle_levels",
 ]
 
-WHEEL_RADIUS: Final = 0.34
-"""Of a 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]."""
+WHEEL_RADIUS: Final = 0.34  # Of a 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]
 
-AXLES: Final = (0.52, -0.52)
-"""x of the front and of the rear axle: a wheelbase of 1.04 m [m]."""
+AXLES: Final = (0.52, -0.52)  # x of the front and of the rear axle: a wheelbase of 1.04 m [m].
 
-CRANK: Final = (-0.10, 0.28)
-"""x and z of the axle of the cranks [m]."""
+CRANK: Final = (-0.10, 0.28)  # x and z of the axle of the cranks [m]
 
-SADDLE: Final = (-0.27, 0.90)
-"""x and z of the middle of the saddle [m]."""
+SADDLE: Final = (-0.27, 0.90)  # x and z of the middle of the saddle [m]
 
 PAINTS: Final = ((0.10, 0.10, 0.11), (0.55, 0.09, 0.09), (0.12, 0.28, 0.48), (0.78, 0.78, 0.76))
 """Colours of frames, sRGB."""

@@ -25,8 +25,7 @@ UPRIGHT = [-math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]
 
 LIGHTS = "KHR_lights_punctual"
 
-PLAIN = "plain"
-"""Name of the texture of what has none."""
+PLAIN = "plain"  # Name of the texture of what has none
 
 _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 """Roughness of what shines; everything else is matt."""
@@ -43,14 +42,10 @@ def light_factors(material: Material) -> list[float]:
 class GltfFile:
     """The parts of a glTF file. Node 0 is the root, in whose frame z points up."""
 
-    name: str
-    """Name of the scene and of its root."""
-    textures: dict[str, NDArray[np.uint8]]
-    """Rows from the top; sRGB and alpha."""
-    notice: str = ""
-    """Whose data it is."""
-    extras: dict[str, Any] = field(default_factory=dict)
-    """What else is told about the file."""
+    name: str  # Name of the scene and of its root
+    textures: dict[str, NDArray[np.uint8]]  # Rows from the top; sRGB and alpha
+    notice: str = ""  # Whose data it is
+    extras: dict[str, Any] = field(default_factory=dict)  # What else is told about the file
     lights: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)
     nodes: list[Node] = field(default_factory=list)

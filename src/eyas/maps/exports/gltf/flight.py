@@ -25,38 +25,31 @@ __all__ = ["SceneWriter"]
 
 NAME = "scene.glb"
 _FRAMES = "eyas_frames"
-_DETAIL = 9
-"""The coarsest trees."""
-_BODY = (0.8, 0.8, 0.35)
-"""Length, width and height of the box that stands for the tracker [m]."""
-_NEAR = 0.05
-"""[m]"""
-_LONGEST = 1 << 28
-"""Of the part of a file that tells what is in it [bytes]."""
+_DETAIL = 9  # The coarsest trees
+_BODY = (0.8, 0.8, 0.35)  # Length, width and height of the box that stands for the tracker [m]
+_NEAR = 0.05  # [m]
+_LONGEST = 1 << 28  # Of the part of a file that tells what is in it [bytes]
 
 Floats = NDArray[np.float64]
 
 
 class _Pose(NamedTuple):
     place: tuple[float, ...]
-    turn: tuple[float, ...]
-    """Quaternion x, y, z, w."""
+    turn: tuple[float, ...]  # Quaternion x, y, z, w
 
 
 class _Mover(NamedTuple):
     """A moving object in a frame."""
 
     subject: Subject
-    colour: tuple[float, ...]
-    """Of its body, sRGB."""
+    colour: tuple[float, ...]  # Of its body, sRGB
     pose: _Pose
 
 
 class _Moment(NamedTuple):
     """What a frame tells."""
 
-    time: float
-    """Since the reset [s]."""
+    time: float  # Since the reset [s]
     camera: CameraPose
     tracker: _Pose
     target: int

@@ -13,8 +13,7 @@ from eyas.maps.exports.scene_parts import copies_of, parts_of, prototypes_of
 
 __all__ = ["CANDELAS", "add_lamps", "add_world", "towards"]
 
-CANDELAS = 1500.0
-"""Of a street lamp along its axis: some 10,000 lumen in its cone [cd]."""
+CANDELAS = 1500.0  # Of a street lamp along its axis: some 10,000 lumen in its cone [cd]
 
 
 def add_world(file: GltfFile, scene: Scene, detail: int) -> int:

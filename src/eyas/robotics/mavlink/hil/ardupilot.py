@@ -23,21 +23,16 @@ _LOG = logging.getLogger("eyas")
 
 _FORMS = {18_458: struct.Struct("<HHI16H"), 29_569: struct.Struct("<HHI32H")}
 """Packets by their first number: magic, frame rate, frame count, pulse widths."""
-_RATES = (25, PHYSICS_RATE)
-"""Rates that can be had [Hz]; others are taken for the nearest."""
-_FAR = 1e3
-"""What the rangefinder reads where no ground is in sight [m]."""
+_RATES = (25, PHYSICS_RATE)  # Rates that can be had [Hz]; others are taken for the nearest
+_FAR = 1e3  # What the rangefinder reads where no ground is in sight [m]
 
 
 class Servos(NamedTuple):
     """A packet of ArduPilot."""
 
-    rate: int
-    """Frames a second that it wants [Hz]."""
-    frame: int
-    """Number of the frame; again from 0 when ArduPilot has started anew."""
-    outputs: tuple[float, ...]
-    """Of each channel: 0 at 1000 us or less, 1 at 2000 us."""
+    rate: int  # Frames a second that it wants [Hz]
+    frame: int  # Number of the frame; again from 0 when ArduPilot has started anew
+    outputs: tuple[float, ...]  # Of each channel: 0 at 1000 us or less, 1 at 2000 us
 
 
 def servos_of(packet: bytes) -> Servos | None:

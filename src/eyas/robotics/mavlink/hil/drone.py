@@ -27,10 +27,8 @@ MOTORS = (0, 2, 1, 3)
 ArduPilot's quadrotors of the form X have the same: 1 front right and 2 rear left turn
 counter-clockwise, 3 front left and 4 rear right clockwise; so do the original's rotors."""
 
-_PITCH = 0.5
-"""Of the camera, positive down [rad]."""
-_RESTING = 250
-"""Physics steps in which it comes to rest on its feet before time begins."""
+_PITCH = 0.5  # Of the camera, positive down [rad]
+_RESTING = 250  # Physics steps in which it comes to rest on its feet before time begins
 
 
 class DrivenDrone:

@@ -23,17 +23,14 @@ __all__ = ["Px4"]
 
 _LOG = logging.getLogger("eyas")
 
-STEPS = 2
-"""Physics steps between two `HIL_SENSOR`: PX4 wants them 250 times a second."""
+STEPS = 2  # Physics steps between two `HIL_SENSOR`: PX4 wants them 250 times a second
 _SLOW, _GPS = 5, 25
 """Steps of 4 ms between readings of compass and barometer, 50 Hz, and of the GPS, 10 Hz."""
 _INERTIAL, _COMPASS, _BAROMETER = 0b111_111, 0b111_000_000, 0b1_1010_0000_0000
 """`fields_updated` as PX4 tells sensors apart (SimulatorMavlink.hpp, `SensorSource`)."""
 _STANDARD_GRAVITY = 9.80665
-_SETTLING = 0.1
-"""How long answers are on the way at most [s]."""
-_SILENCE = 10.0
-"""After this time without an answer it is said that one is waited for [s]."""
+_SETTLING = 0.1  # How long answers are on the way at most [s]
+_SILENCE = 10.0  # After this time without an answer it is said that one is waited for [s]
 
 
 class Px4(Autopilot):

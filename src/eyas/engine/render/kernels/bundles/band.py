@@ -23,15 +23,11 @@ class Band(NamedTuple):
 
     geometry: Geometry
     light: Light
-    lit: Illumination
-    """Light and air of the view."""
+    lit: Illumination  # Light and air of the view
     movers: Movers
-    world: int
-    """The view's, a row of `movers`."""
-    camera: View
-    """Not `view`: numba takes that for the method of arrays."""
-    until: int
-    """The last `eyas.engine.state.draw.DrawStage`."""
+    world: int  # The view's, a row of `movers`
+    camera: View  # Not `view`: numba takes that for the method of arrays
+    until: int  # The last `eyas.engine.state.draw.DrawStage`.
     columns: int
     """Width and height of what the band writes [pixels]: the camera's own, but through a lens."""
     lines: int
@@ -60,5 +56,4 @@ class Band(NamedTuple):
     member: int
     """Which of several workers that share the band this is: each does its own items of lists and
     its own rows. On a processor, one does all."""
-    members: int
-    """How many they are."""
+    members: int  # How many they are

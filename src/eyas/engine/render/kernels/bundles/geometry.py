@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 __all__ = ["GROUP", "SHADING_COLUMNS", "Geometry", "Movers"]
 
-GROUP = 16
-"""Chunks, or fixtures, that are culled together first."""
+GROUP = 16  # Chunks, or fixtures, that are culled together first
 
 SHADING_COLUMNS = 32
 """Columns of `Geometry.shading`: a row fills two lines of a cache of 64 bytes each."""
@@ -32,10 +31,8 @@ class Geometry(NamedTuple):
     `eyas.engine.render.pack.triangles`; tiles in a metre, negative where the normal is not the same all
     over; texture; surface, and bed of snow times 256; tint; emission; middle of the crown; object
     id; gradients of the normal. Whole numbers lie there as int32. Shape (T, SHADING_COLUMNS)."""
-    material: NDArray[np.int32]
-    """Material of each triangle, shape (T,)."""
-    object_id: NDArray[np.int32]
-    """Object id of each static triangle, -1 for prototypes, shape (T,)."""
+    material: NDArray[np.int32]  # Material of each triangle, shape (T,)
+    object_id: NDArray[np.int32]  # Object id of each static triangle, -1 for prototypes, shape (T,)
     object_class: NDArray[np.uint8]
     """`eyas.engine.state.scene.ObjectClass` of each object of the scene, then of the sky,
     shape (O + 1,)."""
@@ -46,38 +43,26 @@ class Geometry(NamedTuple):
     """Box around each `GROUP` chunks in a row, likewise up to a multiple of 8, shape (6, .)."""
     chunk_range: NDArray[np.int32]
     """First and last + 1 triangle, first row of `bounds`, shape (C, 3)."""
-    mesh_range: NDArray[np.int32]
-    """The same for each mesh, shape (M, 3)."""
-    level_first: NDArray[np.int32]
-    """First mesh of each prototype, shape (P + 1,)."""
-    part_first: int
-    """Prototype of part 0."""
-    sphere: NDArray[np.float32]
-    """Centre and radius around each prototype [m], shape (P, 4)."""
-    box: NDArray[np.float32]
-    """Lower and upper corner of each prototype [m], shape (P, 6)."""
+    mesh_range: NDArray[np.int32]  # The same for each mesh, shape (M, 3)
+    level_first: NDArray[np.int32]  # First mesh of each prototype, shape (P + 1,)
+    part_first: int  # Prototype of part 0
+    sphere: NDArray[np.float32]  # Centre and radius around each prototype [m], shape (P, 4)
+    box: NDArray[np.float32]  # Lower and upper corner of each prototype [m], shape (P, 6)
     silhouette: NDArray[np.float32]
     """Two boxes for the shadow of each prototype: height of the waist between them; back, front,
     right and left end of the upper one; right and left end of the lower one [m], shape (P, 7)."""
     lamps: NDArray[np.bool_]
     """Whether things of which each prototype is the largest part have head and tail lamps, shape
     (P,)."""
-    fixture_prototype: NDArray[np.int32]
-    """Shape (F,)."""
-    fixture_pose: NDArray[np.float32]
-    """Shape (F, 3, 4)."""
-    fixture_object: NDArray[np.int32]
-    """Shape (F,)."""
-    fixture_box: NDArray[np.float32]
-    """Boxes around the fixtures, like `chunk_box`, shape (6, .)."""
+    fixture_prototype: NDArray[np.int32]  # Shape (F,)
+    fixture_pose: NDArray[np.float32]  # Shape (F, 3, 4)
+    fixture_object: NDArray[np.int32]  # Shape (F,)
+    fixture_box: NDArray[np.float32]  # Boxes around the fixtures, like `chunk_box`, shape (6, .).
     fixture_group_box: NDArray[np.float32]
     """Box around each `GROUP` fixtures in a row, like `chunk_group_box`, shape (6, .)."""
-    layer: NDArray[np.int32]
-    """Texture of each material."""
-    surface: NDArray[np.int32]
-    """`Surface` of each material."""
-    tint: NDArray[np.float32]
-    """Linear colour factor of each material, shape (., 3)."""
+    layer: NDArray[np.int32]  # Texture of each material
+    surface: NDArray[np.int32]  # `Surface` of each material
+    tint: NDArray[np.float32]  # Linear colour factor of each material, shape (., 3).
     texture: NDArray[np.uint32]
     """Texels of each layer, see `eyas.engine.render.kernels.surface.texture`, row 0 at v = 0: square roots
     of linear red, green, blue, and alpha, a byte each, the lowest byte first, shape (., TEXELS)."""

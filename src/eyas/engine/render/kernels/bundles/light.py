@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 __all__ = ["TILE", "Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame", "Wind"]
 
-TILE = 32
-"""Texels of the shadow map from one tile to the next."""
+TILE = 32  # Texels of the shadow map from one tile to the next
 
 
 class Direction(NamedTuple):
@@ -22,13 +21,10 @@ class Direction(NamedTuple):
 class Air(NamedTuple):
     """Numbers of the weather, of float32, the same in all views."""
 
-    power: float
-    """1 or 2: how the thickness of fog grows with distance."""
+    power: float  # 1 or 2: how the thickness of fog grows with distance
     exposure: float
-    offset: float
-    """Distance by which points are moved off their surface for the shadow map [m]."""
-    snow: float
-    """This and the following: 0 to 1, see `eyas.engine.state.lighting.Lighting`."""
+    offset: float  # Distance by which points are moved off their surface for the shadow map [m]
+    snow: float  # This and the following: 0 to 1, see `eyas.engine.state.lighting.Lighting`.
     lamps: float
     windows: float
     clouds: float
@@ -37,17 +33,13 @@ class Air(NamedTuple):
     leaves: float
     wet: float
     litter: float
-    mist: float
-    """[1/m]"""
-    per_mist_depth: float
-    """One over the depth of that layer [1/m]."""
+    mist: float  # [1/m]
+    per_mist_depth: float  # One over the depth of that layer [1/m]
     glare: float
-    veil: float
-    """Share of `glare` that a lens in the sun adds to the whole picture."""
+    veil: float  # Share of `glare` that a lens in the sun adds to the whole picture
     daytime_lamps: float
     stars: float
-    star_cosine: float
-    """Of the angle by which the stars have turned round the pole; then its sine."""
+    star_cosine: float  # Of the angle by which the stars have turned round the pole; then its sine
     star_sine: float
     moon_lit: float
     limb_x: float
@@ -55,42 +47,33 @@ class Air(NamedTuple):
     limb_y: float
     limb_z: float
     longest_shadow: float
-    windy: float
-    """1: the wind of each view moves plants and what falls, 0: what falls has its own."""
-    spray: float
-    """See `eyas.engine.state.lighting.Lighting`."""
-    banks: float
-    """1: fog lies in banks; 0: the air is the same all over."""
+    windy: float  # 1: the wind of each view moves plants and what falls, 0: what falls has its own
+    spray: float  # See `eyas.engine.state.lighting.Lighting`.
+    banks: float  # 1: fog lies in banks; 0: the air is the same all over
 
 
 class Wind(NamedTuple):
     """The wind of a view, of float32."""
 
-    x: float
-    """Velocity eastwards [m/s]."""
+    x: float  # Velocity eastwards [m/s]
     y: float
     speed: float
-    instant: float
-    """Time [s]."""
+    instant: float  # Time [s]
 
 
 class Illumination(NamedTuple):
     """Light and air of one view; linear colours."""
 
-    sun: Direction
-    """Unit vector towards the sun."""
+    sun: Direction  # Unit vector towards the sun
     sun_colour: Direction
     zenith: Direction
     horizon: Direction
-    above: Direction
-    """Light of the sky on surfaces that face up."""
-    below: Direction
-    """Light from the ground on surfaces that face down."""
+    above: Direction  # Light of the sky on surfaces that face up
+    below: Direction  # Light from the ground on surfaces that face down
     tinge: Direction
     """What a hidden part of the sky changes in `above`: walls throw light of another colour."""
     fog: Direction
-    fog_density: float
-    """[1/m]"""
+    fog_density: float  # [1/m]
     air: Air
     wind: Wind
 
@@ -98,14 +81,10 @@ class Illumination(NamedTuple):
 class MapFrame(NamedTuple):
     """Where a map of the ground lies, of float32."""
 
-    west: float
-    """x of its western edge [m]."""
-    south: float
-    """y of its southern edge [m]."""
-    per_metre: float
-    """Texels in a metre."""
-    ground: float
-    """z of the ground [m]."""
+    west: float  # x of its western edge [m]
+    south: float  # y of its southern edge [m]
+    per_metre: float  # Texels in a metre
+    ground: float  # z of the ground [m]
 
 
 class LampFrame(NamedTuple):
@@ -113,10 +92,8 @@ class LampFrame(NamedTuple):
 
     west: float
     south: float
-    per_metre: float
-    """Squares in a metre."""
-    cut_off: float
-    """Cosine of the angle beyond which the lamps give no light."""
+    per_metre: float  # Squares in a metre
+    cut_off: float  # Cosine of the angle beyond which the lamps give no light
 
 
 class Light(NamedTuple):
@@ -148,10 +125,8 @@ class Light(NamedTuple):
     tracks: NDArray[np.uint8]
     """Wear of the snow on roads, see `eyas.engine.render.bake.tracks.TrackMap`."""
     track_frame: MapFrame
-    tone: NDArray[np.uint8]
-    """Byte of the picture for each step of exposed radiance."""
-    ground: Direction
-    """Colour of far land without snow, see `eyas.engine.render.bake.hills`."""
+    tone: NDArray[np.uint8]  # Byte of the picture for each step of exposed radiance
+    ground: Direction  # Colour of far land without snow, see `eyas.engine.render.bake.hills`.
     clouds: NDArray[np.uint8]
     """Opacity, and brightness times opacity, see `eyas.engine.render.bake.clouds`,
     shape (rows, columns, 2)."""

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 __all__ = ["NEAR", "Plane", "Planes", "Point", "Projection", "Row", "View"]
 
-NEAR = 0.08
-"""Distance of the near plane [m]."""
+NEAR = 0.08  # Distance of the near plane [m]
 
 
 class Point(NamedTuple):
@@ -32,8 +31,7 @@ class Projection(NamedTuple):
 
     column: Row
     row: Row
-    distance: Row
-    """Along the optical axis [m]."""
+    distance: Row  # Along the optical axis [m]
 
 
 class Plane(NamedTuple):
@@ -43,8 +41,7 @@ class Plane(NamedTuple):
     y: float
     z: float
     w: float
-    length: float
-    """Of the normal (x, y, z)."""
+    length: float  # Of the normal (x, y, z)
 
 
 class Planes(NamedTuple):
@@ -60,29 +57,18 @@ class Planes(NamedTuple):
 class View(NamedTuple):
     """A band of a view: where its samples are in the world."""
 
-    eye: Point
-    """Optical centre."""
-    ahead: Point
-    """Unit vector along the optical axis; the next two are to the left and up."""
+    eye: Point  # Optical centre
+    ahead: Point  # Unit vector along the optical axis; the next two are to the left and up
     left: Point
     up: Point
-    focal_x: float
-    """Focal length along rows [samples]."""
-    focal_y: float
-    """The same along columns."""
-    focal: float
-    """Mean of both [pixels]."""
-    width: int
-    """Size of the whole picture [samples]."""
+    focal_x: float  # Focal length along rows [samples]
+    focal_y: float  # The same along columns
+    focal: float  # Mean of both [pixels]
+    width: int  # Size of the whole picture [samples]
     height: int
-    top: int
-    """First row of samples of the band."""
-    rows: int
-    """Number of rows of samples in the band."""
-    across: int
-    """Samples along a row of each pixel, 1 or 2."""
-    down: int
-    """Samples along a column of each pixel, 1 or 2."""
-    screen: Projection
-    """World to screen."""
+    top: int  # First row of samples of the band
+    rows: int  # Number of rows of samples in the band
+    across: int  # Samples along a row of each pixel, 1 or 2
+    down: int  # Samples along a column of each pixel, 1 or 2
+    screen: Projection  # World to screen
     planes: Planes

@@ -13,26 +13,18 @@ __all__ = ["Canvas", "Job", "Output", "Scratch", "Task"]
 class Job(NamedTuple):
     """The cameras, and which rows of which view each job draws."""
 
-    picture: NDArray[np.int32]
-    """Picture that each view is drawn into, shape (V,)."""
+    picture: NDArray[np.int32]  # Picture that each view is drawn into, shape (V,)
 
-    band: NDArray[np.int32]
-    """View, first row, last row + 1, shape (J, 3)."""
-    begun: NDArray[np.int64]
-    """Number of jobs begun, at first one for each worker, shape (1,)."""
-    eye: NDArray[np.float64]
-    """Optical centres [m], shape (V, 3)."""
-    axes: NDArray[np.float64]
-    """Forward, left, up as rows, shape (V, 3, 3)."""
-    world: NDArray[np.int32]
-    """Shape (V,)."""
-    subject: NDArray[np.int32]
-    """Shape (V,)."""
+    band: NDArray[np.int32]  # View, first row, last row + 1, shape (J, 3)
+    begun: NDArray[np.int64]  # Number of jobs begun, at first one for each worker, shape (1,)
+    eye: NDArray[np.float64]  # Optical centres [m], shape (V, 3)
+    axes: NDArray[np.float64]  # Forward, left, up as rows, shape (V, 3, 3)
+    world: NDArray[np.int32]  # Shape (V,)
+    subject: NDArray[np.int32]  # Shape (V,)
     light: LightState
     instant: NDArray[np.float64]
     """Time for what falls and for the wind [s], shape (V,), or (0,) if neither is shown."""
-    focal: NDArray[np.float64]
-    """Focal length along rows and along columns [pixels], shape (V, 2)."""
+    focal: NDArray[np.float64]  # Focal length along rows and along columns [pixels], shape (V, 2)
     lens: NDArray[np.int32]
     """Row of `LensTables` of each view, shape (V,), or (0,) if no lens bends the pictures."""
 
@@ -53,8 +45,7 @@ class Scratch(NamedTuple):
     drawn: NDArray[np.int32]
     """Visible instances: first triangle of the mesh, and the instance: a fixture, or F + a slot
     of the draw list, shape (K, I, 2)."""
-    mesh: NDArray[np.int32]
-    """Mesh of each of them, shape (K, I)."""
+    mesh: NDArray[np.int32]  # Mesh of each of them, shape (K, I)
     tiles: NDArray[np.float32]
     """Farthest 1/distance in each 8 x 8 samples, see `eyas.engine.render.kernels.visibility.hidden`,
     shape (K, rows / 8, columns / 8)."""
@@ -70,8 +61,7 @@ class Scratch(NamedTuple):
     span: NDArray[np.int32]
     """A triangle in eight rows of samples, see `eyas.engine.render.kernels.visibility.fill`,
     shape (K, 7, 8)."""
-    word: NDArray[np.uint32]
-    """`shade` again, four bytes in each element, shape (K, rows, columns)."""
+    word: NDArray[np.uint32]  # `shade` again, four bytes in each element, shape (K, rows, columns)
     bent_key: NDArray[np.int64]
     """`key` as the picture shows it through a lens, `ELSEWHERE` where another face does,
     shape (K, rows, columns), or (K, 0, 0)."""
@@ -97,8 +87,7 @@ class Scratch(NamedTuple):
     """Their tags, and layer and mip level of their holes, -1: none, shape (K, R, 2)."""
     unit: NDArray[np.int32]
     """A row of one of them: its number times 1,024, and which row; -1: none, shape (K, U)."""
-    recorded: NDArray[np.int64]
-    """Rows asked for, in the upper half, and records, shape (K, 1)."""
+    recorded: NDArray[np.int64]  # Rows asked for, in the upper half, and records, shape (K, 1)
     bent_tile: NDArray[np.int32]
     """What stands for `Glass.tile` where there is no lens, shape (0, 0, 4)."""
 
@@ -115,17 +104,14 @@ class Output(NamedTuple):
     subject: NDArray[np.int32]
     """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
     if it covers none, then left, top, right, bottom of the seen ones, shape (J, 10)."""
-    actor: NDArray[np.int32]
-    """The same for each actor of the view's world, shape (J, A, 10)."""
+    actor: NDArray[np.int32]  # The same for each actor of the view's world, shape (J, A, 10)
 
 
 class Canvas(NamedTuple):
     """Where the colours of a band are written: as bytes, or as radiance; the other is empty."""
 
-    pixels: NDArray[np.uint8]
-    """sRGB, shape (rows, columns, 3)."""
-    red: NDArray[np.float32]
-    """Linear radiance, shape (rows, columns)."""
+    pixels: NDArray[np.uint8]  # sRGB, shape (rows, columns, 3)
+    red: NDArray[np.float32]  # Linear radiance, shape (rows, columns)
     green: NDArray[np.float32]
     blue: NDArray[np.float32]
 
@@ -133,15 +119,10 @@ class Canvas(NamedTuple):
 class Task(NamedTuple):
     """Inputs that change from picture to picture."""
 
-    across: int
-    """Samples along a row of each pixel, 1 or 2."""
-    down: int
-    """Samples along a column of each pixel, 1 or 2."""
-    width: int
-    """Size of the pictures [pixels]."""
+    across: int  # Samples along a row of each pixel, 1 or 2
+    down: int  # Samples along a column of each pixel, 1 or 2
+    width: int  # Size of the pictures [pixels]
     height: int
-    falls: int
-    """1: flakes, drops and leaves are drawn at the views' instants."""
-    until: int
-    """The last `eyas.engine.state.draw.DrawStage`."""
+    falls: int  # 1: flakes, drops and leaves are drawn at the views' instants
+    until: int  # The last `eyas.engine.state.draw.DrawStage`.
     job: Job

@@ -30,23 +30,18 @@ __all__ = [
     "openness",
 ]
 
-DIRECTIONS = 16
-"""Number of directions in which the horizon is searched."""
+DIRECTIONS = 16  # Number of directions in which the horizon is searched
 
-STEPS = 14
-"""Number of points examined in each direction."""
+STEPS = 14  # Number of points examined in each direction
 
-LEAVES = 0.6
-"""Share of the light that a crown absorbs."""
+LEAVES = 0.6  # Share of the light that a crown absorbs
 
-STOREY = 2.0
-"""Roofs and ground that differ by less are one [m]."""
+STOREY = 2.0  # Roofs and ground that differ by less are one [m]
 
 BOUNCED = 0.42
 """Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
 
-_ASIDE = f4(0.9)
-"""Distance in front of a wall at which its light is looked up [m]."""
+_ASIDE = f4(0.9)  # Distance in front of a wall at which its light is looked up [m]
 
 
 DISTANCES = tuple(0.9 * float(exact.power(1.36, step)) for step in range(STEPS))
@@ -139,20 +134,14 @@ class OpennessBake(NamedTuple):
 
     way: NDArray[np.float64]
     """Way to each point that is examined: rows and columns, shape (DIRECTIONS, STEPS, 2)."""
-    distance: NDArray[np.float64]
-    """Its length, `DISTANCES` [m]."""
-    solid: NDArray[np.float32]
-    """Height of buildings [m], shape (rows, columns)."""
-    crowns: NDArray[np.float32]
-    """Height of trees [m], shape (rows, columns)."""
-    decks: NDArray[np.float32]
-    """Height of elevated roads [m], shape (rows, columns)."""
-    square: int
-    """Side of the squares of `decked` [texels]."""
+    distance: NDArray[np.float64]  # Its length, `DISTANCES` [m]
+    solid: NDArray[np.float32]  # Height of buildings [m], shape (rows, columns)
+    crowns: NDArray[np.float32]  # Height of trees [m], shape (rows, columns)
+    decks: NDArray[np.float32]  # Height of elevated roads [m], shape (rows, columns)
+    square: int  # Side of the squares of `decked` [texels]
     decked: NDArray[np.bool_]
     """Whether there may be decks at the points of a texel, for squares of texels."""
-    result: NDArray[np.uint16]
-    """`AmbientMap.openness`, filled, shape (rows, columns)."""
+    result: NDArray[np.uint16]  # `AmbientMap.openness`, filled, shape (rows, columns).
 
 
 @parallel

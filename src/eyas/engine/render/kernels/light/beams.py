@@ -30,20 +30,15 @@ from eyas.lanes.vector import (
 
 __all__ = ["BEAM_REACH", "cast_beam"]
 
-_REACH = 34.0
-"""Distance ahead of a vehicle up to which its lamps light the road [m]."""
+_REACH = 34.0  # Distance ahead of a vehicle up to which its lamps light the road [m]
 
-_BEHIND = 5.0
-"""The same for its tail lamps, behind it [m]."""
+_BEHIND = 5.0  # The same for its tail lamps, behind it [m]
 
-_BRAKING = 2.0
-"""How much more brake lamps light there; near the vehicle, no more than can be told."""
+_BRAKING = 2.0  # How much more brake lamps light there; near the vehicle, no more than can be told
 
-_CUT_OFF = 1.2
-"""Height above the bottom of a vehicle up to which its lamps light things [m]."""
+_CUT_OFF = 1.2  # Height above the bottom of a vehicle up to which its lamps light things [m]
 
-_DEPTH = 2.0
-"""Depth below the bottom of a vehicle down to which its lamps light things [m]."""
+_DEPTH = 2.0  # Depth below the bottom of a vehicle down to which its lamps light things [m]
 
 _SPREAD = 0.9 + 0.30 * _REACH
 

@@ -20,45 +20,34 @@ __all__ = [
     "reach_of",
 ]
 
-_UPRIGHT = 4.0
-"""What is higher than so many times half its width stands on two feet."""
+_UPRIGHT = 4.0  # What is higher than so many times half its width stands on two feet
 
 _HIPS, _LEGS, _TRUNK = 0.5, 0.6, 0.82
 """Of what stands on two feet: height of the hips, as a share of its own; width of the legs, and of
 trunk and head, as shares of that of the trunk."""
 
-CORNER = 1.75
-"""Root of 3, and a little for rounding."""
+CORNER = 1.75  # Root of 3, and a little for rounding
 
 
 class Caster(NamedTuple):
     """A moving thing as a box, turned like its largest part; of float64 [m]."""
 
-    x: float
-    """Its middle in the world."""
+    x: float  # Its middle in the world
     y: float
-    along_x: float
-    """Direction of its length, a unit vector."""
+    along_x: float  # Direction of its length, a unit vector
     along_y: float
-    length: float
-    """Half its length."""
-    width: float
-    """Half its width."""
-    bottom: float
-    """z in the world."""
+    length: float  # Half its length
+    width: float  # Half its width
+    bottom: float  # z in the world
     top: float
-    waist: float
-    """z where its upper box begins."""
-    back: float
-    """Ends of its upper box from the middle."""
+    waist: float  # z where its upper box begins
+    back: float  # Ends of its upper box from the middle
     front: float
     right: float
     left: float
-    lower_right: float
-    """Ends of its lower box, which is as long as the thing."""
+    lower_right: float  # Ends of its lower box, which is as long as the thing
     lower_left: float
-    beyond: float
-    """Distance from the thing up to which it blocks the sky's light on the ground."""
+    beyond: float  # Distance from the thing up to which it blocks the sky's light on the ground
 
 
 @kernel(inline=True)

@@ -49,11 +49,9 @@ from eyas.lanes.vector import (
 
 __all__ = ["cast_light", "influence"]
 
-SMALLEST = 1.0
-"""Things whose half diagonal is smaller cast no shadow [pixels]."""
+SMALLEST = 1.0  # Things whose half diagonal is smaller cast no shadow [pixels]
 
-_BELOW = 0.3
-"""Distance below the bottom of a thing down to which its shadow falls [m]."""
+_BELOW = 0.3  # Distance below the bottom of a thing down to which its shadow falls [m]
 
 
 @kernel(inline=True)

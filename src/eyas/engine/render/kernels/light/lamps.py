@@ -20,17 +20,13 @@ from eyas.lanes.vector import (
 
 __all__ = ["lamp_gloss", "night_light", "window_light"]
 
-_HEAD = f4(0.95 / 255.0)
-"""Brightest light of head lamps, for each step of `Scratch.shade`."""
+_HEAD = f4(0.95 / 255.0)  # Brightest light of head lamps, for each step of `Scratch.shade`.
 
-_TAIL = f4(0.16 / 255.0)
-"""The same for tail lamps."""
+_TAIL = f4(0.16 / 255.0)  # The same for tail lamps
 
-_FULL = f4(0.4536)
-"""Cosine of the angle up to which a beam is even: the original's 1.1 rad."""
+_FULL = f4(0.4536)  # Cosine of the angle up to which a beam is even: the original's 1.1 rad.
 
-_BAYS = f4(4.0)
-"""Windows along a side of one repeat of a facade's texture."""
+_BAYS = f4(4.0)  # Windows along a side of one repeat of a facade's texture
 
 
 @kernel(inline=True)

@@ -9,29 +9,22 @@ from eyas.lanes.vector import greater, lesser, magnitude, root, select
 
 __all__ = ["Box", "ShadowBoxes", "darken", "may_darken", "shadow_boxes"]
 
-_UNDER = 0.88
-"""Share of the sky's light that a car blocks on the ground under it."""
+_UNDER = 0.88  # Share of the sky's light that a car blocks on the ground under it
 
-_INSET = 0.3
-"""Distance from the edge of a body inwards at which the blocking begins [m]."""
+_INSET = 0.3  # Distance from the edge of a body inwards at which the blocking begins [m]
 
-_EDGE = 0.15
-"""Length of the ray inside a box that hides all of the sun, for a point at the box [m]."""
+_EDGE = 0.15  # Length of the ray inside a box that hides all of the sun, for a point at the box [m]
 
-_WIDENING = 0.12
-"""Growth of that length with the distance of the box."""
+_WIDENING = 0.12  # Growth of that length with the distance of the box
 
-_SHOE = 0.13
-"""Distance of the middle of a shoe from its toes [m]."""
+_SHOE = 0.13  # Distance of the middle of a shoe from its toes [m]
 
 _PER_LENGTH, _PER_WIDTH = f4(1.0 / 0.24), f4(1.0 / 0.17)
 """One over half the length and half the width of the dark ground around a foot [1/m]."""
 
-_TOUCH = f4(0.8)
-"""Share of all light that a shoe hides from the ground at its sole."""
+_TOUCH = f4(0.8)  # Share of all light that a shoe hides from the ground at its sole
 
-_STEEP = 1e-4
-"""Smallest step of a ray along an axis, so that its inverse is finite."""
+_STEEP = 1e-4  # Smallest step of a ray along an axis, so that its inverse is finite
 
 
 class Box(NamedTuple):
@@ -48,20 +41,15 @@ class Box(NamedTuple):
 class ShadowBoxes(NamedTuple):
     """What blocks light, in the thing's own frame: origin at the middle of its bottom [m]."""
 
-    lower: Box
-    """Like the body of a car."""
-    upper: Box
-    """Like its cabin."""
-    inverse: Direction
-    """1 over each part of the unit vector to the sun."""
-    slide: tuple[float, float]
-    """Way along x and y of a ray to the sun while it rises by 1 m."""
+    lower: Box  # Like the body of a car
+    upper: Box  # Like its cabin
+    inverse: Direction  # 1 over each part of the unit vector to the sun
+    slide: tuple[float, float]  # Way along x and y of a ray to the sun while it rises by 1 m
     beside: tuple[float, float]
     """Half length and half width of the ground around the thing that it darkens, at least [m]."""
     reach: float
     """Inverse of the distance over which the thing blocks the sky's light on the ground [1/m]."""
-    most: float
-    """Share of it that is blocked under the thing."""
+    most: float  # Share of it that is blocked under the thing
     feet: float
     """Distance of the feet of what stands on two of them from its middle [m]; 0: it does not."""
 

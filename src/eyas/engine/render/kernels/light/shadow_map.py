@@ -23,22 +23,19 @@ from eyas.lanes.vector import any_of, bits_of, first_bit, greater, lane_numbers,
 
 __all__ = ["BLOCK", "BLOCK_TEXELS", "ShadowBake", "bake_tiles"]
 
-BLOCK = 8
-"""Tiles along a side of what is drawn at a time: 257 x 257 keys fit into a core's cache."""
+BLOCK = 8  # Tiles along a side of what is drawn at a time: 257 x 257 keys fit into a core's cache
 
 BLOCK_TEXELS = BLOCK * TILE + 1
 """Texels along the same side; the last ones belong to the next block too."""
 
-LEAF_LEVEL = 3
-"""Mip level of the holes between leaves, matched to the size of the map's texels."""
+LEAF_LEVEL = 3  # Mip level of the holes between leaves, matched to the size of the map's texels
 
 THICKER = 0.3
 """Margin added to all sides of thin things [texels]: the shadow of a pole narrower than a
 texel would break into pieces."""
 
 
-EVERYWHERE = 1e9
-"""Nothing is farther away [m]."""
+EVERYWHERE = 1e9  # Nothing is farther away [m]
 
 
 class ShadowBake(NamedTuple):
@@ -47,24 +44,19 @@ class ShadowBake(NamedTuple):
     cards: NDArray[np.int32]
     """For each material: 0 if it is solid; n if one leaf card in n is drawn, with its holes; -1
     if none is drawn."""
-    thin: NDArray[np.bool_]
-    """Whether each prototype of the fixtures may be narrower than a texel."""
-    flat: float
-    """Static triangles nowhere above this z cast no shadow [m]."""
+    thin: NDArray[np.bool_]  # Whether each prototype of the fixtures may be narrower than a texel
+    flat: float  # Static triangles nowhere above this z cast no shadow [m]
     sun: Projection
     """World to column and row of the map and, in place of the distance, height, 1 to 65535."""
     reach: NDArray[np.float32]
     """First column, first row, last column and last row that each chunk, then each fixture, may
     cover, shape (C + F, 4)."""
-    block: NDArray[np.int32]
-    """Row and column of the first tile of each block to draw, shape (B, 2)."""
+    block: NDArray[np.int32]  # Row and column of the first tile of each block to draw, shape (B, 2)
     tile: NDArray[np.int32]
     """Number of each tile in `heights`, 0 for those not wanted; shape (rows, columns), both
     multiples of `BLOCK`."""
-    triangle: NDArray[np.float64]
-    """Working memory, see `Scratch`, shape (K, TRIANGLE_ROWS, 8)."""
-    span: NDArray[np.int32]
-    """Working memory, see `Scratch`, shape (K, SPAN_ROWS, 8)."""
+    triangle: NDArray[np.float64]  # Working memory, see `Scratch`, shape (K, TRIANGLE_ROWS, 8)
+    span: NDArray[np.int32]  # Working memory, see `Scratch`, shape (K, SPAN_ROWS, 8)
     key: NDArray[np.int64]
     """Working memory, see `Scratch`, with heights in place of 1/distance;
     shape (K, BLOCK_TEXELS, BLOCK_TEXELS, rounded up to a multiple of 8)."""

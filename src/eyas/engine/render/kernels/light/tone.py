@@ -8,11 +8,9 @@ from eyas.lanes.vector import gather, greater, lesser, to_i4
 __all__ = ["TONE_STEPS", "TONE_TOP", "tone_byte", "tone_bytes"]
 
 
-TONE_STEPS = 16384
-"""Length of `Light.tone`."""
+TONE_STEPS = 16384  # Length of `Light.tone`.
 
-TONE_TOP = 4.0
-"""Exposed radiance at the end of that table."""
+TONE_TOP = 4.0  # Exposed radiance at the end of that table
 
 _STEPS_PER_UNIT = f4(TONE_STEPS / TONE_TOP)
 _LAST_STEP = f4(TONE_STEPS - 1)

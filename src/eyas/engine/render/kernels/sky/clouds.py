@@ -12,23 +12,17 @@ from eyas.lanes.elementary import exp
 
 __all__ = ["DEEPEST", "CloudRays", "cloud_rays"]
 
-DEEPEST = 0.9
-"""Height of the highest heaps over their base [km]."""
+DEEPEST = 0.9  # Height of the highest heaps over their base [km]
 
-_BASE = f4(1.1)
-"""Height of all bases [km]."""
+_BASE = f4(1.1)  # Height of all bases [km]
 _TOP = f4(1.1 + DEEPEST)
 
-_VEIL = f4(8.0)
-"""Height of the thin clouds above them [km]."""
-_CURVE = f4(0.5 / 6371.0)
-"""One over the diameter of the earth [1/km]."""
+_VEIL = f4(8.0)  # Height of the thin clouds above them [km]
+_CURVE = f4(0.5 / 6371.0)  # One over the diameter of the earth [1/km]
 _TILE, _FINE, _THIN = f4(256.0 / 9.0), f4(256.0 / 2.1), f4(256.0 / 60.0)
 """Texels in a km: of heaps, of their details, of the thin clouds."""
-_DENSE = f4(50.0)
-"""Extinction inside a heap [1/km]."""
-_BUMP = f4(0.15)
-"""Depth by which details reduce a heap [km]."""
+_DENSE = f4(50.0)  # Extinction inside a heap [1/km]
+_BUMP = f4(0.15)  # Depth by which details reduce a heap [km]
 
 
 @kernel(inline=True)
@@ -62,10 +56,8 @@ class CloudRays(NamedTuple):
     """Height of the heaps' tops over their base, or minus the distance to the next heap, and height
     of the clouds' sunlit surface [km], details 0 to 1, and opacity of the thin clouds, 0 to 1; it
     repeats; shape (256, 256, 4)."""
-    sines: NDArray[np.float32]
-    """Sine of the elevation of each row."""
-    directions: NDArray[np.float32]
-    """Horizontal unit vector of each column, shape (., 2)."""
+    sines: NDArray[np.float32]  # Sine of the elevation of each row
+    directions: NDArray[np.float32]  # Horizontal unit vector of each column, shape (., 2).
     output: NDArray[np.uint8]
     """Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2)."""
 

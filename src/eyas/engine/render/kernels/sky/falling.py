@@ -24,41 +24,27 @@ __all__ = [
 
 Colour = tuple[float, float, float]
 
-_CROWN = 16.0
-"""Height above the ground up to which leaves fall [m]."""
+_CROWN = 16.0  # Height above the ground up to which leaves fall [m]
 
 
 class Falling(NamedTuple):
     """How something falls and looks."""
 
-    shells: int
-    """Shells around the camera; each reaches `GROWTH` times as far as the one before."""
-    cells: float
-    """Cells from the camera to the end of a shell."""
-    most: int
-    """Largest number of flakes in a cell."""
-    wind_x: float
-    """Velocity eastwards [m/s]."""
+    shells: int  # Shells around the camera; each reaches `GROWTH` times as far as the one before
+    cells: float  # Cells from the camera to the end of a shell
+    most: int  # Largest number of flakes in a cell
+    wind_x: float  # Velocity eastwards [m/s]
     wind_y: float
     sinking: float
-    sway: float
-    """Amplitude [m]."""
-    exposed: float
-    """Exposure time of the picture, which turns flakes into streaks [s]."""
-    radius: float
-    """Of the largest flake at the camera [m]."""
-    growth: float
-    """By how much that grows with distance: a distant flake represents several."""
-    smallest: float
-    """Radius below which flakes are invisible [pixels]."""
-    cover: float
-    """Opacity of a flake that covers its pixels."""
-    thin: bool
-    """Whether it is a streak however small it is: half as wide hides half as much."""
-    lit: bool
-    """Whether street lamps light each of it."""
-    coloured: bool
-    """Whether each has a colour of its own."""
+    sway: float  # Amplitude [m]
+    exposed: float  # Exposure time of the picture, which turns flakes into streaks [s]
+    radius: float  # Of the largest flake at the camera [m]
+    growth: float  # By how much that grows with distance: a distant flake represents several
+    smallest: float  # Radius below which flakes are invisible [pixels]
+    cover: float  # Opacity of a flake that covers its pixels
+    thin: bool  # Whether it is a streak however small it is: half as wide hides half as much
+    lit: bool  # Whether street lamps light each of it
+    coloured: bool  # Whether each has a colour of its own
 
 
 @kernel(inline=True)

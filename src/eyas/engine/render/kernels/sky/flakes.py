@@ -34,8 +34,7 @@ __all__ = ["bytes_of", "let_flakes_fall", "seen_from"]
 
 Colour = tuple[float, float, float]
 
-NEAREST = 0.7
-"""Distance of the first shell [m]; nearer flakes would be blurs."""
+NEAREST = 0.7  # Distance of the first shell [m]; nearer flakes would be blurs
 
 GROWTH = 2.6
 
@@ -48,13 +47,10 @@ class Snowfall(NamedTuple):
     """A band, the air in it and its picture, into which flakes are drawn."""
 
     band: Band
-    instant: float
-    """Time [s]."""
+    instant: float  # Time [s]
     falling: Falling
-    white: tuple[float, float, float]
-    """Radiance of a flake."""
-    bytes: tuple[int, int, int]
-    """Its bytes."""
+    white: tuple[float, float, float]  # Radiance of a flake
+    bytes: tuple[int, int, int]  # Its bytes
     canvas: Canvas
 
 
@@ -195,18 +191,12 @@ def _in_band(
 class Streak(NamedTuple):
     """A flake on the screen."""
 
-    column: float
-    """Column of its end [pixels]."""
-    row: float
-    """Row of its end in the band [pixels]."""
-    to_column: float
-    """Columns from there to its start [pixels]."""
-    to_row: float
-    """Rows from there to its start [pixels]."""
-    radius: float
-    """Half its width [pixels]."""
-    inverse: float
-    """One over its distance [1/m]."""
+    column: float  # Column of its end [pixels]
+    row: float  # Row of its end in the band [pixels]
+    to_column: float  # Columns from there to its start [pixels]
+    to_row: float  # Rows from there to its start [pixels]
+    radius: float  # Half its width [pixels]
+    inverse: float  # One over its distance [1/m]
 
 
 @kernel

@@ -42,11 +42,9 @@ __all__ = ["draw_halos"]
 
 Colour = tuple[float, float, float]
 
-_FARTHEST = 140.0
-"""Distance beyond which lamps have no halo [m]."""
+_FARTHEST = 140.0  # Distance beyond which lamps have no halo [m]
 
-_ANGLE = 0.042
-"""Angle from a lamp at which its halo ends [rad]."""
+_ANGLE = 0.042  # Angle from a lamp at which its halo ends [rad]
 
 _CORE = 0.005
 """Angle at which it has half its peak [rad]; beyond, it falls with the square of the angle, as
@@ -56,11 +54,9 @@ _HEAD, _TAIL, _BRAKE = 700.0, 9.0, 36.0
 """Peak radiance times the square of the distance [m^2]: as thousands of candela of a dipped beam,
 and the 12 and 60 of UN Regulation 7, through a lens that scatters some thousandth of the light."""
 
-_BRIGHTEST = 3.0
-"""Largest peak: nearer lamps are larger than the core."""
+_BRIGHTEST = 3.0  # Largest peak: nearer lamps are larger than the core
 
-_FAINTEST = 0.02
-"""Peak below which there is nothing to see."""
+_FAINTEST = 0.02  # Peak below which there is nothing to see
 
 _WHITE: Colour = (f4(1.0), f4(0.94), f4(0.82))
 _RED: Colour = (f4(1.0), f4(0.06), f4(0.035))
@@ -69,17 +65,12 @@ _RED: Colour = (f4(1.0), f4(0.06), f4(0.035))
 class Halo(NamedTuple):
     """Light round a lamp."""
 
-    row: float
-    """Of its middle [pixels]."""
+    row: float  # Of its middle [pixels]
     column: float
-    ahead: float
-    """Distance of the lamp along the optical axis [m]."""
-    tall: float
-    """Half its height [pixels]."""
-    wide: float
-    """Half its width [pixels]."""
-    peak: float
-    """Radiance in its middle."""
+    ahead: float  # Distance of the lamp along the optical axis [m]
+    tall: float  # Half its height [pixels]
+    wide: float  # Half its width [pixels]
+    peak: float  # Radiance in its middle
 
 
 @kernel

@@ -20,17 +20,14 @@ from eyas.lanes.vector import (
 
 __all__ = ["azimuth", "moon_face", "starlight", "turned_stars"]
 
-_STAR_ROWS = f4(72.0)
-"""Rows of cells from the horizon to the zenith, of equal area."""
+_STAR_ROWS = f4(72.0)  # Rows of cells from the horizon to the zenith, of equal area
 
-_STAR_COLUMNS = f4(80.0)
-"""Columns of cells in a quarter of the horizon."""
+_STAR_COLUMNS = f4(80.0)  # Columns of cells in a quarter of the horizon
 
 _POLE = (math.sqrt(0.5), math.sqrt(0.5))
 """Northward and upward component of the direction to the celestial pole, at 45 degrees north."""
 
-_DISC = f4(0.0062)
-"""Radius of the disc of sun and moon [rad]."""
+_DISC = f4(0.0062)  # Radius of the disc of sun and moon [rad]
 
 _STAR_SIZE = f4(0.0011)
 """Radius to which the brightness of stars refers [rad]; wider pixels dim them."""

@@ -42,32 +42,25 @@ __all__ = ["draw_plumes", "on_screen"]
 Colour = tuple[float, float, float]
 Vector = tuple[float, float, float]
 
-_REACH = 2.0
-"""Radius of a puff, in its widths."""
+_REACH = 2.0  # Radius of a puff, in its widths
 
-_SMOKE_EVERY, _SMOKE_PUFFS = 0.45, 32
-"""Time from a puff to the next [s], and how many there are."""
+_SMOKE_EVERY, _SMOKE_PUFFS = 0.45, 32  # Time from a puff to the next [s], and how many there are
 
 _SPRAY_EVERY, _SPRAY_PUFFS = 0.19, 5
 _SPRAY_FROM, _SPRAY_FULL = 8.0, 20.0
 """Speed from which water is thrown up, and at which there is most: it grows with the square of the
 speed (Weir, Strange and Heffley, Reduction of adverse aerodynamic effects of large trucks,
 FHWA-RD-79-84, 1978) [m/s]."""
-_SPRAY_TRAIL = 12.0
-"""Speed from which its trail grows no longer [m/s]."""
-_SPRAY_FARTHEST = 90.0
-"""Distance beyond which spray is not drawn [m]."""
+_SPRAY_TRAIL = 12.0  # Speed from which its trail grows no longer [m/s]
+_SPRAY_FARTHEST = 90.0  # Distance beyond which spray is not drawn [m]
 
 
 class Puff(NamedTuple):
     """A soft ball."""
 
-    place: Vector
-    """Its middle, world frame [m]."""
-    width: float
-    """[m]"""
-    thickness: float
-    """Optical, through its middle."""
+    place: Vector  # Its middle, world frame [m]
+    width: float  # [m]
+    thickness: float  # Optical, through its middle
 
 
 @kernel

@@ -52,21 +52,17 @@ __all__ = [
 CLOUD_BEND = 0.8
 """Rows of the clouds' panorama lie at `z (1 + bend) / (z + bend)`: closer near the horizon."""
 
-CLOUDS_FROM = 0.02
-"""Sine of the elevation above which clouds are visible."""
+CLOUDS_FROM = 0.02  # Sine of the elevation above which clouds are visible
 
-HILL_TOP = 0.08
-"""Sine of the elevation at which the hills' panorama ends."""
+HILL_TOP = 0.08  # Sine of the elevation at which the hills' panorama ends
 
-HILL_FARTHEST = 14.0
-"""Distance of the farthest hills [km]."""
+HILL_FARTHEST = 14.0  # Distance of the farthest hills [km]
 
 _BEYOND = f4(1000.0 * (HILL_FARTHEST - HAZE_END))
 _HAZE_DEPTH = f4(0.25 * 150.0)
 """A quarter of the depth of the haze if it were equally thick all the way up [m]."""
 _FARTHEST = f4(1000.0 * HAZE_END)
-_FOOT = f4(0.012)
-"""Sine of the elevation over which the plain turns into hills."""
+_FOOT = f4(0.012)  # Sine of the elevation over which the plain turns into hills
 
 
 Colour = tuple[float, float, float]

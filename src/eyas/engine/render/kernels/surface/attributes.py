@@ -53,31 +53,19 @@ class Frame(NamedTuple):
 class Attributes(NamedTuple):
     """A point of a triangle."""
 
-    u: float
-    """Texture coordinates [tiles]."""
+    u: float  # Texture coordinates [tiles]
     v: float
-    u_slope: Vector
-    """Gradient of u in the frame of the instance [tiles/m]."""
-    normal: Vector
-    """Unit normal, in the world."""
-    own: Vector
-    """The point in the frame of the instance [m]."""
-    density: float
-    """Texture tiles in a metre."""
-    layer: int
-    """Texture."""
-    surface: int
-    """A `Surface`."""
-    bed: int
-    """A `Bed`."""
-    tint: Vector
-    """Linear colour factor."""
-    emission: float
-    """Own light."""
-    crown_middle: float
-    """See `Geometry`."""
-    building: int
-    """Object id of static triangles."""
+    u_slope: Vector  # Gradient of u in the frame of the instance [tiles/m]
+    normal: Vector  # Unit normal, in the world
+    own: Vector  # The point in the frame of the instance [m]
+    density: float  # Texture tiles in a metre
+    layer: int  # Texture
+    surface: int  # A `Surface`
+    bed: int  # A `Bed`
+    tint: Vector  # Linear colour factor
+    emission: float  # Own light
+    crown_middle: float  # See `Geometry`
+    building: int  # Object id of static triangles
 
 
 @kernel(inline=True)

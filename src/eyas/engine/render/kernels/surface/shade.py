@@ -48,11 +48,9 @@ SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
 rows of pixels, and a blend would cost a tenth of the shading to hide what is hardly seen."""
 
-TILES = f4(1.0 / 8.0)
-"""Repeats of the texture in a metre where u is something else, see `Surface`."""
+TILES = f4(1.0 / 8.0)  # Repeats of the texture in a metre where u is something else, see `Surface`
 
-SAND = f4(1.0 / 6.0)
-"""The same of sand."""
+SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
 

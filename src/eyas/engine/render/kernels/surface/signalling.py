@@ -20,8 +20,7 @@ BRAKING = 1 << (int(Surface.TAIL_LAMP) - _TAIL) | 1 << (int(Surface.HIGH_BRAKE_L
 LEFT = 1 << (int(Surface.INDICATOR_LEFT) - _TAIL)
 """The same for one whose indicators shine on the left."""
 
-RIGHT = 1 << (int(Surface.INDICATOR_RIGHT) - _TAIL)
-"""The same on the right."""
+RIGHT = 1 << (int(Surface.INDICATOR_RIGHT) - _TAIL)  # The same on the right
 
 _RED = (f4(4.2), f4(0.06), f4(0.04))
 """Radiance of brake lamps: five times that of tail lamps at night. UN Regulation 7 (R7, 6.1) asks

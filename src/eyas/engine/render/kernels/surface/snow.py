@@ -26,18 +26,12 @@ Colour = tuple[float, float, float]
 class Bed(IntEnum):
     """Behaviour of snow on a material."""
 
-    BARE = 0
-    """No snow stays."""
-    OPEN = 1
-    """Snow lies as it fell."""
-    DRIVEN = 2
-    """Roads and their paint: wheels wear the snow off."""
-    LEAVES = 3
-    """Crowns of trees: clumps on branches."""
-    VEHICLE = 4
-    """Painted body of vehicles: a thin layer on level surfaces."""
-    POROUS = 5
-    """Lawn and soil: like `OPEN`, but rain soaks in."""
+    BARE = 0  # No snow stays
+    OPEN = 1  # Snow lies as it fell
+    DRIVEN = 2  # Roads and their paint: wheels wear the snow off
+    LEAVES = 3  # Crowns of trees: clumps on branches
+    VEHICLE = 4  # Painted body of vehicles: a thin layer on level surfaces
+    POROUS = 5  # Lawn and soil: like `OPEN`, but rain soaks in
 
 
 BARE, DRIVEN = i4(int(Bed.BARE)), i4(int(Bed.DRIVEN))

@@ -35,8 +35,7 @@ __all__ = [
     "texel",
 ]
 
-LEVELS = 9
-"""Mip levels of a layer."""
+LEVELS = 9  # Mip levels of a layer
 
 TEXELS_IN_ROW = sum((1 << bits) + 1 for bits in range(LEVELS - 1))
 """Texels in a row of a layer: levels 1 to 8 lie beside each other."""
@@ -46,14 +45,12 @@ TEXELS = TEXELS_IN_ROW * (257 + 129)
 
 _ROW, _LAYER, _COARSEST = i4(TEXELS_IN_ROW), i4(TEXELS), i4(LEVELS - 1)
 
-_BELOW = i4(257 * TEXELS_IN_ROW)
-"""Index of the first texel of level 1."""
+_BELOW = i4(257 * TEXELS_IN_ROW)  # Index of the first texel of level 1
 
 LAST_TEXEL = 258 * TEXELS_IN_ROW - 2
 """Index of the only texel of the last level, which with its repetition ends level 1's first row."""
 
-_ONE = i4(0x3F800000)
-"""The bits of 1.0."""
+_ONE = i4(0x3F800000)  # The bits of 1.0.
 
 
 @kernel(inline=True)

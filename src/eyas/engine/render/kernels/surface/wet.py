@@ -30,14 +30,11 @@ LEAVES, POROUS = i4(int(Bed.LEAVES)), i4(int(Bed.POROUS))
 _LEAST = f4(0.02)
 """Share of light that water mirrors at normal incidence: ((1.33 - 1) / (1.33 + 1))^2."""
 
-_SIDE = 64
-"""Texels along a side of the picture of hollows, see `eyas.engine.render.bake.puddles`."""
+_SIDE = 64  # Texels along a side of the picture of hollows, see `eyas.engine.render.bake.puddles`.
 
-_PER_METRE = 1.1
-"""Texels of it in a metre."""
+_PER_METRE = 1.1  # Texels of it in a metre
 
-_LEVEL = f4(0.92)
-"""Upward component of the normal from which water stays on a surface."""
+_LEVEL = f4(0.92)  # Upward component of the normal from which water stays on a surface
 
 
 @kernel(inline=True)

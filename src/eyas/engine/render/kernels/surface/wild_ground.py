@@ -32,17 +32,14 @@ CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
 DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
 
-NO_BLEND = False
-"""Mip levels of ridges are not blended: noise lies over where they meet."""
+NO_BLEND = False  # Mip levels of ridges are not blended: noise lies over where they meet
 
 RIDGES = f4(1.0 / 54.0)
 """Repeats of the texture `sand` in a metre where its ripples are ridges of two metres and more."""
 
-_ROCK = f4(0.75)
-"""Upward component of the normal below which rock shows, on average."""
+_ROCK = f4(0.75)  # Upward component of the normal below which rock shows, on average
 
-_PER_SOIL = f4(4.0)
-"""About half of one over the mean green of the texture `soil`."""
+_PER_SOIL = f4(4.0)  # About half of one over the mean green of the texture `soil`
 
 
 @kernel(inline=True)
@@ -81,14 +78,10 @@ def downwind(point: Colour) -> tuple[float, float]:
 class Look(NamedTuple):
     """What is seen of a texture."""
 
-    textures: NDArray[np.uint32]
-    """See `Geometry.texture`."""
-    layer: int
-    """Which of them."""
-    detail: int
-    """From `detail_of`."""
-    alpha: float
-    """0 to 1."""
+    textures: NDArray[np.uint32]  # See `Geometry.texture`.
+    layer: int  # Which of them
+    detail: int  # From `detail_of`
+    alpha: float  # 0 to 1
 
 
 @kernel(inline=True)

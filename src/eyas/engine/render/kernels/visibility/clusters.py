@@ -33,8 +33,7 @@ __all__ = [
     "project_cluster",
 ]
 
-CLUSTER = 8
-"""Triangles in a cluster."""
+CLUSTER = 8  # Triangles in a cluster
 
 CLUSTER_ROWS = 11
 
@@ -42,11 +41,9 @@ SIZE = 9
 """Root of the area [m] of each triangle that is a detail, seen before something larger, and may be
 left out when it is small; infinite for others; negative where there is no triangle."""
 
-LEAVES = 10
-"""Texture tiles in a metre of leaves, negative for triangles without holes."""
+LEAVES = 10  # Texture tiles in a metre of leaves, negative for triangles without holes
 
-UV_ROWS = 6
-"""Rows of `Geometry.corner_uv`: u and v of corner a, of b and of c."""
+UV_ROWS = 6  # Rows of `Geometry.corner_uv`: u and v of corner a, of b and of c.
 
 BOUNDS_ROWS = 14
 APEX, AXIS = 6, 9
@@ -55,14 +52,11 @@ CUT_OFF = 12
 """A place is in the cone if the way from it to the apex is at so small an angle to the axis that
 the cosine is this or more."""
 
-NO_CONE = 2.0
-"""Cut-off of a cone that holds no place."""
+NO_CONE = 2.0  # Cut-off of a cone that holds no place
 
-LARGEST = 13
-"""`SIZE` of the largest triangle in the cluster."""
+LARGEST = 13  # `SIZE` of the largest triangle in the cluster
 
-_SLACK = 0.02
-"""How deep in a cone places must be [m]: more than float32 rounds them off."""
+_SLACK = 0.02  # How deep in a cone places must be [m]: more than float32 rounds them off
 
 
 @kernel(inline=True)

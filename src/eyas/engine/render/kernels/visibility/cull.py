@@ -65,8 +65,7 @@ class Side(NamedTuple):
     x: float
     y: float
     z: float
-    least: float
-    """What `x`, `y` and `z` times a place come to inside, at least."""
+    least: float  # What `x`, `y` and `z` times a place come to inside, at least
     length: float
 
 

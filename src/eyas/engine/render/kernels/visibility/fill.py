@@ -54,8 +54,7 @@ from eyas.lanes.vector import (
 
 __all__ = ["SPAN_ROWS", "fill", "fill_row", "fill_rows", "slopes_of"]
 
-SPAN_ROWS = 7
-"""Rows of `Scratch.span`: a column for each of eight rows of samples."""
+SPAN_ROWS = 7  # Rows of `Scratch.span`: a column for each of eight rows of samples.
 
 AT, END = 0, 1
 """Index of the first eight samples of the span in the array of keys, and of its last sample + 1."""

@@ -11,14 +11,11 @@ from eyas.lanes.vector import WIDTH, any_of, lane, lane_numbers, like, load, sel
 
 __all__ = ["TILE", "box_is_hidden", "measure_tiles"]
 
-TILE = WIDTH
-"""Side of a tile [samples]."""
+TILE = WIDTH  # Side of a tile [samples]
 
-_MARGIN = 1.0
-"""Width of the border around a box on the screen that counts as the box [samples]."""
+_MARGIN = 1.0  # Width of the border around a box on the screen that counts as the box [samples]
 
-_SLACK = 0.05
-"""How much nearer than computed a box may be [m]: more than float32 rounds off."""
+_SLACK = 0.05  # How much nearer than computed a box may be [m]: more than float32 rounds off
 
 _SHARE = 0.98
 """The same as a share: 1/distance at a sample may exceed that of a triangle's corners by 1/64."""

@@ -15,23 +15,18 @@ __all__ = ["LEVELS", "Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
 SMALLEST_HOLES = 4
 """Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
 
-LEVELS = 16
-"""A layer of the texture times this, and a mip level, are one number."""
+LEVELS = 16  # A layer of the texture times this, and a mip level, are one number
 
-_BITS = 8
-"""Binary logarithm of the texels along a side of level 0."""
+_BITS = 8  # Binary logarithm of the texels along a side of level 0
 
 
 class Holes(NamedTuple):
     """A mip level of a texture; see `eyas.engine.render.kernels.surface.texture`."""
 
     texture: NDArray[np.uint32]
-    first: int
-    """Its first texel in the whole array."""
-    level: int
-    """-1: no holes."""
-    size: float
-    """Texels along its sides."""
+    first: int  # Its first texel in the whole array
+    level: int  # -1: no holes
+    size: float  # Texels along its sides
 
 
 @kernel(inline=True)

@@ -22,8 +22,7 @@ __all__ = [
 ]
 
 TRIANGLE_BITS = 17
-MOST_TRIANGLES = 1 << TRIANGLE_BITS
-"""Limit of the triangles of a level of detail."""
+MOST_TRIANGLES = 1 << TRIANGLE_BITS  # Limit of the triangles of a level of detail
 
 MOST_INSTANCES = 1 << (31 - TRIANGLE_BITS)
 """Limit of the instances that a view shows; more are left out."""

@@ -13,8 +13,7 @@ from eyas.lanes.vector import gather
 
 __all__ = ["leaves_of", "tiles_of"]
 
-_TEXELS = 256.0
-"""Texels along a side of a texture."""
+_TEXELS = 256.0  # Texels along a side of a texture
 
 
 @kernel(inline=True)

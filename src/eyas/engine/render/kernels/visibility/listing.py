@@ -32,13 +32,11 @@ from eyas.lanes.vector import (
 
 __all__ = ["list_chunks", "list_fixtures", "list_slots"]
 
-SMALLEST = 0.4
-"""Things with a smaller radius are left out [pixels]."""
+SMALLEST = 0.4  # Things with a smaller radius are left out [pixels]
 
 EIGHT = 8
 
-_POSE = 12
-"""Numbers in a pose."""
+_POSE = 12  # Numbers in a pose
 
 
 @kernel(inline=True)

@@ -45,11 +45,9 @@ VERTICES = int(DrawStage.VERTICES)
 PIXELS_PER_TRIANGLE = 1.5
 """Size of the triangles for which a level of detail is fine enough [pixels]."""
 
-_ROWS_IN_LINE = 2
-"""Rows of eight float32 in a line of the cache."""
+_ROWS_IN_LINE = 2  # Rows of eight float32 in a line of the cache
 
-ASIDE = 1.0 / 64.0
-"""See `rasterise`: less would let roads rise over their paint at their far edges."""
+ASIDE = 1.0 / 64.0  # See `rasterise`: less would let roads rise over their paint at their far edges
 
 
 @kernel(inline=True)

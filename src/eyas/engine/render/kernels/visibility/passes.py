@@ -22,11 +22,9 @@ MEASURED_EVERY = 16
 """Things drawn before it is measured again what they hide; later a quarter of those drawn so far,
 since the first are the nearest: with thousands of things, it took a fifth of the time."""
 
-AHEAD = 2
-"""Things listed ahead of the one that is drawn whose meshes are brought into the cache."""
+AHEAD = 2  # Things listed ahead of the one that is drawn whose meshes are brought into the cache
 
-SMALLEST_DETAIL = 0.35
-"""Details whose area has a smaller root are left out [pixels]."""
+SMALLEST_DETAIL = 0.35  # Details whose area has a smaller root are left out [pixels]
 
 
 @kernel(inline=True)

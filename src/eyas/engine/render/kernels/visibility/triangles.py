@@ -50,11 +50,9 @@ __all__ = [
     "set_up_leaves",
 ]
 
-SIXTEENTHS = 16.0
-"""Steps in a sample to which corners are rounded."""
+SIXTEENTHS = 16.0  # Steps in a sample to which corners are rounded
 
-TRIANGLE_ROWS = 28
-"""Rows of `Scratch.triangle`, see the following; a column for each triangle."""
+TRIANGLE_ROWS = 28  # Rows of `Scratch.triangle`, see the following; a column for each triangle.
 
 LONG, UPPER, LOWER = 0, 4, 8
 """First of the rows of an edge: from the uppermost corner to the lowest; from the uppermost to the
@@ -64,24 +62,19 @@ X, Y = 0, 1
 """Rows of an edge: its upper end. The column is so shifted that a sample with its centre right of
 the edge, or on it, has this number or more; the row is in sixteenths."""
 
-RUN = 2
-"""How far the edge runs to the right [sixteenths]."""
+RUN = 2  # How far the edge runs to the right [sixteenths]
 
-FALL = 3
-"""One over how far it runs down [samples / sixteenths^2]."""
+FALL = 3  # One over how far it runs down [samples / sixteenths^2]
 
-FIRST_ROW, LAST_ROW = 12, 13
-"""First row of samples, and last + 1."""
+FIRST_ROW, LAST_ROW = 12, 13  # First row of samples, and last + 1
 
 START, ACROSS, DOWN = 14, 15, 16
 """1/distance at the centre of sample (0, 0), and how it changes from column to column, and from row
 to row."""
 
-LEAST, MOST = 17, 18
-"""Limits of 1/distance."""
+LEAST, MOST = 17, 18  # Limits of 1/distance
 
-INVERSE = 19
-"""1/distance at corner a."""
+INVERSE = 19  # 1/distance at corner a
 
 U, V = 20, 24
 """First of the three rows, like `START`, of u/distance and v/distance, for triangles of leaves."""

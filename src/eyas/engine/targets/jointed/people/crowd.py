@@ -19,8 +19,7 @@ from eyas.engine.targets.jointed.people.person import (
 
 __all__ = ["LOOKS", "PEOPLE"]
 
-LOOKS = 112
-"""Number of people."""
+LOOKS = 112  # Number of people
 
 Thing = TypeVar("Thing")
 
@@ -133,8 +132,7 @@ _HEIGHTS = {
 }  # fmt: skip
 _INNER = ((_WHITE, 60), ((0.20, 0.20, 0.22), 40))
 _OVER = (Garment.OPEN_JACKET, Garment.JACKET, Garment.COAT)
-_HOODS = 0.3
-"""Share of hoods that are up."""
+_HOODS = 0.3  # Share of hoods that are up
 _HAIRY = (Head.SHORT, Head.LONG, Head.BUN, Head.TAIL, Head.BOB, Head.BALD)
 
 

@@ -21,8 +21,7 @@ from eyas.engine.targets.jointed.people.wardrobe import Dress
 
 __all__ = ["STRIDE", "figure_of"]
 
-STRIDE = 1.46
-"""Of a person of 1.80 m [m]: 1.37 strides a second at the original's 2 m/s."""
+STRIDE = 1.46  # Of a person of 1.80 m [m]: 1.37 strides a second at the original's 2 m/s.
 
 _SHOULDERS = {Build.MAN: 0.188, Build.WOMAN: 0.162, Build.STOUT: 0.198, Build.CHILD: 0.168}
 """y of the left shoulder [m]."""
@@ -30,11 +29,9 @@ _SHOULDERS = {Build.MAN: 0.188, Build.WOMAN: 0.162, Build.STOUT: 0.198, Build.CH
 _HIPS = {Build.MAN: 0.088, Build.WOMAN: 0.088, Build.STOUT: 0.098, Build.CHILD: 0.08}
 """y of the left hip [m]."""
 
-_SHOULDER = 0.452
-"""Height of the shoulders above the hips [m]."""
+_SHOULDER = 0.452  # Height of the shoulders above the hips [m]
 
-_BEHIND = 0.51
-"""How far who pushes a pram is behind the middle of both [m]."""
+_BEHIND = 0.51  # How far who pushes a pram is behind the middle of both [m]
 
 
 def figure_of(person: Person, dress: Dress) -> Figure:
@@ -133,8 +130,7 @@ _ARMS = {
 """Pitch of upper arm and forearm: `rest`, `lean` and `size` of its `Swing`. Whoever is not here has
 free arms."""
 
-_ONE_HANDED = (Posture.PHONE, Posture.LADEN)
-"""Postures of the right arm only."""
+_ONE_HANDED = (Posture.PHONE, Posture.LADEN)  # Postures of the right arm only
 
 
 def _arm(person: Person, dress: Dress, side: float) -> tuple[Joint, Joint]:

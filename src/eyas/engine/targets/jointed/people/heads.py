@@ -16,8 +16,7 @@ __all__ = ["hair_shape", "head_shape"]
 _SIDES = (5, 7, 10)
 _BARE = skin(None)
 
-_CHIN = 0.07
-"""Height of the chin above the origin [m]."""
+_CHIN = 0.07  # Height of the chin above the origin [m]
 
 _SKULL: tuple[Row, ...] = (
     (0.000, 0.078, 0.010, 0.026), (0.022, 0.092, 0.040, 0.050), (0.050, 0.098, 0.062, 0.062),

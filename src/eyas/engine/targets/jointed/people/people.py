@@ -48,11 +48,9 @@ _HEADS = {
     Head.BALD: "a bald crown",
 }
 
-_SINGLE = (Head.TAIL, Head.CAP, Head.HAT, Head.BEANIE)
-"""What has an article before it."""
+_SINGLE = (Head.TAIL, Head.CAP, Head.HAT, Head.BEANIE)  # What has an article before it
 
-_HAIR = {"beige": "blond", "ochre": "blond"}
-"""Colours that have another name on a head."""
+_HAIR = {"beige": "blond", "ochre": "blond"}  # Colours that have another name on a head
 
 
 def _words(person: Person) -> tuple[str, ...]:

@@ -29,14 +29,11 @@ __all__ = [
     "Shoes",
 ]
 
-HIP = 0.95
-"""Height of the hips [m]."""
-NECK = 0.53
-"""Lower end of the neck above the hips [m]."""
+HIP = 0.95  # Height of the hips [m]
+NECK = 0.53  # Lower end of the neck above the hips [m]
 THIGH, SHANK, ANKLE = 0.44, 0.435, 0.085
 UPPER_ARM, FOREARM = 0.30, 0.25
-HEEL, TOES = 0.07, 0.19
-"""Length of a shoe behind and ahead of the ankle [m]."""
+HEEL, TOES = 0.07, 0.19  # Length of a shoe behind and ahead of the ankle [m]
 
 
 class Build(Enum):
@@ -88,8 +85,7 @@ class Lower(Enum):
     WIDE = "wide trousers"
     SHORTS = "shorts"
     SKIRT = "skirt"
-    NONE = "nothing"
-    """Bare legs, under a dress."""
+    NONE = "nothing"  # Bare legs, under a dress
 
 
 class Head(Enum):
@@ -141,23 +137,18 @@ class Person:
     """A person."""
 
     name: str
-    height: float
-    """[m]"""
+    height: float  # [m]
     build: Build
     garment: Garment
     head: Head
     skin: Colour
-    hair_colour: Colour
-    """Of the hair, or of what covers it."""
+    hair_colour: Colour  # Of the hair, or of what covers it
     lower: Lower = Lower.TROUSERS
-    lower_colour: Colour
-    """Of the trousers or the skirt."""
+    lower_colour: Colour  # Of the trousers or the skirt
     shoes: Shoes = Shoes.LEATHER
     shoe_colour: Colour
-    cut: str = "plain"
-    """Texture of the garment, one of `eyas.engine.world.build.clothing.CLOTHES`."""
-    inner_colour: Colour = (0.84, 0.83, 0.81)
-    """Of the shirt that shows in a jacket or a coat."""
+    cut: str = "plain"  # Texture of the garment, one of `eyas.engine.world.build.clothing.CLOTHES`.
+    inner_colour: Colour = (0.84, 0.83, 0.81)  # Of the shirt that shows in a jacket or a coat
     posture: Posture = Posture.FREE
     carried: Carried = Carried.NOTHING
     carried_colour: Colour = (0.15, 0.15, 0.16)

@@ -14,11 +14,9 @@ from eyas.lanes import exact
 
 __all__ = ["Row", "loop", "wrapped"]
 
-_CREASE = 1.35
-"""Bodies of five sides are round, boxes are not [rad]."""
+_CREASE = 1.35  # Bodies of five sides are round, boxes are not [rad]
 
-_FEW = 6
-"""With fewer sides, every second outline is left out."""
+_FEW = 6  # With fewer sides, every second outline is left out
 
 Row = tuple[float, float, float, float]
 """z of an outline, how far it reaches ahead and back of the axis, and half its width [m]."""

@@ -41,8 +41,7 @@ _BODIES: dict[Build, tuple[Row, ...]] = {
 }  # fmt: skip
 """Outlines of bodies from the hips to the neck."""
 
-_MARKS = (0.0, 0.2, 0.45, 0.68, 0.82, 0.91, 0.96, 1.0)
-"""Where they are in `TORSO`."""
+_MARKS = (0.0, 0.2, 0.45, 0.68, 0.82, 0.91, 0.96, 1.0)  # Where they are in `TORSO`
 
 _EASE = {
     Garment.T_SHIRT: 0.004, Garment.SHIRT: 0.008, Garment.HOODIE: 0.02, Garment.JACKET: 0.02,

@@ -27,11 +27,9 @@ class Dress:
     """The shapes of a person's parts; pairs are left and right."""
 
     chest: Shape
-    hips: Shape | None
-    """None below a long garment."""
+    hips: Shape | None  # None below a long garment
     head: Shape
-    hair: Shape
-    """Or what covers it."""
+    hair: Shape  # Or what covers it
     upper_arms: tuple[Shape, Shape]
     forearms: tuple[Shape, Shape]
     carried: Shape | None

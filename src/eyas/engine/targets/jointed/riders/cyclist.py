@@ -29,20 +29,15 @@ __all__ = ["CYCLISTS"]
 
 _NAME = "Cyclist"
 
-_PEDAL = 0.165
-"""Length of the cranks [m]."""
+_PEDAL = 0.165  # Length of the cranks [m]
 _STRIDE = 2.2 * 2.0 * 3.141592653589793 * WHEEL_RADIUS
 _HIP = (SADDLE[0] + 0.02, 0.0, SADDLE[1] + 0.10)
-_LEAN = 0.5
-"""How far the trunk leans forward [rad]."""
-_SHOULDER = (-0.01, 0.19, 0.43)
-"""The left one in the frame of the trunk [m]."""
+_LEAN = 0.5  # How far the trunk leans forward [rad]
+_SHOULDER = (-0.01, 0.19, 0.43)  # The left one in the frame of the trunk [m]
 _THIGH, _SHANK, _ANKLE = 0.44, 0.435, 0.085
 _UPPER_ARM, _FOREARM = 0.30, 0.26
-_WRIST = (0.27, 0.30, 1.10)
-"""The left one on its grip, in the model frame [m]."""
-_BESIDE = 0.105
-"""From the middle of the bicycle to a foot [m]."""
+_WRIST = (0.27, 0.30, 1.10)  # The left one on its grip, in the model frame [m]
+_BESIDE = 0.105  # From the middle of the bicycle to a foot [m]
 
 _CLOTH = Material(texture="cloth", surface=Surface.PAINT)
 _SHOE = matt(0.12, 0.11, 0.11)
@@ -55,8 +50,7 @@ class _Look:
     skin: Colour
     hair: Colour
     trousers: Colour
-    paint: Colour
-    """Of the bicycle."""
+    paint: Colour  # Of the bicycle
     helmet: Colour | None = None
     bag: Colour | None = None
 

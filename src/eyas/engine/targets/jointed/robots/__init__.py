@@ -19,5 +19,4 @@ def _read() -> tuple[JointedModel, ...]:
     return tuple(sorted(models, key=lambda model: order.index(model.name)))
 
 
-ROBOTS: tuple[JointedModel, ...] = _read()
-"""All robots, in the order of `TargetName`."""
+ROBOTS: tuple[JointedModel, ...] = _read()  # All robots, in the order of `TargetName`

@@ -16,8 +16,7 @@ _WHITE, _AMBER, _RED, _GREY = (
 _LENS = Material(tint=(0.05, 0.05, 0.07), surface=Surface.GLASS)
 _HIP, _SIDE = 0.285, 0.108
 _BONE = 0.14
-_FRONT, _REAR = 0.22, -0.24
-"""Forward of the hips of the legs [m]."""
+_FRONT, _REAR = 0.22, -0.24  # Forward of the hips of the legs [m]
 
 
 def _chest(shell: Shell, detail: int) -> None:

@@ -17,8 +17,7 @@ _DARK, _SILVER, _STEEL, _SEAT = (
 )  # fmt: skip
 _GLASS = Material(tint=(0.14, 0.16, 0.18), surface=Surface.GLASS)
 _COXA, _FEMUR, _TIBIA = 0.3, 1.5, 1.6
-_HIP = 0.95
-"""Height of the hips [m]."""
+_HIP = 0.95  # Height of the hips [m]
 
 
 def _body(shell: Shell, detail: int) -> None:
