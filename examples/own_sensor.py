@@ -4,7 +4,7 @@
     PYTHONPATH=examples eyas video --set 'sensors.further=["own_sensor:MAGNETOMETER"]'
 
 A sensor that Python can import needs no registration: `sensors.further` takes its path. To give it
-a short name, define an entry point in the group `eyas.engine.sensors` (wherever the package is installed).
+a short name, define an entry point in the group `eyas.sensors` (wherever the package is installed).
 Its errors are settings: noise, bias, rate, delay, drop-out. It is then in `info`, in labels and
 `sensors.csv`, a part of observations by its name, and, since its unit is gauss, in bags of ROS
 (`/magnetometer`) and MAVLink's `HIGHRES_IMU`.

@@ -5,10 +5,10 @@
                                             # compares, and notes that today's code gives the same
     python tools/shipped_data.py --note     # notes it for what has just been made anew
 
-The notes, `shipped_data.json` beside this file, hold the code (`eyas.engine.core.program`) that made each
-file: all that it refers to, but for `core` and `lanes`, whose own tests hold what they compute to
-the bit. What comes out otherwise is made anew with `eyas traffic record --map NAME --canonical`.
-`tests/maps/test_shipped_data.py` fails where something is stale.
+The notes, `shipped_data.json` beside this file, hold the code (`eyas.engine.core.program`) that
+made each file: all that it refers to, but for `core` and `lanes`, whose own tests hold what they
+compute to the bit. What comes out otherwise is made anew with `eyas traffic record --map NAME
+--canonical`. `tests/maps/test_shipped_data.py` fails where something is stale.
 """
 
 import argparse

@@ -139,8 +139,8 @@ __version__: str
 installed. `build_id` identifies the code exactly."""
 
 build_id: str
-"""Identifies code and data of this Eyas, see `eyas.engine.core.build`: results of the same build, settings
-and seed are the same to the bit."""
+"""Identifies code and data of this Eyas, see `eyas.engine.core.build`: results of the same build,
+settings and seed are the same to the bit."""
 
 _PLACES = {
     "benchmark.api": "evaluate list_policies list_protocols",

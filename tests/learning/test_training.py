@@ -129,7 +129,8 @@ def test_the_default_folder_is_numbered(tmp_path, monkeypatch):
 def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
     folder = tmp_path / "run"
     script = (
-        "import sys; from pathlib import Path; from eyas.engine.settings.file import load_settings\n"
+        "import sys; from pathlib import Path\n"
+        "from eyas.engine.settings.file import load_settings\n"
         "from eyas.learning.trainer import train\n"
         "train(load_settings(Path(sys.argv[1])), Path(sys.argv[2]))"
     )

@@ -19,7 +19,7 @@ _HOPELESS = 1_000  # Number of starts after which no more are tried if none of t
 _PARTS = 25  # In how many parts: looking at a few together costs less than at each alone
 
 
-def first_fitting(  # noqa: PLR0913  # what is asked for, and of what
+def first_fitting(
     places: Sequence[Place],
     protocol: Protocol,
     count: int,

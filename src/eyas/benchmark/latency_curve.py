@@ -30,7 +30,7 @@ class _Point(TypedDict):
     figures: dict[str, tuple[float, float | None, float | None]]
 
 
-def run_curve(  # noqa: PLR0913  # choices of the user's
+def run_curve(
     plan: EvaluationPlan,
     out: Path,
     *,

@@ -43,7 +43,7 @@ CROISSANT = "croissant.json"  # What the episodes are, for machines
 TIMING = "timing.json"  # How long the policy takes; apart from the result, which repeats
 
 
-def run(  # noqa: PLR0913  # choices of the user's
+def run(
     plan: EvaluationPlan,
     out: Path,
     *,

@@ -68,13 +68,14 @@ def _options(command: Any) -> list[tuple[str, str]]:  # noqa: ANN401
 
 def _names() -> dict[str, Sequence[str]]:
     """Return the names that options take, by option."""
+    from eyas.benchmark.api import list_policies
     from eyas.engine import names
 
     lists: dict[str, Callable[[], Sequence[str]]] = {
         "--map": names.list_maps,
         "--weather": names.list_weathers,
         "--preset": names.list_presets,
-        "--policy": names.list_policies,
+        "--policy": list_policies,
         "--target": names.list_targets,
         "--format": names.list_formats,
     }

@@ -1,4 +1,6 @@
-"""What runs for long: `eyas video`, `serve`, and `run`, which is one of those or of other houses."""
+"""What runs for long: `eyas video`, `serve`, and `run`, which is one of those or of other
+houses.
+"""
 
 import json
 import logging
@@ -197,7 +199,7 @@ def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     return of_a_run(load(), seed)
 
 
-def run(  # noqa: PLR0913  # one parameter for each option
+def run(
     config: Annotated[
         Path, typer.Option("--config", help="JSON file, native or the original's env_config.json.")
     ],

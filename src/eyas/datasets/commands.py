@@ -148,7 +148,7 @@ _Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but 
 
 
 @dataset_app.command("make")
-def make_dataset(  # noqa: PLR0913  # one parameter for each option
+def make_dataset(
     recipe: Annotated[
         str,
         typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False),

@@ -3,8 +3,8 @@
 numpy and BLAS choose their functions by the features of the processor, and so does the C library:
 the last bits of their sines, powers and products of matrices differ from one to the next. Wherever
 numbers decide what is simulated, drawn, labelled or kept, these take their place;
-`tests/engine/core/test_exact_everywhere.py` refuses the others there, and says which parts of numpy are
-safe.
+`tests/engine/core/test_exact_everywhere.py` refuses the others there, and says which parts of numpy
+are safe.
 
 What is added is added in a fixed order, one product after the other.
 """

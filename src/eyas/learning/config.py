@@ -161,15 +161,6 @@ class TrackerTraining(Config):
         """Pictures in all lessons, with those that come more than once."""
         return LESSON * sum(each.steps for each in self.rounds)
 
-    def variants(self, config: "EngineConfig") -> Iterator[tuple[str, Changes]]:
-        """Yield what the stages change, see `Section`."""
-        for at, stage in enumerate(self.stages):
-            yield f"stages.{at}", stage.changes(config.world)
-
-    def alone(self) -> Self:
-        """Return the section without stages."""
-        return self.model_copy(update={"stages": ()})
-
     def scaled(self, total: int) -> dict[str, Any]:
         """Return the changes with `total` pictures in all lessons: each round with its share of
         steps and flights, at least 1 where there were any, and the traffic with its share.

@@ -109,8 +109,8 @@ class _Run:
         self.network = TrackingNetwork(_shape(config), channels_last=layout)
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
-        if TrainConfig.of(config).begin_from is not None:
-            RunFolder(Path(TrainConfig.of(config).begin_from)).load_network(self.network)
+        if (first := TrainConfig.of(config).begin_from) is not None:
+            RunFolder(Path(first)).load_network(self.network)
         self.network.to(torch_device(TrainConfig.of(config).device))
         rate = TrainConfig.of(config).learning_rate
         optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)

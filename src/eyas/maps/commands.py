@@ -160,7 +160,7 @@ def check_plan(
 
 
 @app.command("export")
-def export_map(  # noqa: PLR0913  # each option is a parameter
+def export_map(
     name: Name,
     kind: Annotated[
         str,

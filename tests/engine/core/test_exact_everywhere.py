@@ -37,7 +37,7 @@ ALLOWED = {
     "lanes/exact.py": "takes their place",
     "benchmark/policies/choice.py": "chances of actions from scores of networks, which BLAS made",
     "benchmark/policies/tracker/detector.py: np.exp": "the same of places",
-    "engine/core/bounds.py: np.vdot": "whether numbers are looked at one by one; no usual one changes",
+    "engine/core/bounds.py: np.vdot": "whether numbers are looked at one by one; none changes",
     "engine/sim/stepper.py: np.vdot": "the same",
     "engine/render/textures/fields.py: np.fft.rfft2": "not by processor; becomes bytes of textures",
     "engine/render/textures/fields.py: np.fft.irfft2": "the same",

@@ -1,8 +1,8 @@
 """Small pictures of all maps, compared with ones that a person has looked at.
 
 They show what closed-form tests cannot: that a map looks as it did. After a change that is
-meant to show, look at the new pictures and keep them with `pytest tests/engine/render/test_golden.py
---regenerate`.
+meant to show, look at the new pictures and keep them with `pytest
+tests/engine/render/test_golden.py --regenerate`.
 """
 
 from pathlib import Path

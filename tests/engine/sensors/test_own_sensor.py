@@ -185,7 +185,7 @@ def test_autopilots_get_no_sensor_that_is_exact():
 
 
 def test_a_package_adds_it_by_an_entry_point(monkeypatch, magnetometer):
-    point = EntryPoint("magnetometer", PATH, "eyas.engine.sensors")
+    point = EntryPoint("magnetometer", PATH, "eyas.sensors")
     monkeypatch.setitem(vars(SENSORS), "_points", (point,))
     assert SENSORS.names()[-1] == "magnetometer"
     (fitted,) = further_sensors(SensorsConfig(further=["magnetometer"]))

@@ -11,7 +11,7 @@ LOADED = """
 import sys
 import eyas.engine.settings.file
 heavy = {"numba", "av", "PIL", "shapely", "scipy", "rich"} & sys.modules.keys()
-upper = {name for name in sys.modules if name.startswith(("eyas.engine.terminal.", "eyas.engine.exports."))}
+upper = {name for name in sys.modules if name.startswith("eyas.engine.exports.")}
 print(sorted(heavy | upper))
 """
 

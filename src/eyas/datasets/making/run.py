@@ -17,7 +17,7 @@ from eyas.engine.video.action import check_flight
 __all__ = ["parsed_shard", "run"]
 
 
-def run(  # noqa: PLR0913  # choices of the user's
+def run(
     named: str | Mapping[str, Any],
     out: str,
     making: Making,

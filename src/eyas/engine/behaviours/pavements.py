@@ -44,7 +44,7 @@ class Walkway(NamedTuple):
         return shapely.LineString([*self.corners, self.corners[0]])
 
 
-def pavement_ways(  # noqa: PLR0913  # where, and round what
+def pavement_ways(
     network: RoadNetwork,
     size: tuple[float, float],
     obstacles: GroundObstacles,

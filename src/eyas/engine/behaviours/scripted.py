@@ -191,7 +191,7 @@ def _strolls(
     return made
 
 
-def _crossing_walks(  # noqa: PLR0913  # who, where, when
+def _crossing_walks(
     ground: Ground,
     group: ScriptedGroup,
     habit: Habit,

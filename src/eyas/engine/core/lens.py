@@ -1,8 +1,9 @@
 """Lenses that bend the picture: Brown-Conrady's and Kannala-Brandt's models, as OpenCV has them.
 
 A lens takes a direction, right, down and ahead of the camera, to a place on a plane at distance 1
-behind the lens; the camera matrix (`eyas.engine.core.pinhole.intrinsics`, with the principal point moved)
-takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV calibrates:
+behind the lens; the camera matrix (`eyas.engine.core.pinhole.intrinsics`, with the principal point
+moved) takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV
+calibrates:
 
 - Brown-Conrady (D. C. Brown, Decentering distortion of lenses, 1966; `cv2.projectPoints` with k1,
   k2, p1, p2, k3), for lenses that are nearly pinholes;

@@ -42,7 +42,7 @@ def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:
     return np.array([[focal, 0.0, 0.5 * width], [0.0, focal, 0.5 * height], [0.0, 0.0, 1.0]])
 
 
-def project(  # noqa: PLR0913  # a pose and a lens, as they come
+def project(
     points: ArrayLike,
     position: ArrayLike,
     rotation: ArrayLike,

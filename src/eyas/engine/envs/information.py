@@ -42,10 +42,10 @@ def information(simulation: Simulation) -> Info:
     - the sensors of the basic packet: `position` and `velocity` (GPS), `orientation` and `euler`
       (IMU), `angular_velocity` (gyroscope), `felt_acceleration` (accelerometer);
     - what further sensors read, by the names of their parts (`Sensor.parts`);
-    - the reward packet (both: `eyas.engine.task.packets`), with the type of the target as an index into
-      `eyas.engine.targets.catalogue.MODELS`;
-    - as numbers of `eyas.engine.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
-      that the body violates (`done_state`); the physics steps since the reset (`step`);
+    - the reward packet (both: `eyas.engine.task.packets`), with the type of the target as an index
+      into `eyas.engine.targets.catalogue.MODELS`;
+    - as numbers of `eyas.engine.task.done.DoneReason`, the reason of the end (`done_reason`) and
+      the limit that the body violates (`done_state`); the physics steps since the reset (`step`);
     - the seed of the sequence of episodes (`seed`): `reset(seed=...)` begins it again;
     - the values sampled from the `light` settings (factor on the sky, factor on the sun, one over
       the visibility range [1/m]);

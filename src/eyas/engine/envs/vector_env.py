@@ -59,7 +59,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(  # noqa: PLR0913  # one for each choice
+    def __init__(
         self,
         num_envs: int = 1,
         config: Source = None,
@@ -186,7 +186,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def _step_there(
         self,
-        envs: Any,
+        envs: Any,  # noqa: ANN401  # see `_there`
         actions: Any,  # noqa: ANN401  # as in Gymnasium
         out: Observation | None,
     ) -> Stepped:

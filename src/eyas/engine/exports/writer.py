@@ -7,8 +7,8 @@
       finish(episodes)                     once, when all episodes have ended
 
 A file is written under another name and renamed when it is complete
-(`eyas.engine.core.files.write_atomic`), so that an interrupted recording can be continued. Every method
-that writes may raise `OutputError`.
+(`eyas.engine.core.files.write_atomic`), so that an interrupted recording can be continued. Every
+method that writes may raise `OutputError`.
 """
 
 import math

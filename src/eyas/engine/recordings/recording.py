@@ -286,8 +286,8 @@ class Recording(Sequence[RecordedEpisode]):
         return Recording(self.folder, chosen)
 
     def as_torch(self, *outputs: str) -> "Dataset[dict[str, Any]]":
-        """Return a PyTorch data set of all frames, see `eyas.engine.recordings.torch_frames` (PyTorch must
-        be installed).
+        """Return a PyTorch data set of all frames, see `eyas.engine.recordings.torch_frames`
+        (PyTorch must be installed).
 
         Args:
             outputs: What each item holds beside `picture` and `label`: `masks`, `depth`, ...

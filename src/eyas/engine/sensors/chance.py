@@ -1,8 +1,8 @@
 """Random numbers by their number: kernels read any of them, in any order, without a state.
 
 The noise of a reading depends only on the seed of its stream, which is sampled for each episode
-(`eyas.engine.core.rng.EpisodeKey`), and on the number of the reading; so neither other sensors nor the
-length of a control step change it.
+(`eyas.engine.core.rng.EpisodeKey`), and on the number of the reading; so neither other sensors nor
+the length of a control step change it.
 """
 
 import math

@@ -283,4 +283,6 @@ class SensorsConfig(Config):
     camera: CameraErrors = CameraErrors()
     """Pictures."""
     further: tuple[FurtherSensorConfig, ...] = ()
-    """Sensors that trackers have besides, in the table `eyas.engine.sensors.table` or of your own."""
+    """Sensors that trackers have besides, in the table `eyas.engine.sensors.table` or of your
+    own.
+    """

@@ -2,8 +2,8 @@
 
     COMPASS = Sensor(name="compass", unit="gauss", parts={...}, read=_read, noise=0.0012)
 
-The kernel writes the truth. Noise, bias, rate, delay and drop-out are `eyas.engine.sensors.readings`', the
-same for all sensors. How to add one is in docs/sensors.md.
+The kernel writes the truth. Noise, bias, rate, delay and drop-out are
+`eyas.engine.sensors.readings`', the same for all sensors. How to add one is in docs/sensors.md.
 """
 
 import re

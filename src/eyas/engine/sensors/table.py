@@ -19,7 +19,7 @@ SENSORS: Registry[Sensor] = Registry(
         "compass": "eyas.engine.sensors.compass:COMPASS",
         "barometer": "eyas.engine.sensors.barometer:BAROMETER",
     },
-    group="eyas.engine.sensors",
+    group="eyas.sensors",
 )
 """All sensors; a user's own is found by its path, or in an entry point of an installed package."""
 

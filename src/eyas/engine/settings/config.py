@@ -40,7 +40,7 @@ class EngineConfig(SimConfig):
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
     if TYPE_CHECKING:
-        original: dict[str, Value] | None  # a field of the whole, below: last in files
+        original: dict[str, Value] | None = None  # a field of the whole, below: last in files
 
     @model_validator(mode="after")
     def _gimbal_there(self) -> Self:

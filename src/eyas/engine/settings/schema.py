@@ -18,8 +18,8 @@ Schema = dict[str, Any]
 def config_schema() -> Schema:
     """Return the JSON Schema (draft 2020-12) of native settings.
 
-    It accepts what `eyas.engine.settings.file.load_settings` accepts, and more: checks between settings,
-    and of names of maps, weathers and code, are made by Eyas alone.
+    It accepts what `eyas.engine.settings.file.load_settings` accepts, and more: checks between
+    settings, and of names of maps, weathers and code, are made by Eyas alone.
     """
     schema = EyasConfig.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"

@@ -295,7 +295,9 @@ def _follow(sampling: EpisodeSampling, n: int, actor: int, tick: int) -> None:
 def follow(
     targets: TargetState, episodes: EpisodeState, models: ModelTable, n: int, actor: int, model: int
 ) -> None:
-    """Make an actor of a model, see `eyas.engine.targets.catalogue.MODELS`, the target of tracker n."""
+    """Make an actor of a model, see `eyas.engine.targets.catalogue.MODELS`, the target of
+    tracker n.
+    """
     # Relative motion restarts here, since a change of target is not a motion.
     episodes.observations[n] = 0
     targets.actor[n], targets.model[n] = actor, model

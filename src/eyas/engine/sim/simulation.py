@@ -188,9 +188,9 @@ class Simulation:
         Args:
             commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4); or
                 with four more that turn the cameras, shape (N, 8), see
-                `eyas.engine.trackers.gimbal_command`. Larger numbers than `LARGEST` are limited to it, and
-                NaN is 0 and ends the episode (`DoneReason.NOT_A_NUMBER`); nor does any tracker get
-                farther than `FARTHEST`.
+                `eyas.engine.trackers.gimbal_command`. Larger numbers than `LARGEST` are limited to
+                it, and NaN is 0 and ends the episode (`DoneReason.NOT_A_NUMBER`); nor does any
+                tracker get farther than `FARTHEST`.
             physics_steps: Number of steps.
             active: The trackers that fly, shape (N,); for the others time stands still, so that
                 these must have worlds of their own. None: all.

@@ -46,5 +46,7 @@ class StillWorld:
         return movers if signals is None else signals.added(movers, np.array([time]))
 
     def draw(self, views: Views, time: float, picture: Picture, samples: int = 1) -> None:
-        """Draw views of the world at a time [s]; see `eyas.engine.render.renderer.Renderer.draw`."""
+        """Draw views of the world at a time [s]; see
+        `eyas.engine.render.renderer.Renderer.draw`.
+        """
         self.assets.renderer.draw(views, self.movers(time), picture, samples)

@@ -123,8 +123,8 @@ class Views:
     falls, and the air is calm."""
     falling: bool = True  # Whether flakes, drops and leaves are drawn at that time
     lens: NDArray[np.float64] | None = None
-    """The numbers of the lens of each view, see `eyas.engine.core.lens.Lens`, shape (V, 10); None: all
-    are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
+    """The numbers of the lens of each view, see `eyas.engine.core.lens.Lens`, shape (V, 10); None:
+    all are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
     picture: NDArray[np.int32] | None = None
     """Which of the P pictures each view draws into, those of one picture next to each other,
     shape (V,); None: each into its own."""
@@ -193,8 +193,8 @@ class Picture:
     """The same of all actors, shape (V, A, 4)."""
     radiance: NDArray[np.float32] | None = None
     """Linear radiance of red, green and blue, air included, before any exposure, in units of
-    `eyas.engine.state.lighting.Lighting`, shape (V, 3, H, W). Where `rgb` is wanted too, it is drawn
-    twice."""
+    `eyas.engine.state.lighting.Lighting`, shape (V, 3, H, W). Where `rgb` is wanted too, it is
+    drawn twice."""
     normal: NDArray[np.uint8] | None = None
     """Surface normal of each pixel in the camera's frame: right, down and ahead, each from -1 to 1
     as 0 to 255; all 0 for the sky, shape (V, H, W, 3)."""
@@ -260,7 +260,8 @@ class MovingParts(NamedTuple):
 
 
 class Renderer(Protocol):
-    """What simulations ask of a renderer. Another one may stand in the place of `eyas.engine.render`.
+    """What simulations ask of a renderer. Another one may stand in the place of
+    `eyas.engine.render`.
 
     A picture depends on nothing but its view: other views, their order and the number of threads
     do not change a byte.

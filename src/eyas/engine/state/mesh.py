@@ -15,29 +15,42 @@ MARGIN = 0.275
 class Surface(IntEnum):
     """How a material reflects or emits light."""
 
-    MATT = 0  # Plain diffuse
+    MATT = 0
+    """Plain diffuse."""
     PAINT = 1
     """Car paint: tint times the colour of the instance, with a gloss where the texture's alpha is
     high."""
-    GLASS = 2  # Reflects the sky
-    FOLIAGE = 3  # Leaves: lit from both sides, with holes where the texture's alpha is low
-    FACADE = 4  # A wall with windows: glass where the texture's alpha is low
-    WATER = 5  # Reflects the sky, with small waves
-    LAMP = 6  # Emits light (`emission`) when the weather has its lamps on
-    CROWN = 7  # Inside of a tree's crown: matt, and casts no shadow; the leaves in front of it do
-    SIGNAL = 8  # Emits light (`emission`) in every weather, like a traffic light
+    GLASS = 2
+    """Reflects the sky."""
+    FOLIAGE = 3
+    """Leaves: lit from both sides, with holes where the texture's alpha is low."""
+    FACADE = 4
+    """A wall with windows: glass where the texture's alpha is low."""
+    WATER = 5
+    """Reflects the sky, with small waves."""
+    LAMP = 6
+    """Emits light (`emission`) when the weather has its lamps on."""
+    CROWN = 7
+    """Inside of a tree's crown: matt, and casts no shadow; the leaves in front of it do."""
+    SIGNAL = 8
+    """Emits light (`emission`) in every weather, like a traffic light."""
     MARKING = 9
     """A line of paint on level asphalt; a pixel shows as much of each as it covers. The texture
     repeats every 8 m, whatever u and v: asphalt and, in alpha, the brightness of paint. u is 31 at
     the right edge of the line and 33 at the left one, and v has the same scale. Triangles without
     paint reach `MARGIN` farther."""
-    HILLSIDE = 10  # Grass, with dry patches, and with rock where it is steep
-    HEATH = 11  # Soil, with patches of dry grass and scrub
+    HILLSIDE = 10
+    """Grass, with dry patches, and with rock where it is steep."""
+    HEATH = 11
+    """Soil, with patches of dry grass and scrub."""
     TAIL_LAMP = 12
     """A `LAMP` of a vehicle that braking brightens, see `eyas.engine.state.draw.DrawList.lamps`."""
-    HIGH_BRAKE_LAMP = 13  # One that shines only when it brakes
-    INDICATOR_LEFT = 14  # One that blinks before it goes left
-    INDICATOR_RIGHT = 15  # One that blinks before it goes right
+    HIGH_BRAKE_LAMP = 13
+    """One that shines only when it brakes."""
+    INDICATOR_LEFT = 14
+    """One that blinks before it goes left."""
+    INDICATOR_RIGHT = 15
+    """One that blinks before it goes right."""
     DESERT = 16
     """Sand with ripples, gravel and dry grass; of this and all that follow, the texture lies on the
     ground, whatever u and v."""
@@ -50,8 +63,10 @@ class Surface(IntEnum):
     """Asphalt under sand that grows thinner; u is the distance from where it hides the road."""
     HILLSIDE_PATH = 20
     """Grass trodden down to the soil; u is the distance from the edge of the path."""
-    HILLSIDE_SHORE = 21  # Grass beside water; u is the distance from the water
-    HEATH_SHORE = 22  # Heath beside water; u is the distance from the water
+    HILLSIDE_SHORE = 21
+    """Grass beside water; u is the distance from the water."""
+    HEATH_SHORE = 22
+    """Heath beside water; u is the distance from the water."""
     HILLSIDE_VERGE = 23
     """Gravel beside a road that grass grows into; u is the distance from the road."""
 

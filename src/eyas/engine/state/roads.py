@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 __all__ = ["FARTHEST", "RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode", "network_problems"]
 
-FARTHEST = 1e5  # Largest coordinate on a map [m]
+FARTHEST = 1e5
+"""Largest coordinate on a map [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,8 @@ class TrackerState(NamedTuple):
     """Body frame [rad/s], shape (N, 3)."""
     smoothed: Floats
     """Velocity, world frame [m/s], and angular velocity, body frame [rad/s], behind the first and
-    the second low-pass of the inertial sensors (`eyas.engine.sensors.inertial`), shape (N, 2, 6)."""
+    the second low-pass of the inertial sensors (`eyas.engine.sensors.inertial`), shape (N, 2,
+    6)."""
     smoothed_acceleration: Floats
     """Change of the twice smoothed velocity, world frame [m/s^2], shape (N, 3)."""
     smoothed_lag: Floats

@@ -115,7 +115,9 @@ class Looks(NamedTuple):
     """Models and colours of A actors in each of W worlds."""
 
     model: NDArray[np.int32]
-    """Index into `eyas.engine.targets.catalogue.MODELS`, shape (W, A); a model of the actor's kind."""
+    """Index into `eyas.engine.targets.catalogue.MODELS`, shape (W, A); a model of the actor's
+    kind.
+    """
     colour: NDArray[np.float32]  # Body colours, sRGB 0 to 1, shape (W, A, 3)
 
 

@@ -56,7 +56,8 @@ def target_centre(x: float, y: float, yaw: float, ahead: float) -> tuple[float, 
         x: Reference point of the target, east [m].
         y: Reference point of the target, north [m].
         yaw: Heading of the target [rad].
-        ahead: Distance of the point ahead of the reference point, see `eyas.engine.targets.kind.Kind` [m].
+        ahead: Distance of the point ahead of the reference point, see
+            `eyas.engine.targets.kind.Kind` [m].
     """
     sine, cosine = sin_cos(yaw)
     return x + ahead * cosine, y + ahead * sine

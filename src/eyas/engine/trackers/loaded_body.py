@@ -1,7 +1,8 @@
 """The motion of a rigid body whose centre of mass is not its origin.
 
 Its centre of mass moves as a point under all forces, and it turns about it. Rotors, air and ground
-act on its origin, by `eyas.engine.trackers.rigid_body.loads`, and the step is the one of that module.
+act on its origin, by `eyas.engine.trackers.rigid_body.loads`, and the step is the one of that
+module.
 """
 
 from collections.abc import Callable

@@ -46,8 +46,8 @@ class Tracker:
     advance: Kernel
     """`advance(trackers, memory, n, command)` moves it by one physics step of 2 ms; `command` is
     forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,). With actions that turn
-    the camera it has four more numbers (`eyas.engine.trackers.gimbal_command`), which have already changed
-    `trackers.commanded_gimbal`."""
+    the camera it has four more numbers (`eyas.engine.trackers.gimbal_command`), which have already
+    changed `trackers.commanded_gimbal`."""
     carry: Kernel
     """`carry(trackers, memory, n, x, y, z, yaw)` moves it to a pose within one physics step."""
     aim: Kernel

@@ -66,7 +66,9 @@ class _Change(NamedTuple):
 
 @kernel(inline=True)
 def shining(motion: Motion, actor: int, time: float) -> int:
-    """Return which lamps of an actor shine at a time [s], see `eyas.engine.state.draw.DrawList.lamps`."""
+    """Return which lamps of an actor shine at a time [s], see
+    `eyas.engine.state.draw.DrawList.lamps`.
+    """
     state = int(motion.lamps[sample_before(motion, time), actor])
     lit = BRAKING if state & _BRAKE else 0
     blink = BLINKS * time + _APART * float(actor)

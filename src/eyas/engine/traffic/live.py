@@ -65,7 +65,7 @@ class LiveSumo:
 
     live: Final = True
 
-    def __init__(  # noqa: PLR0913  # the last two are rare
+    def __init__(
         self,
         graph: RoadGraph,
         config: TrafficConfig,

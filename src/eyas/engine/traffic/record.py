@@ -30,7 +30,7 @@ WARM_UP = 60.0
 GROUP_SHARE = 3  # Least number of vehicles in a group for each tracker, as in the original
 
 
-def record(  # noqa: PLR0913  # everything a recording depends on
+def record(
     map_name: str,
     map_seed: int,
     graph: RoadGraph,

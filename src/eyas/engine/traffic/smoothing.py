@@ -2,9 +2,9 @@
 
 SUMO moves a vehicle sideways and turns it in discrete steps. A Gaussian filter removes the steps
 from the path of the front axle; the rear axle follows (a tractrix), which gives the heading. What
-pulls a trailer is in `eyas.engine.traffic.trailer`. The filter also spreads braking and starting over half
-a second, except with `respawn`: there, as in the original, a vehicle is as far along the filtered
-path as SUMO has it.
+pulls a trailer is in `eyas.engine.traffic.trailer`. The filter also spreads braking and starting
+over half a second, except with `respawn`: there, as in the original, a vehicle is as far along the
+filtered path as SUMO has it.
 """
 
 import math

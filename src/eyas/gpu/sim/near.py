@@ -46,8 +46,8 @@ __all__ = [
 
 
 class Shown(NamedTuple):
-    """Cameras as the renderer reads them, see `eyas.gpu.render.device_views.DeviceViews`; where they
-    are stands in `ViewQuery.eye`.
+    """Cameras as the renderer reads them, see `eyas.gpu.render.device_views.DeviceViews`; where
+    they are stands in `ViewQuery.eye`.
     """
 
     axes: NDArray[np.float64]
@@ -179,9 +179,9 @@ def empty_slots(
 
 @lru_cache(maxsize=16)
 def pose_call(one: Callable[..., None]) -> ParallelCall:
-    """Return the driver that poses the listed actors of a kind by `eyas.engine.targets.posing.PoseCall`'s
-    `one`; it takes its table, `Group`, state and looks of the listed actors, `Slots`, `ViewQuery`,
-    `Counts` and `Cast`.
+    """Return the driver that poses the listed actors of a kind by
+    `eyas.engine.targets.posing.PoseCall`'s `one`; it takes its table, `Group`, state and looks of
+    the listed actors, `Slots`, `ViewQuery`, `Counts` and `Cast`.
     """
     return parallel(specialised(_pose, pose_one=one))
 

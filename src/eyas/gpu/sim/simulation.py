@@ -25,8 +25,8 @@ Chosen = NDArray[np.int64]
 
 
 class DeviceSimulation:
-    """Steps trackers on a device, to the same bytes as `eyas.engine.sim.simulation.Simulation`. Episodes
-    are drawn on the host, by the same code, and only they are uploaded.
+    """Steps trackers on a device, to the same bytes as `eyas.engine.sim.simulation.Simulation`.
+    Episodes are drawn on the host, by the same code, and only they are uploaded.
 
     Attributes:
         config: The settings.
@@ -37,8 +37,8 @@ class DeviceSimulation:
         looks: Models and colours of all actors in the N worlds, on the device.
         held_focal: The `Focal` of the pictures, held by the device.
         flown: How the trackers have done in the last action, on the device.
-        commands: Commands of the trackers, see `eyas.engine.trackers.tracker.Tracker.advance`, on the
-            device, shape (N, 4) or (N, 8).
+        commands: Commands of the trackers, see `eyas.engine.trackers.tracker.Tracker.advance`, on
+            the device, shape (N, 4) or (N, 8).
 
     Args:
         config: The settings.

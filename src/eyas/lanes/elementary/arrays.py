@@ -55,7 +55,7 @@ _FEW = 4  # So many numbers are computed faster one by one in Python than by a c
 
 
 @kernel(inline=True)
-def _value(function: int, a: float, b: float) -> float:  # noqa: C901  # a table
+def _value(function: int, a: float, b: float) -> float:  # a table
     if function == _SIN:
         return elementary.sin(a)
     if function == _COS:

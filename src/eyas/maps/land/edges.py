@@ -1,4 +1,6 @@
-"""Ground that changes along an edge: u is the distance from it, see `eyas.engine.state.mesh.Surface`."""
+"""Ground that changes along an edge: u is the distance from it, see
+`eyas.engine.state.mesh.Surface`.
+"""
 
 from itertools import pairwise
 

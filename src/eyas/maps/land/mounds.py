@@ -13,7 +13,8 @@ from eyas.maps.build.values import Positive
 
 __all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
 
-_TRIES = 400  # Number of places tried for each mound inside
+_TRIES = 400
+"""Number of places tried for each mound inside."""
 _APART = 0.52
 """Least distance of two summits as a share of the larger radius: closer ones would be one hill."""
 

@@ -13,7 +13,8 @@ __all__ = ["AREA_KINDS", "Area", "House", "Roof", "Survey"]
 
 Point = tuple[float, float]
 
-Roof = Literal["flat", "gabled", "hipped", "pyramidal", "skillion", "dome"]  # Shape of a roof
+Roof = Literal["flat", "gabled", "hipped", "pyramidal", "skillion", "dome"]
+"""Shape of a roof."""
 
 AREA_KINDS = (
     "water", "parking", "plaza", "path", "pitch", "playground", "sand", "rail", "park", "forest",
@@ -26,26 +27,36 @@ AREA_KINDS = (
 class House:
     """A building, or a part of one, in plan view."""
 
-    shape: Outline  # Footprint, with courtyards as holes [m]
-    kind: str = ""  # As in OpenStreetMap, `house`, `office`, ...; empty: not known.
-    bottom: float = 0.0  # Height of its foot above the ground [m]
+    shape: Outline
+    """Footprint, with courtyards as holes [m]."""
+    kind: str = ""
+    """As in OpenStreetMap, `house`, `office`, ...; empty: not known."""
+    bottom: float = 0.0
+    """Height of its foot above the ground [m]."""
     height: Annotated[float, Ge(0.0)] | None = None
     """Height of its highest point above the ground [m]; None: not known."""
     levels: Annotated[float, Ge(0.0)] | None = None
     """Storeys below the roof, counted from the ground; None: not known."""
-    roof: Roof | Literal[""] = ""  # Shape of its roof; empty: not known
-    roof_height: Annotated[float, Ge(0.0)] | None = None  # Height of the roof [m]; None: not known
-    across: bool = False  # Whether the ridge runs across the longer side
-    wall: Colour | None = None  # Colour of the walls, sRGB; None: not known
-    cover: Colour | None = None  # Colour of the roof, sRGB; None: not known
+    roof: Roof | Literal[""] = ""
+    """Shape of its roof; empty: not known."""
+    roof_height: Annotated[float, Ge(0.0)] | None = None
+    """Height of the roof [m]; None: not known."""
+    across: bool = False
+    """Whether the ridge runs across the longer side."""
+    wall: Colour | None = None
+    """Colour of the walls, sRGB; None: not known."""
+    cover: Colour | None = None
+    """Colour of the roof, sRGB; None: not known."""
 
 
 @dataclass(slots=True)
 class Area:
     """Ground of one kind."""
 
-    kind: Annotated[str, Named(lambda: AREA_KINDS)]  # What it is
-    shape: Outline  # [m]
+    kind: Annotated[str, Named(lambda: AREA_KINDS)]
+    """What it is."""
+    shape: Outline
+    """[m]"""
 
 
 @dataclass(slots=True)

@@ -101,8 +101,10 @@ def _solids() -> tuple[str, ...]:
 class Chance:
     """Random numbers of shapes: a named stream of the plan's seed, or the state of a generator."""
 
-    stream: str = ""  # Name of the stream
-    index: tuple[Natural, ...] = ()  # Numbers that tell streams of one name apart
+    stream: str = ""
+    """Name of the stream."""
+    index: tuple[Natural, ...] = ()
+    """Numbers that tell streams of one name apart."""
     state: Annotated[str, StringConstraints(pattern="^(([0-9a-f]+:){2}[01]:[0-9]+)?$")] = ""
     """State of a generator that has placed things before, in place of a stream."""
 
@@ -137,14 +139,20 @@ def state_of(rng: np.random.Generator) -> Chance:
 class ThingKind:
     """A kind of thing, whose shape is made once and copied."""
 
-    name: str  # Name, by which `Things.kinds` refers to it.
+    name: str
+    """Name, by which `Things.kinds` refers to it."""
     make: Annotated[str, Named(_makers)] = ""
     """What it is: a row of `eyas.maps.things.kinds.THINGS`; empty: its name says it."""
-    variant: Natural = 0  # Which of its shapes
-    width: Positive = 1.0  # Factor on the width of a tree's crown
-    storeys: Annotated[int, Ge(1)] = 2  # Storeys of a house
-    walls: Cover = _PLASTER  # Walls of a house
-    roof: Cover = _TILES  # Roof of a house
+    variant: Natural = 0
+    """Which of its shapes."""
+    width: Positive = 1.0
+    """Factor on the width of a tree's crown."""
+    storeys: Annotated[int, Ge(1)] = 2
+    """Storeys of a house."""
+    walls: Cover = _PLASTER
+    """Walls of a house."""
+    roof: Cover = _TILES
+    """Roof of a house."""
     chance: str = ""
     """One of `MapPlan.chances`, which kinds share in their order; empty: one of its own."""
 
@@ -153,19 +161,30 @@ class ThingKind:
 class BuildingPart:
     """A building, or a part of one: walls, and a roof."""
 
-    outline: Outline  # Its ground, counter-clockwise; holes are courtyards [m]
-    bottom: float = FLOOR_HEIGHT  # z of its foot [m]
-    height: Annotated[float, Ge(0.0)]  # From the foot to the eaves [m]
-    facade: Facade  # Its walls
-    tint: Colour = (1.0, 1.0, 1.0)  # Factor on the colour of the walls
+    outline: Outline
+    """Its ground, counter-clockwise; holes are courtyards [m]."""
+    bottom: float = FLOOR_HEIGHT
+    """z of its foot [m]."""
+    height: Annotated[float, Ge(0.0)]
+    """From the foot to the eaves [m]."""
+    facade: Facade
+    """Its walls."""
+    tint: Colour = (1.0, 1.0, 1.0)
+    """Factor on the colour of the walls."""
     roof: Literal["flat", "pyramid", "gabled", "hipped", "pyramidal", "skillion", "dome"] = "flat"
     """Shape of its roof; a `pyramid` has eaves of stone and a height of its own."""
-    rise: Annotated[float, Ge(0.0)] = 0.0  # Height of a sloping roof [m]
-    across: bool = False  # Whether the ridge runs across the longer side
-    cover: Cover  # What covers the roof
-    parapet: bool = True  # Whether a flat roof has a wall around it
-    shops: bool = True  # Whether shop windows or a lobby are at street level, if it stands there
-    underside: bool = False  # Whether one may see it from below
+    rise: Annotated[float, Ge(0.0)] = 0.0
+    """Height of a sloping roof [m]."""
+    across: bool = False
+    """Whether the ridge runs across the longer side."""
+    cover: Cover
+    """What covers the roof."""
+    parapet: bool = True
+    """Whether a flat roof has a wall around it."""
+    shops: bool = True
+    """Whether shop windows or a lobby are at street level, if it stands there."""
+    underside: bool = False
+    """Whether one may see it from below."""
 
     @property
     def footprint(self) -> NDArray[np.float64]:
@@ -183,10 +202,12 @@ class BuildingPart:
 class Building:
     """A building: one object."""
 
-    parts: Annotated[tuple[BuildingPart, ...], Len(1)]  # Its parts, the lowest first
+    parts: Annotated[tuple[BuildingPart, ...], Len(1)]
+    """Its parts, the lowest first."""
     fittings: tuple[Literal["roof units", "tank", "fronts"], ...] = ()
     """What is on it: equipment of flat roofs, a water tank, awnings and fire escapes."""
-    keep_free: Area | None = None  # Part of its roof where something else stands
+    keep_free: Area | None = None
+    """Part of its roof where something else stands."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -204,7 +225,8 @@ class Backdrop:
     layer: Literal["backdrop"] = "backdrop"
     outlines: tuple[Annotated[NDArray[np.float64], Rows(2, 4)], ...]
     """Corners of each, counter-clockwise [m]."""
-    tops: Heights  # z of their roofs [m], shape (K,)
+    tops: Heights
+    """z of their roofs [m], shape (K,)."""
     walls: tuple[Cover, ...]
     roofs: tuple[Cover, ...]
     bays: tuple[Annotated[NDArray[np.int64], Rows(2, 4, whole=True)], ...]
@@ -218,7 +240,8 @@ class Things:
     layer: Literal["things"] = "things"
     kinds: tuple[str, ...]
     """Names of kinds of the library; new ones become the scene's next fixtures, used or not."""
-    kind: Numbers  # Index into `kinds` of each, shape (K,)
+    kind: Numbers
+    """Index into `kinds` of each, shape (K,)."""
     pose: Annotated[NDArray[np.float64], Rows(5)]
     """x, y, z [m], turn [rad] and scale of each, shape (K, 5). Trees are 1 m high at scale 1."""
     solid: Annotated[str, Named(_solids)] = ""
@@ -232,11 +255,16 @@ class Paint:
     rule: Literal["grid", "none"] = "grid"
     """What is painted besides the shapes given here: lines, arrows and crossings as on streets of a
     regular grid, or nothing."""
-    centre: Literal["white", "double yellow"] = "white"  # Line between the two directions of a road
-    crossings: Natural = 1  # One zebra crossing in so many is painted; 0: none
-    lines: tuple[Stripe, ...] = ()  # White lines
-    bars: tuple[Stripe, ...] = ()  # Yellow bars of zebra crossings
-    shapes: tuple[Outline, ...] = ()  # White shapes, such as the lines of parking bays
+    centre: Literal["white", "double yellow"] = "white"
+    """Line between the two directions of a road."""
+    crossings: Natural = 1
+    """One zebra crossing in so many is painted; 0: none."""
+    lines: tuple[Stripe, ...] = ()
+    """White lines."""
+    bars: tuple[Stripe, ...] = ()
+    """Yellow bars of zebra crossings."""
+    shapes: tuple[Outline, ...] = ()
+    """White shapes, such as the lines of parking bays."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -244,11 +272,15 @@ class Roadway:
     """The asphalt for traffic, with its paint."""
 
     layer: Literal["roadway"] = "roadway"
-    area: Area  # Asphalt [m]
-    bays: Area | None = None  # Light asphalt of parking bays along the streets [m]
+    area: Area
+    """Asphalt [m]."""
+    bays: Area | None = None
+    """Light asphalt of parking bays along the streets [m]."""
     paint: Paint = field(default_factory=Paint)
-    wear: Chance  # Of tracks, patches, seals and lids
-    apart: Positive = 1.0  # Factor on the distances between these
+    wear: Chance
+    """Of tracks, patches, seals and lids."""
+    apart: Positive = 1.0
+    """Factor on the distances between these."""
     worn_from: Annotated[float, Ge(0.0)] = 0.0
     """Least length of lanes with wear; narrower ones than 3 m have none then [m]."""
 
@@ -258,13 +290,20 @@ class Paved:
     """Raised pavements with kerb stones."""
 
     layer: Literal["paved"] = "paved"
-    area: Area  # [m]
-    beside: Area  # Asphalt at which the kerb stones are [m]
-    slabs: Cover = _PAVING  # Cover of the pavements
-    kerb: Cover = _KERB  # Cover of the kerb stones and of all sides
-    kerb_width: Positive = 0.35  # [m]
-    turn: float = 0.0  # Direction in which the slabs are laid [rad]
-    z: float = KERB_HEIGHT  # Height of their tops [m]
+    area: Area
+    """[m]"""
+    beside: Area
+    """Asphalt at which the kerb stones are [m]."""
+    slabs: Cover = _PAVING
+    """Cover of the pavements."""
+    kerb: Cover = _KERB
+    """Cover of the kerb stones and of all sides."""
+    kerb_width: Positive = 0.35
+    """[m]"""
+    turn: float = 0.0
+    """Direction in which the slabs are laid [rad]."""
+    z: float = KERB_HEIGHT
+    """Height of their tops [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -272,15 +311,21 @@ class Flat:
     """A level piece of ground of one material."""
 
     form: Literal["flat"] = "flat"
-    area: Area  # [m]
-    z: float = FLOOR_HEIGHT  # Height [m]
+    area: Area
+    """[m]"""
+    z: float = FLOOR_HEIGHT
+    """Height [m]."""
     cover: Cover
-    winter: Cover | None = None  # What covers it in winter; None: the same
-    turn: float = 0.0  # Direction of its texture [rad]
+    winter: Cover | None = None
+    """What covers it in winter; None: the same."""
+    turn: float = 0.0
+    """Direction of its texture [rad]."""
     cells: Literal["grid", "wide", "whole"] = "grid"
     """Size of the triangles' squares: 32 m, larger ones away from streets, or not cut at all."""
-    sides: Cover | None = None  # What covers its sides; None: it has none
-    foot: float = FLOOR_HEIGHT  # z down to which the sides reach [m]
+    sides: Cover | None = None
+    """What covers its sides; None: it has none."""
+    foot: float = FLOOR_HEIGHT
+    """z down to which the sides reach [m]."""
     beside: Area | None = None
     """From what a cover that changes with a distance measures it; None: from its own edge [m]."""
 
@@ -290,8 +335,10 @@ class Heap:
     """A flat heap, whose sides slope down to the ground."""
 
     form: Literal["heap"] = "heap"
-    area: Outline  # Its top [m]
-    z: float  # Height of its top [m]
+    area: Outline
+    """Its top [m]."""
+    z: float
+    """Height of its top [m]."""
     cover: Cover
 
 
@@ -300,11 +347,15 @@ class Field:
     """A field with the tracks of the tractor through it."""
 
     form: Literal["field"] = "field"
-    area: Outline  # [m]
-    z: float  # Height of the crop [m]
+    area: Outline
+    """[m]"""
+    z: float
+    """Height of the crop [m]."""
     cover: Cover
-    winter: Cover  # What covers it in winter
-    north: bool  # Whether its rows run north, not east
+    winter: Cover
+    """What covers it in winter."""
+    north: bool
+    """Whether its rows run north, not east."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -312,13 +363,17 @@ class Far:
     """The land beyond the floor, up to the horizon."""
 
     form: Literal["far"] = "far"
-    rule: Literal["plain", "fields", "city"]  # One material, large fields, or the ground of a city
+    rule: Literal["plain", "fields", "city"]
+    """One material, large fields, or the ground of a city."""
     covers: Annotated[tuple[Cover, ...], Len(1)]
-    winter: tuple[Cover, ...] = ()  # What covers it in winter; none: the same
-    shares: tuple[Share, ...] = (1.0,)  # How much of it each covers
+    winter: tuple[Cover, ...] = ()
+    """What covers it in winter; none: the same."""
+    shares: tuple[Share, ...] = (1.0,)
+    """How much of it each covers."""
     beyond: tuple[Positive, Positive] | None = None
     """Extent of the ground around which it lies [m]; None: that of the floor."""
-    chance: Chance | None = None  # Of the choice of the covers
+    chance: Chance | None = None
+    """Of the choice of the covers."""
 
 
 Piece = Annotated[
@@ -335,7 +390,8 @@ class GroundCover:
     """Pieces of ground, water or paving that are one object."""
 
     layer: Literal["ground"] = "ground"
-    kind: ClassName = ObjectClass.GROUND  # Class of the object
+    kind: ClassName = ObjectClass.GROUND
+    """Class of the object."""
     season: Literal["summer", "winter"] | None = None
     """The only season in which it is there; None: it always is."""
     pieces: tuple[Piece, ...]
@@ -346,10 +402,13 @@ class Deck:
     """An elevated road, and its descent beyond the floor."""
 
     layer: Literal["deck"] = "deck"
-    middle: Path  # Centre line [m], shape (K, 3)
+    middle: Path
+    """Centre line [m], shape (K, 3)."""
     pillars: tuple[Pillar, ...]
-    descent: Path  # Centre line of the descent, which is not solid [m], shape (K, 3)
-    legs: tuple[Pillar, ...]  # Pillars of the descent
+    descent: Path
+    """Centre line of the descent, which is not solid [m], shape (K, 3)."""
+    legs: tuple[Pillar, ...]
+    """Pillars of the descent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -360,7 +419,8 @@ class Tunnels:
     items: tuple[Tunnel, ...]
     outside: Cover
     inside: Cover
-    chance: Chance  # Of the lumps of the mounds
+    chance: Chance
+    """Of the lumps of the mounds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -429,8 +489,10 @@ class LampLight:
 
     axis: tuple[float, float, float] = (0.4, 0.0, -1.0)
     """Axis of the beams; x is the direction of a lamp's arm. Its length does not matter."""
-    intensity: Positive = 30.0  # As in `eyas.engine.state.scene.Lamps`.
-    cut_off: Positive = 1.4  # Angle from the axis at which a beam ends [rad]
+    intensity: Positive = 30.0
+    """As in `eyas.engine.state.scene.Lamps`."""
+    cut_off: Positive = 1.4
+    """Angle from the axis at which a beam ends [rad]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -439,7 +501,8 @@ class Walkways:
 
     lines: tuple[Annotated[NDArray[np.float64], Rows(2, 2)], ...] = ()
     """Crossings, each from kerb to kerb [m]."""
-    lights: tuple[str, ...] = ()  # Names of their lights in the network; empty where there are none
+    lights: tuple[str, ...] = ()
+    """Names of their lights in the network; empty where there are none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -41,8 +41,10 @@ _YELLOW_LINE = Material("asphalt_paint", (1.0, 0.785, 0.176), Surface.MARKING)
 class Stripe:
     """A painted line."""
 
-    middle: Line  # Points along its middle, shape (K, 2) [m]
-    width: Positive  # Width [m]
+    middle: Line
+    """Points along its middle, shape (K, 2) [m]."""
+    width: Positive
+    """Width [m]."""
 
     @property
     def area(self) -> shapely.Polygon:
@@ -54,9 +56,12 @@ class Stripe:
 class RoadPaint:
     """Paint on roads, in plan view."""
 
-    lines: list[Stripe]  # White lines
-    arrows: list[shapely.Polygon]  # White arrows
-    zebras: list[list[Stripe]]  # Yellow bars of each crossing, and pairs of yellow lines
+    lines: list[Stripe]
+    """White lines."""
+    arrows: list[shapely.Polygon]
+    """White arrows."""
+    zebras: list[list[Stripe]]
+    """Yellow bars of each crossing, and pairs of yellow lines."""
 
 
 def mesh_of(paint: RoadPaint) -> Mesh:

@@ -16,9 +16,11 @@ from eyas.maps.roads.overpass import DECK_DEPTH, SOLID_BELOW
 
 __all__ = ["BASE_HEIGHT", "COLUMN_RADIUS", "Pillar", "pillar_mesh", "pillars"]
 
-COLUMN_RADIUS = 0.8  # Radius of a column at the top [m]
+COLUMN_RADIUS = 0.8
+"""Radius of a column at the top [m]."""
 
-BASE_HEIGHT = 1.4  # Height of the stone base below a pair of columns [m]
+BASE_HEIGHT = 1.4
+"""Height of the stone base below a pair of columns [m]."""
 
 _COLUMN_GAP = 5.0
 _BASE = (9.0, 3.6, BASE_HEIGHT)
@@ -32,9 +34,12 @@ Points = NDArray[np.float64]
 class Pillar:
     """Two columns on a base, below the deck."""
 
-    place: Place  # Middle on the ground [m], shape (2,)
-    across: Unit  # Unit vector from the left to the right column, shape (2,)
-    top: float  # z of the underside of the deck [m]
+    place: Place
+    """Middle on the ground [m], shape (2,)."""
+    across: Unit
+    """Unit vector from the left to the right column, shape (2,)."""
+    top: float
+    """z of the underside of the deck [m]."""
 
     @property
     def base(self) -> shapely.Polygon:

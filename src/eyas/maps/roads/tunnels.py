@@ -16,15 +16,21 @@ from eyas.maps.build.values import Place, Positive, Unit
 
 __all__ = ["HALF_WIDTH", "Tunnel", "tunnel_mesh", "tunnel_prisms"]
 
-HALF_WIDTH = 19.0  # From the middle of the road to the foot of the mound [m]
+HALF_WIDTH = 19.0
+"""From the middle of the road to the foot of the mound [m]."""
 
-_TOP = 9.6  # Mean height of the mound [m]
-_OPENING = (12.5, 7.4)  # Half width and height of the opening [m]
-_LUMPS = 0.75  # Size of the lumps [m]
-_SECTIONS, _SIDES = 17, 14  # Number of cross-sections along the tunnel, and of facets around each
+_TOP = 9.6
+"""Mean height of the mound [m]."""
+_OPENING = (12.5, 7.4)
+"""Half width and height of the opening [m]."""
+_LUMPS = 0.75
+"""Size of the lumps [m]."""
+_SECTIONS, _SIDES = 17, 14
+"""Number of cross-sections along the tunnel, and of facets around each."""
 _STRIPS = (-HALF_WIDTH, -11.0, -8.6, -4.5, 4.5, 8.6, 11.0, HALF_WIDTH)
 """Borders of the solids of a tunnel, across the road [m]."""
-_SUNK = 0.4  # Depth of the feet below the ground [m]
+_SUNK = 0.4
+"""Depth of the feet below the ground [m]."""
 
 Points = NDArray[np.float64]
 
@@ -33,9 +39,12 @@ Points = NDArray[np.float64]
 class Tunnel:
     """A tunnel in plan view."""
 
-    place: Place  # Its middle on the middle of the road [m], shape (2,)
-    along: Unit  # Direction of the road, a unit vector, shape (2,)
-    length: Positive  # Length [m]
+    place: Place
+    """Its middle on the middle of the road [m], shape (2,)."""
+    along: Unit
+    """Direction of the road, a unit vector, shape (2,)."""
+    length: Positive
+    """Length [m]."""
 
     @property
     def area(self) -> shapely.Polygon:

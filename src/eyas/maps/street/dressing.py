@@ -1,8 +1,8 @@
 """Where the clutter of streets is: along kerbs, before shops and houses, in gardens.
 
 What is higher than a foot keeps out of the two lanes in which people walk along a kerb
-(`eyas.engine.behaviours.pavements.LANES`), and nothing of it is high or near enough to a lane to hide who
-drives there.
+(`eyas.engine.behaviours.pavements.LANES`), and nothing of it is high or near enough to a lane to
+hide who drives there.
 """
 
 from collections.abc import Mapping, Sequence

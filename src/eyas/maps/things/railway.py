@@ -20,48 +20,69 @@ from eyas.maps.build.values import Heights, Place, Unit
 
 __all__ = ["BESIDE", "COLUMNS", "SECTION", "Viaduct", "add_railway"]
 
-_UNDER = 5.5  # z of the underside: higher than any vehicle [m]
-_RAIL = 7.35  # z of the rails [m]
+_UNDER = 5.5
+"""z of the underside: higher than any vehicle [m]."""
+_RAIL = 7.35
+"""z of the rails [m]."""
 
-_DECK_WIDTH = 9.2  # Width of the deck with its girders [m]
-SECTION = 12.0  # Length of a section of the deck [m]
-_STATION = 84.0  # Length of the platforms [m]
-COLUMNS = (-3.6, 3.6)  # Places of the columns across the line [m]
+_DECK_WIDTH = 9.2
+"""Width of the deck with its girders [m]."""
+SECTION = 12.0
+"""Length of a section of the deck [m]."""
+_STATION = 84.0
+"""Length of the platforms [m]."""
+COLUMNS = (-3.6, 3.6)
+"""Places of the columns across the line [m]."""
 
-BESIDE = 9.0  # From its middle to the walls beside it [m]
+BESIDE = 9.0
+"""From its middle to the walls beside it [m]."""
 
-_PLATFORM = (3.45, 7.6)  # Inner and outer edge of the platforms, from the middle of the line [m]
-_STEEL = material("plain", (0.27, 0.32, 0.31))  # What the railway is built of
-_DARK = material("plain", (0.16, 0.19, 0.19))  # Its railings, posts and undersides
-_SLAB = material("concrete", (0.88, 0.87, 0.84))  # Its platforms and the feet of its columns
+_PLATFORM = (3.45, 7.6)
+"""Inner and outer edge of the platforms, from the middle of the line [m]."""
+_STEEL = material("plain", (0.27, 0.32, 0.31))
+"""What the railway is built of."""
+_DARK = material("plain", (0.16, 0.19, 0.19))
+"""Its railings, posts and undersides."""
+_SLAB = material("concrete", (0.88, 0.87, 0.84))
+"""Its platforms and the feet of its columns."""
 
-_TOP = 8.5  # z of the platforms: they hide the railings of the deck [m]
-_FOOT = _UNDER + 0.3  # z of their undersides: over those of the girders [m]
+_TOP = 8.5
+"""z of the platforms: they hide the railings of the deck [m]."""
+_FOOT = _UNDER + 0.3
+"""z of their undersides: over those of the girders [m]."""
 _TREADS, _GOING = 24, 0.48
 _STAIRS = _TREADS * _GOING
 """Number and depth of the treads of stairs, and the length of a flight [m]."""
-_INNER = 4.75  # Inner edge of the stairs, beside the girders [m]
-_CANOPY = 11.3  # z of the upper edge of the canopies [m]
-_OPEN = 6.0  # Length of a platform without canopy at either end [m]
-_WING = 1.75  # Half the width of a canopy [m]
+_INNER = 4.75
+"""Inner edge of the stairs, beside the girders [m]."""
+_CANOPY = 11.3
+"""z of the upper edge of the canopies [m]."""
+_OPEN = 6.0
+"""Length of a platform without canopy at either end [m]."""
+_WING = 1.75
+"""Half the width of a canopy [m]."""
 _YELLOW = material("plain", (0.88, 0.70, 0.12))
 _COPPER = material("roof_membrane", (0.50, 0.74, 0.66))
 _WOOD = material("plain", (0.30, 0.22, 0.16))
 _GLOW = Material(tint=(1.0, 0.92, 0.76), surface=Surface.LAMP, emission=1.6)
 
-_DECK = 7.1  # z of the ballast [m]
+_DECK = 7.1
+"""z of the ballast [m]."""
 _TRACKS = (-1.95, 1.95)
 _HALF = _DECK_WIDTH / 2
-_RAILING = 1.05  # Height of the railings over the girders [m]
+_RAILING = 1.05
+"""Height of the railings over the girders [m]."""
 
 _BALLAST = material("roof_gravel", (0.50, 0.46, 0.43))
 _TIE = material("plain", (0.17, 0.13, 0.11))
 _IRON = material("plain", (0.42, 0.37, 0.34))
 _PLANK = material("concrete", (0.66, 0.64, 0.60))
 
-_PITCH = 15.2  # From one car of a train to the next [m]
+_PITCH = 15.2
+"""From one car of a train to the next [m]."""
 
-_CAR = (14.6, 2.7, 3.3)  # Length, width and height of a car [m]
+_CAR = (14.6, 2.7, 3.3)
+"""Length, width and height of a car [m]."""
 _SILVER = material("plain", (0.72, 0.74, 0.76))
 _TRAIN_ROOF = material("plain", (0.58, 0.60, 0.62))
 _STRIPE = material("plain", (0.12, 0.24, 0.50))
@@ -74,12 +95,18 @@ Points = NDArray[np.float64]
 class Viaduct:
     """A straight line along the avenues; places are distances along it from its first end [m]."""
 
-    start: Place  # Its first end, world frame [m], shape (2,)
-    along: Unit  # Its direction, a unit vector, shape (2,)
-    length: float  # Length [m]
-    bents: Heights  # Pairs of columns, shape (K,)
-    over: Heights  # Middles of the roads that it crosses, shape (C,)
-    station: float  # Middle of the station
+    start: Place
+    """Its first end, world frame [m], shape (2,)."""
+    along: Unit
+    """Its direction, a unit vector, shape (2,)."""
+    length: float
+    """Length [m]."""
+    bents: Heights
+    """Pairs of columns, shape (K,)."""
+    over: Heights
+    """Middles of the roads that it crosses, shape (C,)."""
+    station: float
+    """Middle of the station."""
 
     @property
     def turn(self) -> float:

@@ -22,10 +22,13 @@ from eyas.maps.buildings.skyline import FLOOR
 
 __all__ = ["FLOORS_UNDER", "RIM", "Skyway", "add_skyway"]
 
-FLOORS_UNDER = 2  # Storeys under it
-RIM = 0.4  # Height of the rim of a roof [m]
+FLOORS_UNDER = 2
+"""Storeys under it."""
+RIM = 0.4
+"""Height of the rim of a roof [m]."""
 
-_BAY, _TILE = 3.0, 12.0  # Width of a window and size of a repeat of a facade [m]
+_BAY, _TILE = 3.0, 12.0
+"""Width of a window and size of a repeat of a facade [m]."""
 _STEEL = material("plain", (0.80, 0.82, 0.83))
 _UNDER = material("concrete", (0.55, 0.55, 0.55))
 _BEAM = material("plain", (0.30, 0.32, 0.33))
@@ -42,13 +45,18 @@ Points = NDArray[np.float64]
 class Skyway:
     """A bridge from front to front, in the world frame."""
 
-    start: Place  # Middle of its end at a front [m], shape (2,)
-    end: Place  # The same at the front across the street
-    width: Positive  # Width [m]
+    start: Place
+    """Middle of its end at a front [m], shape (2,)."""
+    end: Place
+    """The same at the front across the street."""
+    width: Positive
+    """Width [m]."""
     floors: Annotated[int, Ge(1), Le(2)]
     """Storeys: 1 is a passage, 2 a part of the buildings that it joins."""
-    facade: Facade  # Its walls
-    tint: Colour  # Factor on their colour
+    facade: Facade
+    """Its walls."""
+    tint: Colour
+    """Factor on their colour."""
 
     @property
     def bottom(self) -> float:

@@ -65,7 +65,7 @@ _LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
 """Maps that ship recordings of drivers who want to be lost: those where something hides them."""
 
 
-def run(  # noqa: PLR0913  # one parameter for each option
+def run(
     world: WorldConfig,
     config: TrafficConfig,
     duration: float,

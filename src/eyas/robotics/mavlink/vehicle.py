@@ -39,7 +39,7 @@ class Vehicle:
         out: Takes packets.
     """
 
-    def __init__(  # noqa: PLR0913  # what it is made of
+    def __init__(
         self,
         number: int,
         system: int,

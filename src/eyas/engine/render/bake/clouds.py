@@ -20,7 +20,8 @@ _TEXEL = 9.0 / SIZE  # Side of a texel of the cloud heights [km]
 
 @functools.lru_cache(maxsize=4)
 def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
-    """Return the clouds' panorama, see `eyas.engine.render.kernels.sky.clouds`; one empty texel for none.
+    """Return the clouds' panorama, see `eyas.engine.render.kernels.sky.clouds`; one empty texel for
+    none.
 
     Args:
         cover: Share of the sky that clouds cover, 0 to 1.

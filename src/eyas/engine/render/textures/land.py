@@ -37,7 +37,8 @@ Texture = NDArray[np.uint8]
 def sand() -> Texture:
     """Return pale sand with wind ripples, whose crest lines wander and fork.
 
-    Alpha is cloudy noise, for what lies on the sand, see `eyas.engine.render.kernels.surface.wild_ground`.
+    Alpha is cloudy noise, for what lies on the sand, see
+    `eyas.engine.render.kernels.surface.wild_ground`.
     """
     rng = source("sand")
     y = np.arange(SIZE)[:, None] / SIZE

@@ -1,4 +1,6 @@
-"""Textures of people: clothes with folds, faces and hair, see `eyas.engine.world.build.clothing`."""
+"""Textures of people: clothes with folds, faces and hair, see
+`eyas.engine.world.build.clothing`.
+"""
 
 from collections.abc import Callable
 from functools import partial

@@ -14,7 +14,9 @@ Floats = NDArray[np.float64]
 
 
 class FlightScene(NamedTuple):
-    """What a path is told of an episode: M samples, `eyas.engine.sim.flights.signals.STEP` apart."""
+    """What a path is told of an episode: M samples, `eyas.engine.sim.flights.signals.STEP`
+    apart.
+    """
 
     time: Floats
     """Since a step before the start [s], shape (M,)."""

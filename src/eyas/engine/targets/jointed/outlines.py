@@ -113,7 +113,7 @@ def wheel(
         shell.box(low, high, materials[0])
 
 
-def bar(  # noqa: PLR0913  # as its neighbours
+def bar(
     shell: Shell,
     start: Sequence[float],
     end: Sequence[float],
@@ -142,7 +142,7 @@ def block(  # as its neighbours
     shell.box(low, high, material, taper=taper, both_sides=both_sides)
 
 
-def cylinder(  # noqa: PLR0913  # as its neighbours
+def cylinder(
     shell: Shell,
     centre: Sequence[float],
     radius: float,

@@ -1,7 +1,7 @@
 """Poses of the parts of people and robots: the loop over all actors of a kind in all worlds.
 
-The frames of the parts through a cycle are in a table (`eyas.engine.targets.jointed.cycle`), so an actor
-costs the same however it walks: each part is read, put into the world, and perhaps rolled.
+The frames of the parts through a cycle are in a table (`eyas.engine.targets.jointed.cycle`), so an
+actor costs the same however it walks: each part is read, put into the world, and perhaps rolled.
 """
 
 from typing import Final, NamedTuple

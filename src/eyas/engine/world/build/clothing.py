@@ -1,4 +1,5 @@
-"""Where clothes, skin and hair lie in the textures of people, see `eyas.engine.world.build.bodywork`.
+"""Where clothes, skin and hair lie in the textures of people, see
+`eyas.engine.world.build.bodywork`.
 
 Folds, seams, pockets and faces are painted, so they cost no triangles at any level of detail. What
 goes around a body runs from the middle of its back over its right side, its front and its left

@@ -1,9 +1,9 @@
 """Traffic lights: a pole at the kerb with an arm over the lanes.
 
 Where a network has programs for them (imported towns), their lenses are dark here, and
-`eyas.engine.sim.views.additions` draws the one that shines. Elsewhere they are decoration and shine amber,
-as signals do that leave drivers to give way to each other: so cars drive there, and a fixed red or
-green would show cars running red lights in every film. If they are to work there
+`eyas.engine.sim.views.additions` draws the one that shines. Elsewhere they are decoration and shine
+amber, as signals do that leave drivers to give way to each other: so cars drive there, and a fixed
+red or green would show cars running red lights in every film. If they are to work there
 (`traffic.signals`), what is drawn over them hides the amber.
 """
 

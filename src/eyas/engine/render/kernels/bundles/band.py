@@ -16,9 +16,9 @@ __all__ = ["Band"]
 class Band(NamedTuple):
     """A band of a view, and the memory of the worker that draws it.
 
-    It is filled once (`eyas.engine.render.kernels.draw.band_of`) and handed on by address. A loop reads
-    the arrays that it needs into names of its own first: through the address they would be loaded
-    again after each store.
+    It is filled once (`eyas.engine.render.kernels.draw.band_of`) and handed on by address. A loop
+    reads the arrays that it needs into names of its own first: through the address they would be
+    loaded again after each store.
     """
 
     geometry: Geometry

@@ -17,9 +17,9 @@ class Geometry(NamedTuple):
     """Everything that can be drawn, packed once for each scene."""
 
     cluster: NDArray[np.float32]
-    """Eight triangles in each cluster, see `eyas.engine.render.kernels.visibility.clusters`: corners [m],
-    those of static chunks in the world frame, of prototypes in their own; size; tiles in a metre of
-    leaves; shape (T / 8, 11, 8)."""
+    """Eight triangles in each cluster, see `eyas.engine.render.kernels.visibility.clusters`:
+    corners [m], those of static chunks in the world frame, of prototypes in their own; size; tiles
+    in a metre of leaves; shape (T / 8, 11, 8)."""
     bounds: NDArray[np.float32]
     """Eight clusters of a mesh in each row, see the same: box, cone of the normals, size,
     shape (., 14, 8)."""
@@ -28,9 +28,10 @@ class Geometry(NamedTuple):
     cluster, shape (T / 8, 6, 8)."""
     shading: NDArray[np.float32]
     """Data of each triangle for shading in one place: columns 0 to 13 of `gradients` in
-    `eyas.engine.render.pack.triangles`; tiles in a metre, negative where the normal is not the same all
-    over; texture; surface, and bed of snow times 256; tint; emission; middle of the crown; object
-    id; gradients of the normal. Whole numbers lie there as int32. Shape (T, SHADING_COLUMNS)."""
+    `eyas.engine.render.pack.triangles`; tiles in a metre, negative where the normal is not the same
+    all over; texture; surface, and bed of snow times 256; tint; emission; middle of the crown;
+    object id; gradients of the normal. Whole numbers lie there as int32. Shape (T,
+    SHADING_COLUMNS)."""
     material: NDArray[np.int32]  # Material of each triangle, shape (T,)
     object_id: NDArray[np.int32]  # Object id of each static triangle, -1 for prototypes, shape (T,)
     object_class: NDArray[np.uint8]
@@ -64,8 +65,9 @@ class Geometry(NamedTuple):
     surface: NDArray[np.int32]  # `Surface` of each material
     tint: NDArray[np.float32]  # Linear colour factor of each material, shape (., 3).
     texture: NDArray[np.uint32]
-    """Texels of each layer, see `eyas.engine.render.kernels.surface.texture`, row 0 at v = 0: square roots
-    of linear red, green, blue, and alpha, a byte each, the lowest byte first, shape (., TEXELS)."""
+    """Texels of each layer, see `eyas.engine.render.kernels.surface.texture`, row 0 at v = 0:
+    square roots of linear red, green, blue, and alpha, a byte each, the lowest byte first, shape
+    (., TEXELS)."""
 
 
 class Movers(NamedTuple):

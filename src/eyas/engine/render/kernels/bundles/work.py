@@ -47,8 +47,8 @@ class Scratch(NamedTuple):
     of the draw list, shape (K, I, 2)."""
     mesh: NDArray[np.int32]  # Mesh of each of them, shape (K, I)
     tiles: NDArray[np.float32]
-    """Farthest 1/distance in each 8 x 8 samples, see `eyas.engine.render.kernels.visibility.hidden`,
-    shape (K, rows / 8, columns / 8)."""
+    """Farthest 1/distance in each 8 x 8 samples, see
+    `eyas.engine.render.kernels.visibility.hidden`, shape (K, rows / 8, columns / 8)."""
     order: NDArray[np.int64]
     """What to draw, the nearest first: sort keys of visible chunks and instances,
     shape (K, C + I)."""
@@ -71,8 +71,8 @@ class Scratch(NamedTuple):
     """Poses of the visible fixtures in the wind, the rows of `drawn`, shape (K, I, 3, 4), or
     (K, 0, 3, 4) in calm air."""
     item: NDArray[np.float64]
-    """What a view shows, see `eyas.engine.render.kernels.visibility.items`, shape (K, C + I, 21); this and
-    the next three are empty where one worker draws all of a band.
+    """What a view shows, see `eyas.engine.render.kernels.visibility.items`, shape (K, C + I, 21);
+    this and the next three are empty where one worker draws all of a band.
     """
     item_row: NDArray[np.int64]
     """Rows of `Geometry.bounds` that the items before each have, shape (K, C + I + 1)."""

@@ -133,8 +133,8 @@ def _mirrored(
 ) -> tuple[Colour, float]:
     """Return what a level wet surface mirrors of a clouded sky, and the share of it.
 
-    A cheaper `eyas.engine.render.kernels.sky.radiance.reflection`: the mirrored ray rises as steeply as
-    the eye looks down, and no sun shines.
+    A cheaper `eyas.engine.render.kernels.sky.radiance.reflection`: the mirrored ray rises as
+    steeply as the eye looks down, and no sun shines.
 
     Args:
         lit: Sky and sun.

@@ -47,7 +47,7 @@ def _unit(sides: int, box: float) -> tuple[NDArray[np.float64], NDArray[np.float
     return c, s
 
 
-def wrapped(  # noqa: PLR0913  # as its neighbours
+def wrapped(
     shell: Shell,
     rows: Sequence[Row],
     ups: Sequence[float],
