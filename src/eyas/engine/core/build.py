@@ -33,7 +33,7 @@ _ENGINE = "engine"
 
 _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
 
-_CODE_OF_KERNELS = "lanes/shipped/"  # computes what the sources say, or is not used
+_CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")  # computes what the sources say, or is not used
 
 _LIBRARIES = ("onnxruntime", "torch")
 

@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import llvmlite
 
-import eyas.lanes
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.entry import LOCK
@@ -31,11 +30,11 @@ OLDEST = (8, 0)  # The least compute capability of cards that are served: that o
 
 SUFFIX = ".eyp"  # End of the names of files of PTX
 
-_ROOM = Path(eyas.lanes.__file__).parent
+_HOUSE = Path(__file__).parents[1]
 
 _MAKERS = ("ptx.py",)  # Files that decide what kernels become, beside the language of kernels
 
-ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
+ARCHIVE = _HOUSE / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
 
 
@@ -80,7 +79,7 @@ def ptx_code(
 @cache
 def _made_of() -> str:
     """Return a digest of what turns kernels into PTX."""
-    return digest((language_hash(), *(syntax_of(_ROOM / name)[""].digest for name in _MAKERS)))
+    return digest((language_hash(), *(syntax_of(_HOUSE / name)[""].digest for name in _MAKERS)))
 
 
 def _made_by() -> tuple[str, ...]:
