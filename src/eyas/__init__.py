@@ -84,6 +84,7 @@ if TYPE_CHECKING:
     from eyas.engine.sensors.sensor import Sensor as Sensor
     from eyas.engine.settings.config import EyasConfig as EyasConfig
     from eyas.engine.settings.file import load_settings as load_settings
+    from eyas.engine.settings.section import Section as Section
     from eyas.engine.sim.build import build_simulation as build_simulation
     from eyas.engine.sim.config import SimConfig as SimConfig
     from eyas.engine.sim.flights.path import FlightScene as FlightScene
@@ -178,6 +179,7 @@ _PLACES = {
     "engine.sensors.sensor": "Sensor",
     "engine.settings.config": "EyasConfig",
     "engine.settings.file": "load_settings",
+    "engine.settings.section": "Section",
     "engine.sim.build": "build_simulation",
     "engine.sim.config": "SimConfig",
     "engine.sim.flights.path": "FlightScene FlightSketch",

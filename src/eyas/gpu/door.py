@@ -9,6 +9,7 @@ HOUSE = House(
     brings={
         "eyas.devices": {
             "cuda": "eyas.gpu.envs.envs:DeviceEnvs",
+            "host": "eyas.gpu.envs.envs:DeviceEnvs",
         },
     },
 )

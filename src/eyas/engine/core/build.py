@@ -33,7 +33,8 @@ _ENGINE = "engine"
 
 _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
 
-_CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")  # computes what the sources say, or is not used
+# It computes what the sources say, or is not used.
+_CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")
 
 _LIBRARIES = ("onnxruntime", "torch")
 
