@@ -227,14 +227,9 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
 
         return this_build().id
     if name == "__version__":
-        from importlib.metadata import PackageNotFoundError, version
+        from eyas.engine.core.installed import installed_version
 
-        try:
-            found = version("eyas")
-        except PackageNotFoundError:
-            found = "0"
-        globals()[name] = found
-        return found
+        return installed_version()
     if name in _MODULE_OF:
         from importlib import import_module
 

@@ -72,9 +72,10 @@ _add_commands()
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
-        from eyas import __version__, build_id  # read files, so only when they are asked for
+        from eyas.engine.core.build import this_build  # reads files, so only when it is asked for
+        from eyas.engine.core.installed import installed_version
 
-        typer.echo(f"eyas {__version__} (build {build_id})")
+        typer.echo(f"eyas {installed_version()} (build {this_build().id})")
         raise typer.Exit
 
 

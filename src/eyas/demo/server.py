@@ -13,7 +13,6 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from eyas import __version__
 from eyas.demo import messages as said
 from eyas.demo.flight_thread import FlightThread
 from eyas.demo.frame import DemoFrame
@@ -23,6 +22,7 @@ from eyas.demo.session import Session
 from eyas.demo.viewers import Viewer, Viewers
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.faults import FaultLog
+from eyas.engine.core.installed import installed_version
 from eyas.engine.targets.config import TargetName
 from eyas.engine.world.maps import MAPS
 
@@ -164,7 +164,7 @@ class DemoServer:
         policies = [*self._session.policies, BOXES]
         most = self._session.flight.config.traffic.max_vehicles
         told = {
-            "hello": __version__,
+            "hello": installed_version(),
             "maps": maps,
             "policies": policies,
             "most_vehicles": most,
