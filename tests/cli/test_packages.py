@@ -64,3 +64,23 @@ def test_a_package_brings_a_command_and_a_section(eyas):
     unknown = eyas("patrol", "--set", "own.flet.boats=7")
     assert "did you mean 'fleet'" in unknown.stderr
     assert len(unknown.stderr.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_a_command_that_cannot_be_imported_is_left_out_in_a_line(eyas, tmp_path):
+    (tmp_path / "fleet_package.py").write_text("raise RuntimeError('no\\nboats')")
+    done = eyas("maps", "--help")
+    assert done.returncode == 0
+    assert len(done.stderr.splitlines()) == 1
+    assert "the command 'patrol' is left out" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_command_whose_name_is_taken_is_told_in_a_line(eyas, tmp_path):
+    (tmp_path / "fleet_package-1.0.dist-info/entry_points.txt").write_text(
+        "[eyas.commands]\nvideo = fleet_package:patrol\n"
+    )
+    done = eyas("maps", "--help")
+    assert done.returncode == 0
+    assert len(done.stderr.splitlines()) == 1
+    assert "'fleet-package' adds 'video', but that name is taken" in done.stderr

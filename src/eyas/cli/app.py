@@ -58,9 +58,19 @@ _FIRST = (
 
 
 def _add_commands() -> None:
-    names = COMMANDS.names()
+    try:
+        names = COMMANDS.names()
+    except EyasError as error:  # two packages bring the same command
+        say(f"warning: {one_line(str(error))}")
+        names = COMMANDS.built_in
     for name in (*(name for name in _FIRST if name in names), *sorted({*names} - {*_FIRST})):
-        found = COMMANDS.get(name)
+        try:
+            found = COMMANDS.get(name)
+        except Exception as error:  # whatever the package of somebody else raises
+            if name in COMMANDS.built_in:
+                raise
+            say(f"warning: the command {name!r} is left out: {one_line(str(error))}")
+            continue
         if isinstance(found, typer.Typer):
             app.add_typer(found, name=name)
         else:
