@@ -32,6 +32,7 @@ HOUSE = House(
         "eyas.planner": {
             "plans": "eyas.maps.plan.planner:PLANNER",
         },
+        "eyas.textures": {"painted": "eyas.maps.textures.shipped:build_textures"},
         "eyas.map_files": {
             "files": "eyas.maps.files:MAP_FILES",
         },

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.doors import first_brought
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.ahead import other_is_ready
 from eyas.engine.render.kernels.bundles import Geometry
 from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
 from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.sensors.obstacles import Solids, solids_of
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.roads import RoadNetwork
@@ -147,7 +148,7 @@ def load_geometry(
     make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
     if origin is None:
         return make()
-    inputs = (*origin, part_library, _chosen(kinds), build_textures, lenses.value)
+    inputs = (*origin, part_library, _chosen(kinds), _texture_maker(), lenses.value)
     return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
 
 
@@ -218,4 +219,12 @@ def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
 
 def load_textures() -> dict[str, NDArray[np.uint8]]:
     """Return all textures by name."""
-    return cached(Kind.TEXTURES, build_textures, (), of=dict[str, NDArray[np.uint8]])
+    return cached(Kind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
+
+
+def _texture_maker() -> Callable[[], dict[str, NDArray[np.uint8]]]:
+    """Return what makes the textures, which a house of makers brings."""
+    made: Callable[[], dict[str, NDArray[np.uint8]]] | None = first_brought("eyas.textures")
+    if made is None:
+        raise ConfigError("world.map: no house here makes textures (eyas.maps is not there)")
+    return made

@@ -1,14 +1,17 @@
-"""All textures, painted by formula: no picture has to be shipped or licensed."""
+"""All textures, painted by formula: no picture of others has to be licensed.
+
+What is painted here ships as data: after a change run `python tools/ship_textures.py`.
+"""
 
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 from eyas.engine.world.build.materials import TEXTURES
+from eyas.maps.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 
-__all__ = ["PAINTERS", "build_textures"]
+__all__ = ["PAINTERS", "painted_textures"]
 
 
 def _plain() -> NDArray[np.uint8]:
@@ -79,7 +82,7 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
 """The function that paints each texture of `eyas.engine.world.build.materials.TEXTURES`."""
 
 
-def build_textures() -> dict[str, NDArray[np.uint8]]:
+def painted_textures() -> dict[str, NDArray[np.uint8]]:
     """Return every texture of `eyas.engine.world.build.materials.TEXTURES`, always the same bytes.
 
     Each is sRGB and alpha, shape (256, 256, 4), and repeats without a seam. Row 0 of an array is

@@ -5,9 +5,12 @@ import hashlib
 import numpy as np
 import pytest
 
+from eyas.engine.core.errors import DataFileError
 from eyas.engine.render.textures.fields import fractal, source
-from eyas.engine.render.textures.library import PAINTERS, build_textures
 from eyas.engine.world.build.materials import FACADES, GROUND_FLOORS, TEXTURES
+from eyas.maps.textures import shipped
+from eyas.maps.textures.library import PAINTERS, painted_textures
+from eyas.maps.textures.shipped import build_textures
 
 
 @pytest.fixture(scope="module")
@@ -26,9 +29,22 @@ def test_the_names_of_materials_and_painters_are_the_same():
     assert PAINTERS.keys() == TEXTURES.keys()
 
 
-def test_textures_are_always_the_same(textures):
-    again = build_textures()
-    assert all((again[name] == image).all() for name, image in textures.items())
+@pytest.mark.slow
+def test_what_ships_is_what_is_painted(textures):
+    painted = painted_textures()
+    assert all((painted[name] == image).all() for name, image in textures.items()), (
+        "run `python tools/ship_textures.py`"
+    )
+
+
+def test_a_damaged_file_is_told_in_a_line(tmp_path, monkeypatch):
+    content = bytearray(shipped.FILE.read_bytes())
+    content[len(content) // 2] ^= 1
+    monkeypatch.setattr(shipped, "FILE", tmp_path / "textures.xz")
+    for damaged in (bytes(content), content[:1000], b""):
+        shipped.FILE.write_bytes(damaged)
+        with pytest.raises(DataFileError, match="install Eyas again"):
+            build_textures()
 
 
 def test_no_two_textures_are_alike(textures):

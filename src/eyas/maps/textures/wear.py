@@ -12,9 +12,9 @@ from eyas.engine.render.textures.fields import (
     source,
     white,
 )
-from eyas.engine.render.textures.ground import asphalt
 from eyas.engine.render.textures.mipmap import linear
 from eyas.lanes import exact
+from eyas.maps.textures.ground import asphalt
 
 __all__ = ["asphalt_lane", "asphalt_oil", "asphalt_paint", "asphalt_patch", "manhole", "paint"]
 

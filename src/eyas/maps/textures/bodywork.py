@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.brush import Line, Sheet, sheet_of, texture_of
 from eyas.engine.render.textures.fields import SIZE, fractal, source
 from eyas.engine.world.build.bodywork import (
     BAND,
@@ -31,6 +30,7 @@ from eyas.engine.world.build.bodywork import (
     TOP_SHARES,
     WINDSCREEN,
 )
+from eyas.maps.textures.brush import Line, Sheet, sheet_of, texture_of
 
 __all__ = ["PAINTERS", "bodywork", "freight", "panes"]
 

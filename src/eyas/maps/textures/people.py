@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.brush import Sheet, sheet_of, texture_of
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.engine.world.build.bodywork import BASE
 from eyas.engine.world.build.clothing import (
@@ -22,6 +21,7 @@ from eyas.engine.world.build.clothing import (
     TORSO,
 )
 from eyas.lanes import exact
+from eyas.maps.textures.brush import Sheet, sheet_of, texture_of
 
 __all__ = ["PAINTERS", "clothes", "heads"]
 

@@ -16,7 +16,7 @@ from eyas.engine.render.textures.fields import (
     source,
     white,
 )
-from eyas.engine.render.textures.windows import BAY, Opening, Wall
+from eyas.maps.textures.windows import BAY, Opening, Wall
 
 __all__ = [
     "brick",
