@@ -33,15 +33,12 @@ LOCK = threading.RLock()  # Held while numba and LLVM compile
 
 
 def entry_address(
-    function: Callable[..., Any], bundles: tuple[Held[Any], ...], *, over_workers: bool
+    function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
+    bundles: tuple[Held[Any], ...],  # What it is called with
+    *,
+    over_workers: bool,
 ) -> int:
-    """Return the address of a kernel for bundles of these kinds.
-
-    Args:
-        function: See `eyas.lanes.calls.CompiledCall`.
-        bundles: What it is called with.
-        over_workers: See there.
-    """
+    """Return the address of a kernel for bundles of these kinds."""
     name = function.__qualname__.rpartition(".")[2]
     made_by = version("numba"), platform.python_version()
     kinds = [bundle.kind for bundle in bundles]

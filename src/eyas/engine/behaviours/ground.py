@@ -51,25 +51,17 @@ class Ground:
 
 
 def walkways(
-    ground: Ground,
-    breadth: float,
-    bend: float,
+    ground: Ground,  # The map
+    breadth: float,  # Diameter of the circle in which those fit who walk [m]
+    bend: float,  # Radius at which they round corners [m]
+    # Those that may come over kerbs in narrow corners; None: there are none
     vehicles: Motion | None = None,
     *,
-    verges: bool = False,
+    verges: bool = False,  # Whether one also walks along the edges of roads that have no pavement
+    # Distances from the kerb, see `pavement_ways`; in towns whose kerbs are known, the usual ones
     lanes: Sequence[float] = LANES,
 ) -> list[Walkway]:
-    """Return the ways on pavements.
-
-    Args:
-        ground: The map.
-        breadth: Diameter of the circle in which those fit who walk [m].
-        bend: Radius at which they round corners [m].
-        vehicles: Those that may come over kerbs in narrow corners; None: there are none.
-        verges: Whether one also walks along the edges of roads that have no pavement.
-        lanes: Distances from the kerb, see `pavement_ways`; in towns whose kerbs are known, the
-            usual ones.
-    """
+    """Return the ways on pavements."""
     scene, radius = ground.scene, 0.5 * breadth + ROOM
     if scene.footways.told:
         # Its kerbs tell where the roads are; those of the network have sharp corners.

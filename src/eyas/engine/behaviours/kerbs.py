@@ -44,21 +44,14 @@ _TURN: Final = 0.03  # The same for headings [rad]
 
 
 def kerb_ways(
-    footways: Footways,
-    obstacles: GroundObstacles,
-    surface: WalkedSurface,
-    radius: float,
+    footways: Footways,  # The kerbs
+    obstacles: GroundObstacles,  # What stands in the way, without the roads
+    surface: WalkedSurface,  # The ground
+    radius: float,  # Distance to obstacles that is kept [m]
+    # Those that may come over kerbs, as in narrow corners; None: there are none
     vehicles: Motion | None = None,
 ) -> list[Walkway]:
-    """Return the ways along all kerbs with pavements, round what stands on these.
-
-    Args:
-        footways: The kerbs.
-        obstacles: What stands in the way, without the roads.
-        surface: The ground.
-        radius: Distance to obstacles that is kept [m].
-        vehicles: Those that may come over kerbs, as in narrow corners; None: there are none.
-    """
+    """Return the ways along all kerbs with pavements, round what stands on these."""
     swept = shapely.STRtree(_swept(vehicles) if vehicles is not None else [])
     place = _Place(obstacles, surface, swept, radius)
     found = []

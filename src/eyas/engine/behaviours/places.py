@@ -52,18 +52,16 @@ class Roadside:
         self._obstacles = obstacles
 
     def sample(
-        self, count: int, offset: Variation, radius: float, rng: np.random.Generator, what: str
+        self,
+        count: int,  # How many
+        offset: Variation,  # To the left of the middle of the road [m]
+        radius: float,  # Distance to obstacles [m]
+        rng: np.random.Generator,  # Random numbers
+        what: str,  # Setting that asks for them, for the message
     ) -> Floats:
         """Return free places [m], shape (count, 2).
 
         Where there is nothing free at the offset, places are sought ever farther from it.
-
-        Args:
-            count: How many.
-            offset: To the left of the middle of the road [m].
-            radius: Distance to obstacles [m].
-            rng: Random numbers.
-            what: Setting that asks for them, for the message.
 
         Raises:
             SpawnError: The map has no room.

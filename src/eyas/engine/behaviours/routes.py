@@ -161,17 +161,13 @@ def _reach(task: RouteTask, at: Floats, heading: Floats, far: float, radius: flo
 
 
 def _turns(
-    task: RouteTask, at: Floats, heading: Floats, span: tuple[float, float], radius: float
+    task: RouteTask,  # Where it goes on
+    at: Floats,  # Where they begin [m], shape (K, 2)
+    heading: Floats,  # Headings before the turns [rad], shape (K,)
+    span: tuple[float, float],  # The farthest, and what is enough [m]
+    radius: float,  # Distance to obstacles [m]
 ) -> tuple[Floats, Floats]:
-    """Return random turns [rad] that lead far enough, or else farthest, and how far [m].
-
-    Args:
-        task: Where it goes on.
-        at: Where they begin [m], shape (K, 2).
-        heading: Headings before the turns [rad], shape (K,).
-        span: The farthest, and what is enough [m].
-        radius: Distance to obstacles [m].
-    """
+    """Return random turns [rad] that lead far enough, or else farthest, and how far [m]."""
     far, enough = span
     count = len(at)
     turn = task.rng.uniform(-math.pi, math.pi, (count, _DIRECTIONS))

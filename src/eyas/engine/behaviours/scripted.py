@@ -72,20 +72,14 @@ class _Course(NamedTuple):
 
 
 def scripted_table(
-    ground: Ground,
-    group: ScriptedGroup,
-    clock: SampleClock,
-    rng: np.random.Generator,
+    ground: Ground,  # The map
+    group: ScriptedGroup,  # Who moves
+    clock: SampleClock,  # Number of samples, and their rate
+    rng: np.random.Generator,  # Random numbers
+    # Motion, at the same instants, of the vehicles for which those wait who cross
     vehicles: Motion | None = None,
 ) -> NDArray[np.void]:
     """Return the samples of a group, of dtype `SAMPLE`, shape (samples, objects).
-
-    Args:
-        ground: The map.
-        group: Who moves.
-        clock: Number of samples, and their rate.
-        rng: Random numbers.
-        vehicles: Motion, at the same instants, of the vehicles for which those wait who cross.
 
     Raises:
         SpawnError: The map has no room for it.

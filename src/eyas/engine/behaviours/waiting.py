@@ -41,15 +41,12 @@ class Spot(NamedTuple):
 
 
 def waiting_spots(
-    scene: Scene, count: int, rng: np.random.Generator, setting: str = "extras"
+    scene: Scene,  # The map
+    count: int,  # How many
+    rng: np.random.Generator,  # Random numbers
+    setting: str = "extras",  # What a message names
 ) -> list[Spot]:
     """Return so many places to wait at, no two of them the same.
-
-    Args:
-        scene: The map.
-        count: How many.
-        rng: Random numbers.
-        setting: What a message names.
 
     Raises:
         SpawnError: There are fewer.

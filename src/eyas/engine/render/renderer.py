@@ -217,22 +217,14 @@ class CpuRenderer:
 
 
 def build_renderer(
-    scene: Scene,
-    geometry: Geometry,
-    lighting: Lighting,
+    scene: Scene,  # The static scene
+    geometry: Geometry,  # The scene and the moving things, see `build_geometry`
+    lighting: Lighting,  # Light and air
     *,
-    cache: Path | None = None,
-    ready: Callable[[], object] | None = None,
+    cache: Path | None = None,  # Folder of the cache; None: the user's
+    ready: Callable[[], object] | None = None,  # See `Renderer`
 ) -> CpuRenderer:
-    """Return a renderer of a scene, its shadows baked.
-
-    Args:
-        scene: The static scene.
-        geometry: The scene and the moving things, see `build_geometry`.
-        lighting: Light and air.
-        cache: Folder of the cache; None: the user's.
-        ready: See `Renderer`.
-    """
+    """Return a renderer of a scene, its shadows baked."""
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)

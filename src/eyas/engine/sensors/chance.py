@@ -26,14 +26,12 @@ def mixed(word: int) -> int:
 
 
 @kernel
-def uniform(seed: int, number: int, channel: int) -> float:
-    """Return a number between 0 and 1, both excluded.
-
-    Args:
-        seed: Seed of the stream, see `SEEDS`.
-        number: Number of the reading, from -2^31 to 2^31.
-        channel: Which of its random numbers.
-    """
+def uniform(
+    seed: int,  # Seed of the stream, see `SEEDS`
+    number: int,  # Number of the reading, from -2^31 to 2^31
+    channel: int,  # Which of its random numbers
+) -> float:
+    """Return a number between 0 and 1, both excluded."""
     word = mixed(mixed(mixed(seed) ^ (number & _WORD)) ^ (channel & _WORD))
     return (word + 0.5) / 4294967296.0
 

@@ -24,14 +24,12 @@ _SHARE = 0.85
 _CUTS = 4  # Parts into which each edge of a triangle is cut to find points on it
 
 
-def crown_slices(mesh: Mesh, low: Row, high: Row) -> list[tuple[float, float, float]]:
-    """Return bottom, top and radius of the cylinders of a crown, in the mesh's frame [m].
-
-    Args:
-        mesh: The tree, or a stand of trees.
-        low: Lowest x, y, z of its leaves [m], shape (3,).
-        high: Highest x, y, z of its leaves [m], shape (3,).
-    """
+def crown_slices(
+    mesh: Mesh,  # The tree, or a stand of trees
+    low: Row,  # Lowest x, y, z of its leaves [m], shape (3,)
+    high: Row,  # Highest x, y, z of its leaves [m], shape (3,)
+) -> list[tuple[float, float, float]]:
+    """Return bottom, top and radius of the cylinders of a crown, in the mesh's frame [m]."""
     middle = 0.5 * (low + high)[:2]
     most = 0.25 * float((high - low)[:2].sum())  # the corners of a square stand are further away
     points = _points_on(mesh)

@@ -43,17 +43,11 @@ class Grain:
 
     def add(
         self,
-        rgb: NDArray[np.uint8],
-        trackers: NDArray[np.integer],
-        step: NDArray[np.int64],
+        rgb: NDArray[np.uint8],  # Pictures, shape (V, H, W, 3)
+        trackers: NDArray[np.integer],  # The tracker of each, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
     ) -> None:
-        """Add noise in place.
-
-        Args:
-            rgb: Pictures, shape (V, H, W, 3).
-            trackers: The tracker of each, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-        """
+        """Add noise in place."""
         views = len(trackers)
         work = _Work(
             rgb.reshape(views, -1),

@@ -89,23 +89,14 @@ class Obstacles(NamedTuple):
 
 
 def obstacles_of(
-    solids: Solids,
-    terrain: Terrain,
-    motion: Motion,
-    world: NDArray[np.int32],
-    model: NDArray[np.int32],
-    bodies: TrackerState | None = None,
+    solids: Solids,  # See `solids_of`
+    terrain: Terrain,  # The ground
+    motion: Motion,  # See `MovingObstacles`, as for the next two
+    world: NDArray[np.int32],  # Shape (N,)
+    model: NDArray[np.int32],  # Shape (W, A)
+    bodies: TrackerState | None = None,  # The trackers; None: these have no bodies
 ) -> Obstacles:
-    """Return the obstacles of a map with its traffic.
-
-    Args:
-        solids: See `solids_of`.
-        terrain: The ground.
-        motion: See `MovingObstacles`, as for the next two.
-        world: Shape (N,).
-        model: Shape (W, A).
-        bodies: The trackers; None: these have no bodies.
-    """
+    """Return the obstacles of a map with its traffic."""
     blocks = [_blocks_of(number) for number in range(len(MODELS))]
     movers = MovingObstacles(
         motion=motion,

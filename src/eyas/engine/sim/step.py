@@ -144,15 +144,12 @@ class StepKernels(NamedTuple):
 
 
 def step_of(
-    tracker: Tracker, carried: Kernel = carried, *, velocities: bool = False
+    tracker: Tracker,  # The kind
+    carried: Kernel = carried,  # One of `eyas.engine.sensors.mount.CARRIED`
+    *,
+    velocities: bool = False,  # Whether the velocities of cameras are kept up
 ) -> StepKernels:
-    """Return the step of a kind of tracker.
-
-    Args:
-        tracker: The kind.
-        carried: One of `eyas.engine.sensors.mount.CARRIED`.
-        velocities: Whether the velocities of cameras are kept up.
-    """
+    """Return the step of a kind of tracker."""
     start, launch, advance, carry = tracker.start, tracker.launch, tracker.advance, tracker.carry
     return _step_of(start, launch, advance, carry, tracker.aim, carried, velocities)
 

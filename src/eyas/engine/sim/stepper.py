@@ -125,15 +125,13 @@ class Stepper:
         self._turning: BoundCall | None = None
 
     def begin(
-        self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
+        self,
+        chosen: NDArray[np.int64],  # The trackers, shape (K,)
+        pitch: Floats,  # Commanded pitch of their cameras [rad], shape (K,)
+        # Returns what the random numbers of a tracker's episode depend on
+        key_of: Callable[[int], EpisodeKey],
     ) -> None:
-        """Put trackers at their start poses.
-
-        Args:
-            chosen: The trackers, shape (K,).
-            pitch: Commanded pitch of their cameras [rad], shape (K,).
-            key_of: Returns what the random numbers of a tracker's episode depend on.
-        """
+        """Put trackers at their start poses."""
         count = len(chosen)
         self._orders.pitch[:count] = pitch
         self._orders.chosen[:count] = chosen

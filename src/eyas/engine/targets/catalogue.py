@@ -90,15 +90,13 @@ def models_of(kind: int) -> range:
     return range(first, first + len(KINDS[kind].models))
 
 
-def extent_of(model: int, travelled: float, speed: float, slope: float) -> Floats | None:
-    """Return the box of a model at a moment, see `Kind.extent`; None if it is that of its size.
-
-    Args:
-        model: Index in `MODELS`.
-        travelled: Horizontal way since it entered the world [m].
-        speed: [m/s]
-        slope: Pitch of the ground along its heading [rad].
-    """
+def extent_of(
+    model: int,  # Index in `MODELS`
+    travelled: float,  # Horizontal way since it entered the world [m]
+    speed: float,  # [m/s]
+    slope: float,  # Pitch of the ground along its heading [rad]
+) -> Floats | None:
+    """Return the box of a model at a moment, see `Kind.extent`; None if it is that of its size."""
     kind = kind_of(model)
     if kind.extent is None:
         return None

@@ -46,13 +46,11 @@ class Seen(NamedTuple):
     distance: float  # From the camera, along its axis [m]
 
 
-def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
-    """Return descriptions of a target, from short to long.
-
-    Args:
-        model: Index into `MODELS`.
-        colour: Its colour, sRGB 0 to 1.
-    """
+def phrases(
+    model: int,  # Index into `MODELS`
+    colour: Sequence[float],  # Its colour, sRGB 0 to 1
+) -> tuple[str, ...]:
+    """Return descriptions of a target, from short to long."""
     seen = colour_name(colour)
     return tuple(
         phrase.replace("a {}", with_article(seen)).replace("{}", seen)

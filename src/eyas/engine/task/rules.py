@@ -75,14 +75,12 @@ def lenient(rules: Rules) -> Rules:
     )
 
 
-def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> Rules:
-    """Return the settings as numbers.
-
-    Args:
-        reward: Settings of the reward.
-        done: Settings of the end of an episode.
-        camera: Camera whose picture the view reward uses.
-    """
+def make_rules(
+    reward: RewardConfig,  # Settings of the reward
+    done: DoneConfig,  # Settings of the end of an episode
+    camera: CameraConfig,  # Camera whose picture the view reward uses
+) -> Rules:
+    """Return the settings as numbers."""
     return Rules(
         view_range=reward.view_range,
         aspect=camera.height / camera.width,

@@ -60,15 +60,13 @@ def touch_solids(sweep: Sweep, obstacles: Obstacles) -> Hit:
 
 
 @kernel(inline=True)
-def touch_movers(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit:
-    """Return the first vehicle, or body of another tracker, that is touched.
-
-    Args:
-        sweep: The motion of the body in the last physics step.
-        obstacles: Everything solid.
-        n: The tracker.
-        tick: Time at the end of the step, in physics steps.
-    """
+def touch_movers(
+    sweep: Sweep,  # The motion of the body in the last physics step
+    obstacles: Obstacles,  # Everything solid
+    n: int,  # The tracker
+    tick: int,  # Time at the end of the step, in physics steps
+) -> Hit:
+    """Return the first vehicle, or body of another tracker, that is touched."""
     boxes, best = obstacles.boxes, NEVER
     x, y, thing, low, high = 0.0, 0.0, -1, 0.0, 0.0
     reach = abs(sweep.motion_x) + abs(sweep.motion_y) + abs(sweep.motion_z)

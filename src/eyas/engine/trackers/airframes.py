@@ -23,13 +23,11 @@ class Model(NamedTuple):
     battery: Battery
 
 
-def _airframe(frame: Airframe, frequency: float) -> Airframe:
-    """Return an airframe with gains for its mass and inertia.
-
-    Args:
-        frame: The other constants.
-        frequency: Natural frequency of its attitude [rad/s].
-    """
+def _airframe(
+    frame: Airframe,  # The other constants
+    frequency: float,  # Natural frequency of its attitude [rad/s]
+) -> Airframe:
+    """Return an airframe with gains for its mass and inertia."""
     share = frame.mass / ORIGINAL.assumed_mass
     x, y, z = ORIGINAL.position_gain
     roll, pitch, yaw = frame.inertia

@@ -47,13 +47,11 @@ class Equipment(NamedTuple):
     battery: Battery = Battery()
 
 
-def loaded(frame: Airframe, parts: Iterable[Part]) -> Equipment:
-    """Return an airframe that carries some parts, which are points (Huygens-Steiner).
-
-    Args:
-        frame: Its mass is that of its body alone, in whose middle its centre of mass is.
-        parts: What is fixed to it.
-    """
+def loaded(
+    frame: Airframe,  # Its mass is that of its body alone, in whose middle its centre of mass is
+    parts: Iterable[Part],  # What is fixed to it
+) -> Equipment:
+    """Return an airframe that carries some parts, which are points (Huygens-Steiner)."""
     mass, first = frame.mass, [0.0, 0.0, 0.0]
     moments = [*frame.inertia, 0.0, 0.0, 0.0]
     for part in parts:

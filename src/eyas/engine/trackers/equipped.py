@@ -154,15 +154,13 @@ def advance(
 
 
 @kernel
-def _among(memory: EquippedMemory, n: int, place: Vector, air: Vector) -> Vector:
-    """Return the wind at a place with the mean wind there [m/s].
-
-    Args:
-        memory: Wind and ground are read.
-        n: Index of the drone.
-        place: Of the drone, world frame [m].
-        air: The wind, with the same mean wind everywhere [m/s].
-    """
+def _among(
+    memory: EquippedMemory,  # Wind and ground are read
+    n: int,  # Index of the drone
+    place: Vector,  # Of the drone, world frame [m]
+    air: Vector,  # The wind, with the same mean wind everywhere [m/s]
+) -> Vector:
+    """Return the wind at a place with the mean wind there [m/s]."""
     flight, x, y = memory.flight, place[0], place[1]
     (east, north), along = flight.wind.mean[n], flight.wind.along[n]
     speed = math.sqrt(east * east + north * north)
@@ -189,13 +187,11 @@ def is_equipped(config: TrackerConfig) -> bool:
     return carries or config.tells_rotors or config.ground_effect or config.battery.enabled
 
 
-def equipped_drone(config: TrackerConfig, model: Model) -> Tracker:
-    """Return the flown drone with what it carries.
-
-    Args:
-        config: The options.
-        model: The drone with its gimbal and lidar; options replace its own constants.
-    """
+def equipped_drone(
+    config: TrackerConfig,  # The options
+    model: Model,  # The drone with its gimbal and lidar; options replace its own constants
+) -> Tracker:
+    """Return the flown drone with what it carries."""
     equipment = _equipment(config, model)
     plain = flown_drone(config, model.frame)
     draw = plain.sample

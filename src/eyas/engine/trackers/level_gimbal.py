@@ -69,13 +69,11 @@ def reset_level(trackers: TrackerState, filters: NDArray[np.float64], n: int) ->
 
 
 @kernel
-def carried_along(gimbal: NDArray[np.float64], change: Vector) -> Vector:
-    """Return what the body's turn is about the axes of roll, pitch and yaw joint.
-
-    Args:
-        gimbal: Angles of the joints [rad], shape (3,).
-        change: Change of the body's angular velocity, body frame [rad/s].
-    """
+def carried_along(
+    gimbal: NDArray[np.float64],  # Angles of the joints [rad], shape (3,)
+    change: Vector,  # Change of the body's angular velocity, body frame [rad/s]
+) -> Vector:
+    """Return what the body's turn is about the axes of roll, pitch and yaw joint."""
     sy, cy = sin_cos(gimbal[2])
     sr, cr = sin_cos(gimbal[0])
     left = cy * change[1] - sy * change[0]

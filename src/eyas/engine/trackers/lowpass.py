@@ -22,13 +22,11 @@ _A2 = (_K * _K - math.sqrt(2.0) * _K + 1.0) / _D
 
 
 @kernel(inline=True)
-def low_pass(memory: NDArray[np.float64], value: float) -> float:
-    """Return the filtered value of one 2 ms step.
-
-    Args:
-        memory: State of one filter, shape (2,); updated.
-        value: Input value.
-    """
+def low_pass(
+    memory: NDArray[np.float64],  # State of one filter, shape (2,); updated
+    value: float,  # Input value
+) -> float:
+    """Return the filtered value of one 2 ms step."""
     # Transposed direct form II: the same response as direct form I with half the state.
     result: float = _B0 * value + memory[0]
     memory[0] = _B1 * value - _A1 * result + memory[1]

@@ -63,13 +63,11 @@ def vehicle_types(config: TrafficConfig) -> tuple[VehicleType, ...]:
     return tuple(name for name, number in numbers.items() for _ in range(number))
 
 
-def fleet_of(config: TrafficConfig, duration: float) -> Fleet:
-    """Return the vehicles that settings ask for.
-
-    Args:
-        config: Settings from `eyas.engine.traffic.record.resolved`.
-        duration: Time until which they enter and drive [s].
-    """
+def fleet_of(
+    config: TrafficConfig,  # Settings from `eyas.engine.traffic.record.resolved`
+    duration: float,  # Time until which they enter and drive [s]
+) -> Fleet:
+    """Return the vehicles that settings ask for."""
     assert config.seed is not None
     rng = stream(config.seed, "traffic")
     actors = vehicle_types(config)

@@ -51,14 +51,12 @@ def sample_before(motion: Motion, time: float) -> int:
 
 
 @kernel(inline=True)
-def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
-    """Return one actor at one time; times outside the samples are clamped to their ends.
-
-    Args:
-        motion: Motion of all actors.
-        actor: Index of the actor.
-        time: Time [s].
-    """
+def interpolate_actor(
+    motion: Motion,  # Motion of all actors
+    actor: int,  # Index of the actor
+    time: float,  # Time [s]
+) -> ActorPose:
+    """Return one actor at one time; times outside the samples are clamped to their ends."""
     row = sample_before(motion, time)
     f = _place(motion, time) - row
     a = motion.table[row, actor]

@@ -78,14 +78,12 @@ def shining(motion: Motion, actor: int, time: float) -> int:
     return lit
 
 
-def lamps_of(table: NDArray[np.void], rate: float, network: RoadNetwork) -> NDArray[np.uint8]:
-    """Return `Motion.lamps` of vehicles.
-
-    Args:
-        table: Their `Motion.table`, shape (S, A).
-        rate: Its samples per second [Hz].
-        network: The roads that they drive on.
-    """
+def lamps_of(
+    table: NDArray[np.void],  # Their `Motion.table`, shape (S, A)
+    rate: float,  # Its samples per second [Hz]
+    network: RoadNetwork,  # The roads that they drive on
+) -> NDArray[np.uint8]:
+    """Return `Motion.lamps` of vehicles."""
     lamps = np.zeros(table.shape, np.uint8)
     lanes = LaneMap(network)
     for actor in range(table.shape[1]):

@@ -170,14 +170,12 @@ def _phases(logic: NetProgram, index: int) -> list[tuple[float, Aspect]]:
     return phases if _is_known(logic) else [(1.0, Aspect.AMBER)]
 
 
-def _walked(logic: NetProgram, own: int, held: list[int]) -> list[tuple[float, Aspect]]:
-    """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`.
-
-    Args:
-        logic: The program.
-        own: Its link.
-        held: The links of those who drive on the crossed street towards the junction.
-    """
+def _walked(
+    logic: NetProgram,
+    own: int,  # Its link
+    held: list[int],  # The links of those who drive on the crossed street towards the junction
+) -> list[tuple[float, Aspect]]:
+    """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`."""
     phases = []
     for one in logic.phases:
         state = one.state

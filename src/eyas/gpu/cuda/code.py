@@ -47,16 +47,12 @@ class Ptx(NamedTuple):
 
 
 def ptx_code(
-    call: CompiledCall, types: tuple[Any, ...], kinds: tuple[str, ...], threads: int
+    call: CompiledCall,  # The kernel
+    types: tuple[Any, ...],  # Bundles of these kinds
+    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.held.Held`
+    threads: int,  # See `eyas.lanes.device.Device.launch`
 ) -> Ptx:
-    """Return the PTX of a kernel for bundles of some kinds.
-
-    Args:
-        call: The kernel.
-        types: Bundles of these kinds.
-        kinds: The kinds, see `eyas.lanes.held.Held`.
-        threads: See `eyas.lanes.device.Device.launch`.
-    """
+    """Return the PTX of a kernel for bundles of some kinds."""
     function = call.function
     name = code_name(function.__qualname__.rpartition(".")[2], identity(function))
     stem = f"{name}-{digest((*kinds, str(threads)))}"

@@ -136,13 +136,6 @@ class CudaDevice:
     ) -> None:
         """See `Device`.
 
-        Args:
-            call: See there.
-            workers: See there.
-            bundles: See there.
-            threads: See there.
-            block: See there.
-
         Raises:
             CudaError: The driver refuses the kernel, or an earlier one has failed.
         """

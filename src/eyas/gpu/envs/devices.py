@@ -40,14 +40,12 @@ def device_of(wanted: Device | str) -> Device:
         raise ConfigError(f"device: '{wanted}' cannot be used: {error}") from error
 
 
-def drawer_of(device: Device, renderer: Renderer, samples: int) -> DeviceDrawer:
-    """Return what draws on a device.
-
-    Args:
-        device: The device.
-        renderer: What draws the same on this processor.
-        samples: Samples per pixel.
-    """
+def drawer_of(
+    device: Device,
+    renderer: Renderer,  # What draws the same on this processor
+    samples: int,  # Samples per pixel
+) -> DeviceDrawer:
+    """Return what draws on a device."""
     if isinstance(device, HostDevice):
         return HostRenderer(renderer, samples)
     assert isinstance(renderer, CpuRenderer)

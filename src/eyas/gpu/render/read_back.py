@@ -98,21 +98,13 @@ class ReadBackRenderer:
 
     def uploaded(
         self,
-        views: Views,
-        draw_list: DrawList,
-        size: tuple[int, int],
-        output: Output,
-        samples: int = 1,
+        views: Views,  # V cameras
+        draw_list: DrawList,  # The moving things
+        size: tuple[int, int],  # Height and width of the pictures [pixels]
+        output: Output,  # What is wanted: arrays of these shapes and types are made on the device
+        samples: int = 1,  # Colour samples per pixel, 1, 2 or 4
     ) -> UploadedViews:
-        """Return views and moving things on the device, to be drawn there.
-
-        Args:
-            views: V cameras.
-            draw_list: The moving things.
-            size: Height and width of the pictures [pixels].
-            output: What is wanted: arrays of these shapes and types are made on the device.
-            samples: Colour samples per pixel, 1, 2 or 4.
-        """
+        """Return views and moving things on the device, to be drawn there."""
         if samples not in GRIDS:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
         if views.lens is not None or views.rows is not None or views.picture is not None:

@@ -24,16 +24,14 @@ _LINEAR = linear(np.arange(256) / 255.0)  # Linear value of each byte of sRGB
 
 
 def packed_layers(
-    textures: Mapping[str, NDArray[np.uint8]], names: Sequence[str]
+    # sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each
+    textures: Mapping[str, NDArray[np.uint8]],
+    names: Sequence[str],  # Names of the textures, one for each layer
 ) -> NDArray[np.uint32]:
     """Return the named textures with their mip levels, see `Geometry.texture`.
 
     Colours are stored as square roots of linear light: eight bits then suffice in the dark, and
     one multiplication restores the light.
-
-    Args:
-        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
-        names: Names of the textures, one for each layer.
 
     Raises:
         UnknownNameError: There is no texture of that name.

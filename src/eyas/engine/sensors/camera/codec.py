@@ -154,19 +154,12 @@ def _code_block(
 
 @kernel
 def _split(
-    rgb: NDArray[np.uint8],
-    luminance: NDArray[np.float32],
-    blue: NDArray[np.float32],
-    red: NDArray[np.float32],
+    rgb: NDArray[np.uint8],  # Shape (H, W, 3)
+    luminance: NDArray[np.float32],  # Shape (H', W'), see `planes_for`
+    blue: NDArray[np.float32],  # The same shape, as the next
+    red: NDArray[np.float32],  # How much bluer and redder than grey
 ) -> None:
-    """Write the planes of a picture (JFIF 1.02); beyond its edges their last pixels go on.
-
-    Args:
-        rgb: Shape (H, W, 3).
-        luminance: Shape (H', W'), see `planes_for`.
-        blue: The same shape, as the next.
-        red: How much bluer and redder than grey.
-    """
+    """Write the planes of a picture (JFIF 1.02); beyond its edges their last pixels go on."""
     height, width = rgb.shape[:2]
     last = i4(width - 1)
     for row in range(luminance.shape[0]):
@@ -231,15 +224,11 @@ def _as_byte(value: float) -> int:
 
 @kernel
 def _join(
-    rgb: NDArray[np.uint8], luminance: NDArray[np.float32], work: NDArray[np.float32]
+    rgb: NDArray[np.uint8],  # Written, shape (H, W, 3)
+    luminance: NDArray[np.float32],  # Shape (H', W')
+    work: NDArray[np.float32],  # Colours, and two rows of working memory, see `code`
 ) -> None:
-    """Write the picture of three planes, of which those of colours are half as wide and high.
-
-    Args:
-        rgb: Written, shape (H, W, 3).
-        luminance: Shape (H', W').
-        work: Colours, and two rows of working memory, see `code`.
-    """
+    """Write the picture of three planes, of which those of colours are half as wide and high."""
     height, width = rgb.shape[:2]
     rows = luminance.shape[0] // 2
     blue, red, lines = work[:rows], work[rows : 2 * rows], work[2 * rows :]
@@ -262,19 +251,12 @@ def _join(
 
 @kernel
 def code(
-    rgb: NDArray[np.uint8],
-    tables: NDArray[np.float32],
-    planes: NDArray[np.float32],
-    halves: NDArray[np.float32],
+    rgb: NDArray[np.uint8],  # Shape (H, W, 3)
+    tables: NDArray[np.float32],  # See `quantisation`, shape (2, 64)
+    planes: NDArray[np.float32],  # Working memory, shape (3, H', W'), see `planes_for`
+    halves: NDArray[np.float32],  # Working memory, shape (H' + 3, W' / 2)
 ) -> None:
-    """Code a picture and decode it, in place.
-
-    Args:
-        rgb: Shape (H, W, 3).
-        tables: See `quantisation`, shape (2, 64).
-        planes: Working memory, shape (3, H', W'), see `planes_for`.
-        halves: Working memory, shape (H' + 3, W' / 2).
-    """
+    """Code a picture and decode it, in place."""
     luminance, rows = planes[0], planes.shape[1] // 2
     _split(rgb, luminance, planes[1], planes[2])
     _halved(planes[1], halves[:rows])

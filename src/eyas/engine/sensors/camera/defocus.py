@@ -17,12 +17,10 @@ LARGEST = 64.0  # Largest diameter of the disc [pixels]
 _FINE = 16  # Points along a side of a pixel by which the disc's share of it is counted
 
 
-def disc(diameter: float) -> NDArray[np.float32]:
-    """Return the share of a point's light in each pixel around it, shape (K, K), K odd; sum 1.
-
-    Args:
-        diameter: Of the circle of confusion [pixels].
-    """
+def disc(
+    diameter: float,  # Of the circle of confusion [pixels]
+) -> NDArray[np.float32]:
+    """Return the share of a point's light in each pixel around it, shape (K, K), K odd; sum 1."""
     reach = math.ceil(0.5 * diameter - 0.5) if diameter > 1.0 else 0
     side = 2 * reach + 1
     places = (np.arange(side * _FINE) + 0.5) / _FINE - 0.5 * side

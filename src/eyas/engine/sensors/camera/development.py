@@ -133,18 +133,13 @@ class Development:
 
     def develop(
         self,
+        # Mean linear red, green and blue of the exposure, shape (V, 3, H, W)
         radiance: NDArray[np.float32],
-        rgb: NDArray[np.uint8],
-        trackers: NDArray[np.integer],
+        rgb: NDArray[np.uint8],  # Written, shape (V, H, W, 3)
+        trackers: NDArray[np.integer],  # As for `expose`
         step: NDArray[np.int64],
     ) -> None:
         """Write the pictures that the sensors make of some light, after `expose`.
-
-        Args:
-            radiance: Mean linear red, green and blue of the exposure, shape (V, 3, H, W).
-            rgb: Written, shape (V, H, W, 3).
-            trackers: As for `expose`.
-            step: The same.
 
         Raises:
             ConfigError: The pictures are less than 8 pixels wide or high.

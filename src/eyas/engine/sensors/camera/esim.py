@@ -254,24 +254,16 @@ def _contrast(
 
 @kernel(inline=True)
 def _shot_noise(
-    pixels: EventPixels,
+    pixels: EventPixels,  # All sensors
     settings: EventSettings,
-    n: int,
-    at: int,
-    now: tuple[float, float],
-    base: int,
+    n: int,  # Which sensor
+    at: int,  # Which pixel
+    now: tuple[float, float],  # Logarithm of its light, and the time [s]
+    base: int,  # Seed of this look
 ) -> None:
     """Append the event of a pixel that single photons make, if any.
 
     At most one in a look: at 10 Hz and 2 ms, 1 % of those that would come are left out.
-
-    Args:
-        pixels: All sensors.
-        settings: The settings.
-        n: Which sensor.
-        at: Which pixel.
-        now: Logarithm of its light, and the time [s].
-        base: Seed of this look.
     """
     light, time = now
     length = time - pixels.time[n]

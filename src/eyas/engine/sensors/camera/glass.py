@@ -53,17 +53,15 @@ def _squares(width: int, height: int, right: Floats, down: Floats) -> Floats:
 
 
 def change_light(
-    light: NDArray[np.float32], trackers: NDArray[np.integer], lenses: Lenses
+    # Radiances in front of the lens, shape (V, 3, H, W); changed, if only darkened
+    light: NDArray[np.float32],
+    trackers: NDArray[np.integer],  # The tracker of each view, shape (V,)
+    lenses: Lenses,  # The lenses of all trackers
 ) -> NDArray[np.float32]:
     """Return radiances as they come through lenses that darken and colour edges.
 
     Red and blue are shown a little larger or smaller than green, about the principal point: the
     radiance is looked up between four pixels, and that of the edge is repeated outside.
-
-    Args:
-        light: Radiances in front of the lens, shape (V, 3, H, W); changed, if only darkened.
-        trackers: The tracker of each view, shape (V,).
-        lenses: The lenses of all trackers.
     """
     views, _, height, width = light.shape
     middle = 0.5 + lenses.numbers[trackers, 7:9]

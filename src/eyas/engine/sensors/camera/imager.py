@@ -131,10 +131,10 @@ class ImagerState(NamedTuple):
     def begin(
         self,
         tracker: int,
-        config: ImagerConfig,
-        spectrum: Spectrum,
-        luminance: float,
-        rng: np.random.Generator,
+        config: ImagerConfig,  # The settings
+        spectrum: Spectrum,  # What light it tells apart
+        luminance: float,  # That of radiance 1 [cd/m^2]
+        rng: np.random.Generator,  # Random numbers of the episode
     ) -> None:
         """Sample the sensor of an episode.
 
@@ -142,13 +142,6 @@ class ImagerState(NamedTuple):
         and f-number N (ISO 12232, without its vignetting and flare). Electrons: photons on a
         photosite times quantum efficiency (EMVA 1288, equations 1 to 3), all of them counted as if
         they had 555 nm. Speed: `S = 78 / H`, H the exposure in lux seconds that fills the well.
-
-        Args:
-            tracker: The tracker.
-            config: The settings.
-            spectrum: What light it tells apart.
-            luminance: That of radiance 1 [cd/m^2].
-            rng: Random numbers of the episode.
         """
         self.fixed_seed[tracker] = rng.integers(SEEDS)
         self.noise_seed[tracker] = rng.integers(SEEDS)

@@ -142,15 +142,12 @@ class Lenses:
         return Lens(int(row[0]), *row[1:])
 
     def seeing(
-        self, trackers: NDArray[np.integer], cameras: CameraState, aspect: float
+        self,
+        trackers: NDArray[np.integer],  # The trackers, shape (V,)
+        cameras: CameraState,  # V cameras
+        aspect: float,  # Height of the pictures over their width
     ) -> CameraState:
-        """Return cameras without lenses that see all that cameras see through theirs.
-
-        Args:
-            trackers: The trackers, shape (V,).
-            cameras: V cameras.
-            aspect: Height of the pictures over their width.
-        """
+        """Return cameras without lenses that see all that cameras see through theirs."""
         numbers, fields = self.numbers[trackers], cameras.field_of_view
         if (numbers == numbers[:1]).all() and (fields == fields[:1]).all():
             numbers, fields = numbers[:1], fields[:1]  # mostly all are alike

@@ -96,15 +96,12 @@ class Link:
             shown.step[tracker] = -1
 
     def carry(
-        self, rgb: NDArray[np.uint8], trackers: NDArray[np.integer], step: NDArray[np.int64]
+        self,
+        rgb: NDArray[np.uint8],  # Shape (V, H, W, 3)
+        trackers: NDArray[np.integer],  # The tracker of each, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
     ) -> None:
-        """Make pictures what is shown of them at the other end, in place.
-
-        Args:
-            rgb: Shape (V, H, W, 3).
-            trackers: The tracker of each, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-        """
+        """Make pictures what is shown of them at the other end, in place."""
         views, height, width, _ = rgb.shape
         workers = min(thread_count(), views)
         rows, columns = planes_for(height, width) if self._config.quality is not None else (0, 0)

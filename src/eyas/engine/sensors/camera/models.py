@@ -91,14 +91,12 @@ MODELS: dict[ModelName, Values] = {
 """Settings of each model, as in a file of settings."""
 
 
-def laid_under(group: type[Config], under: Values, given: Values | Config) -> dict[str, Any]:
-    """Return settings, and those of a model wherever they have their defaults.
-
-    Args:
-        group: Class of the settings.
-        under: Settings of the model.
-        given: The settings.
-    """
+def laid_under(
+    group: type[Config],  # Class of the settings
+    under: Values,  # Settings of the model
+    given: Values | Config,  # The settings
+) -> dict[str, Any]:
+    """Return settings, and those of a model wherever they have their defaults."""
     values = dict(given) if isinstance(given, Mapping) else _values_of(given)
     for name, value in under.items():
         field = group.model_fields[name]

@@ -36,24 +36,15 @@ def _mirrored(row: int, height: int) -> int:
 
 @kernel
 def read_mosaic(
-    readout: Readout,
-    radiance: NDArray[np.float32],
-    view: int,
-    rows: tuple[int, int],
-    counts: Counts,
+    readout: Readout,  # How they are read
+    radiance: NDArray[np.float32],  # Shape (V, 3, H, W)
+    view: int,  # Which picture
+    rows: tuple[int, int],  # Its first row, and the row after the last
+    counts: Counts,  # Tables of few electrons
+    # Written: values, 1 at saturation, with white balanced; shape (rows + 2 `HALO`, W + 2 `MARGIN`)
     raw: NDArray[np.float32],
 ) -> None:
-    """Read the photosites of some rows of a picture, with the rows around them.
-
-    Args:
-        readout: How they are read.
-        radiance: Shape (V, 3, H, W).
-        view: Which picture.
-        rows: Its first row, and the row after the last.
-        counts: Tables of few electrons.
-        raw: Written: values, 1 at saturation, with white balanced; shape (rows + 2 `HALO`,
-            W + 2 `MARGIN`).
-    """
+    """Read the photosites of some rows of a picture, with the rows around them."""
     height, width = radiance.shape[2], radiance.shape[3]
     plane, line = height * width, raw.shape[1]
     first, last = rows
@@ -82,19 +73,16 @@ def read_mosaic(
 
 @kernel(inline=True)
 def demosaicked(
-    raw: NDArray[np.float32], row: int, at_row: int, column: int, malvar: bool
+    raw: NDArray[np.float32],  # See `read_mosaic`
+    row: int,  # Row in the picture
+    at_row: int,  # Row in the band
+    column: int,  # Column of the first of them
+    malvar: bool,  # Which filters
 ) -> Colours:
     """Return red, green and blue of eight photosites of a row.
 
     `malvar`: the linear filters of Malvar, He and Cutler (High-quality linear interpolation for
     demosaicing of Bayer-patterned color images, ICASSP 2004), figure 2; else bilinear.
-
-    Args:
-        raw: See `read_mosaic`.
-        row: Row in the picture.
-        at_row: Row in the band.
-        column: Column of the first of them.
-        malvar: Which filters.
     """
     line = raw.shape[1]
     at = (at_row + HALO) * line + MARGIN + column

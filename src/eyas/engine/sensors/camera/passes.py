@@ -38,17 +38,14 @@ class Pieces(NamedTuple):
 
 
 def pieces_of(
-    samples: Integers, bands: Integers, exposure: Floats, readout: Floats, height: int
+    samples: Integers,  # Passes of each, shape (V,)
+    bands: Integers,  # Bands of each, shape (V,), at most `height`
+    exposure: Floats,  # How long each shutter is open [s], shape (V,)
+    readout: Floats,  # Time from the exposure of the first row to that of the last [s], shape (V,)
+    height: int,  # Rows of a picture
 ) -> Pieces:
     """Return the passes of V exposures: instants in the middle of equal parts of each, and bands of
     rows, each at the instant of its middle.
-
-    Args:
-        samples: Passes of each, shape (V,).
-        bands: Bands of each, shape (V,), at most `height`.
-        exposure: How long each shutter is open [s], shape (V,).
-        readout: Time from the exposure of the first row to that of the last [s], shape (V,).
-        height: Rows of a picture.
     """
     view = np.repeat(np.arange(len(samples)), samples)
     passed = np.repeat(np.arange(len(view)), bands[view])

@@ -79,14 +79,12 @@ def poses_between(ways: Ways, moments: Moments) -> None:
 
 
 @compiled
-def speeds_between(ways: Ways, velocity: Floats, turning: Floats) -> None:
-    """Write the mean velocities of cameras on their ways, 0 where no time passes.
-
-    Args:
-        ways: V ways.
-        velocity: Written: world frame [m/s], shape (V, 3).
-        turning: Written: world frame [rad/s], shape (V, 3).
-    """
+def speeds_between(
+    ways: Ways,  # V ways
+    velocity: Floats,  # Written: world frame [m/s], shape (V, 3)
+    turning: Floats,  # Written: world frame [rad/s], shape (V, 3)
+) -> None:
+    """Write the mean velocities of cameras on their ways, 0 where no time passes."""
     for v in range(velocity.shape[0]):
         length = ways.end[v] - ways.begin[v]
         turn = _turn(ways.first.rotation[v], ways.last.rotation[v])

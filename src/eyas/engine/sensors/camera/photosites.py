@@ -157,18 +157,14 @@ def other_bits(word: int) -> int:
 
 @kernel(inline=True)
 def read_out(
-    readout: Readout, electrons: float, noise: int, pattern: int, row: float, counts: Counts
+    readout: Readout,  # How they are read
+    electrons: float,  # Electrons that light frees in them
+    noise: int,  # Random bits of this picture
+    pattern: int,  # Random bits of the episode
+    row: float,  # See `row_error`
+    counts: Counts,  # Tables of few electrons
 ) -> float:
-    """Return the number that is read of photosites.
-
-    Args:
-        readout: How they are read.
-        electrons: Electrons that light frees in them.
-        noise: Random bits of this picture.
-        pattern: Random bits of the episode.
-        row: See `row_error`.
-        counts: Tables of few electrons.
-    """
+    """Return the number that is read of photosites."""
     light = lesser(greater(electrons, f4(0.0)), f4(_FULLEST) * readout.most)
     deviation = root(light * readout.share + readout.dark) * f4(1.0 / _DEVIATION_OF_FOUR)
     held = light + deviation * bell(noise)

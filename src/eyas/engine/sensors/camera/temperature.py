@@ -170,14 +170,11 @@ def _normals() -> NDArray[np.float64]:
 
 
 def _past_suns(
-    hour: float, fixed: tuple[float, float, float] | None
+    hour: float,  # Now
+    # The sun of a weather that has no hour, as if it had stood still; None: it moved
+    fixed: tuple[float, float, float] | None,
 ) -> list[tuple[tuple[float, float, float], float]]:
-    """Return where the sun was, and how long ago [h], from now back.
-
-    Args:
-        hour: Now.
-        fixed: The sun of a weather that has no hour, as if it had stood still; None: it moved.
-    """
+    """Return where the sun was, and how long ago [h], from now back."""
     ago = np.arange(0.0, _BACK, _STEP).tolist()
     return [(sun_at(hour - one) if fixed is None else fixed, one) for one in ago]
 

@@ -68,15 +68,13 @@ def _angle(shake: Shake, n: int, axis: int, time: float) -> float:
 
 
 @kernel(inline=True)
-def shaken_axes(shake: Shake, n: int, time: float, axes: Floats) -> None:
-    """Turn a camera by the vibration of camera `n` at a time.
-
-    Args:
-        shake: The vibration.
-        n: Whose.
-        time: [s]
-        axes: Camera to world; columns forward, left, up, shape (3, 3); changed in place.
-    """
+def shaken_axes(
+    shake: Shake,  # The vibration
+    n: int,  # Whose
+    time: float,  # [s]
+    axes: Floats,  # Camera to world; columns forward, left, up, shape (3, 3); changed in place
+) -> None:
+    """Turn a camera by the vibration of camera `n` at a time."""
     if shake.phase.shape[2] == 0:
         return
     roll_sine, roll_cosine = sin_cos(_angle(shake, n, 0, time))

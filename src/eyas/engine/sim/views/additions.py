@@ -148,14 +148,12 @@ def signal_poles(scene: Scene) -> dict[str, int]:
     return found
 
 
-def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights | None:
-    """Return the lights on the poles of a scene; None if there are none.
-
-    Args:
-        scene: The scene, on the network of the plan.
-        plan: Programs of the lights.
-        first_part: See `SignalLights`.
-    """
+def lights_of(
+    scene: Scene,  # The scene, on the network of the plan
+    plan: SignalPlan,  # Programs of the lights
+    first_part: int,  # See `SignalLights`
+) -> SignalLights | None:
+    """Return the lights on the poles of a scene; None if there are none."""
     rows, fixtures = {name: row for row, name in enumerate(plan.edges)}, scene.fixtures
     found = [(rows[name], pole) for name, pole in signal_poles(scene).items() if name in rows]
     if not found:

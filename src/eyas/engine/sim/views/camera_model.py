@@ -93,19 +93,13 @@ class CameraModel:
 
     def draw(
         self,
+        # Draws the views of these trackers into the arrays of a picture
         draw: Callable[[Picture], None],
-        trackers: NDArray[np.int32],
-        step: NDArray[np.int64],
-        picture: Picture,
+        trackers: NDArray[np.int32],  # The tracker of each of V views, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
+        picture: Picture,  # V pictures, with colours
     ) -> None:
-        """Draw the pictures of some trackers.
-
-        Args:
-            draw: Draws the views of these trackers into the arrays of a picture.
-            trackers: The tracker of each of V views, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-            picture: V pictures, with colours.
-        """
+        """Draw the pictures of some trackers."""
         assert picture.rgb is not None
         if self.development is not None:
             self.development.expose(trackers, step)

@@ -65,14 +65,12 @@ class Stage(Protocol):
         ...
 
 
-def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -> Exposure:
-    """Return the exposures of some trackers.
-
-    Args:
-        chosen: The trackers, shape (V,).
-        steady: The state that the pictures show, without vibration.
-        vibration: That of the cameras.
-    """
+def exposure_of(
+    chosen: Chosen,  # The trackers, shape (V,)
+    steady: Snapshot,  # The state that the pictures show, without vibration
+    vibration: Vibration | None,  # That of the cameras
+) -> Exposure:
+    """Return the exposures of some trackers."""
     cameras = CameraState(*(array[chosen] for array in steady.cameras))
     shake = no_shake(len(chosen))
     if vibration is not None:
@@ -82,17 +80,13 @@ def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -
 
 
 def ways_of(
-    exposure: Exposure, window: Floats, floor: Floats, frame: Floats, moving: Moving
+    exposure: Exposure,  # V cameras
+    window: Floats,  # The time around the instant of each [s], shape (V,)
+    floor: Floats,  # Height of the ground that each sees [m], shape (V,)
+    frame: Floats,  # See `Seen.frame`
+    moving: Moving,  # Things that move
 ) -> Floats:
-    """Return how far what cameras see moves through their pictures in a time [pixels], shape (V,).
-
-    Args:
-        exposure: V cameras.
-        window: The time around the instant of each [s], shape (V,).
-        floor: Height of the ground that each sees [m], shape (V,).
-        frame: See `Seen.frame`.
-        moving: Things that move.
-    """
+    """Return the largest motion through each picture in a given time [pixels], shape (V,)."""
     place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
     seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)

@@ -47,21 +47,13 @@ class ThermalViews:
 
     def draw(
         self,
-        views: Views,
-        movers: DrawList,
-        trackers: NDArray[np.integer],
-        step: NDArray[np.int64],
-        rgb: NDArray[np.uint8],
+        views: Views,  # V views
+        movers: DrawList,  # The moving things
+        trackers: NDArray[np.integer],  # The tracker of each view, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
+        rgb: NDArray[np.uint8],  # Written, shape (V, H, W, 3)
     ) -> None:
-        """Write the pictures of some trackers, grey.
-
-        Args:
-            views: V views.
-            movers: The moving things.
-            trackers: The tracker of each view, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-            rgb: Written, shape (V, H, W, 3).
-        """
+        """Write the pictures of some trackers, grey."""
         slots = np.arange(movers.part.shape[1], dtype=np.int32)
         numbered = np.broadcast_to(ACTOR_OBJECT + slots, movers.part.shape)
         shown = Picture.create(

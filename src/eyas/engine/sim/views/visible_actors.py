@@ -129,21 +129,14 @@ class VisibleActors:
 
     def of(
         self,
-        worlds: NDArray[np.integer],
-        time: NDArray[np.float64],
+        worlds: NDArray[np.integer],  # The worlds, shape (W,)
+        time: NDArray[np.float64],  # Time of each [s], shape (W,)
+        # Row of `worlds` that each view shows, shape (V,); None: views and worlds are pairs
         row: NDArray[np.integer] | None,
-        cameras: CameraState,
-        aspect: float,
+        cameras: CameraState,  # The V cameras
+        aspect: float,  # Height of what they show over its width
     ) -> DrawList:
-        """Return a draw list of W worlds; the next call overwrites it.
-
-        Args:
-            worlds: The worlds, shape (W,).
-            time: Time of each [s], shape (W,).
-            row: Row of `worlds` that each view shows, shape (V,); None: views and worlds are pairs.
-            cameras: The V cameras.
-            aspect: Height of what they show over its width.
-        """
+        """Return a draw list of W worlds; the next call overwrites it."""
         self._list_for(worlds, time, row, cameras, aspect)
         self._pose()
         count = len(worlds)

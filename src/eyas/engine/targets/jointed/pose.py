@@ -92,21 +92,14 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> ActorFrame:
 
 @kernel
 def _place_part(
-    pose: NDArray[np.float32],
+    pose: NDArray[np.float32],  # Pose to write, shape (3, 4)
     base: ActorFrame,
+    # Its frame at the beginning of an interval of the cycle, shape (4, 3)
     first: NDArray[np.float32],
-    second: NDArray[np.float32],
-    later: float,
+    second: NDArray[np.float32],  # Its frame at the end of the interval
+    later: float,  # Share of the interval that is over
 ) -> None:
-    """Write the pose of one part.
-
-    Args:
-        pose: Pose to write, shape (3, 4).
-        base: Frame of the actor.
-        first: Its frame at the beginning of an interval of the cycle, shape (4, 3).
-        second: Its frame at the end of the interval.
-        later: Share of the interval that is over.
-    """
+    """Write the pose of one part."""
     for axis in range(4):
         x = first[axis, 0] + later * (second[axis, 0] - first[axis, 0])
         y = first[axis, 1] + later * (second[axis, 1] - first[axis, 1])

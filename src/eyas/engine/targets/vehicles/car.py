@@ -13,28 +13,17 @@ __all__ = ["car"]
 
 
 def car(
-    name: str,
-    kind: VehicleType = VehicleType.PASSENGER,
+    name: str,  # The original's name
+    kind: VehicleType = VehicleType.PASSENGER,  # SUMO's class
     *,
-    size: tuple[float, float, float],
-    wheels: tuple[float, float, float],
-    mass: float,
-    words: tuple[str, ...],
-    shape: CarShape,
-    axles: tuple[Axle, ...] | None = None,
+    size: tuple[float, float, float],  # Length, width with mirrors, and height [m]
+    wheels: tuple[float, float, float],  # Wheelbase, wheel radius and x of the front axle [m]
+    mass: float,  # Empty [kg]
+    words: tuple[str, ...],  # See `Model.words`
+    shape: CarShape,  # Its lines
+    axles: tuple[Axle, ...] | None = None,  # None: two with the wheels of a car
 ) -> VehicleModel:
-    """Return a car, van or bus.
-
-    Args:
-        name: The original's name.
-        kind: SUMO's class.
-        size: Length, width with mirrors, and height [m].
-        wheels: Wheelbase, wheel radius and x of the front axle [m].
-        mass: Empty [kg].
-        words: See `Model.words`.
-        shape: Its lines.
-        axles: None: two with the wheels of a car.
-    """
+    """Return a car, van or bus."""
     wheelbase, radius, front = wheels
     track = size[1] - TRACK
     usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)

@@ -85,21 +85,14 @@ def _carried(base: ActorFrame, hitch: float, towed: int) -> ActorFrame:
 
 @kernel
 def _pose_slot(
-    pose: NDArray[np.float32],
-    base: ActorFrame,
-    offset: tuple[float, float, float],
-    steer: tuple[float, float],
+    pose: NDArray[np.float32],  # Pose to write, shape (3, 4)
+    base: ActorFrame,  # Pose of the vehicle
+    offset: tuple[float, float, float],  # Position of the part in the model's frame [m]
+    steer: tuple[float, float],  # Cosine and sine of the rotation about the part's upward axis
+    # Cosine and sine of the rotation about the part's left axis, as turned by `steer`
     spin: tuple[float, float],
 ) -> None:
-    """Write the pose of one part.
-
-    Args:
-        pose: Pose to write, shape (3, 4).
-        base: Pose of the vehicle.
-        offset: Position of the part in the model's frame [m].
-        steer: Cosine and sine of the rotation about the part's upward axis.
-        spin: Cosine and sine of the rotation about the part's left axis, as turned by `steer`.
-    """
+    """Write the pose of one part."""
     w00, w01, w02 = steer[0] * spin[0], -steer[1], steer[0] * spin[1]
     w10, w11, w12 = steer[1] * spin[0], steer[0], steer[1] * spin[1]
     w20, w22 = -spin[1], spin[0]

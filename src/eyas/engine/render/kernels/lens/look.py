@@ -116,15 +116,13 @@ def _inverse_at(source: Band, keys: int, at: int, aside: float, below: float) ->
 
 
 @kernel
-def look_through(source: Band, word: NDArray[np.uint32], bent: Band, words: bool) -> None:
-    """Write what the samples of a picture show of a face.
-
-    Args:
-        source: The face, drawn.
-        word: See `Scratch`, shape (rows, columns).
-        bent: The picture; its `key` and `shade` are written.
-        words: Whether `shade` is wanted.
-    """
+def look_through(
+    source: Band,  # The face, drawn
+    word: NDArray[np.uint32],  # See `Scratch`, shape (rows, columns)
+    bent: Band,  # The picture; its `key` and `shade` are written
+    words: bool,  # Whether `shade` is wanted
+) -> None:
+    """Write what the samples of a picture show of a face."""
     glass, key = bent.glass, source.key
     top = f4(bent.camera.top)
     columns, stride = glass.column.shape[1], bent.key.shape[1]

@@ -64,15 +64,13 @@ def _throw(sun: Direction, longest: float) -> float:
 
 
 @kernel
-def influence(reach: float, sun: Direction, longest: float, lamps_on: bool) -> float:
-    """Return the distance up to which a thing, its shadow and its light may be in a picture [m].
-
-    Args:
-        reach: How far the corners of its parts are from any point of it, at most [m].
-        sun: Unit vector to the sun.
-        longest: Longest shadow, in heights.
-        lamps_on: Whether the lamps of vehicles are on.
-    """
+def influence(
+    reach: float,  # How far the corners of its parts are from any point of it, at most [m]
+    sun: Direction,  # Unit vector to the sun
+    longest: float,  # Longest shadow, in heights
+    lamps_on: bool,  # Whether the lamps of vehicles are on
+) -> float:
+    """Return the distance up to which a thing, its shadow and its light may be in a picture [m]."""
     height = 2.0 * reach
     length = _throw(sun, longest) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
     most = CORNER * (reach + beyond(height)) + _BELOW + length

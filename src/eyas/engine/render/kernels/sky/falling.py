@@ -156,16 +156,14 @@ def drop_lit(lit: Illumination) -> tuple[float, float, float]:
 
 
 @kernel(inline=True)
-def under_trees(light: Light, x: float, y: float, z: float, chance: float) -> bool:
-    """Return whether a leaf falls at a point: near trees, or now and then where wind blows it.
-
-    Args:
-        light: Says where trees are.
-        x: The point [m].
-        y: The point [m].
-        z: The point [m].
-        chance: Of the leaf, 0 to 1.
-    """
+def under_trees(
+    light: Light,  # Says where trees are
+    x: float,  # The point [m]
+    y: float,  # The point [m]
+    z: float,  # The point [m]
+    chance: float,  # Of the leaf, 0 to 1
+) -> bool:
+    """Return whether a leaf falls at a point: near trees, or now and then where wind blows it."""
     if z > light.ambient_frame.ground + _CROWN:
         return False
     under, _ = land_at(light, f4(x), f4(y))

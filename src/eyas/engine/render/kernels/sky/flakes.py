@@ -64,14 +64,12 @@ def bytes_of(
 
 
 @kernel
-def let_flakes_fall(band: Band, instant: float, canvas: Canvas) -> None:
-    """Draw what falls into a band.
-
-    Args:
-        band: The band.
-        instant: Time [s].
-        canvas: Its colours.
-    """
+def let_flakes_fall(
+    band: Band,
+    instant: float,  # Time [s]
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Draw what falls into a band."""
     lit, none = band.lit, f4(0.0)
     if lit.air.flakes > none:
         _let_fall(band, instant, snow(lit.air.flakes, lit), sky_lit(lit), canvas)
@@ -108,19 +106,15 @@ def _radius(falling: Falling, size: float, distance: float) -> float:
 
 @kernel(inline=True)
 def _cells(
-    ahead: float, left: float, up: float, end: float, side: float, origin: float, view: View
+    ahead: float,  # How far the camera's optical axis goes along that axis; then left and up
+    left: float,
+    up: float,
+    end: float,  # Distance up to which the view reaches [m]
+    side: float,  # Side of a cell [m]
+    origin: float,  # The eye in the lattice [m]
+    view: View,  # Says where the camera looks
 ) -> tuple[int, int]:
-    """Return the first cell along an axis of the world that the view reaches, and after the last.
-
-    Args:
-        ahead: How far the camera's optical axis goes along that axis; then left and up.
-        left: The same.
-        up: The same.
-        end: Distance up to which the view reaches [m].
-        side: Side of a cell [m].
-        origin: The eye in the lattice [m].
-        view: Says where the camera looks.
-    """
+    """Return the first cell along a world axis that the view reaches, and that after the last."""
     aside = abs(left) * 0.5 * view.width / view.focal_x
     aside += abs(up) * 0.5 * view.height / view.focal_y
     first = math.floor((origin + end * min(ahead - aside, 0.0)) / side)
@@ -257,16 +251,12 @@ def _draw_flake(
 
 @kernel(inline=True)
 def _bent_streak(
-    place: tuple[float, float, float], moved: tuple[float, float], radius: float, snowfall: Snowfall
+    place: tuple[float, float, float],  # Forward, left and up in its face [m]
+    moved: tuple[float, float],  # How far it moves left and up while the picture is exposed [m]
+    radius: float,  # [m]
+    snowfall: Snowfall,  # Band to draw into
 ) -> Streak:
-    """Return a flake as a lens shows it; of radius 0 where it would lie across the picture's edge.
-
-    Args:
-        place: Forward, left and up in its face [m].
-        moved: How far it moves left and up while the picture is exposed [m].
-        radius: [m]
-        snowfall: Band to draw into.
-    """
+    """Return a flake as a lens shows it; of radius 0 if it would cross the picture's edge."""
     glass, (ahead, left, up) = snowfall.band.glass, place
     column, row = shown_at(glass, ahead, left, up)
     to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
@@ -278,15 +268,13 @@ def _bent_streak(
 
 
 @kernel
-def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall: Snowfall) -> None:
-    """Draw a soft streak.
-
-    Args:
-        streak: Where it is.
-        colour: Its radiance.
-        pale: Its bytes.
-        snowfall: Band to draw into.
-    """
+def _smear(
+    streak: Streak,  # Where it is
+    colour: Colour,  # Its radiance
+    pale: tuple[int, int, int],  # Its bytes
+    snowfall: Snowfall,  # Band to draw into
+) -> None:
+    """Draw a soft streak."""
     column, row, to_column, to_row, radius, inverse = streak
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn

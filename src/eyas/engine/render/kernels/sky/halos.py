@@ -74,13 +74,11 @@ class Halo(NamedTuple):
 
 
 @kernel
-def draw_halos(band: Band, canvas: Canvas) -> None:
-    """Add the halos of the lamps of all vehicles that face the camera to a band.
-
-    Args:
-        band: The band.
-        canvas: Its colours.
-    """
+def draw_halos(
+    band: Band,
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Add the halos of the lamps of all vehicles that face the camera to a band."""
     movers, world, eye = band.movers, band.world, band.camera.eye
     slots, lamps = movers.part.shape[1], movers.lamps
     first = next_thing(band, 0)
@@ -161,17 +159,15 @@ def _draw(
 
 
 @kernel(inline=True)
-def _seen(band: Band, i: int, j: int, away: float, core: float, ahead: float) -> float:
-    """Return the shares of the peak in eight pixels.
-
-    Args:
-        band: The band.
-        i: Row of the pixels.
-        j: Column of the first.
-        away: Squared distances from the middle; 1 is the edge.
-        core: The same where half of the peak is left.
-        ahead: Distance of the lamp [m].
-    """
+def _seen(
+    band: Band,
+    i: int,  # Row of the pixels
+    j: int,  # Column of the first
+    away: float,  # Squared distances from the middle; 1 is the edge
+    core: float,  # The same where half of the peak is left
+    ahead: float,  # Distance of the lamp [m]
+) -> float:
+    """Return the shares of the peak in eight pixels."""
     zero, one, across = f4(0.0), f4(1.0), band.camera.across
     keys = keys_of(band.key, i * band.camera.down, j * across, across)
     inside = (away < one) & (keys >= i8(0))

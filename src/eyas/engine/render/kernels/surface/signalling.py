@@ -33,14 +33,12 @@ Colour = tuple[float, float, float]
 
 
 @kernel(inline=True)
-def signalled(colour: Colour, surface: int, lamps: int) -> Colour:
-    """Return radiances with those of the lamps of one vehicle that shine.
-
-    Args:
-        colour: The radiance of points of the vehicle without them.
-        surface: A `Surface` of each point.
-        lamps: See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points.
-    """
+def signalled(
+    colour: Colour,  # The radiance of points of the vehicle without them
+    surface: int,  # A `Surface` of each point
+    lamps: int,  # See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points
+) -> Colour:
+    """Return radiances with those of the lamps of one vehicle that shine."""
     red, green, blue = colour
     braking = i4(BRAKING)
     if lamps & braking == braking:

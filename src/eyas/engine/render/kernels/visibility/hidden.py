@@ -22,14 +22,12 @@ _SHARE = 0.98
 
 
 @kernel
-def measure_tiles(key: NDArray[np.int64], width: int, tiles: NDArray[np.float32]) -> None:
-    """Set 1/distance of the farthest that each tile shows, 0 where it shows sky.
-
-    Args:
-        key: See `Scratch`, shape (rows, columns).
-        width: Width of the picture [samples].
-        tiles: Written, shape (rows / TILE, columns / TILE), rounded up.
-    """
+def measure_tiles(
+    key: NDArray[np.int64],  # See `Scratch`, shape (rows, columns)
+    width: int,  # Width of the picture [samples]
+    tiles: NDArray[np.float32],  # Written, shape (rows / TILE, columns / TILE), rounded up
+) -> None:
+    """Set 1/distance of the farthest that each tile shows, 0 where it shows sky."""
     rows, stride = key.shape
     for i in range((rows + TILE - 1) // TILE):
         for k in range(stride // TILE):
@@ -72,16 +70,12 @@ def _side(boxes: NDArray[np.float32], column: int, axis: int) -> float:
 
 @kernel
 def box_is_hidden(
-    boxes: NDArray[np.float32], column: int, view: View, tiles: NDArray[np.float32]
+    boxes: NDArray[np.float32],  # See `Geometry.chunk_box`
+    column: int,  # The box
+    view: View,  # The band
+    tiles: NDArray[np.float32],  # See `measure_tiles`
 ) -> bool:
-    """Return whether all of a box is farther than what the tiles in front of it show.
-
-    Args:
-        boxes: See `Geometry.chunk_box`.
-        column: The box.
-        view: The band.
-        tiles: See `measure_tiles`.
-    """
+    """Return whether all of a box is farther than what the tiles in front of it show."""
     x, y, z = _side(boxes, column, 0), _side(boxes, column, 1), _side(boxes, column, 2)
     distance = _along(view.screen.distance, x, y, z)
     least = distance * f4(_SHARE) - f4(_SLACK)

@@ -25,17 +25,13 @@ def tiles_of(geometry: Geometry, at: int) -> float:
 
 @kernel(inline=True)
 def leaves_of(
-    geometry: Geometry, at: int, triangle: NDArray[np.float64], column: int, focal: float
+    geometry: Geometry,  # Everything that can be drawn
+    at: int,  # The triangle's number
+    triangle: NDArray[np.float64],  # See `Scratch`
+    column: int,  # Its column there
+    focal: float,  # See `draw_mesh`
 ) -> int:
-    """Return the layer of a triangle's leaves times `LEVELS`, and its mip level; -1: no holes.
-
-    Args:
-        geometry: Everything that can be drawn.
-        at: The triangle's number.
-        triangle: See `Scratch`.
-        column: Its column there.
-        focal: See `draw_mesh`.
-    """
+    """Return the layer of a triangle's leaves times `LEVELS`, and its mip level; -1: no holes."""
     tiles = tiles_of(geometry, at)
     if tiles < 0.0:
         return i8(-1)

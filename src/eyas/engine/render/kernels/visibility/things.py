@@ -35,15 +35,13 @@ def end_of_thing(band: Band, first: int) -> int:
 
 
 @kernel(inline=True)
-def belongs_to(tag: int, drawn: NDArray[np.int32], first: int, last: int) -> bool:
-    """Return which samples show instances `first` to `last`.
-
-    Args:
-        tag: Tags of the samples.
-        drawn: See `Scratch`, shape (I, 2).
-        first: First instance.
-        last: Last instance + 1.
-    """
+def belongs_to(
+    tag: int,  # Tags of the samples
+    drawn: NDArray[np.int32],  # See `Scratch`, shape (I, 2)
+    first: int,  # First instance
+    last: int,  # Last instance + 1
+) -> bool:
+    """Return which samples show instances `first` to `last`."""
     moved = tag < i4(0)
     if not any_of(moved):
         return moved

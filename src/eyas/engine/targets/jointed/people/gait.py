@@ -34,13 +34,11 @@ _SHOULDER = 0.452  # Height of the shoulders above the hips [m]
 _BEHIND = 0.51  # How far who pushes a pram is behind the middle of both [m]
 
 
-def figure_of(person: Person, dress: Dress) -> Figure:
-    """Return a person who walks.
-
-    Args:
-        person: Who it is.
-        dress: The shapes of the parts.
-    """
+def figure_of(
+    person: Person,  # Who it is
+    dress: Dress,  # The shapes of the parts
+) -> Figure:
+    """Return a person who walks."""
     stooped = person.posture is Posture.STOOPED
     behind = _BEHIND if person.carried is Carried.PRAM else 0.0
     return Figure(
