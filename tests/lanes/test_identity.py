@@ -28,7 +28,7 @@ from eyas.engine.trackers.drone import DRONE
 found = list(step_of(DRONE))
 rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar")
 for name in (*rooms, "sim.views.visible_actors"):
-    found += vars(importlib.import_module("eyas." + name)).values()
+    found += vars(importlib.import_module("eyas.engine." + name)).values()
 told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, CompiledCall)}
 print(json.dumps(told | {"language": language_hash()}))
 """

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from eyas.lanes.folder import OWNER, kernel_folder, refusal, touch
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.held import Held
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import shielded
@@ -24,6 +24,7 @@ from eyas.lanes.machine_code import (
     write_code,
 )
 from eyas.lanes.shipped import is_shipped, shipped_code
+from eyas.lanes.trusted import OWNER, touch
 
 __all__ = ["LOCK", "entry_address", "nothing_compiled"]
 

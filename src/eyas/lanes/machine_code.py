@@ -16,8 +16,8 @@ from typing import NamedTuple
 import llvmlite
 import llvmlite.binding as llvm
 
-from eyas.lanes.folder import read_trusted, write_trusted
 from eyas.lanes.identity import language_hash
+from eyas.lanes.trusted import read_trusted, write_trusted
 
 __all__ = [
     "SUFFIX",

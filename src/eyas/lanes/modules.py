@@ -21,11 +21,12 @@ import numba
 from numba.core.codegen import JITCodeLibrary
 
 from eyas.lanes.container import Contents, packed, unpacked
-from eyas.lanes.folder import OWNER, kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import cpu, digest
 from eyas.lanes.shipped import wanted
 from eyas.lanes.targets import target_name
+from eyas.lanes.trusted import OWNER, read_trusted, touch, write_trusted
 from eyas.lanes.vector.kinds import Lanes
 
 __all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]

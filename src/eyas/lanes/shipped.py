@@ -19,10 +19,10 @@ from pathlib import Path
 import llvmlite.binding as llvm
 
 from eyas.lanes.container import packed, unpacked
-from eyas.lanes.folder import OWNER
 from eyas.lanes.identity import language_hash
 from eyas.lanes.jit import VariableError
 from eyas.lanes.machine_code import MachineCode
+from eyas.lanes.trusted import OWNER
 
 __all__ = [
     "ARCHIVE",

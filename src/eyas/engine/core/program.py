@@ -39,7 +39,7 @@ _APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)
 """Modules that keep, refuse or find things, and decide no value; not followed."""
 
 _COMPILER = (language_hash.__module__.rpartition(".")[0],)
-_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64", "small_arrays"))
+_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64"))
 """Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
 
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}

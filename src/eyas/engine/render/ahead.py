@@ -20,7 +20,8 @@ from eyas.engine.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.lanes.entry import nothing_compiled
-from eyas.lanes.folder import kernel_folder, made_folder, not_kept, refusal
+from eyas.lanes.folder import kernel_folder, refusal
+from eyas.lanes.trusted import made_folder, not_kept
 
 __all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
 

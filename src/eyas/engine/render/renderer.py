@@ -21,9 +21,9 @@ from eyas.engine.render.kernels.draw import draw_views
 from eyas.engine.render.kernels.light.casters import influence
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
-from eyas.engine.render.kernels.visibility.hidden import TILE
 from eyas.engine.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.engine.render.kernels.visibility.key import MOST_INSTANCES
+from eyas.engine.render.kernels.visibility.occlusion import TILE
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.render.lenses import NO_TABLES, LensBank
 from eyas.engine.render.outputs import (

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.chance import SEEDS, mixed
+from eyas.engine.core.counter_rng import SEEDS, mixed
 from eyas.engine.sensors.config import CameraErrors
 from eyas.lanes import exact, parallel, thread_count
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.frames import rotate
-from eyas.engine.sensors.config import MountConfig
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.lanes import exact, kernel
 

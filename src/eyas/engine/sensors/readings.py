@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_RATE
-from eyas.engine.sensors.chance import SEEDS, mixed, normal, uniform
+from eyas.engine.core.counter_rng import SEEDS, mixed, normal, uniform
 from eyas.engine.sensors.config import ReadingConfig
 from eyas.engine.sensors.sensor import Floats, Sensor, keep
 from eyas.engine.sensors.table import Fitted

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.config import ColourLayout, Colours
+from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.lanes import kernel, parallel, thread_count
 
 __all__ = ["FrameStack", "luma"]

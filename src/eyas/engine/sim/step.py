@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.frames import wrap_angle
-from eyas.engine.sensors.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.engine.sensors.inertial import feel, rest
 from eyas.engine.sensors.mount import Mount
 from eyas.engine.sensors.mount import left_on_gimbal as carried

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import MountConfig
+from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.bounds import FARTHEST, LARGEST, checked, limited
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.rng import EpisodeKey
-from eyas.engine.sensors.camera.vibration import Vibration
-from eyas.engine.sensors.config import MountConfig
 from eyas.engine.sensors.inertial import smoothing_share
 from eyas.engine.sensors.mount import CARRIED, mount_of
 from eyas.engine.sim.assets import Assets

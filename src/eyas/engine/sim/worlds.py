@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.sensors.camera.poses import Moving
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.views.near_lights import NearLights

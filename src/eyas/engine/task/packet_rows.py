@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.frames import wrap_angle
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sensors.inertial import accelerometer, gyroscope
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import CameraState, Snapshot, TargetState, TrackerState

@@ -4,7 +4,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 
 __all__ = ["BuiltinReward", "Rules", "exact", "lenient", "make_rules"]

@@ -24,7 +24,7 @@ from eyas.engine.traffic.recording import Provenance, Recording, check_map
 from eyas.engine.traffic.recording_file import RecordingFile, save, to_bytes
 from eyas.engine.traffic.sumo import options
 from eyas.engine.traffic.sumo_install import sumo_version
-from eyas.lanes.folder import cache_folder, touch
+from eyas.lanes.trusted import cache_folder, touch
 
 __all__ = [
     "CANONICAL_MIX",

@@ -18,12 +18,13 @@ import eyas.lanes
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.entry import LOCK
-from eyas.lanes.folder import kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import identity, language_hash
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import code_name, digest, entry_of
 from eyas.lanes.shipped import wanted
 from eyas.lanes.syntax import syntax_of
+from eyas.lanes.trusted import read_trusted, touch, write_trusted
 
 __all__ = ["ARCHIVE", "OLDEST", "SUFFIX", "Ptx", "archive_of", "ptx_code"]
 

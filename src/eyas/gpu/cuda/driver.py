@@ -10,7 +10,7 @@ from ctypes import POINTER, c_char_p, c_float, c_int, c_size_t, c_ubyte, c_uint,
 from functools import cache
 from typing import Any
 
-from eyas.lanes.folder import OWNER
+from eyas.lanes.trusted import OWNER
 
 __all__ = ["OUT_OF_MEMORY", "VARIABLE", "CudaError", "Driver", "driver"]
 

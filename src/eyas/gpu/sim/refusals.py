@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from itertools import chain
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.sensors.config import CameraConfig, SensorsConfig
+from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.latency import is_always_0

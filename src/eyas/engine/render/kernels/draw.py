@@ -21,8 +21,8 @@ from eyas.engine.render.kernels.bundles import (
     Task,
     View,
 )
-from eyas.engine.render.kernels.lens.look import face_rows, face_view, glass_of, look_through
 from eyas.engine.render.kernels.lens.outputs import darken, write_bent_depth
+from eyas.engine.render.kernels.lens.resampling import face_rows, face_view, glass_of, look_through
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.light.sunlight import sunlit
 from eyas.engine.render.kernels.scalars import f4, i8

@@ -6,19 +6,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.defocus import defocused
+from eyas.engine.camera.development import Development
+from eyas.engine.camera.dirt import Dirt
+from eyas.engine.camera.glass import change_light
+from eyas.engine.camera.imager import Spectrum
+from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.link import Link
+from eyas.engine.camera.near_infrared import near_infrared
+from eyas.engine.camera.shutter import Shutter
+from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.core.variation import sample
 from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.defocus import defocused
-from eyas.engine.sensors.camera.development import Development
-from eyas.engine.sensors.camera.dirt import Dirt
-from eyas.engine.sensors.camera.glass import change_light
-from eyas.engine.sensors.camera.imager import Spectrum
-from eyas.engine.sensors.camera.lens import Lenses
-from eyas.engine.sensors.camera.link import Link
-from eyas.engine.sensors.camera.near_infrared import near_infrared
-from eyas.engine.sensors.camera.shutter import Shutter
-from eyas.engine.sensors.camera.tone import ToneCurve
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.lighting import Lighting
 

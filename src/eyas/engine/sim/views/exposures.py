@@ -10,10 +10,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.passes import Pieces, add_passes, pieces_of
-from eyas.engine.sensors.camera.poses import (
+from eyas.engine.camera.passes import Pieces, add_passes, pieces_of
+from eyas.engine.camera.poses import (
     INSTANTS,
     Exposure,
     Moments,
@@ -22,8 +20,10 @@ from eyas.engine.sensors.camera.poses import (
     motion_in_pixels,
     poses_at,
 )
-from eyas.engine.sensors.camera.shutter import Shutter
-from eyas.engine.sensors.camera.vibration import Shake, Vibration, no_shake
+from eyas.engine.camera.shutter import Shutter
+from eyas.engine.camera.vibration import Shake, Vibration, no_shake
+from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.render.outputs import picture_size
 from eyas.engine.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.engine.state.snapshot import CameraState, Snapshot
 

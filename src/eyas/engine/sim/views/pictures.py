@@ -6,13 +6,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.pinhole import field_along
 from eyas.engine.overlay.marks import Marks
 from eyas.engine.overlay.paint import paint_overlays, with_depth
 from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.lens import Lenses
-from eyas.engine.sensors.camera.poses import Moving
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.light import LightChanges

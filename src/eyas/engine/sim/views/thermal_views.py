@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.temperature import SurfaceTemperatures
-from eyas.engine.sensors.camera.thermal import (
+from eyas.engine.camera.temperature import SurfaceTemperatures
+from eyas.engine.camera.thermal import (
     ThermalConfig,
     ThermalFrames,
     ThermalImager,
     slot_heat,
 )
-from eyas.engine.sensors.chance import SEEDS
+from eyas.engine.core.counter_rng import SEEDS
+from eyas.engine.render.outputs import picture_size
 from eyas.engine.sim.assets import Assets
 from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import ACTOR_OBJECT

@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.event_sensor import EventSensors
+from eyas.engine.camera.exposure import ExposureState
 from eyas.engine.core.lens import Lens
-from eyas.engine.sensors.camera.event_sensor import EventSensors
-from eyas.engine.sensors.camera.exposure import ExposureState
 from eyas.engine.sensors.lidar import Lidar
 from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.sensors.table import Fitted

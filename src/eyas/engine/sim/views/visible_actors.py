@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.camera.poses import Moving
+from eyas.engine.camera.poses import Moving
 from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
 from eyas.engine.sim.views.near_actors import (
     CAMERA,

@@ -7,7 +7,7 @@ from eyas.engine.render.kernels.bundles import LENS_TILE, Band
 from eyas.engine.render.kernels.samples import ScreenBox
 from eyas.engine.render.kernels.scalars import f4, i4, i8
 from eyas.engine.render.kernels.visibility.key import tag_of
-from eyas.engine.render.kernels.visibility.things import belongs_to
+from eyas.engine.render.kernels.visibility.scene_iterator import belongs_to
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,

@@ -31,7 +31,11 @@ from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.surface.signalling import BRAKING
 from eyas.engine.render.kernels.visibility.cull import sphere_is_visible
 from eyas.engine.render.kernels.visibility.key import distance_inverse, tag_of
-from eyas.engine.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
+from eyas.engine.render.kernels.visibility.scene_iterator import (
+    belongs_to,
+    end_of_thing,
+    next_thing,
+)
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (

@@ -1,7 +1,7 @@
 """Light of street lamps, windows and other sources."""
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import hashed
+from eyas.engine.render.kernels.hash_noise import hashed
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (

@@ -10,8 +10,8 @@ import math
 from typing import NamedTuple
 
 from eyas.engine.render.kernels.bundles import Band, Canvas, Light, View
-from eyas.engine.render.kernels.chance import scrambled, tenth
-from eyas.engine.render.kernels.lens.look import shown_at
+from eyas.engine.render.kernels.hash_noise import scrambled, tenth
+from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.light.tone import tone_bytes
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
 from eyas.engine.render.kernels.scalars import f4, i8, u4

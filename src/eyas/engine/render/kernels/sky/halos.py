@@ -20,7 +20,7 @@ from eyas.engine.render.kernels.sky.plumes import on_screen
 from eyas.engine.render.kernels.surface.signalling import BRAKING
 from eyas.engine.render.kernels.visibility.cull import sphere_is_visible
 from eyas.engine.render.kernels.visibility.key import distance_inverse
-from eyas.engine.render.kernels.visibility.things import end_of_thing, next_thing
+from eyas.engine.render.kernels.visibility.scene_iterator import end_of_thing, next_thing
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (

@@ -1,7 +1,7 @@
 """Mist that lies on the land, and light that haze and lens scatter forward from a low sun."""
 
 from eyas.engine.render.kernels.bundles import Illumination, Light
-from eyas.engine.render.kernels.chance import noise
+from eyas.engine.render.kernels.hash_noise import noise
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
 from eyas.engine.render.kernels.sky.fog import land_fog

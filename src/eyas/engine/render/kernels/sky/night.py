@@ -3,7 +3,7 @@
 import math
 
 from eyas.engine.render.kernels.bundles import Illumination
-from eyas.engine.render.kernels.chance import hashed
+from eyas.engine.render.kernels.hash_noise import hashed
 from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (

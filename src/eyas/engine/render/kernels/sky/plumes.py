@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
-from eyas.engine.render.kernels.chance import scrambled, tenth
-from eyas.engine.render.kernels.lens.look import shown_at
+from eyas.engine.render.kernels.hash_noise import scrambled, tenth
+from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
 from eyas.engine.render.kernels.scalars import f4, i4, i8, u4

@@ -1,7 +1,7 @@
 """Autumn on the ground: fallen leaves under trees, and yellowed grass."""
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import noise, seen_noise
+from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.snow import Bed

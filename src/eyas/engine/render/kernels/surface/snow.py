@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import noise, seen_noise
+from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.chance import seen_swing, swing
+from eyas.engine.render.kernels.hash_noise import seen_swing, swing
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.texture import colour_of, texel
 from eyas.engine.state.mesh import Surface

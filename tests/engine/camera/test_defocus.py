@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.camera.defocus import defocused, disc
+from eyas.engine.camera.defocus import defocused, disc
 
 SIZE = 21, 27
 

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.lens import FISHEYE, lens_of, rays
-from eyas.engine.sensors.camera.temperature import SurfaceTemperatures, direction_of
-from eyas.engine.sensors.camera.thermal import (
+from eyas.engine.camera.temperature import SurfaceTemperatures, direction_of
+from eyas.engine.camera.thermal import (
     HEAT,
     ThermalConfig,
     ThermalFrames,
     ThermalImager,
     slot_heat,
 )
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.lens import FISHEYE, lens_of, rays
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.engine.world.weather import DAY, FOGGY, SNOW

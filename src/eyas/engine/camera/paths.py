@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.camera.poses import Moments, turned
-from eyas.engine.sensors.camera.vibration import Shake, shaken_axes
+from eyas.engine.camera.poses import Moments, turned
+from eyas.engine.camera.vibration import Shake, shaken_axes
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import atan2, hypot

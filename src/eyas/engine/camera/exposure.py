@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
+from eyas.engine.camera.imager import SATURATION, ImagerState
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, sample, within
-from eyas.engine.sensors.camera.imager import SATURATION, ImagerState
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import exp, log
 from eyas.lanes.vector import WIDTH

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy import ndimage, stats
 
+from eyas.engine.camera.development import TONE_STEPS, Development, tone_of_sensor
+from eyas.engine.camera.exposure import ExposureConfig, Metering
+from eyas.engine.camera.imager import ImagerConfig, Spectrum
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.sensors.camera.development import TONE_STEPS, Development, tone_of_sensor
-from eyas.engine.sensors.camera.exposure import ExposureConfig, Metering
-from eyas.engine.sensors.camera.imager import ImagerConfig, Spectrum
 from eyas.lanes import limit_threads, thread_count
 
 SUN = 30000.0

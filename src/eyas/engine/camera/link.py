@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import AfterValidator, Field
 
+from eyas.engine.camera.codec import code, planes_for, quantisation
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.config import Config
+from eyas.engine.core.counter_rng import SEEDS, uniform
 from eyas.engine.core.variation import Variation, sample, within
-from eyas.engine.sensors.camera.codec import code, planes_for, quantisation
-from eyas.engine.sensors.chance import SEEDS, uniform
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.elementary import exp, log
 

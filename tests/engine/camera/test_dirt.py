@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from eyas.engine.camera.dirt import Dirt, DirtConfig
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.sensors.camera.dirt import Dirt, DirtConfig
 from eyas.lanes import limit_threads, thread_count
 
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.vibration import Vibration, VibrationConfig
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.rng import EpisodeKey
-from eyas.engine.sensors.camera.vibration import Vibration, VibrationConfig
-from eyas.engine.sensors.config import CameraConfig, SensorsConfig
+from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone

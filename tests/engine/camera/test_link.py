@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from eyas.engine.camera.link import Link, LinkConfig
 from eyas.engine.core.variation import Choice
-from eyas.engine.sensors.camera.link import Link, LinkConfig
 from eyas.lanes import limit_threads, thread_count
 
 

@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from eyas.engine.core.config import Config
-from eyas.engine.core.lens import Lens, undistorted
-from eyas.engine.sensors.camera.temperature import (
+from eyas.engine.camera.temperature import (
     CLOTHES,
     ENGINE_HEAT,
     SKIN,
     SurfaceTemperatures,
     direction_of,
 )
-from eyas.engine.sensors.chance import mixed
+from eyas.engine.core.config import Config
+from eyas.engine.core.counter_rng import mixed
+from eyas.engine.core.lens import Lens, undistorted
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.lanes import address_of, kernel, parallel, thread_count

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.lens import Lenses
 from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.sensors.camera.lens import Lenses
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, Field
 
 from eyas.engine.core.config import Config
+from eyas.engine.core.counter_rng import SEEDS
 from eyas.engine.core.variation import Variation, sample, within
-from eyas.engine.sensors.chance import SEEDS
 
 __all__ = ["Demosaicking", "ImagerConfig", "ImagerState", "Spectrum", "WhiteBalance"]
 

@@ -9,22 +9,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.errors import ConfigError
-from eyas.engine.render.kernels.pixels import pack
-from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.render.pack.light import encoded_tone
-from eyas.engine.sensors.camera.counting import Counts, tables_of_counts
-from eyas.engine.sensors.camera.exposure import ExposureConfig, ExposureState, Zones
-from eyas.engine.sensors.camera.imager import (
+from eyas.engine.camera.counting import Counts, tables_of_counts
+from eyas.engine.camera.exposure import ExposureConfig, ExposureState, Zones
+from eyas.engine.camera.imager import (
     Demosaicking,
     ImagerConfig,
     ImagerState,
     Spectrum,
     WhiteBalance,
 )
-from eyas.engine.sensors.camera.metering import Exposed, Metered, expose, meter
-from eyas.engine.sensors.camera.mosaic import HALO, MARGIN, demosaicked, read_mosaic
-from eyas.engine.sensors.camera.photosites import (
+from eyas.engine.camera.metering import Exposed, Metered, expose, meter
+from eyas.engine.camera.mosaic import HALO, MARGIN, demosaicked, read_mosaic
+from eyas.engine.camera.photosites import (
     Readout,
     noise_bits,
     other_bits,
@@ -33,6 +29,10 @@ from eyas.engine.sensors.camera.photosites import (
     readout_of,
     row_error,
 )
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.render.kernels.pixels import pack
+from eyas.engine.render.kernels.scalars import f4, i4
+from eyas.engine.render.pack.light import encoded_tone
 from eyas.lanes import Held, exact, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,

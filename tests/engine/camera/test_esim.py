@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.camera.esim import EventPixels, EventSettings, Look, see_light
+from eyas.engine.camera.esim import EventPixels, EventSettings, Look, see_light
 
 DARK = 1e-9
 

@@ -6,15 +6,15 @@ Rows begin red, green, red, ... and green, blue, green, ... by turns (RGGB).
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.sensors.camera.counting import Counts
-from eyas.engine.sensors.camera.photosites import (
+from eyas.engine.camera.counting import Counts
+from eyas.engine.camera.photosites import (
     Readout,
     noise_bits,
     pattern_bits,
     read_out,
     row_error,
 )
+from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.camera.esim import EventPixels, EventSettings, Look, see_light
-from eyas.engine.sensors.camera.events import EventsConfig
-from eyas.engine.sensors.chance import SEEDS
+from eyas.engine.camera.esim import EventPixels, EventSettings, Look, see_light
+from eyas.engine.camera.events import EventsConfig
+from eyas.engine.core.counter_rng import SEEDS
 from eyas.lanes import parallel, thread_count
 
 __all__ = ["EventSensors"]
@@ -94,7 +94,7 @@ class EventSensors:
 
     def events_of(self, tracker: int) -> NDArray[np.void]:
         """Return the events of a sensor since `forget`, in the order of their times,
-        of dtype `eyas.engine.sensors.camera.esim.EVENT`; times count from the episode's start.
+        of dtype `eyas.engine.camera.esim.EVENT`; times count from the episode's start.
         """
         events = self._emitted[tracker, : self._pixels.number[tracker]]
         return events[np.argsort(events["t"], kind="stable")]

@@ -5,7 +5,7 @@ import pytest
 from numpy import float32 as f4
 from numpy import int32 as i4
 
-from eyas.engine.render.kernels.chance import seen_swing, swing
+from eyas.engine.render.kernels.hash_noise import seen_swing, swing
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, splat, store, to_f4
 

@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.scalars import f4
-from eyas.engine.sensors.camera.exposure import (
+from eyas.engine.camera.exposure import (
     ExposureState,
     Zones,
     advance_exposure,
@@ -14,7 +13,8 @@ from eyas.engine.sensors.camera.exposure import (
     follow_meter,
     gain_of,
 )
-from eyas.engine.sensors.camera.imager import ImagerState
+from eyas.engine.camera.imager import ImagerState
+from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import compiled, kernel, parallel
 from eyas.lanes.vector import WIDTH, lane, lesser, load, splat
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.camera.vibration import Shake, shaken_axes
+from eyas.engine.camera.vibration import Shake, shaken_axes
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan

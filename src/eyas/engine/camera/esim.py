@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.counter_rng import mixed, normal, uniform
 from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.sensors.chance import mixed, normal, uniform
 from eyas.lanes import kernel, parallel
 from eyas.lanes.vector import (
     WIDTH,

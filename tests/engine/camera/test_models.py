@@ -4,11 +4,11 @@ import json
 
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.imager import Spectrum
+from eyas.engine.camera.models import MODELS
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.sensors.camera.imager import Spectrum
-from eyas.engine.sensors.camera.models import MODELS
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.config import SimConfig
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.render.kernels.bundles import Plane, Planes, Point, Projection, Row, View
-from eyas.engine.render.kernels.visibility.hidden import TILE, box_is_hidden, measure_tiles
+from eyas.engine.render.kernels.visibility.occlusion import TILE, box_is_hidden, measure_tiles
 from eyas.lanes import kernel
 
 SIDE, FOCAL, TOP = 40, 30.0, 8

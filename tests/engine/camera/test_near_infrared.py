@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from eyas.engine.sensors.camera.near_infrared import near_infrared
+from eyas.engine.camera.near_infrared import near_infrared
 from eyas.engine.state.scene import ObjectClass
 
 GREEN, BLUE, GREY = (0.08, 0.16, 0.05), (0.05, 0.15, 0.45), (0.2, 0.2, 0.2)

@@ -3,12 +3,12 @@
 import math
 from typing import NamedTuple
 
-from eyas.engine.render.kernels.chance import scrambled
+from eyas.engine.camera.counting import FEW, Counts, counted
+from eyas.engine.camera.exposure import ExposureState, gain_of
+from eyas.engine.camera.imager import ImagerState
+from eyas.engine.core.counter_rng import mixed
+from eyas.engine.render.kernels.hash_noise import scrambled
 from eyas.engine.render.kernels.scalars import f4, u4
-from eyas.engine.sensors.camera.counting import FEW, Counts, counted
-from eyas.engine.sensors.camera.exposure import ExposureState, gain_of
-from eyas.engine.sensors.camera.imager import ImagerState
-from eyas.engine.sensors.chance import mixed
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
 from eyas.lanes.vector import (
