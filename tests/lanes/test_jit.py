@@ -131,7 +131,7 @@ def test_eyas_itself_calls_no_kernel_from_python():
     makers = [function for function in functions if "specialised" in function.__code__.co_names]
     bases = {maker.__code__ for maker in makers}  # and the functions that they make kernels of
     named = (maker.__globals__.get(name) for maker in makers for name in maker.__code__.co_names)
-    bases |= {base.__code__ for base in named if isinstance(base, FunctionType)}
+    bases |= {base.__code__ for base in named if isinstance(base, types.FunctionType)}
     for function in functions:
         hands_on = function.__annotations__.get("return") is Tracker
         hands_on |= function.__qualname__.endswith("Rig.__init__")  # to devices

@@ -24,15 +24,15 @@ PACKAGE = Path(eyas.__file__).parent
 SILENT = [
     ("engine/task/reward.py", '"""', '"""Says the same. '),
     ("engine/task/reward.py", "\nfrom", "\n# a comment\nfrom"),
-    ("engine/render/bake/ambient.py", "\n_LOWEST = 1.5", "\n\n_LOWEST = 1.5"),
+    ("engine/render/bake/ambient.py", "\n_LOWEST = 1.5\n", "\n_LOWEST = 1.5  # tuned\n"),
     ("engine/render/textures/plants.py", "(46.0, 60.0, 28.0)", "( 46.0,60.0, 28.0, )"),
     ("engine/world/weather.py", "\nimport", "\n# light\nimport"),
     ("engine/world/maps/recipe.py", "is not allowed; allowed: words", "is wrong; allowed: words"),
-    ("engine/targets/vehicles/vehicle.py", "# Length of the cab", "# The length of the cab"),
+    ("engine/targets/vehicles/vehicle.py", '"""Length of the cab', '"""The length of the cab'),
     ("engine/render/kernels/surface/shade.py", "SHARP = f4(0.004)", "# a why\nSHARP = f4(0.004)"),
     ("cli/main.py", '"""', '"""Another text. '),
     ("cli/app.py", "import typer", "import typer as typer"),
-    ("engine/sim/README.md", "", "What only people read.\n"),
+    ("sim/README.md", "", "What only people read.\n"),
 ]
 EDITS = {
     "silent": SILENT,
@@ -43,7 +43,7 @@ EDITS = {
     "ambient": [("engine/render/bake/ambient.py", "_LOWEST = 1.5", "_LOWEST = 15.0")],
     "texture": [("engine/render/textures/plants.py", "(46.0, 60.0, 28.0)", "(47.0, 60.0, 28.0)")],
     "car": [("engine/targets/vehicles/models/bus.py", "MODEL =", "MORE = 1\nMODEL =")],
-    "new car": [("engine/targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
+    "new car": [("targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
     "sun": [
         ("engine/world/weather.py", "sun_colour=(1.02, 0.96, 0.84)", "sun_colour=(1.02, 0.1, 0.1)")
     ],
