@@ -130,7 +130,7 @@ def advance(
 ) -> None:
     """Fly drone `n` for one physics step of 2 ms, see `Tracker.advance`."""
     flight, equipment = memory.flight, memory.equipment
-    east, north, _ = follow_command(trackers, flight, n, command)
+    east, north, _ = follow_command(trackers, flight.filters, n, command)
     wanted = wanted_thrusts(trackers, flight, n, east, north)
     frame, battery, before = flight.frame, equipment.battery, body_of(trackers, n)
     if battery.cells > 0.0:

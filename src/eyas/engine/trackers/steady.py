@@ -49,14 +49,14 @@ def launch(
     for rotor in range(4):
         memory.rotor[n, rotor] = math.sqrt(0.25 * math.sqrt(square) / frame.thrust_constant)
     cosine, sine = heading(trackers.orientation[n])
-    settle(memory.forward[n], cosine * east + sine * north)
-    settle(memory.left[n], cosine * north - sine * east)
+    settle(memory.filters.forward[n], cosine * east + sine * north)
+    settle(memory.filters.left[n], cosine * north - sine * east)
     if frame.as_original:
         pitch, yaw = trackers.commanded_gimbal[n, 0], trackers.commanded_gimbal[n, 1]
-        reset_gimbal(trackers, memory.gimbal, n, pitch, yaw)
+        reset_gimbal(trackers, memory.filters.gimbal, n, pitch, yaw)
     else:
-        reset_level(trackers, memory.gimbal, n)
-    settle_servo(trackers, memory.gimbal, memory.servo, n)
+        reset_level(trackers, memory.filters.gimbal, n)
+    settle_servo(trackers, memory.filters.gimbal, memory.servo, n)
 
 
 @kernel(inline=True)
