@@ -1,4 +1,4 @@
-"""Poses of the parts of vehicles: the loop over all vehicles of a kind in all worlds."""
+"""Poses of the parts of vehicles."""
 
 from typing import Final, NamedTuple
 
@@ -10,10 +10,10 @@ from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.posing import ActorFrame, Slots
 from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.engine.traffic.trailer import folded
-from eyas.lanes import kernel, parallel
+from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle", "pose_vehicles"]
+__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle"]
 
 STEER_LIMIT = 0.6  # Largest steering angle [rad]
 
@@ -153,25 +153,3 @@ def pose_vehicle(
         _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
         for channel in range(3):
             out.colour[w, slot, channel] = looks.colour[w, a, channel]
-
-
-@parallel
-def pose_vehicles(
-    worker: int,
-    workers: int,
-    table: RigTable,
-    group: Group,
-    actors: ActorState,
-    looks: Looks,
-    out: Slots,
-) -> None:
-    """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
-    count = group.actor.shape[0]
-    total = looks.model.shape[0] * count
-    for i in range(worker * total // workers, (worker + 1) * total // workers):
-        w, g = i // count, i % count
-        if actors.present[w, group.actor[g]]:
-            pose_vehicle(table, group, actors, looks, out, w, g)
-        else:
-            for k in range(table.slot.shape[2]):
-                out.part[w, group.slot[g] + k] = -1
