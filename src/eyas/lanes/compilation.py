@@ -39,15 +39,6 @@ from eyas.lanes.modules import (
 from eyas.lanes.targets import current_context, for_threads, target_name
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
-__all__ = [
-    "KernelType",
-    "caller_from_python",
-    "entry_code",
-    "entry_module",
-    "intrinsic_type",
-    "size_of",
-]
-
 Kind = Any  # One of numba's types
 
 

@@ -26,8 +26,6 @@ from eyas.lanes.machine_code import (
 from eyas.lanes.shipped import is_shipped, shipped_code
 from eyas.lanes.trusted import OWNER, touch
 
-__all__ = ["LOCK", "entry_address", "nothing_compiled"]
-
 _LOG = logging.getLogger(OWNER)
 
 LOCK = threading.RLock()  # Held while numba and LLVM compile

@@ -8,8 +8,6 @@ from pathlib import Path
 from eyas.lanes.identity import language_hash
 from eyas.lanes.trusted import cache_folder, made_folder, secured, touch
 
-__all__ = ["kernel_folder", "refusal"]
-
 
 def kernel_folder() -> Path:
     """Return the folder of compiled kernels: numba's, if its variable names one, or that of this

@@ -19,21 +19,6 @@ import llvmlite.binding as llvm
 from eyas.lanes.identity import language_hash
 from eyas.lanes.trusted import read_trusted, write_trusted
 
-__all__ = [
-    "SUFFIX",
-    "MachineCode",
-    "code_file",
-    "code_name",
-    "cpu",
-    "digest",
-    "entry_of",
-    "improve",
-    "load",
-    "optimised",
-    "read_code",
-    "write_code",
-]
-
 SUFFIX = ".eyk"  # End of the names of files of machine code
 
 _LOCK = threading.Lock()

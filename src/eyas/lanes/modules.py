@@ -29,8 +29,6 @@ from eyas.lanes.targets import target_name
 from eyas.lanes.trusted import OWNER, read_trusted, touch, write_trusted
 from eyas.lanes.vector.kinds import Lanes
 
-__all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]
-
 SUFFIX = ".eym"  # End of the names of files of modules
 
 _NUMBERS = itertools.count()  # Numbers of the modules that are not kept

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = ["STATE", "begin_stream", "fraction", "whole"]
-
 Words = NDArray[np.int64]
 
 STATE: Final = 10  # Length of a state

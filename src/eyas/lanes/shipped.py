@@ -24,22 +24,6 @@ from eyas.lanes.jit import VariableError
 from eyas.lanes.machine_code import MachineCode
 from eyas.lanes.trusted import OWNER
 
-__all__ = [
-    "ARCHIVE",
-    "LEVEL",
-    "VARIABLE",
-    "WIDE_ARCHIVE",
-    "WIDE_LEVEL",
-    "archive_of",
-    "features",
-    "is_shipped",
-    "needed",
-    "read_archive",
-    "shipped_code",
-    "wanted",
-    "wide_needed",
-]
-
 _LOG = logging.getLogger(OWNER)
 
 LEVEL = "x86-64-v3"  # The level of the x86-64 ABI for which code is shipped, as LLVM names it

@@ -15,8 +15,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.state.motion import SAMPLE, Motion
 from eyas.lanes import exact
 
-__all__ = ["AirborneConfig", "Space", "chases", "flocks"]
-
 Floats = NDArray[np.float64]
 
 _FLOCK = 6  # Most birds in a flock

@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "Chain",
-    "Poses",
-    "chain_of",
-    "chain_through",
-    "headings",
-    "joints",
-    "outline",
-    "poses_on",
-]
-
 _SHARP: Final = 2.0  # Corners sharper than this are turned on the spot [rad]
 
 _STEP: Final = 0.2  # Largest turn between points that stand for an arc [rad]

@@ -15,8 +15,6 @@ from eyas.engine.behaviours.timetable import TimedMotion, ride, time_of
 from eyas.engine.targets.habit import Habit
 from eyas.lanes import exact
 
-__all__ = ["CrossingWalk", "Streets", "crossing_walk", "walk_motion"]
-
 _PASSED_BY: Final = 0.4  # Share of the crossings that somebody does not take
 
 _LEAST: Final = 2.0  # Least walk between two crossings [m]

@@ -11,8 +11,6 @@ from eyas.engine.behaviours.pavements import LANES, Walkway
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
 
-__all__ = ["Crossing", "crossings_of"]
-
 _PAVED: Final = 9.0  # How far from the kerb pavements are sought: corners are round [m]
 
 _BEYOND_KERB: Final = 4.0  # The same on imported maps, which tell where each crossing ends [m]

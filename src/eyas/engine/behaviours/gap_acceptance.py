@@ -13,8 +13,6 @@ from eyas.engine.traffic.signals import Aspect, SignalPlan
 from eyas.engine.traffic.trailer import folded_by
 from eyas.lanes import exact, interpreted
 
-__all__ = ["GapAcceptance"]
-
 _CLEAR: Final = 1.8  # From the line that is crossed to the side of a vehicle, at least [m]
 
 _ASIDE: Final = 0.3

@@ -20,8 +20,6 @@ from eyas.engine.targets.catalogue import habit_of
 from eyas.engine.targets.config import TargetName
 from eyas.engine.traffic.signals import SignalPlan
 
-__all__ = ["ROOM", "Ground", "usable_crossings", "walkways"]
-
 ROOM: Final = 0.1  # Room between a body and obstacles [m]
 
 _BREADTH: Final = 0.82  # Diameter of the circle in which any pedestrian fits [m]

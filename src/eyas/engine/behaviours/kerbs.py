@@ -17,8 +17,6 @@ from eyas.engine.targets.catalogue import KINDS, MODELS, models_of
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.lanes import exact
 
-__all__ = ["kerb_ways"]
-
 _LANES: Final = (0.9, 1.45)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 

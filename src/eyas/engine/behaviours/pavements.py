@@ -14,8 +14,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.traffic.smoothing import runs
 from eyas.engine.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "Walkway", "along", "bridged", "is_hard", "paved_parts", "pavement_ways"]
-
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 

@@ -13,8 +13,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.roads.areas import Street, streets
 from eyas.lanes import exact
 
-__all__ = ["Roadside"]
-
 _ROUNDS: Final = 200  # How often places are sampled for those that have none yet
 
 _PATIENT: Final = 10

@@ -14,8 +14,6 @@ from eyas.engine.behaviours.timetable import time_of
 from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.lanes import exact
 
-__all__ = ["RouteTask", "legs", "polylines", "round_and_round", "stops", "wave_of"]
-
 Floats = NDArray[np.float64]
 
 Piece: TypeAlias = tuple[float, float, float]

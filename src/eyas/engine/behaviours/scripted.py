@@ -32,8 +32,6 @@ from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.lanes import exact
 
-__all__ = ["scripted_table"]
-
 _SPAN: Final = 0.25  # Half the distance over which the slope of the land is taken [m]
 
 _JITTER: Final = 0.5

@@ -11,8 +11,6 @@ from eyas.engine.core.errors import SpawnError
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
 
-__all__ = ["Spot", "waiting_spots"]
-
 _SPOTS: Final = {
     "shelter": ((-1.2, 0.15), (-0.3, 0.3), (0.6, 0.2), (1.35, 0.35), (2.5, 0.2)),
     "bus stop": ((0.7, -0.15), (1.4, -0.3), (-0.8, -0.25)),

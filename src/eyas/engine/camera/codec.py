@@ -29,8 +29,6 @@ from eyas.lanes.vector import (
     whole,
 )
 
-__all__ = ["PADDING", "code", "planes_for", "quantisation"]
-
 PADDING = 16
 """Planes are whole numbers of this in both directions: blocks of both are 8 pixels of colours."""
 

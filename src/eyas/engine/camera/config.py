@@ -20,8 +20,6 @@ from eyas.engine.camera.vibration import VibrationConfig
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, bounds, within
 
-__all__ = ["CameraConfig", "ColourLayout", "Colours", "FurtherCameraConfig", "MountConfig"]
-
 Metres = Annotated[float, Field(ge=-100, le=100)]
 Angle = Annotated[float, Field(ge=-6.3, le=6.3)]
 

@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import exact, kernel
 from eyas.lanes.vector import any_of, gather, root, select, to_f4, to_i4
 
-__all__ = ["FEW", "Counts", "counted", "tables_of_counts"]
-
 FEW = 12.0
 """Up to so many electrons in the mean they are counted. Of more, a normal number is near enough:
 it is below 0 in less than one of a thousand."""

@@ -10,8 +10,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import parallel, thread_count
 from eyas.lanes.vector import WIDTH, load, splat, store
 
-__all__ = ["LARGEST", "defocused", "disc"]
-
 LARGEST = 64.0  # Largest diameter of the disc [pixels]
 
 _FINE = 16  # Points along a side of a pixel by which the disc's share of it is counted

@@ -46,8 +46,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["TONE_STEPS", "Development", "tone_of_sensor"]
-
 TONE_STEPS = 16384  # Entries of the tone curve, from black to saturation
 
 _WHITE = 1.0 / 0.71

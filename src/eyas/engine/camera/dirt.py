@@ -12,8 +12,6 @@ from eyas.engine.render.kernels.scalars import f4, i8
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import WIDTH, lane, load, splat
 
-__all__ = ["Dirt", "DirtConfig"]
-
 MOST = 64  # Most spots, and most drops, on a lens
 
 Count = Annotated[Variation, AfterValidator(within(0, MOST))]

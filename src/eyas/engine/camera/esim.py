@@ -29,8 +29,6 @@ from eyas.lanes.vector import (
     to_f4,
 )
 
-__all__ = ["EVENT", "EventPixels", "EventSettings", "Look", "see_light"]
-
 Single = NDArray[np.float32]
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -10,8 +10,6 @@ from eyas.engine.camera.events import EventsConfig
 from eyas.engine.core.counter_rng import SEEDS
 from eyas.lanes import parallel, thread_count
 
-__all__ = ["EventSensors"]
-
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,6 @@ from pydantic import Field
 
 from eyas.engine.core.config import Config
 
-__all__ = ["EventsConfig"]
-
 
 class EventsConfig(Config):
     """An event camera with the lens of the camera; by default there is none.

@@ -15,17 +15,6 @@ from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import exp, log
 from eyas.lanes.vector import WIDTH
 
-__all__ = [
-    "ExposureConfig",
-    "ExposureState",
-    "Metering",
-    "Zones",
-    "advance_exposure",
-    "answer_meter",
-    "follow_meter",
-    "gain_of",
-]
-
 TARGET = 10.0 / SATURATION
 """Mean that is aimed at, as a share of saturation: a mean exposure of 10 / S lux seconds on the
 sensor (ISO 12232:2019, 6.3). White paper then reaches 0.71 of saturation."""

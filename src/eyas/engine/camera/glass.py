@@ -23,8 +23,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["change_light", "vignette"]
-
 Floats = NDArray[np.float64]
 
 

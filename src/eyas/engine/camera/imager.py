@@ -16,8 +16,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.counter_rng import SEEDS
 from eyas.engine.core.variation import Variation, sample, within
 
-__all__ = ["Demosaicking", "ImagerConfig", "ImagerState", "Spectrum", "WhiteBalance"]
-
 PHOTONS = 4.089e3
 """Photons of one lux in one second on one square micrometre: 1/683 W/m^2 at 555 nm."""
 

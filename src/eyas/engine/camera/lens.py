@@ -15,8 +15,6 @@ from eyas.engine.core.variation import Variation, bounds, sample, within
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import exact
 
-__all__ = ["LensConfig", "LensModel", "Lenses"]
-
 Floats = NDArray[np.float64]
 
 Coefficient = Annotated[Variation, AfterValidator(within(-10.0, 10.0))]

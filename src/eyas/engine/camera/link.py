@@ -14,8 +14,6 @@ from eyas.engine.core.variation import Variation, sample, within
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.elementary import exp, log
 
-__all__ = ["Link", "LinkConfig"]
-
 _BEGIN, _LENGTH, _SLICE = 0, 1, 2
 """Channels of the random numbers: whether a picture freezes, for how long, and each slice."""
 

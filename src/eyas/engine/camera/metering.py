@@ -18,8 +18,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import compiled, kernel, parallel
 from eyas.lanes.vector import WIDTH, lane, lesser, load, splat
 
-__all__ = ["Exposed", "Metered", "expose", "meter"]
-
 _ROUNDS = 12
 """Corrections of the exposure before the first picture; each is exact unless light is clipped."""
 

@@ -28,8 +28,6 @@ from typing import Any, Literal
 
 from eyas.engine.core.config import Config, group_of
 
-__all__ = ["MODELS", "ModelName", "laid_under", "without"]
-
 ModelName = Literal["small-drone", "global-shutter", "analogue-video"]
 
 Values = Mapping[str, Any]

@@ -18,8 +18,6 @@ from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4
 
-__all__ = ["HALO", "MARGIN", "demosaicked", "read_mosaic"]
-
 HALO = 2  # Rows above and below those of a picture that finding their colours takes
 
 MARGIN = 8  # Columns beside them in the working memory, of which two are used

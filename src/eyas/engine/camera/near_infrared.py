@@ -26,8 +26,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["near_infrared"]
-
 _SKY, _WATER, _TREE = (
     i4(int(kind)) for kind in (ObjectClass.SKY, ObjectClass.WATER, ObjectClass.TREE)
 )

@@ -9,8 +9,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import WIDTH, load, store
 
-__all__ = ["Pieces", "add_passes", "pieces_of"]
-
 Integers = NDArray[np.int64]
 Floats = NDArray[np.float64]
 Single = NDArray[np.float32]

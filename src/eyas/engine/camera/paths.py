@@ -11,8 +11,6 @@ from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import atan2, hypot
 
-__all__ = ["Ways", "poses_between", "speeds_between"]
-
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
 

@@ -23,17 +23,6 @@ from eyas.lanes.vector import (
     whole,
 )
 
-__all__ = [
-    "Readout",
-    "bell",
-    "noise_bits",
-    "other_bits",
-    "pattern_bits",
-    "read_out",
-    "readout_of",
-    "row_error",
-]
-
 _DEVIATION_OF_FOUR, _DEVIATION_OF_TWO = 147.8, 104.5
 """Standard deviations of the sums of four and of two random bytes: (k (256^2 - 1) / 12)^(1/2)."""
 

@@ -11,17 +11,6 @@ from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = [
-    "INSTANTS",
-    "Exposure",
-    "Moments",
-    "Moving",
-    "Seen",
-    "motion_in_pixels",
-    "poses_at",
-    "turned",
-]
-
 Floats = NDArray[np.float64]
 Vector = tuple[float, float, float]
 Lens = tuple[float, float]  # Focal length, and half the width of the picture [pixels]

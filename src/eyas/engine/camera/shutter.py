@@ -8,8 +8,6 @@ from pydantic import AfterValidator, Field
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, bounds, sample, within
 
-__all__ = ["Shutter", "ShutterConfig"]
-
 
 class ShutterConfig(Config):
     """By default all rows of a picture see one instant.

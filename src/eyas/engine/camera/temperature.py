@@ -23,17 +23,6 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.hours import sun_at
 from eyas.lanes import exact, kernel
 
-__all__ = [
-    "CLOTHES",
-    "DIRECTIONS",
-    "ENGINE_HEAT",
-    "SKIN",
-    "MoverHeat",
-    "SurfaceTemperatures",
-    "air_temperature",
-    "direction_of",
-]
-
 DIRECTIONS = 31
 """Rows and columns of a map of directions, see `direction_of`; odd, so that up has a cell."""
 

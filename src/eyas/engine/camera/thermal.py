@@ -26,8 +26,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.lanes import address_of, kernel, parallel, thread_count
 from eyas.lanes.elementary import exp
 
-__all__ = ["HEAT", "ThermalConfig", "ThermalFrames", "ThermalImager", "slot_heat"]
-
 Celsius = Annotated[float, Field(ge=-100.0, le=500.0)]
 
 

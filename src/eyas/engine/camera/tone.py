@@ -12,8 +12,6 @@ from eyas.engine.render.pack.light import tone_table
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import WIDTH, gather, greater, lesser, load, store_triples, to_i4
 
-__all__ = ["ToneCurve"]
-
 _LAST_STEP = f4(TONE_STEPS - 1)
 
 

@@ -6,8 +6,6 @@ from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.lanes import kernel
 
-__all__ = ["PoseBefore", "begin_at_rest", "left_unknown", "moved_from", "pose_before"]
-
 Vector = tuple[float, float, float]
 
 

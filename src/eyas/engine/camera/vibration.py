@@ -15,8 +15,6 @@ from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.lanes import compiled, exact, kernel
 from eyas.lanes.elementary import sin, sin_cos
 
-__all__ = ["Shake", "Vibration", "VibrationConfig", "no_shake", "shaken_axes"]
-
 Floats = NDArray[np.float64]
 
 AXES = 3  # Roll, pitch and yaw

@@ -23,8 +23,6 @@ from eyas.lanes.entry import nothing_compiled
 from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.trusted import made_folder, not_kept
 
-__all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
-
 _log = logging.getLogger("eyas")
 
 _PATIENCE = 300.0  # Longest time that this process waits for the second one [s]

@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.bundles import Job, Task
 from eyas.engine.state.draw import Views
 from eyas.engine.state.lighting import LightState
 
-__all__ = ["Size", "new_task", "set_views"]
-
 JOBS_PER_THREAD = 6
 """Few views are cut into bands until there are this many: sky is drawn faster than streets."""
 

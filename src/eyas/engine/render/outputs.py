@@ -9,15 +9,6 @@ from eyas.engine.render.kernels.bundles import Job, Output
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 
-__all__ = [
-    "MEASURES",
-    "NO_OUTPUT",
-    "measured_alone",
-    "picture_size",
-    "wanted_output",
-    "write_measured",
-]
-
 MEASURES = 10  # Numbers that are measured of a thing, see `Output.subject`.
 
 NO_OUTPUT = Output(

@@ -40,8 +40,6 @@ from eyas.engine.state.scene import Scene
 from eyas.lanes import Held, interpreted, thread_count
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["GRIDS", "CpuRenderer", "build_renderer"]
-
 
 class CpuRenderer:
     """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`.

@@ -8,14 +8,6 @@ from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
 
-__all__ = [
-    "CameraErrors",
-    "FurtherSensorConfig",
-    "LidarConfig",
-    "ReadingConfig",
-    "SensorsConfig",
-]
-
 Share = Annotated[float, Field(ge=0, le=1)]
 Deviation = Annotated[float, Field(ge=0, le=1e6)]
 

@@ -12,8 +12,6 @@ from eyas.engine.state.mesh import Mesh, Surface
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.lanes import exact
 
-__all__ = ["Cylinder", "Furniture", "Prism", "crown_slices", "furniture"]
-
 Row = NDArray[np.float64]
 
 _SLICES = 5  # Cylinders in the stack

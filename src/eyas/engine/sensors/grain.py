@@ -9,8 +9,6 @@ from eyas.engine.core.counter_rng import SEEDS, mixed
 from eyas.engine.sensors.config import CameraErrors
 from eyas.lanes import exact, parallel, thread_count
 
-__all__ = ["Grain"]
-
 _DEVIATION = 147.8  # Standard deviation of the sum of four random bytes: (4 (256^2 - 1) / 12)^(1/2)
 
 

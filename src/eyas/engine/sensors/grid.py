@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = [
-    "SPACING",
-    "ObstacleGrid",
-    "Walk",
-    "cells_between",
-    "entered",
-    "grid_of",
-    "lane_cells",
-    "walk_along",
-]
-
 SPACING = 8.0  # Width of a cell [m]
 
 _BESIDE = 1e-3  # How far beside a ray cells are looked at, far more than rounding moves it [m]

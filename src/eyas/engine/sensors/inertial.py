@@ -13,8 +13,6 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["GRAVITY", "accelerometer", "feel", "gyroscope", "rest", "smoothing_share"]
-
 GRAVITY = 9.81  # [m/s^2]
 
 

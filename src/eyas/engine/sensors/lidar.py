@@ -24,8 +24,6 @@ from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import Snapshot, TrackerState
 from eyas.lanes import compiled, exact, kernel
 
-__all__ = ["CAR_MOUNT", "MOUNT", "POINT_NUMBERS", "Lidar"]
-
 MOUNT = MountConfig(z=0.031)  # Where the original's drone has it
 
 CAR_MOUNT = MountConfig(x=-0.1)  # Where the original's car has it

@@ -10,8 +10,6 @@ from eyas.engine.core.frames import rotate
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.lanes import exact, kernel
 
-__all__ = ["CARRIED", "Mount", "left_on_gimbal", "mount_of", "turn_of"]
-
 Floats = NDArray[np.float64]
 
 

@@ -12,8 +12,6 @@ from eyas.engine.traffic.trailer import folded
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["find_boxes"]
-
 _SLACK = 20.0
 """Half the length of the longest actor, and more than any drives between two samples [m]."""
 

@@ -15,8 +15,6 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.targets.catalogue import MODELS, kind_of, sections_of
 
-__all__ = ["Boxes", "MovingObstacles", "Obstacles", "Solids", "obstacles_of", "solids_of"]
-
 Floats = NDArray[np.float64]
 
 

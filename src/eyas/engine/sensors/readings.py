@@ -19,8 +19,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import CompiledCall, compiled, interpreted, kernel, specialised
 
-__all__ = ["Readings", "must_read"]
-
 Integers = NDArray[np.int64]
 
 _DROP_OUT, _BIAS = 64, 128  # channels of random numbers beside those of the noise

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact, kernel
 
-__all__ = ["Slopes", "free_way", "slopes_of"]
-
 _CELLS: Final = 4  # Cells of the relief along the side of a block
 
 _AROUND: Final = (1, 4)  # Blocks around each over which the steepest slope is taken

@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.lanes import kernel, parallel, thread_count
 
-__all__ = ["FrameStack", "luma"]
-
 Bytes = NDArray[np.uint8]
 
 """Pixels, shape (V, pixels, 3), and their lumas, shape (V, pixels)."""

@@ -17,8 +17,6 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.config import LightConfig, WorldConfig
 
-__all__ = ["ControlConfig", "SimConfig"]
-
 Latency = Annotated[Variation, AfterValidator(within(0.0, 500.0))]
 
 

@@ -28,7 +28,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     from eyas.engine.behaviours.ground import Ground
 
-__all__ = ["Surroundings", "crowd_motions", "live_motions", "with_crowd"]
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""

@@ -32,17 +32,6 @@ from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.street.signals import lens_levels
 from eyas.engine.world.weather import Season
 
-__all__ = [
-    "Lenses",
-    "load_geometry",
-    "load_network",
-    "load_parts",
-    "load_scene",
-    "load_solids",
-    "load_textures",
-    "paint",
-]
-
 
 class Lenses(Enum):
     """What is drawn of signals that change."""

@@ -34,16 +34,6 @@ from eyas.engine.traffic.interpolation import interpolate_actor
 from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 
-__all__ = [
-    "Orders",
-    "Step",
-    "StepKernels",
-    "StepState",
-    "StepSurroundings",
-    "offset_pose",
-    "step_of",
-]
-
 
 @kernel(inline=True)
 def offset_pose(

@@ -31,8 +31,6 @@ from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import BoundCall, Held
 
-__all__ = ["Stepper", "step_kernels", "step_state"]
-
 Floats = NDArray[np.float64]
 
 _FAST = 1e3  # Length of all commands together beyond which each is looked at [m/s]

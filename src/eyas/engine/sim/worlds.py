@@ -19,8 +19,6 @@ from eyas.engine.targets.looks import LookSampler
 from eyas.engine.traffic.interpolation import sample_before
 from eyas.lanes import interpreted
 
-__all__ = ["ALONE", "Worlds", "each_alone", "largest_world", "together"]
-
 Integers = NDArray[np.int64]
 
 _sample_before = interpreted(sample_before)

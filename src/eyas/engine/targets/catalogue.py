@@ -20,19 +20,6 @@ from eyas.engine.targets.quadrotor import QUADROTOR
 from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.lanes.elementary.arrays import cos
 
-__all__ = [
-    "KINDS",
-    "MODELS",
-    "extent_of",
-    "habit_of",
-    "kind_index",
-    "kind_of",
-    "model_index",
-    "models_of",
-    "register",
-    "sections_of",
-]
-
 Floats = NDArray[np.float64]
 
 KINDS: list[Kind] = []  # All kinds. In the other rooms, `kind` is the index into this table.

@@ -10,8 +10,6 @@ from eyas.engine.targets.kind import Colour
 from eyas.lanes import kernel
 from eyas.lanes.pcg64 import whole
 
-__all__ = ["LookSampler", "LookTable", "sample_looks"]
-
 
 class LookTable(NamedTuple):
     """Possible looks of A actors, G kinds one after the other."""

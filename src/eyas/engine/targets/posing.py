@@ -13,8 +13,6 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.lanes import BoundCall, Held, ParallelCall, kernel, parallel, specialised
 
-__all__ = ["ActorFrame", "PoseCall", "Slots"]
-
 _MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
 

@@ -14,8 +14,6 @@ from eyas.engine.task.sweep import NEVER, Sweep
 from eyas.engine.task.touch import touch_ground, touch_movers, touch_solids
 from eyas.lanes import compiled, kernel
 
-__all__ = ["Contacts"]
-
 _CRASH, _NOT_A_NUMBER = int(DoneReason.CRASH), int(DoneReason.NOT_A_NUMBER)
 
 

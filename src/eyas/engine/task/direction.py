@@ -8,8 +8,6 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["TargetDirection", "target_centre", "target_direction"]
-
 _TURNING = 1e-4  # Change of heading in 2 ms above which the target turns [rad]
 
 

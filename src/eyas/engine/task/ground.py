@@ -6,8 +6,6 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.engine.state.terrain import Plane, height_over
 from eyas.lanes import exact, interpreted
 
-__all__ = ["ground_corners", "on_plane"]
-
 _height_over = interpreted(height_over)
 
 

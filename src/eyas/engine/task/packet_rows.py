@@ -24,8 +24,6 @@ from eyas.engine.task.packets import (
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["SENSOR_COLUMNS", "SENSOR_COUNT", "PacketRows", "fill_basic"]
-
 _STEP_COUNT = first_column(BASIC_COLUMNS, "step_count")
 _POSITION = first_column(BASIC_COLUMNS, "position")
 _VELOCITY = first_column(BASIC_COLUMNS, "velocity")

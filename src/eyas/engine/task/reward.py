@@ -17,18 +17,6 @@ from eyas.engine.task.rules import BuiltinReward, Rules
 from eyas.lanes import kernel
 from eyas.lanes.elementary import tan, tanh
 
-__all__ = [
-    "axis_depth",
-    "distance_continuous",
-    "distance_discrete",
-    "reward_value",
-    "rewarded_size",
-    "view_centre",
-    "view_continuous",
-    "view_discrete",
-    "view_share",
-]
-
 _FARTHEST = 1e12  # Largest depth of a ground point along the optical axis [m]
 
 _VIEW_CONTINUOUS, _VIEW_DISCRETE = (

@@ -7,8 +7,6 @@ from typing import NamedTuple
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 
-__all__ = ["BuiltinReward", "Rules", "exact", "lenient", "make_rules"]
-
 
 class BuiltinReward(IntEnum):
     """The built-in rewards; `eyas.engine.task.reward` has a function of the same name for all but

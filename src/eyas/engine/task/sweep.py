@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = ["NEVER", "Sweep", "Touch", "sweep_cylinder", "sweep_prism", "while_level"]
-
 NEVER = 2.0  # Share of the motion at a touch that does not happen
 
 

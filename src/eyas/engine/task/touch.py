@@ -13,8 +13,6 @@ from eyas.engine.state.terrain import ground_at
 from eyas.engine.task.sweep import NEVER, Sweep, sweep_cylinder, sweep_prism, while_level
 from eyas.lanes import kernel
 
-__all__ = ["Hit", "touch_ground", "touch_movers", "touch_solids"]
-
 
 class Hit(NamedTuple):
     """The first touch of anything."""

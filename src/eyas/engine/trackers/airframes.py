@@ -10,8 +10,6 @@ from eyas.engine.trackers.airframe import ORIGINAL, Airframe
 from eyas.engine.trackers.battery import Battery
 from eyas.engine.trackers.config import AirframeName
 
-__all__ = ["AIRFRAMES", "Model"]
-
 Vector = tuple[float, float, float]
 
 

@@ -17,8 +17,6 @@ from eyas.engine.trackers.rigid_body import Thrusts
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
 
-__all__ = ["Battery", "discharge", "open_voltage", "strongest_thrust", "within_power"]
-
 FULL_CELL = 4.1031  # Voltage of a full cell without a load, see `open_voltage` [V]
 
 

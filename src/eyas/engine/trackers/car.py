@@ -18,8 +18,6 @@ from eyas.engine.trackers.gimbal import CAR_LIMITS, advance_gimbal, camera_axes,
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel
 
-__all__ = ["CAR"]
-
 
 class CarMemory(NamedTuple):
     """What N cars remember: their filters, and the ground below them."""

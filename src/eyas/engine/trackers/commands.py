@@ -12,8 +12,6 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.trackers.lowpass import low_pass, settle
 from eyas.lanes import kernel
 
-__all__ = ["CommandFilters", "follow_command", "forget_commands", "heading"]
-
 
 class CommandFilters(NamedTuple):
     """States of the low-pass filters of the commands of N trackers."""

@@ -12,17 +12,6 @@ from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = [
-    "DRONE",
-    "advance",
-    "aim",
-    "carry",
-    "move_level",
-    "obey",
-    "place",
-    "start",
-]
-
 
 @kernel(inline=True)
 def advance(

@@ -7,8 +7,6 @@ from eyas.engine.trackers.airframe import ORIGINAL, Airframe
 from eyas.engine.trackers.battery import Battery
 from eyas.engine.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, YAW_JOINT
 
-__all__ = ["MOUNTED", "Equipment", "Part", "Symmetric", "loaded"]
-
 Vector = tuple[float, float, float]
 
 Symmetric = tuple[float, float, float, float, float, float]

@@ -46,9 +46,6 @@ from eyas.engine.trackers.tracker import ROTORS, Tracker
 from eyas.engine.trackers.wind_field import OPEN, WindField, wind_among
 from eyas.lanes import kernel
 
-__all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
-
-
 Vector = tuple[float, float, float]
 
 _BATTERY = {"battery": "charge", "battery_voltage": "voltage"}

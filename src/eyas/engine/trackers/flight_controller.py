@@ -16,8 +16,6 @@ from eyas.engine.trackers.airframe import Airframe
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["attitude_torque", "body_axes", "desired_force", "mixed", "within_tilt"]
-
 Vector = tuple[float, float, float]
 Thrusts = tuple[float, float, float, float]
 Row = NDArray[np.float64]

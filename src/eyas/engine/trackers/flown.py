@@ -27,19 +27,6 @@ from eyas.engine.trackers.wind import WindMemory, begin_wind, blow
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2
 
-__all__ = [
-    "FlightMemory",
-    "aim",
-    "air_around",
-    "arrive",
-    "body_of",
-    "carry",
-    "flown_drone",
-    "start",
-    "wanted_thrusts",
-    "with_options",
-]
-
 Vector = tuple[float, float, float]
 
 

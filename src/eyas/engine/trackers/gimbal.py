@@ -11,21 +11,6 @@ from eyas.engine.trackers.lowpass import low_pass, settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import atan2, sin_cos
 
-__all__ = [
-    "CAR_LIMITS",
-    "PITCH_JOINT",
-    "ROLL_JOINT",
-    "SIDEWAYS_LIMIT",
-    "YAW_JOINT",
-    "advance_gimbal",
-    "camera_axes",
-    "camera_pose",
-    "desired_angles",
-    "held_pitch",
-    "reset_gimbal",
-    "set_column",
-]
-
 SIDEWAYS_LIMIT = 1.7  # Largest roll and yaw of the joints [rad]
 
 Limits = tuple[float, float, float, float]

@@ -14,8 +14,6 @@ from eyas.engine.trackers.drone import advance
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel, specialised
 
-__all__ = ["WIDTH", "WITH_GIMBAL", "turn_gimbal", "with_gimbal"]
-
 WIDTH = 4  # Numbers of a command that only flies, see `Tracker.advance`.
 WITH_GIMBAL = 8
 """Numbers of one that also turns the camera: behind the four come the pitch and the yaw to turn to

@@ -14,8 +14,6 @@ from eyas.engine.trackers.lowpass import low_pass, settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["ServoMemory", "advance_servo", "settle_servo"]
-
 Vector = tuple[float, float, float]
 
 

@@ -21,8 +21,6 @@ from eyas.engine.trackers.lowpass import settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2, sin_cos
 
-__all__ = ["carried_along", "level_angles", "level_pose", "reset_level"]
-
 Vector = tuple[float, float, float]
 
 _LEAST, _MOST = -0.5, 2.2

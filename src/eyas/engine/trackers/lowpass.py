@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.lanes import kernel
 
-__all__ = ["low_pass", "settle"]
-
 # A second-order Butterworth filter by the bilinear transform, as in the original. Its _K for 20 Hz
 # is twice pi * 20 Hz * step, so the -3 dB frequency is 39 Hz.
 _K = 2.0 * math.pi * 20.0 * PHYSICS_STEP

@@ -13,20 +13,6 @@ from eyas.engine.trackers.airframe import Airframe
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp, sin_cos
 
-__all__ = [
-    "Change",
-    "RigidBody",
-    "Thrusts",
-    "cross",
-    "loads",
-    "moved",
-    "plus",
-    "rotation_rate",
-    "spun_up",
-    "stage",
-    "turned",
-]
-
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Thrusts = tuple[float, float, float, float]

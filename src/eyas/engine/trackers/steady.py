@@ -15,8 +15,6 @@ from eyas.engine.trackers.lowpass import settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2, sin_cos
 
-__all__ = ["launch"]
-
 Vector = tuple[float, float, float]
 
 

@@ -18,8 +18,6 @@ from eyas.engine.core.variation import Variation, sample
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import exp, power
 
-__all__ = ["WindMemory", "begin_wind", "blow", "mean_wind"]
-
 _FOOT = 0.3048  # [m]
 _LOWEST, _HIGHEST = 10.0 * _FOOT, 1000.0 * _FOOT
 """Heights for which the model is made; others count as the nearest [m]."""

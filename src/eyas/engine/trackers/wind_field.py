@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.elementary import atan2
 
-__all__ = ["OPEN", "UNIT", "WindField", "wind_among"]
-
 Vector = tuple[float, float, float]
 
 UNIT = 0.001  # Unit of the numbers of a table [m/s]

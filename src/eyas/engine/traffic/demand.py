@@ -9,17 +9,6 @@ import numpy as np
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.traffic.config import TrafficConfig
 
-__all__ = [
-    "RoadLinks",
-    "Route",
-    "departures",
-    "endless_walk",
-    "lasting_edges",
-    "random_trips",
-    "walk_from",
-    "without_turnarounds",
-]
-
 Route = tuple[str, ...]  # Names of the edges, in driving order
 
 TRIES = 1000  # Number of edge pairs tried for one route before giving up

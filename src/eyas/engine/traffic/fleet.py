@@ -17,8 +17,6 @@ from eyas.engine.traffic.demand import (
     random_trips,
 )
 
-__all__ = ["Departure", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
-
 Links = Mapping[VehicleType, RoadLinks]  # The roads, as each class of vehicles may use them
 
 

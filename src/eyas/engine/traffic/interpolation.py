@@ -9,14 +9,6 @@ from eyas.engine.state.motion import ActorState, Motion
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import hypot
 
-__all__ = [
-    "ActorPose",
-    "interpolate_actor",
-    "interpolate_actors",
-    "sample_before",
-    "write_actor",
-]
-
 
 class ActorPose(NamedTuple):
     """One actor at one time; fields as in `eyas.engine.state.motion.ActorState`."""

@@ -20,8 +20,6 @@ from eyas.engine.traffic.lane_map import LaneMap
 from eyas.engine.traffic.smoothing import runs
 from eyas.lanes import exact, kernel
 
-__all__ = ["BLINKS", "lamps_of", "shining"]
-
 BLINKS: Final = 1.5
 """Blinks of an indicator in a second, lit for half of each: 60 to 120 a minute (UN Regulation 48,
 6.5.9)."""

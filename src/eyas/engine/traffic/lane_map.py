@@ -9,8 +9,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.traffic.network import crossings
 from eyas.lanes import exact
 
-__all__ = ["LaneMap"]
-
 _CELL = 0.5  # Side of a cell [m]
 
 _SHARE = 0.85  # Share of its width for which a lane is painted: its border belongs to none

@@ -26,22 +26,6 @@ from eyas.engine.traffic.sumo import options
 from eyas.engine.traffic.sumo_install import sumo_version
 from eyas.lanes.trusted import cache_folder, touch
 
-__all__ = [
-    "CANONICAL_MIX",
-    "CANONICAL_SEED",
-    "DENSE_DURATION",
-    "DENSE_VEHICLES",
-    "EVADING_MIX",
-    "RESPAWN_GROUPS",
-    "STANDARD_DURATION",
-    "TEST_DURATION",
-    "TEST_TRAFFIC",
-    "find_file",
-    "find_recording",
-    "obeys_signals",
-    "record_canonical",
-]
-
 _LOG = logging.getLogger("eyas")
 
 CANONICAL_SEED = 1  # Seed of the shipped recordings, and the default seed of others

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["Arrays", "packed", "unpacked", "unpacked_differences"]
-
 Arrays = dict[str, NDArray[np.generic]]
 
 _TURN = 6_283_185  # A full turn [microradians]

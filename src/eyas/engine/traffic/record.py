@@ -22,8 +22,6 @@ from eyas.engine.traffic.smoothing import held
 from eyas.engine.traffic.sumo import RATE, Drive, drive, options
 from eyas.engine.traffic.sumo_install import sumo_version
 
-__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved", "roads_for"]
-
 WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
 

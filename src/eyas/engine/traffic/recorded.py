@@ -17,8 +17,6 @@ from eyas.engine.traffic.smoothing import Tracks, smooth
 from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 
-__all__ = ["kept_lamps", "kept_motion", "recorded_motion", "table_of"]
-
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
     """Return `recorded_motion`, kept in the cache.

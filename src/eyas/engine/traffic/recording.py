@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.traffic.config import TrafficConfig, VehicleType
 
-__all__ = [
-    "ANGLE_UNIT",
-    "POSITION_UNIT",
-    "Provenance",
-    "Recording",
-    "check_map",
-    "problem_of",
-    "quantised",
-    "restored",
-]
-
 POSITION_UNIT = 0.01  # Positions are whole multiples of this [m]
 
 ANGLE_UNIT = 0.001  # Yaws are whole multiples of this [rad]

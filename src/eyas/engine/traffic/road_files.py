@@ -11,8 +11,6 @@ from eyas.engine.traffic.fleet import fleet_of
 from eyas.engine.traffic.sumo import RATE, departures_and_types, options
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
 
-__all__ = ["opendrive_xml", "sumo_files"]
-
 
 def sumo_files(
     name: str,  # Name of the map

@@ -17,8 +17,6 @@ from eyas.engine.traffic.net_file import NetConnection, NetProgram, SumoNet
 from eyas.engine.traffic.network import STRAIGHT_FIRST
 from eyas.engine.traffic.record import WARM_UP
 
-__all__ = ["Aspect", "SignalPlan", "load_plan", "save_plan", "signal_plan", "walk_plan"]
-
 
 class Aspect(IntEnum):
     """What a traffic light shows."""

@@ -19,21 +19,6 @@ from eyas.engine.traffic.tractrix import follow_headings
 from eyas.engine.traffic.trailer import Links, tow
 from eyas.lanes import exact
 
-__all__ = [
-    "REACH",
-    "SIGMA",
-    "Tracks",
-    "as_far",
-    "filtered",
-    "follow",
-    "front_path",
-    "held",
-    "lead_of",
-    "rate_of",
-    "runs",
-    "smooth",
-]
-
 SIGMA = 0.3
 """Width of the Gaussian [s]: removes SUMO's 0.1 s steps and moves the path by centimetres only."""
 

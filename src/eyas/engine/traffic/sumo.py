@@ -20,8 +20,6 @@ from eyas.engine.traffic.fleet import Departure, Fleet, vehicle_types
 from eyas.engine.traffic.sumo_install import import_libsumo
 from eyas.lanes import exact
 
-__all__ = ["RATE", "Drive", "SumoRun", "departures_and_types", "drive", "no_room", "options"]
-
 RATE = 10  # SUMO's steps and Eyas's samples per second [Hz], as in the original
 
 _SELDOM = ("--default.action-step-length", "0.5")

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, atan2, exp, hypot, tan
 
-__all__ = ["follow_headings"]
-
 
 def follow_headings(
     front: NDArray[np.float64],  # Path of its front [m], shape (S, 2)

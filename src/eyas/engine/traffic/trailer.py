@@ -17,18 +17,6 @@ from eyas.engine.traffic.tractrix import follow_headings
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = [
-    "AXLES_BEHIND",
-    "BUMPER_AHEAD",
-    "REAR_AXLE",
-    "TAIL_BEHIND",
-    "Articulated",
-    "Links",
-    "folded",
-    "folded_by",
-    "tow",
-]
-
 BUMPER_AHEAD = 4.75  # From the kingpin to the front bumper [m]
 
 TAIL_BEHIND = 9.55  # From the kingpin to the end of the trailer [m]

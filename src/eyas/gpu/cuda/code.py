@@ -26,8 +26,6 @@ from eyas.lanes.shipped import wanted
 from eyas.lanes.syntax import syntax_of
 from eyas.lanes.trusted import read_trusted, touch, write_trusted
 
-__all__ = ["ARCHIVE", "OLDEST", "SUFFIX", "Ptx", "archive_of", "ptx_code"]
-
 OLDEST = (8, 0)  # The least compute capability of cards that are served: that of the A100, of 2020
 
 SUFFIX = ".eyp"  # End of the names of files of PTX

@@ -25,8 +25,6 @@ from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
 
-__all__ = ["CudaDevice", "cuda_device"]
-
 _SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`.
 
 

@@ -12,8 +12,6 @@ from typing import Any
 
 from eyas.lanes.trusted import OWNER
 
-__all__ = ["OUT_OF_MEMORY", "VARIABLE", "CudaError", "Driver", "driver"]
-
 VARIABLE = f"{OWNER.upper()}_LIBCUDA"
 """Environment variable: path of the driver's library, instead of the system's `libcuda.so.1`."""
 

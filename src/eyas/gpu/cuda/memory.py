@@ -11,8 +11,6 @@ from eyas.gpu.cuda.context import Context, Memory
 from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.order import CudaEvent
 
-__all__ = ["CudaArray"]
-
 _LEGACY_STREAM = 1  # The legacy default stream, as `__cuda_array_interface__` and DLPack number it
 
 

@@ -9,8 +9,6 @@ from eyas.gpu.render.device_views import DeviceDrawer, StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
 from eyas.lanes.device import Device, HostDevice
 
-__all__ = ["device_of", "drawer_of"]
-
 
 def device_of(wanted: Device | str) -> Device:
     """Return a device.

@@ -22,8 +22,6 @@ from eyas.gpu.sim.simulation import DeviceSimulation
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes import kernel, parallel
 
-__all__ = ["DeviceObserver"]
-
 _IMAGE, _SENSORS = ObservationPart.IMAGE, ObservationPart.SENSORS
 _PARTS = (_IMAGE, _SENSORS, ObservationPart.PRIVILEGED)
 _FIRST, _END = SENSOR_COLUMNS.start, SENSOR_COLUMNS.stop

@@ -25,8 +25,6 @@ from eyas.lanes import ParallelCall
 from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["DeviceRenderer", "PictureSize"]
-
 MEMBERS, MOST_MEMBERS = 4, 128
 """Workers that share a view at least and at most: a warp of a graphics processor is four times
 `WIDTH` threads."""

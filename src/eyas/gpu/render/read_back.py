@@ -22,8 +22,6 @@ from eyas.engine.state.lighting import LightState
 from eyas.gpu.render.device import DeviceRenderer, PictureSize
 from eyas.lanes.device import Device
 
-__all__ = ["ReadBackRenderer", "UploadedViews"]
-
 
 class UploadedViews(NamedTuple):
     """Cameras and moving things on a device, and what is to be drawn of them there."""

@@ -13,8 +13,6 @@ from eyas.engine.targets.posing import PoseCall
 from eyas.engine.task.config import Crash
 from eyas.engine.trackers.tracker import Tracker
 
-__all__ = ["check_device"]
-
 _CAMERA = ("width", "height", "field_of_view", "samples", "mount")
 """Settings of the camera that may have any value."""
 

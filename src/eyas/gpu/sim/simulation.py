@@ -19,8 +19,6 @@ from eyas.gpu.sim.records import Mirrored, uploaded
 from eyas.gpu.sim.refusals import check_device
 from eyas.lanes.device import Device
 
-__all__ = ["DeviceSimulation"]
-
 Chosen = NDArray[np.int64]
 
 

@@ -18,21 +18,6 @@ from eyas.lanes import elementary
 from eyas.lanes.calls import BoundCall, compiled
 from eyas.lanes.jit import interpreted, kernel
 
-__all__ = [
-    "acos",
-    "asin",
-    "atan",
-    "atan2",
-    "cos",
-    "exp",
-    "hypot",
-    "log",
-    "power",
-    "sin",
-    "tan",
-    "tanh",
-]
-
 Floats = NDArray[np.float64]
 
 _FUNCTIONS: tuple[Callable[..., float], ...] = (

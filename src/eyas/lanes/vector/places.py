@@ -9,17 +9,6 @@ from numba.core import types
 from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import Lanes, lanes_are_threads
 
-__all__ = [
-    "I32",
-    "I64",
-    "each_index",
-    "loaded",
-    "order_of",
-    "place_of_half",
-    "place_of_lanes",
-    "pointer_to",
-]
-
 I32, I64 = ir.IntType(32), ir.IntType(64)
 
 

@@ -24,7 +24,6 @@ from eyas.lanes import Held, exact, thread_count
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
 
 TEXEL = 1.0  # Side of a texel [m]
 

@@ -24,8 +24,6 @@ from eyas.engine.state.mesh import Surface
 from eyas.lanes import Held, exact, thread_count
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["ShadowMap", "bake_shadows"]
-
 TEXEL = 0.2  # Side of a texel, unless the tiles would become too many [m]
 
 MOST_TILES = 40_000  # Largest number of tiles: 83 MiB

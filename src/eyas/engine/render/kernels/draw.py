@@ -41,17 +41,6 @@ from eyas.engine.state.draw import DrawStage
 from eyas.engine.state.lighting import LightState
 from eyas.lanes import address_of, claim, kernel, parallel
 
-__all__ = [
-    "band_of",
-    "draw_views",
-    "light_at",
-    "no_glass",
-    "view_light",
-    "with_veil",
-    "write_colours",
-    "write_facts",
-]
-
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
 

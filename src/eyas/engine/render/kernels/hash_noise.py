@@ -4,8 +4,6 @@ from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, to_f4, to_i4, to_u4, whole
 
-__all__ = ["hashed", "noise", "scrambled", "seen_noise", "seen_swing", "swing", "tenth"]
-
 _COLUMN, _ROW = u4(0x9E3779B1), u4(0x85EBCA77)
 """Odd factors that spread the numbers of cells over 32 bits."""
 

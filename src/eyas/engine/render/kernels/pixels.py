@@ -28,18 +28,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = [
-    "ACROSS",
-    "keys_of",
-    "keys_of_tile",
-    "pack",
-    "write_colours",
-    "write_pixels",
-    "write_plane",
-    "write_tile",
-    "written",
-]
-
 ACROSS = 4
 """Pixels in each of the two rows of a tile. What eight pixels show that lie together is more often
 one thing than in a row, and pictures are more often a multiple of four wide than of eight."""

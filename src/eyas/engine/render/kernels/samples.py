@@ -7,19 +7,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import to_f4
 
-__all__ = [
-    "LocalCamera",
-    "ScreenBox",
-    "around",
-    "empty_box",
-    "local_camera",
-    "own_row",
-    "own_rows",
-    "pixel_row",
-    "point_of",
-    "ray_of_row",
-]
-
 
 class ScreenBox(NamedTuple):
     """A box on the screen [samples], of float64; empty if its left is beyond its right."""

@@ -14,8 +14,6 @@ from eyas.engine.render.kernels.surface.texture import fraction
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser, like, magnitude, root
 
-__all__ = ["FARTHEST_LEAN", "in_wind", "leaned", "shimmer", "sways", "wave"]
-
 FARTHEST_LEAN = 0.08  # More than a plant ever leans, as the sine of the angle
 
 _MOST = 0.06

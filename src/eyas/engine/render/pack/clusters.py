@@ -18,16 +18,6 @@ from eyas.engine.render.kernels.visibility.clusters import (
 )
 from eyas.lanes import exact
 
-__all__ = [
-    "NOWHERE",
-    "bounds_of",
-    "by_clusters",
-    "cluster_order",
-    "clusters_of",
-    "corners_of",
-    "filled_up",
-]
-
 NOWHERE = 1e9  # Boxes from this to minus this in all directions [m] are inside no plane
 
 _WIDEST = 0.2  # Cosine of the largest angle between the axis of a cone and a normal

@@ -18,8 +18,6 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
 
-__all__ = ["CHUNK", "PackedScene", "build_geometry", "packed_scene"]
-
 CHUNK = 32.0  # Side of the squares into which static triangles are sorted [m]
 
 _FIXTURE_CELL = 6.0

@@ -33,8 +33,6 @@ from eyas.engine.state.lighting import Horizon, Lighting
 from eyas.engine.state.scene import Lamps, Scene
 from eyas.lanes import exact
 
-__all__ = ["Baked", "build_light", "encoded_tone", "lamp_grid", "tile_starts", "tone_table"]
-
 CELL = 8.0  # Side of a square of the grid of street lamps [m]
 
 _WALLS = np.array((1.03, 1.0, 0.95))

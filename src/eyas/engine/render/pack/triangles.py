@@ -8,8 +8,6 @@ from eyas.engine.render.pack.materials import MaterialTable
 from eyas.engine.state.mesh import Mesh
 from eyas.lanes import exact
 
-__all__ = ["gradients", "shading_rows", "solid_triangles"]
-
 _SLIVER = 1e-12
 """Squared sine of the least angle between sides: thousands of times the rounding of a float64."""
 

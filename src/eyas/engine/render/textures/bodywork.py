@@ -32,8 +32,6 @@ from eyas.engine.world.build.bodywork import (
     WINDSCREEN,
 )
 
-__all__ = ["PAINTERS", "bodywork", "freight", "panes"]
-
 Texture = NDArray[np.uint8]
 
 _SEAM = 0.015

@@ -11,22 +11,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "SIZE",
-    "Field",
-    "Masonry",
-    "Picture",
-    "blurred",
-    "cracks",
-    "fractal",
-    "masonry",
-    "mixed",
-    "opaque",
-    "painted",
-    "source",
-    "white",
-]
-
 SIZE = 256  # Pixels on each side of a texture
 
 Field = NDArray[np.float64]

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.render.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 from eyas.engine.world.build.materials import TEXTURES
 
-__all__ = ["PAINTERS", "build_textures"]
-
 
 def _plain() -> NDArray[np.uint8]:
     return np.full((256, 256, 4), 255, np.uint8)

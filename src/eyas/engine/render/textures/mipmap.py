@@ -9,8 +9,6 @@ from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.render.kernels.surface.texture import LEVELS, TEXELS, TEXELS_IN_ROW
 from eyas.lanes import exact
 
-__all__ = ["SIDE", "linear", "packed_layers"]
-
 SIDE = 256  # Texels along a side of a texture
 
 

@@ -23,8 +23,6 @@ from eyas.engine.world.build.clothing import (
 )
 from eyas.lanes import exact
 
-__all__ = ["PAINTERS", "clothes", "heads"]
-
 Texture = NDArray[np.uint8]
 
 _SEAM = 0.35 * BASE

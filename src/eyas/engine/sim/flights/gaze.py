@@ -10,8 +10,6 @@ from eyas.engine.core.pinhole import field_along
 from eyas.engine.sim.flights.signals import STEP, averaged, steps_in
 from eyas.lanes import exact
 
-__all__ = ["STEEPEST", "Aside", "Glances", "aimed", "glances", "held", "turned_aside"]
-
 Floats = NDArray[np.float64]
 
 _LOWEST, STEEPEST = 0.0, 1.45

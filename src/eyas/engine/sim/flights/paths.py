@@ -9,8 +9,6 @@ from eyas.engine.sim.flights.path import FlightScene, FlightSketch
 from eyas.engine.sim.flights.signals import STEP, averaged, later, steps_in, trailing, tremor
 from eyas.lanes import exact
 
-__all__ = ["FlyBy", "Follow", "HoverAndPan", "Orbit", "Rise", "Search", "Zoom"]
-
 Floats = NDArray[np.float64]
 
 

@@ -27,8 +27,6 @@ from eyas.engine.sim.flights.shares import SMALL, Asked, Shares, foreseen
 from eyas.engine.sim.flights.signals import STEP, averaged, highest, rates_of
 from eyas.engine.task.clearance import Clearance, Margin
 
-__all__ = ["LIMITS", "Limits", "Plan", "Surroundings", "Wishes", "plan_flight"]
-
 Floats = NDArray[np.float64]
 
 

@@ -9,8 +9,6 @@ from eyas.engine.sim.flights.path import FlightScene
 from eyas.engine.task.clearance import Clearance
 from eyas.lanes import exact
 
-__all__ = ["SMALL", "Asked", "Shares", "foreseen", "mean"]
-
 Floats = NDArray[np.float64]
 
 SMALL = 32 * 32  # A box with fewer pixels is small, as COCO has it

@@ -13,19 +13,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "STEP",
-    "Rates",
-    "averaged",
-    "highest",
-    "later",
-    "rates_of",
-    "sampled_at",
-    "steps_in",
-    "trailing",
-    "tremor",
-]
-
 Floats = NDArray[np.float64]
 
 STEP = 0.04  # Time between two control points [s]

@@ -14,8 +14,6 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.engine.traffic.signals import SignalPlan
 from eyas.lanes import interpreted
 
-__all__ = ["SignalLights", "TrackerBodies", "lights_of", "signal_poles"]
-
 _SAME = 0.01  # Poles nearer to each other are one [m]
 
 _rotate = interpreted(rotate)  # of scalars, but arrays do as well

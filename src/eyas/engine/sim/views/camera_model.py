@@ -22,8 +22,6 @@ from eyas.engine.render.outputs import picture_size
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.lighting import Lighting
 
-__all__ = ["CameraModel"]
-
 
 class CameraModel:
     """The cameras of N trackers where more is modelled of them than a pinhole.

@@ -15,8 +15,6 @@ from eyas.engine.sim.latency import Latency, is_always_0
 from eyas.engine.state.snapshot import Snapshot
 from eyas.lanes import interpreted
 
-__all__ = ["SeenState", "ShownState"]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

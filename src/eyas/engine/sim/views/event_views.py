@@ -13,8 +13,6 @@ from eyas.engine.sim.views.exposures import Chosen, Moment, Stage, exposure_of, 
 from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.snapshot import CameraState, Snapshot
 
-__all__ = ["EventViews"]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

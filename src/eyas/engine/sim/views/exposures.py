@@ -27,8 +27,6 @@ from eyas.engine.render.outputs import picture_size
 from eyas.engine.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.engine.state.snapshot import CameraState, Snapshot
 
-__all__ = ["Chosen", "Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Chosen = NDArray[np.int32]

@@ -23,8 +23,6 @@ from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.lanes import exact, interpreted
 
-__all__ = ["FurtherCamera", "FurtherOptics"]
-
 Chosen = NDArray[np.int32]
 Floats = NDArray[np.float64]
 

@@ -12,8 +12,6 @@ from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.views.camera_model import CameraModel
 from eyas.engine.sim.views.thermal_views import ThermalViews
 
-__all__ = ["Optics"]
-
 
 class Optics:
     """What is modelled of N cameras beyond pinholes.

@@ -17,8 +17,6 @@ from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.lanes import Held, compiled
 
-__all__ = ["Outlines"]
-
 Floats = NDArray[np.float64]
 
 

@@ -13,8 +13,6 @@ from eyas.engine.state.scene import LABELLED, LAST_PARKED, ObjectClass, Scene
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import Held, compiled, exact, kernel
 
-__all__ = ["ParkedObject", "ParkedObjects", "SeenParked"]
-
 Floats = NDArray[np.float64]
 
 _APART = 0.1

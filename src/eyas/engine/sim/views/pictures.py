@@ -26,8 +26,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.task.rules import Rules
 
-__all__ = ["PictureDrawer", "is_timed"]
-
 Chosen = NDArray[np.int32]
 Floats = NDArray[np.float64]
 

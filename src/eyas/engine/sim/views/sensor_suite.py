@@ -27,8 +27,6 @@ from eyas.engine.task.config import Crash
 from eyas.engine.task.contact import Contacts
 from eyas.engine.trackers.config import TrackerKind
 
-__all__ = ["SensorSuite"]
-
 
 class _Sensor(Protocol):
     def begin(self, tracker: int, rng: np.random.Generator) -> None: ...

@@ -14,7 +14,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     from eyas.engine.sim.views.near_actors import Listed
 
-__all__ = ["SPRAY_REACH", "spray_of", "throwing"]
 
 SPRAY_REACH = 14.0
 """Distance from a vehicle beyond which its spray is not seen [m], see `sky.plumes`."""

@@ -18,8 +18,6 @@ from eyas.engine.sim.assets import Assets
 from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import ACTOR_OBJECT
 
-__all__ = ["ThermalViews"]
-
 
 class ThermalViews:
     """The thermal cameras of N trackers.

@@ -29,8 +29,6 @@ from eyas.engine.targets.grammar.in_view import InView
 from eyas.engine.task.packet_rows import SENSOR_COLUMNS, SENSOR_COUNT, PacketRows
 from eyas.engine.task.rules import Rules
 
-__all__ = ["View"]
-
 Floats = NDArray[np.float64]
 
 

@@ -36,8 +36,6 @@ from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
 from eyas.lanes import Held, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
-__all__ = ["VisibleActors"]
-
 _LONGEST = 3.0
 """Reach of a thing beyond which it is not said to move in a picture: half a long car [m]."""
 

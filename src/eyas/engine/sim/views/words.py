@@ -14,8 +14,6 @@ from eyas.engine.targets.grammar.in_view import InView
 from eyas.engine.targets.words import Seen, told_apart
 from eyas.lanes import exact
 
-__all__ = ["in_view", "target_in_words"]
-
 Floats = NDArray[np.float64]
 
 

@@ -22,16 +22,6 @@ from eyas.engine.targets.grammar.claims import (
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, InView, body_of
 from eyas.engine.targets.grammar.wording import Wording, in_words
 
-__all__ = [
-    "NO_PHRASE",
-    "Phrase",
-    "PhraseKind",
-    "claims_about",
-    "contradictory",
-    "descriptions",
-    "phrase_about",
-]
-
 Item = TypeVar("Item")
 
 

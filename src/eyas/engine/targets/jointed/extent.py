@@ -11,8 +11,6 @@ from eyas.engine.mesh.shell import DETAILS, Shape, shell_of
 from eyas.engine.targets.jointed.cycle import frames_of, shapes_of
 from eyas.engine.targets.jointed.figure import Figure
 
-__all__ = ["Extents", "extents_of"]
-
 _INTERVALS = 32  # Moments of a cycle; between two of them, parts move along straight lines
 
 Floats = NDArray[np.float64]

@@ -11,8 +11,6 @@ from eyas.engine.targets.habit import Habit
 from eyas.engine.targets.jointed.figure import Figure
 from eyas.engine.targets.kind import Colour, Model
 
-__all__ = ["JointedModel", "robot"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointedModel(Model):

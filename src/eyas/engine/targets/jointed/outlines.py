@@ -9,8 +9,6 @@ from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Surface
 from eyas.lanes import exact
 
-__all__ = ["bar", "block", "cylinder", "limb", "matt", "oval", "stack", "wheel"]
-
 
 def matt(red: float, green: float, blue: float) -> Material:
     """Return a matt material, sRGB 0 to 1."""

@@ -15,8 +15,6 @@ from eyas.engine.targets.posing import ActorFrame, Slots
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["BODY", "PART", "CycleTable", "pose_figure"]
-
 _TIGHTEST = 0.3  # Radius of the tightest curve that wheels steer [m]
 
 

@@ -14,8 +14,6 @@ from eyas.engine.targets.jointed.pose import BODY, PART, CycleTable, pose_figure
 from eyas.engine.targets.posing import PoseCall
 from eyas.lanes import exact
 
-__all__ = ["JointedRig", "Layout", "layout_of"]
-
 _INTERVALS = 32  # Intervals of a cycle; within one, parts move along straight lines
 
 _SHEARED = 1.25  # Factor by which what stays upright on a slope may be farther from its origin

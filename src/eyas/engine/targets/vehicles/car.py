@@ -9,8 +9,6 @@ from eyas.engine.world.cars.body import TRACK, body_levels
 from eyas.engine.world.cars.frame import Axle
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["car"]
-
 
 def car(
     name: str,  # The original's name

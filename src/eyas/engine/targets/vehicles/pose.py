@@ -13,8 +13,6 @@ from eyas.engine.traffic.trailer import folded
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle"]
-
 STEER_LIMIT = 0.6  # Largest steering angle [rad]
 
 _SLOWEST = 1.0  # Smallest speed used to compute the curvature from the yaw rate [m/s]

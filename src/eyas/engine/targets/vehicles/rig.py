@@ -14,8 +14,6 @@ from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD, Trailer, Vehicle
 from eyas.engine.world.cars.frame import Axle
 from eyas.engine.world.cars.wheels import DESIGNS, wheel_levels
 
-__all__ = ["VehicleRig", "trailers_of"]
-
 
 class VehicleRig:
     """The rig of the models of one kind of vehicle.

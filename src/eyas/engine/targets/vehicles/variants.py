@@ -6,8 +6,6 @@ from typing import Any
 
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["variants_of"]
-
 _VARIANTS: Mapping[str, tuple[dict[str, Any], ...]] = {
     "saloon": (
         {"bodywork": "saloon_sunroof"},

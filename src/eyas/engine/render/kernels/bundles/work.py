@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.lighting import LightState
 
-__all__ = ["Canvas", "Job", "Output", "Scratch", "Task"]
-
 
 class Job(NamedTuple):
     """The cameras, and which rows of which view each job draws."""

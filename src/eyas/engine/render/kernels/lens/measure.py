@@ -23,8 +23,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["count_bent"]
-
 _FAR = 1 << 30
 
 

@@ -10,8 +10,6 @@ from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.engine.state.scene import SKY_OBJECT, ObjectClass
 from eyas.lanes import kernel
 
-__all__ = ["darken", "write_bent_depth"]
-
 _SKY = int(ObjectClass.SKY)
 
 

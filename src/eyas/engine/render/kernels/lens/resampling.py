@@ -36,8 +36,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["face_rows", "face_view", "glass_of", "look_through", "shown_at", "to_camera"]
-
 
 @kernel
 def face_rows(tables: LensTables, slot: int, face: int, top: int, bottom: int) -> tuple[int, int]:

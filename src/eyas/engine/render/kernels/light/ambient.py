@@ -20,16 +20,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = [
-    "BOUNCED",
-    "DIRECTIONS",
-    "DISTANCES",
-    "LEAVES",
-    "OpennessBake",
-    "bake_openness",
-    "openness",
-]
-
 DIRECTIONS = 16  # Number of directions in which the horizon is searched
 
 STEPS = 14  # Number of points examined in each direction

@@ -51,8 +51,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["cast_light", "influence"]
-
 SMALLEST = 1.0  # Things whose half diagonal is smaller cast no shadow [pixels]
 
 _BELOW = 0.3  # Distance below the bottom of a thing down to which its shadow falls [m]

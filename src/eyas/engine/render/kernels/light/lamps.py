@@ -18,8 +18,6 @@ from eyas.lanes.vector import (
     transposed,
 )
 
-__all__ = ["lamp_gloss", "night_light", "window_light"]
-
 _HEAD = f4(0.95 / 255.0)  # Brightest light of head lamps, for each step of `Scratch.shade`.
 
 _TAIL = f4(0.16 / 255.0)  # The same for tail lamps

@@ -7,8 +7,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser, magnitude, root, select
 
-__all__ = ["Box", "ShadowBoxes", "darken", "may_darken", "shadow_boxes"]
-
 _UNDER = 0.88  # Share of the sky's light that a car blocks on the ground under it
 
 _INSET = 0.3  # Distance from the edge of a body inwards at which the blocking begins [m]

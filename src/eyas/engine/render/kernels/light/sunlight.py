@@ -16,8 +16,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["sunlight", "sunlit"]
-
 TILE_BITS = i4(TILE.bit_length() - 1)
 
 

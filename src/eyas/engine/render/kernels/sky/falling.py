@@ -9,21 +9,6 @@ from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 
-__all__ = [
-    "LEAVES",
-    "RAIN",
-    "SNOW",
-    "Falling",
-    "FallingKind",
-    "drift",
-    "drop_lit",
-    "falling_of",
-    "leaf_colour",
-    "lit_by_lamps",
-    "sky_lit",
-    "under_trees",
-]
-
 Colour = tuple[float, float, float]
 
 _CROWN = 16.0  # Height above the ground up to which leaves fall [m]

@@ -31,8 +31,6 @@ from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.engine.render.kernels.wind import wave
 from eyas.lanes import address_of, kernel
 
-__all__ = ["bytes_of", "let_flakes_fall", "seen_from"]
-
 Colour = tuple[float, float, float]
 
 NEAREST = 0.7  # Distance of the first shell [m]; nearer flakes would be blurs

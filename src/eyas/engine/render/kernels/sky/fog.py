@@ -6,8 +6,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser
 
-__all__ = ["HAZE_END", "fog_share", "hidden_at", "land_fog"]
-
 Colour = tuple[float, float, float]
 
 HAZE_END = 4.0

@@ -38,8 +38,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["draw_halos"]
-
 Colour = tuple[float, float, float]
 
 _FARTHEST = 140.0  # Distance beyond which lamps have no halo [m]

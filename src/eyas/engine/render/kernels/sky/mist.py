@@ -8,8 +8,6 @@ from eyas.engine.render.kernels.sky.fog import land_fog
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser
 
-__all__ = ["aired", "glare", "mist_share", "veil"]
-
 Colour = tuple[float, float, float]
 
 

@@ -18,8 +18,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["azimuth", "moon_face", "starlight", "turned_stars"]
-
 _STAR_ROWS = f4(72.0)  # Rows of cells from the horizon to the zenith, of equal area
 
 _STAR_COLUMNS = f4(80.0)  # Columns of cells in a quarter of the horizon

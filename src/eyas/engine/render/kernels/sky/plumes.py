@@ -37,8 +37,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["draw_plumes", "on_screen"]
-
 Colour = tuple[float, float, float]
 Vector = tuple[float, float, float]
 

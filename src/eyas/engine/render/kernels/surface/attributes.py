@@ -20,8 +20,6 @@ from eyas.lanes.vector import (
     transposed,
 )
 
-__all__ = ["Attributes", "Frame", "attributes_of", "instance_frame"]
-
 Vector = tuple[float, float, float]
 
 

@@ -47,9 +47,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["shade_band"]
-
-
 Colour = tuple[float, float, float]
 Four = tuple[int, int, int, int]
 

@@ -8,8 +8,6 @@ from eyas.engine.render.kernels.surface.snow import Bed
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, select
 
-__all__ = ["littered"]
-
 Colour = tuple[float, float, float]
 
 DRIVEN, OPEN, POROUS = i4(int(Bed.DRIVEN)), i4(int(Bed.OPEN)), i4(int(Bed.POROUS))

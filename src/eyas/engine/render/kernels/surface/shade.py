@@ -33,8 +33,6 @@ from eyas.engine.state.mesh import MARGIN, Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4, to_i4
 
-__all__ = ["painted_share", "shade_point", "water_slope"]
-
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
 FOLIAGE = i4(int(Surface.FOLIAGE))

@@ -5,8 +5,6 @@ from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, select
 
-__all__ = ["BRAKING", "LEFT", "RIGHT", "signalled"]
-
 _TAIL = int(Surface.TAIL_LAMP)
 
 TAIL_LAMP = i4(_TAIL)

@@ -18,8 +18,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["Bed", "snowed"]
-
 Colour = tuple[float, float, float]
 
 

@@ -20,8 +20,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["wetted"]
-
 Colour = tuple[float, float, float]
 
 DRIVEN, OPEN = i4(int(Bed.DRIVEN)), i4(int(Bed.OPEN))

@@ -12,18 +12,6 @@ from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, magnitude, select, to_i4
 
-__all__ = [
-    "DESERT",
-    "DRIFT",
-    "GREEN_SHORE",
-    "HEATH",
-    "HEATH_SHORE",
-    "HILLSIDE",
-    "Look",
-    "downwind",
-    "wild",
-]
-
 Colour = tuple[float, float, float]
 
 HILLSIDE, HEATH = i4(int(Surface.HILLSIDE)), i4(int(Surface.HEATH))

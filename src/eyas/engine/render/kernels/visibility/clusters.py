@@ -16,23 +16,6 @@ from eyas.engine.render.kernels.visibility.triangles import Corners
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, greater, lane_numbers, load, select, to_f8
 
-__all__ = [
-    "APEX",
-    "AXIS",
-    "BOUNDS_ROWS",
-    "CLUSTER",
-    "CLUSTER_ROWS",
-    "CUT_OFF",
-    "LARGEST",
-    "LEAVES",
-    "NO_CONE",
-    "SIZE",
-    "UV_ROWS",
-    "clusters_seen",
-    "has_leaves",
-    "project_cluster",
-]
-
 CLUSTER = 8  # Triangles in a cluster
 
 CLUSTER_ROWS = 11

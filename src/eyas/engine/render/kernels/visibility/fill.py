@@ -52,8 +52,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["SPAN_ROWS", "fill", "fill_row", "fill_rows", "slopes_of"]
-
 SPAN_ROWS = 7  # Rows of `Scratch.span`: a column for each of eight rows of samples.
 
 AT, END = 0, 1

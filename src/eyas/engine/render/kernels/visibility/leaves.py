@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.visibility.triangles import INVERSE
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather
 
-__all__ = ["leaves_of", "tiles_of"]
-
 _TEXELS = 256.0  # Texels along a side of a texture
 
 

@@ -31,8 +31,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["measure_actors", "measure_subject"]
-
 _MARGIN = 2
 """Width of the border around a thing's box that is searched, too: more than roundings [samples]."""
 

@@ -38,8 +38,6 @@ from eyas.engine.state.draw import DrawStage
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, first_bit, lane_numbers, prefetch, splat
 
-__all__ = ["draw_cluster", "draw_mesh", "fetch_mesh", "level_of_detail"]
-
 VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5

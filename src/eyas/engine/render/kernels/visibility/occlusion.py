@@ -9,8 +9,6 @@ from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, any_of, lane, lane_numbers, like, load, select, to_f4
 
-__all__ = ["TILE", "box_is_hidden", "measure_tiles"]
-
 TILE = WIDTH  # Side of a tile [samples]
 
 _MARGIN = 1.0  # Width of the border around a box on the screen that counts as the box [samples]

@@ -15,8 +15,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, load, store
 
-__all__ = ["object_of", "write_classes", "write_depth", "write_objects"]
-
 
 @kernel
 def write_depth(

@@ -14,8 +14,6 @@ from eyas.engine.render.kernels.wind import sways
 from eyas.engine.state.draw import DrawStage
 from eyas.lanes import kernel
 
-__all__ = ["draw_scene", "draw_slots", "item_at", "list_scene"]
-
 CULLING = int(DrawStage.CULLING)
 
 MEASURED_EVERY = 16

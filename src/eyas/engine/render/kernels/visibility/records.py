@@ -28,8 +28,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["MOST_ROWS", "fill_recorded", "record_triangles"]
-
 MOST_ROWS = 1024
 """So many rows of samples of a triangle may be told apart; taller ones are not recorded."""
 

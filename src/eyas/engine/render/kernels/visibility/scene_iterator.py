@@ -9,8 +9,6 @@ from eyas.engine.render.kernels.visibility.key import drawn_of
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, gather_column, select
 
-__all__ = ["belongs_to", "end_of_thing", "next_thing"]
-
 
 @kernel(inline=True)
 def next_thing(band: Band, slot: int) -> int:

@@ -10,15 +10,6 @@ from eyas.engine.render.kernels.scalars import i8
 from eyas.engine.render.kernels.visibility.cull import planes_of
 from eyas.lanes import kernel
 
-__all__ = [
-    "clip_near",
-    "in_frame",
-    "object_projection",
-    "scale_of",
-    "view_along",
-    "view_of",
-]
-
 
 @kernel(inline=True)
 def view_of(task: Task, band: int) -> View:

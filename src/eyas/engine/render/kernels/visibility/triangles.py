@@ -24,32 +24,6 @@ from eyas.lanes.vector import (
     whole,
 )
 
-__all__ = [
-    "ACROSS",
-    "DOWN",
-    "FALL",
-    "FIRST_ROW",
-    "INVERSE",
-    "LAST_ROW",
-    "LEAST",
-    "LONG",
-    "LOWER",
-    "MOST",
-    "RUN",
-    "SIXTEENTHS",
-    "START",
-    "TRIANGLE_ROWS",
-    "UPPER",
-    "Corners",
-    "U",
-    "V",
-    "X",
-    "Y",
-    "load_corners",
-    "set_up",
-    "set_up_leaves",
-]
-
 SIXTEENTHS = 16.0  # Steps in a sample to which corners are rounded
 
 TRIANGLE_ROWS = 28  # Rows of `Scratch.triangle`, see the following; a column for each triangle.

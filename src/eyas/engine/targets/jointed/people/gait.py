@@ -19,8 +19,6 @@ from eyas.engine.targets.jointed.people.person import (
 )
 from eyas.engine.targets.jointed.people.wardrobe import Dress
 
-__all__ = ["STRIDE", "figure_of"]
-
 STRIDE = 1.46  # Of a person of 1.80 m [m]: 1.37 strides a second at the original's 2 m/s.
 
 _SHOULDERS = {Build.MAN: 0.188, Build.WOMAN: 0.162, Build.STOUT: 0.198, Build.CHILD: 0.168}

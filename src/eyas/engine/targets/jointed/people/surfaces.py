@@ -12,8 +12,6 @@ from eyas.engine.state.mesh import Material
 from eyas.engine.world.build.bodywork import Region
 from eyas.lanes import exact
 
-__all__ = ["Row", "loop", "wrapped"]
-
 _CREASE = 1.35  # Bodies of five sides are round, boxes are not [rad]
 
 _FEW = 6  # With fewer sides, every second outline is left out

@@ -13,8 +13,6 @@ from eyas.engine.targets.kind import Colour
 from eyas.engine.world.build.clothing import HIPS, LEG, TORSO, cloth
 from eyas.lanes import exact
 
-__all__ = ["chest", "hips", "straps"]
-
 Points = NDArray[np.float64]
 
 _BODIES: dict[Build, tuple[Row, ...]] = {
