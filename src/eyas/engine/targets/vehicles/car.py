@@ -1,13 +1,38 @@
 """Cars, vans and buses as models of the catalogue."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
+from typing import Any
 
-from eyas.engine.targets.vehicles.variants import variants_of
 from eyas.engine.targets.vehicles.vehicle import VehicleModel, vehicle
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.world.cars.body import TRACK, body_levels
 from eyas.engine.world.cars.frame import Axle
 from eyas.engine.world.cars.shape import CarShape
+
+_VARIANTS: Mapping[str, tuple[dict[str, Any], ...]] = {
+    "saloon": (
+        {"bodywork": "saloon_sunroof"},
+        {"bodywork": "saloon_worn"},
+        {"bodywork": "saloon_worn", "dark_bumpers": True},
+    ),
+    "hatch": (
+        {"bodywork": "hatch_sunroof", "rack": False},
+        {"bodywork": "hatch_worn", "dark_bumpers": True, "rack": False},
+        {"bodywork": "hatch_sunroof", "rack": True},
+    ),
+    "van": (
+        {"dark_bumpers": False, "rack": True},
+        {"bodywork": "van_worn", "rack": True},
+    ),
+}
+"""What each further body of a kind of bodywork has that the first has not."""
+
+
+def variants_of(shape: CarShape) -> tuple[CarShape, ...]:
+    """Return the shapes of the further bodies of a car."""
+    return tuple(replace(shape, **changes) for changes in _VARIANTS.get(shape.bodywork, ()))
 
 
 def car(
