@@ -16,7 +16,7 @@ from eyas.engine.core.machine import describe_machine
 from eyas.engine.render.kernels.draw import draw_views
 from eyas.gpu.cuda import gpu_line
 from eyas.lanes import thread_count
-from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder, refusal
+from eyas.lanes.folder import refusal
 from eyas.lanes.identity import identity
 from eyas.lanes.machine_code import code_name
 from eyas.lanes.shipped import (
@@ -31,6 +31,7 @@ from eyas.lanes.shipped import (
     wanted,
     wide_needed,
 )
+from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
 __all__ = ["facts", "run"]
 

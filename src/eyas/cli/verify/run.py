@@ -19,7 +19,7 @@ from eyas.engine.core.machine import describe_machine
 from eyas.engine.core.scratch import scratch
 from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
-from eyas.lanes.folder import FOLDER_VARIABLE
+from eyas.lanes.trusted import FOLDER_VARIABLE
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
 

@@ -41,7 +41,7 @@ _APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)
 _COMPILER = (language_hash.__module__.rpartition(".")[0],)
 """Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
 
-_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64", "small_arrays"))
+_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64"))
 """Modules among them that compute values, and are followed as all others."""
 
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}

@@ -33,17 +33,6 @@ from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.street.signals import lens_levels
 from eyas.engine.world.weather import Season
 
-__all__ = [
-    "Lenses",
-    "load_geometry",
-    "load_network",
-    "load_parts",
-    "load_scene",
-    "load_solids",
-    "load_textures",
-    "paint",
-]
-
 
 class Lenses(Enum):
     """What is drawn of signals that change."""
@@ -129,21 +118,13 @@ def load_solids(map_name: str, seed: int, season: Season) -> Solids:
 @lru_cache(maxsize=4)
 def load_geometry(
     map_name: str,
-    seed: int,
-    season: Season,
-    kinds: tuple[int, ...],
+    seed: int,  # Seed of the map
+    season: Season,  # Season of the weather
+    kinds: tuple[int, ...],  # Kinds of the moving objects, indices into `KINDS`
     *,
-    lenses: Lenses = Lenses.NONE,
+    lenses: Lenses = Lenses.NONE,  # Which lights of signals are parts, too, the last ones
 ) -> Geometry:
-    """Return the geometry of a scene and of the parts of moving objects, for the kernels.
-
-    Args:
-        map_name: Name of the map.
-        seed: Seed of the map.
-        season: Season of the weather.
-        kinds: Kinds of the moving objects, indices into `KINDS`.
-        lenses: Which lights of signals are parts, too, the last ones.
-    """
+    """Return the geometry of a scene and of the parts of moving objects, for the kernels."""
     scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
     make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
     if origin is None:
@@ -184,12 +165,10 @@ def _parts_of(kind: TargetKind) -> PartLibrary:
     return cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
 
 
-def paint(kinds: Sequence[int]) -> None:
-    """Put textures, and the parts of kinds of moving objects, into the cache.
-
-    Args:
-        kinds: See `load_geometry`.
-    """
+def paint(
+    kinds: Sequence[int],  # See `load_geometry`
+) -> None:
+    """Put textures, and the parts of kinds of moving objects, into the cache."""
     load_textures()
     load_parts(tuple(kinds))
 

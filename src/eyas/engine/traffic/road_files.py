@@ -11,20 +11,15 @@ from eyas.engine.traffic.fleet import fleet_of
 from eyas.engine.traffic.sumo import RATE, departures_and_types, options
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
 
-__all__ = ["opendrive_xml", "sumo_files"]
-
 
 def sumo_files(
-    name: str, network: bytes, config: TrafficConfig, duration: float
+    name: str,  # Name of the map
+    network: bytes,  # SUMO's network file
+    config: TrafficConfig,  # Settings from `eyas.engine.traffic.record.resolved`
+    duration: float,  # How long it drives [s]
 ) -> Mapping[str, bytes]:
     """Return what SUMO needs to drive the traffic of a map, by the names of the files:
     `sumo -c NAME.sumocfg`.
-
-    Args:
-        name: Name of the map.
-        network: SUMO's network file.
-        config: Settings from `eyas.engine.traffic.record.resolved`.
-        duration: How long it drives [s].
 
     Raises:
         MissingExtraError: SUMO is not installed.

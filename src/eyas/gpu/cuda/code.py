@@ -17,14 +17,13 @@ import llvmlite
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.entry import LOCK
-from eyas.lanes.folder import kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import identity, language_hash
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import code_name, digest, entry_of
 from eyas.lanes.shipped import wanted
 from eyas.lanes.syntax import syntax_of
-
-__all__ = ["ARCHIVE", "OLDEST", "SUFFIX", "Ptx", "archive_of", "ptx_code"]
+from eyas.lanes.trusted import read_trusted, touch, write_trusted
 
 OLDEST = (8, 0)  # The least compute capability of cards that are served: that of the A100, of 2020
 
@@ -46,16 +45,12 @@ class Ptx(NamedTuple):
 
 
 def ptx_code(
-    call: CompiledCall, types: tuple[Any, ...], kinds: tuple[str, ...], threads: int
+    call: CompiledCall,  # The kernel
+    types: tuple[Any, ...],  # Bundles of these kinds
+    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.held.Held`
+    threads: int,  # See `eyas.lanes.device.Device.launch`
 ) -> Ptx:
-    """Return the PTX of a kernel for bundles of some kinds.
-
-    Args:
-        call: The kernel.
-        types: Bundles of these kinds.
-        kinds: The kinds, see `eyas.lanes.held.Held`.
-        threads: See `eyas.lanes.device.Device.launch`.
-    """
+    """Return the PTX of a kernel for bundles of some kinds."""
     function = call.function
     name = code_name(function.__qualname__.rpartition(".")[2], identity(function))
     stem = f"{name}-{digest((*kinds, str(threads)))}"

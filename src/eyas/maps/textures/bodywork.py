@@ -32,8 +32,6 @@ from eyas.engine.world.build.bodywork import (
 )
 from eyas.maps.textures.brush import Line, Sheet, sheet_of, texture_of
 
-__all__ = ["PAINTERS", "bodywork", "freight", "panes"]
-
 Texture = NDArray[np.uint8]
 
 _SEAM = 0.015

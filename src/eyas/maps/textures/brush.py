@@ -11,8 +11,6 @@ from eyas.engine.render.textures.fields import SIZE, Field
 from eyas.engine.world.build.bodywork import BASE, Region
 from eyas.lanes import exact
 
-__all__ = ["Line", "Sheet", "sheet_of", "texture_of"]
-
 Line = Sequence[tuple[float, float]]
 
 

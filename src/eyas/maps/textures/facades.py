@@ -18,24 +18,6 @@ from eyas.engine.render.textures.fields import (
 )
 from eyas.maps.textures.windows import BAY, Opening, Wall
 
-__all__ = [
-    "brick",
-    "concrete",
-    "facade_bands",
-    "facade_brick",
-    "facade_concrete",
-    "facade_glass",
-    "facade_highrise",
-    "facade_office",
-    "facade_old",
-    "facade_plaster",
-    "facade_red_white",
-    "facade_stone",
-    "ground_lobby",
-    "ground_shop",
-    "stone",
-]
-
 Texture = NDArray[np.uint8]
 Colour = tuple[float, float, float]
 

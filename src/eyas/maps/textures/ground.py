@@ -18,8 +18,6 @@ from eyas.engine.render.textures.fields import (
 )
 from eyas.lanes import exact
 
-__all__ = ["asphalt", "asphalt_light", "lawn", "lawn_mown", "paving", "soil"]
-
 Texture = NDArray[np.uint8]
 
 

@@ -17,20 +17,6 @@ from eyas.engine.render.textures.fields import (
 )
 from eyas.lanes import exact
 
-__all__ = [
-    "clinker",
-    "crops",
-    "crops_green",
-    "crops_lilac",
-    "crops_ripe",
-    "crops_tan",
-    "crops_yellow",
-    "dry_leaves",
-    "sand",
-    "snow",
-    "water",
-]
-
 Texture = NDArray[np.uint8]
 
 

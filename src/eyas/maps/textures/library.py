@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from eyas.engine.world.build.materials import TEXTURES
 from eyas.maps.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 
-__all__ = ["PAINTERS", "painted_textures"]
-
 
 def _plain() -> NDArray[np.uint8]:
     return np.full((256, 256, 4), 255, np.uint8)

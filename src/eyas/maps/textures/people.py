@@ -23,8 +23,6 @@ from eyas.engine.world.build.clothing import (
 from eyas.lanes import exact
 from eyas.maps.textures.brush import Sheet, sheet_of, texture_of
 
-__all__ = ["PAINTERS", "clothes", "heads"]
-
 Texture = NDArray[np.uint8]
 
 _SEAM = 0.35 * BASE

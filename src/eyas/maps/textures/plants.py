@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.engine.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
 from eyas.lanes import exact
 
-__all__ = ["bark", "foliage", "leaves", "pale_foliage", "pale_leaves"]
-
 _CLUSTER = 128  # Side of one cluster of leaves; the texture holds two by two [pixels]
 
 _BEHIND = (46.0, 60.0, 28.0)  # Colour under the holes, which is mixed in at coarse levels of detail

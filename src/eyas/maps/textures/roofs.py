@@ -14,8 +14,6 @@ from eyas.engine.render.textures.fields import (
 )
 from eyas.lanes import exact
 
-__all__ = ["bitumen", "roof_gravel", "roof_membrane", "roof_terrace", "roof_tiles"]
-
 Texture = NDArray[np.uint8]
 
 

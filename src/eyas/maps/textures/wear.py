@@ -16,8 +16,6 @@ from eyas.engine.render.textures.mipmap import linear
 from eyas.lanes import exact
 from eyas.maps.textures.ground import asphalt
 
-__all__ = ["asphalt_lane", "asphalt_oil", "asphalt_paint", "asphalt_patch", "manhole", "paint"]
-
 Texture = NDArray[np.uint8]
 
 

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from eyas.engine.render.textures.fields import SIZE, Field, Picture, fractal, white
 from eyas.lanes import exact
 
-__all__ = ["BAY", "Opening", "Wall"]
-
 BAY = 64  # Pixels in a bay and in a storey: 3 m
 
 Colour = tuple[float, float, float]
