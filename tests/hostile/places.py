@@ -151,7 +151,7 @@ OWN = {
     "exports.mp4:Mp4Writer.read": _OUTPUT,
     "exports.ros.bag:RosbagWriter.read": _OUTPUT,
     "exports.scenario:ScenarioWriter.read": _OUTPUT,
-    "exports.table:TableWriter.read": _OUTPUT,
+    "exports.episode_files:TableWriter.read": _OUTPUT,
     "lanes.container:unpacked": _CACHE,
     "lanes.cuda.cards:gpu_line": _PACKAGE,
     "lanes.cuda.code:_shipped": _PACKAGE,

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import intrinsics
+from eyas.engine.core.optics.pinhole import intrinsics
 from eyas.engine.exports.frame import (
     CameraPicture,
     CameraPose,

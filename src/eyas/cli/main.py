@@ -3,7 +3,7 @@
 import os
 import sys
 
-from eyas.engine.core.interrupts import EndingSignals
+from eyas.engine.terminal.interrupts import EndingSignals
 
 __all__ = ["main"]
 

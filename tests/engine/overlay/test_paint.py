@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project, rays
+from eyas.engine.core.optics.pinhole import project, rays
 from eyas.engine.overlay.items import GroundArea, Label, Overlay, Solid, ThinLine
 from eyas.engine.overlay.paint import paint_overlays, with_depth
 from eyas.engine.state.draw import DrawList, Picture

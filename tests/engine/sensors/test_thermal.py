@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.lens import FISHEYE, lens_of, rays
+from eyas.engine.core.optics.lens import FISHEYE, lens_of, rays
 from eyas.engine.sensors.camera.temperature import SurfaceTemperatures, direction_of
 from eyas.engine.sensors.camera.thermal import (
     HEAT,

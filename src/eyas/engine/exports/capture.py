@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.lens import NO_LENS, Lens
+from eyas.engine.core.optics.lens import NO_LENS, Lens
 from eyas.engine.exports.frame import (
     CameraPicture,
     CameraPose,

@@ -10,14 +10,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.png import png_bytes
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import refusals, write_atomic
-from eyas.engine.core.lens import NO_LENS, Lens, distorted, principal_point, undistorted
-from eyas.engine.core.pinhole import focal_length
-from eyas.engine.core.png import png_bytes
+from eyas.engine.core.optics.lens import NO_LENS, Lens, distorted, principal_point, undistorted
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.exports.frame import CameraPose, Floats, Frame
-from eyas.engine.exports.per_frame import numbered
-from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
+from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer, numbered
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.state.draw import MovingParts
 from eyas.lanes import compiled, kernel

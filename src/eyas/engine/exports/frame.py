@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
+from eyas.engine.core.optics.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
 from eyas.engine.exports.movement import (
     Movement,
     SectionBox,

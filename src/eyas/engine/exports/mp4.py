@@ -9,8 +9,8 @@ from typing import IO, TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.files import part_path, refusals
-from eyas.engine.core.pyav import pyav
 from eyas.engine.exports.frame import Frame
 from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
 

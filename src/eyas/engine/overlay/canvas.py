@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.engine.core import lens
-from eyas.engine.core.lens import Lens
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics import lens
+from eyas.engine.core.optics.lens import Lens
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.state.draw import Views
 from eyas.lanes import exact
 

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import shown
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK, folder_lock
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.core.own_code import left_out
 from eyas.engine.exports.checksums import (
     CHECKSUMS,
@@ -27,10 +27,14 @@ from eyas.engine.exports.checksums import (
     read_checksums,
     seal_folder,
 )
-from eyas.engine.recordings.first_sight import from_first_sight
-from eyas.engine.recordings.format import KEPT, Exported, Format, Job
-from eyas.engine.recordings.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
-from eyas.engine.recordings.registry import FORMATS, SETTING
+from eyas.engine.recordings.format import FORMATS, KEPT, SETTING, Exported, Format, Job
+from eyas.engine.recordings.recording import (
+    DATASET_FILE,
+    OF_EPISODES,
+    RecordedEpisode,
+    Recording,
+    from_first_sight,
+)
 
 __all__ = [
     "EXPORTS",

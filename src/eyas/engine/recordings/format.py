@@ -21,13 +21,16 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import atomic_path, refusals, write_atomic
+from eyas.engine.core.registry import Registry
 from eyas.engine.exports.label import FIELDS, Label
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 from eyas.engine.state.scene import ObjectClass
 
 __all__ = [
     "CLASS_NAMES",
+    "FORMATS",
     "KEPT",
+    "SETTING",
     "Exported",
     "Format",
     "Job",
@@ -265,3 +268,13 @@ def split_of(episode: RecordedEpisode) -> str:
 def numbered(frame: RecordedFrame, first: int, digits: int, ending: str) -> str:
     """Return a name of a frame's picture: its number, counted from `first`."""
     return f"{frame.number + first:0{digits}d}.{ending}"
+
+
+SETTING = "--format"
+
+FORMATS: Registry[type[Any]] = Registry(
+    SETTING,
+    type,
+    group="eyas.formats",
+)
+"""All formats; a user's own is selected by its path, `my_package.module:Class`."""

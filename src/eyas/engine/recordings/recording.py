@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import decoded_arrays, decoded_picture, read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.core.folder_lock import LOCK
-from eyas.engine.core.pyav import pyav
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.engine.exports.label import LABELS, Label, read_labels
 from eyas.engine.settings.config import EyasConfig
@@ -34,8 +34,16 @@ from eyas.engine.state.scene import ACTOR_OBJECT, LAST_PARKED
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = ["DATASET_FILE", "OF_EPISODES", "RecordedEpisode", "RecordedFrame", "Recording", "load",
-           "load_part"]  # fmt: skip
+__all__ = [
+    "DATASET_FILE",
+    "OF_EPISODES",
+    "RecordedEpisode",
+    "RecordedFrame",
+    "Recording",
+    "from_first_sight",
+    "load",
+    "load_part",
+]
 
 DATASET_FILE = "dataset.json"  # What a data set holds, see `eyas.datasets.plan`.
 
@@ -389,3 +397,33 @@ def _require_fitting(label: Label, size: tuple[int, int], where: str) -> None:
         left, top, right, bottom = box
         if not (left <= right <= size[0] and top <= bottom <= size[1]):
             raise DataFileError(f"{where}: the box {box} is not inside the picture")
+
+
+def from_first_sight(episode: RecordedEpisode) -> RecordedEpisode | None:
+    """Return the rest of an episode, whose frames count from 0 again; None if its target is never
+    visible.
+    """
+    for label in episode.labels:
+        if label["visible_fraction"] > 0.0:
+            return _Later(episode, label["frame"]) if label["frame"] else episode
+    return None
+
+
+class _Later(RecordedEpisode):
+    """An episode without its first frames."""
+
+    def __init__(self, whole: RecordedEpisode, skipped: int) -> None:
+        super().__init__(whole.name, whole.folder, whole.split, whole.config)
+        self._whole, self._skipped = whole, skipped
+
+    @cached_property
+    def labels(self) -> list[Label]:
+        left = self._whole.labels[self._skipped :]
+        return [{**label, "frame": number} for number, label in enumerate(left)]
+
+    @cached_property
+    def frame_count(self) -> int:
+        return self._whole.frame_count - self._skipped
+
+    def file(self, output: str, number: int) -> Path:
+        return self._whole.file(output, number + self._skipped)

@@ -7,8 +7,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, bounds, within
 from eyas.engine.sensors.camera.dirt import DirtConfig
 from eyas.engine.sensors.camera.events import EventsConfig

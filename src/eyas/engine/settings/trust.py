@@ -10,9 +10,9 @@ import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from eyas.engine.core.code_names import code_named
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import user_path
+from eyas.engine.core.own_code import code_named
 from eyas.engine.settings.config import EyasConfig, variants
 
 __all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code", "refuse_named"]
@@ -22,7 +22,7 @@ TRUST_VARIABLE = "EYAS_TRUST"
 
 
 def code_of(config: EyasConfig) -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name, as `eyas.engine.core.code_names.code_named`.
+    """Yield each piece of code that settings name, as `eyas.engine.core.own_code.code_named`.
 
     Those of mixtures and stages are included, where they differ from the common ones.
     """

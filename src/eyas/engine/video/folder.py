@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK
-from eyas.engine.core.lens import NO_LENS, Lens, camera_matrix
+from eyas.engine.core.identity.build import Build, this_build
+from eyas.engine.core.optics.lens import NO_LENS, Lens, camera_matrix
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING
 from eyas.engine.exports.registry import WRITERS, chosen_writers
 from eyas.engine.exports.writer import Episode, Files, Run, joined

@@ -1,30 +1,167 @@
-"""Draws and writes the frames of a recording, and counts them."""
+"""Draws and writes the frames of a recording, counts them, and keeps checksums of its episodes.
 
+By its checksums an episode that is damaged is known and drawn again. `checksums.sha256` has the
+files of all episodes:
+
+    0f3a...  DRONE0/episode0/000000.jpeg
+
+Those of an episode are appended to `.checksums` when it ends; the file is made of them when all
+have ended.
+"""
+
+import hashlib
 import os
+import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.errors import OutputError
-from eyas.engine.core.lens import NO_LENS
+from eyas.engine.core.errors import DataFileError, OutputError
+from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.optics.lens import NO_LENS
 from eyas.engine.exports.capture import frame_of, moment_of
-from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.exports.writer import EndedEpisode, Episode, Scores, Summary
+from eyas.engine.exports.checksums import CHECKSUMS, GROWING, checksum_lines, read_checksums
+from eyas.engine.exports.frame import Frame, RecordedAction
+from eyas.engine.exports.writer import EndedEpisode, Episode, Scores, Summary, Writer, joined
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.sim.flights.shares import SMALL
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
-from eyas.engine.video.checksums import Checksums
-from eyas.engine.video.episode import EpisodeFiles, read_complete
+from eyas.engine.video.episode import EpisodeFiles, RecordedPaths, paths_below, read_complete
 from eyas.engine.video.folder import VideoFolder
-from eyas.engine.video.reached import ReachedShares
 
-__all__ = ["Recorder", "WriterThreads"]
+__all__ = ["ReachedShares", "Recorder", "WriterThreads", "missed"]
+
+_NEAR = 0.05  # A share that differs by no more from what was asked is reached
+
+
+@dataclass(slots=True)
+class ReachedShares:
+    """Numbers of frames, of those that were drawn."""
+
+    frames: int = 0
+    in_view: int = 0
+    hidden: int = 0
+    cut: int = 0
+    small: int = 0
+
+    def add(self, frame: Frame) -> None:
+        """Count a frame."""
+        target = frame.target
+        left, top, right, bottom = target.box.tolist()
+        pixels = (right - left) * (bottom - top)
+        self.frames += 1
+        if not pixels:
+            return
+        self.in_view += 1
+        self.hidden += target.visible_fraction <= 0.5
+        self.cut += target.truncated(frame.camera) > 0.0
+        self.small += pixels < SMALL
+
+    def shares(self) -> dict[str, float]:
+        """Return the shares by their settings."""
+        names = ("in_view", "hidden", "cut", "small")
+        return {name: getattr(self, name) / max(self.frames, 1) for name in names}
+
+    def plus(self, other: "ReachedShares") -> "ReachedShares":
+        """Return both together."""
+        return ReachedShares(
+            self.frames + other.frames,
+            self.in_view + other.in_view,
+            self.hidden + other.hidden,
+            self.cut + other.cut,
+            self.small + other.small,
+        )
+
+
+def missed(reached: ReachedShares, video: VideoConfig) -> Iterator[str]:
+    """Yield a line for each share that was asked of camera paths and is not reached."""
+    for name, share in reached.shares().items():
+        asked = getattr(video, name)
+        if reached.frames and asked is not None and abs(share - asked) > _NEAR:
+            yield (
+                f"note: video.{name}: {asked:.0%} of the frames were asked, the flights came to "
+                f"{share:.0%}; other heights, pitches, maps or longer episodes may come nearer"
+            )
+
+
+class Checksums:
+    """The checksums of the episodes that have ended. Its methods may be called in any thread.
+
+    Args:
+        run: The recording's folder.
+        writers: Whose files are meant.
+    """
+
+    def __init__(self, run: Path, writers: Sequence[Writer]) -> None:
+        self._run, self._growing = run, run / GROWING
+        self._contents = RecordedPaths(joined(writer.files for writer in writers))
+        self._lock = threading.Lock()
+        self._known = _read(run / CHECKSUMS) | _read(self._growing)
+
+    def add(self, episode: Path) -> None:
+        """Add those of an episode that has ended.
+
+        Raises:
+            OutputError: They cannot be written, or a file not be read.
+        """
+        sums = self._of(episode)
+        with self._lock, refusals(self._growing):
+            self._forget(episode)
+            self._known |= sums
+            with self._growing.open("ab") as file:
+                # A line that a kill has cut off must not spoil the next one.
+                file.write(b"\n" * bool(file.tell()) + checksum_lines(sums))
+
+    def match(self, episode: Path) -> bool:
+        """Return whether the files of an episode are those that were written when it ended."""
+        inside = self._inside(episode)
+        known = {name: digest for name, digest in self._known.items() if name.startswith(inside)}
+        return bool(known) and known == self._of(episode)
+
+    def finish(self) -> None:
+        """Write all of them in order, so that a recording that was continued is the same.
+
+        Raises:
+            OutputError: They cannot be written.
+        """
+        write_atomic(self._run / CHECKSUMS, checksum_lines(self._known))
+        with refusals(self._growing):
+            self._growing.unlink(missing_ok=True)
+
+    def _forget(self, episode: Path) -> None:
+        inside = self._inside(episode)
+        self._known = {
+            name: own for name, own in self._known.items() if not name.startswith(inside)
+        }
+
+    def _inside(self, episode: Path) -> str:
+        return f"{episode.relative_to(self._run).as_posix()}/"
+
+    def _of(self, episode: Path) -> dict[str, str]:
+        inside, sums = self._inside(episode), {}
+        with refusals(episode):
+            for name, path in paths_below(episode):
+                if self._contents.in_episode(name) and not path.is_dir():
+                    sums[inside + name] = hashlib.sha256(path.read_bytes()).hexdigest()
+        return sums
+
+
+def _read(path: Path) -> dict[str, str]:
+    """Return what an earlier run has written; nothing if there was none."""
+    try:
+        return read_checksums(path)
+    except DataFileError:
+        return {}
+
 
 Arguments = ParamSpec("Arguments")
 

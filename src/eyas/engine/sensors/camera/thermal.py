@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.lens import Lens, undistorted
+from eyas.engine.core.optics.lens import Lens, undistorted
 from eyas.engine.sensors.camera.temperature import (
     CLOTHES,
     ENGINE_HEAT,

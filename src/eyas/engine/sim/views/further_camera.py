@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.frames import rotate
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.core.variation import sample
 from eyas.engine.sensors.camera.vibration import Vibration
 from eyas.engine.sensors.config import FurtherCameraConfig, MountConfig

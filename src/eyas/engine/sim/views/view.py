@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.sensors.camera.event_sensor import EventSensors
 from eyas.engine.sensors.camera.exposure import ExposureState
 from eyas.engine.sensors.lidar import Lidar

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.world.build.bodywork import BODYWORK, body_paint
-from eyas.engine.world.cars.bumpers import AHEAD, add_bumpers
 from eyas.engine.world.cars.finishes import (
     GLASS,
     HEAD_LAMP,
@@ -28,7 +27,7 @@ from eyas.engine.world.cars.shape import (
     middle_stations,
     sections,
 )
-from eyas.engine.world.cars.trim import add_trimmings
+from eyas.engine.world.cars.trim import AHEAD, add_bumpers, add_trimmings
 from eyas.engine.world.cars.wrap import Wrap
 
 __all__ = ["TRACK", "body_levels"]

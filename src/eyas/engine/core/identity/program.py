@@ -6,7 +6,7 @@ definition is all that it refers to, directly or not, however late it is importe
 the sources without running them, because a start that finds everything in the cache imports little
 of what once made it.
 
-What a definition says and refers to is read by `eyas.engine.core.definitions`. A package that uses
+What a definition says and refers to is read by `definitions.py`. A package that uses
 `import_module` refers to all its modules. Where a name cannot be found, its whole module is taken:
 one dependency too many costs seconds, a missing one a wrong result.
 """
@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eyas.engine.core.definitions import INDEX, Definition
+from eyas.engine.core.identity.definitions import INDEX, Definition
 from eyas.lanes.identity import language_hash
 from eyas.lanes.text_index import digest_of
 

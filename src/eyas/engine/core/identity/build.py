@@ -13,9 +13,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.definitions import INDEX
 from eyas.engine.core.doors import houses
-from eyas.engine.core.program import definitions_in
+from eyas.engine.core.identity.definitions import INDEX
+from eyas.engine.core.identity.program import definitions_in
 from eyas.lanes.text_index import SUFFIX
 
 __all__ = ["WORLD", "Build", "houses_of_results", "rooms_of", "this_build"]
@@ -27,7 +27,7 @@ WORLD = frozenset(
 )
 """Houses, and rooms of the engine, that make what happens in an episode and what is seen of it."""
 
-_ROOT = Path(__file__).parents[2]
+_ROOT = Path(__file__).parents[3]
 
 _ENGINE = "engine"
 

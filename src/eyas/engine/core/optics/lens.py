@@ -1,9 +1,8 @@
 """Lenses that bend the picture: Brown-Conrady's and Kannala-Brandt's models, as OpenCV has them.
 
 A lens takes a direction, right, down and ahead of the camera, to a place on a plane at distance 1
-behind the lens; the camera matrix (`eyas.engine.core.pinhole.intrinsics`, with the principal point
-moved) takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV
-calibrates:
+behind the lens; the camera matrix (`pinhole.intrinsics`, with the principal point moved)
+takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV calibrates:
 
 - Brown-Conrady (D. C. Brown, Decentering distortion of lenses, 1966; `cv2.projectPoints` with k1,
   k2, p1, p2, k3), for lenses that are nearly pinholes;
@@ -19,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.engine.core import pinhole
+from eyas.engine.core.optics import pinhole
 from eyas.lanes import compiled, exact, kernel
 from eyas.lanes.elementary import atan2, hypot, sin_cos
 
@@ -263,7 +262,7 @@ def principal_point(lens: Lens, width: float, height: float) -> tuple[float, flo
 
 
 def camera_matrix(lens: Lens, width: int, height: int, fov: float) -> Floats:
-    """Return the camera matrix, see `eyas.engine.core.pinhole.intrinsics`."""
+    """Return the camera matrix, see `eyas.engine.core.optics.pinhole.intrinsics`."""
     matrix = pinhole.intrinsics(width, height, fov)
     matrix[0, 2], matrix[1, 2] = principal_point(lens, width, height)
     return matrix
@@ -296,7 +295,7 @@ def project(
     fields: tuple[float, float | None],
     lens: Lens,
 ) -> tuple[Floats, Floats, Floats]:
-    """Return where points appear in a picture, see `eyas.engine.core.pinhole.project`.
+    """Return where points appear in a picture, see `eyas.engine.core.optics.pinhole.project`.
 
     Args:
         points: World frame [m], shape (..., 3).

@@ -1,5 +1,5 @@
 """What the text of a file of Python defines: each name of the module, what it says, and what it
-refers to; see `eyas.engine.core.program`.
+refers to; see `eyas.engine.core.identity.program`.
 
 Comments, docstrings, annotations, and the texts of errors and of the log say nothing. Classes that
 annotations name are referred to, since their methods are called. A text `package.module:attribute`

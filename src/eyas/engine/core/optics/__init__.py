@@ -1,0 +1,1 @@
+"""Optics: the pinhole camera and the lenses that bend its rays."""
