@@ -235,7 +235,11 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
         return found
     if name in _MODULE_OF:
         from importlib import import_module
+        from importlib.util import find_spec
 
+        house = ".".join(_MODULE_OF[name].split(".")[:2])
+        if find_spec(house) is None:  # a copy of the engine alone
+            raise AttributeError(f"eyas.{name} is not here: it is of the house {house}")
         value = globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
         return value
     raise AttributeError(f"module 'eyas' has no attribute {name!r}")
