@@ -1,1 +1,4 @@
-"""Codecs of pictures and films: own PNG and deflate, whose bytes are promised; JPEG; PyAV."""
+"""Codecs of pictures: PNG and deflate of our own, whose bytes are promised; JPEG; films by PyAV.
+
+Begin with `png.py`.
+"""

@@ -1,1 +1,4 @@
-"""Optics: the pinhole camera and the lenses that bend its rays."""
+"""Optics: the pinhole camera, and lenses that bend its rays.
+
+Begin with `pinhole.py`.
+"""
