@@ -98,10 +98,6 @@ def running(setting: str, name: str) -> Iterator[None]:
 
     Ordinary errors pass through with their traceback, and `KeyboardInterrupt`, which is the user's.
 
-    Args:
-        setting: The setting that names the code.
-        name: Its name.
-
     Raises:
         ConfigError: It raised `SystemExit`, or something else that is no `Exception`.
     """
@@ -156,12 +152,7 @@ NAMES_CODE = NamesCode()
 
 
 def code_named(config: Config, path: str = "") -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name: path of the setting, and what it names.
-
-    Args:
-        config: The settings.
-        path: Their own path, to put before each.
-    """
+    """Yield each piece of code that settings name: path of the setting, and what it names."""
     for name, field in type(config).model_fields.items():
         value, inner = getattr(config, name), f"{path}.{name}".lstrip(".")
         if NAMES_CODE in field.metadata:

@@ -125,12 +125,7 @@ def bounds(variation: Variation) -> tuple[float, float]:
 
 
 def within(low: float, high: float) -> Callable[[Variation], Variation]:
-    """Return a check for `pydantic.AfterValidator` that all values of a variation are in range.
-
-    Args:
-        low: Smallest allowed value.
-        high: Largest allowed value.
-    """
+    """Return a check for `pydantic.AfterValidator` that all values of a variation are in range."""
 
     def check(variation: Variation) -> Variation:
         smallest, largest = bounds(variation)

@@ -115,14 +115,7 @@ def _lacks_data(header: dict[str, Any], primitive: dict[str, Any]) -> bool:
 
 
 class _Mender:
-    """Makes plain accessors of those that trimesh would misread.
-
-    Args:
-        path: The file.
-        header: Its JSON, which is changed.
-        binary: The content of a GLB's binary chunk.
-        largest: Largest number of bytes of all accessors.
-    """
+    """Makes plain accessors of those that trimesh would misread."""
 
     def __init__(self, path: Path, header: dict[str, Any], binary: bytes, largest: int) -> None:
         self._path, self._header, self._largest = path, header, largest

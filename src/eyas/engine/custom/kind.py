@@ -80,12 +80,7 @@ def _model(name: str, word: str, kind: str, size: tuple[float, float, float], wo
 
 
 def as_custom(what: str, config: CustomConfig) -> CustomConfig | None:
-    """Return the settings of a mesh file or a `package.module:Class`; None for another name.
-
-    Args:
-        what: The name.
-        config: How to read a mesh file.
-    """
+    """Return the settings of a mesh file or a `package.module:Class`; None for another name."""
     if user_path(what).suffix.lower() in ENDINGS:
         return config.model_copy(update={"mesh": what, "path": None})
     return config.model_copy(update={"path": what}) if ":" in what else None

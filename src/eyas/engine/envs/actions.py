@@ -88,9 +88,6 @@ class Discrete:
 
     Attributes:
         table: The command of each, shape (7, 4).
-
-    Args:
-        speeds: The speeds of the actions.
     """
 
     allowed = "a whole number from 0 to 6"
@@ -119,11 +116,6 @@ class FourNumbers:
         high: Largest of each, shape (4,).
         at_minus_1: Commands backward, right, down, clockwise, shape (4,).
         at_1: Their opposites, shape (4,).
-
-    Args:
-        low: As above.
-        high: As above.
-        ends: The other two.
     """
 
     allowed = "four finite numbers"
@@ -161,11 +153,7 @@ class Shares(FourNumbers):
 
 
 class Velocity(FourNumbers):
-    """Four velocities: forward, left, up [m/s], turn counter-clockwise [rad/s].
-
-    Args:
-        speeds: The largest and smallest.
-    """
+    """Four velocities: forward, left, up [m/s], turn counter-clockwise [rad/s]."""
 
     allowed = "four finite numbers: forward, left, up [m/s], turn counter-clockwise [rad/s]"
 
@@ -180,12 +168,7 @@ class Velocity(FourNumbers):
 
 
 class DiscreteGimbal(Discrete):
-    """Eleven actions: those of `Discrete`, then 7 camera down, 8 up, 9 left, 10 right.
-
-    Args:
-        speeds: The speeds of the first six.
-        gimbal: Rates and range of the camera.
-    """
+    """Eleven actions: those of `Discrete`, then 7 camera down, 8 up, 9 left, 10 right."""
 
     allowed = "a whole number from 0 to 10"
 

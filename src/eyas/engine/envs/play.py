@@ -25,9 +25,6 @@ __all__ = ["Window", "hover_action", "keys_to_action", "load_pygame"]
 class Window:
     """A window for the pictures of one environment; it opens with the first picture.
 
-    Args:
-        rate: Largest number of pictures per second.
-
     Raises:
         MissingExtraError: pygame is not installed.
     """

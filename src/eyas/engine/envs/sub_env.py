@@ -17,10 +17,6 @@ __all__ = ["SubEnv"]
 class SubEnv:
     """One of N environments. It has the attributes that libraries ask for by name, and any that
     `set_attr` gives it.
-
-    Args:
-        whole: The vector environment.
-        index: Which of its environments.
     """
 
     def __init__(self, whole: "EyasVectorEnv", index: int) -> None:

@@ -67,9 +67,6 @@ class LidarWriter(TableWriter):
     """`lidar.csv`: the distance of each point [m], empty where nothing was within range. Point 0
     looks back; the others follow clockwise.
 
-    Args:
-        run: The recording.
-
     Raises:
         ConfigError: The trackers have no lidar.
     """
@@ -95,9 +92,6 @@ class SensorWriter(TableWriter):
     """`sensors.csv`: what GPS, accelerometer, gyroscope and IMU tell, with their errors; then what
     further sensors tell (`sensors.further`), and what a tracker asks of its rotors, if it tells
     (`tracker.tells_rotors`).
-
-    Args:
-        run: The recording.
     """
 
     table = "sensors.csv"
@@ -127,9 +121,6 @@ _TIME_HIGH = 8 << 28
 
 class EventWriter(Writer):
     """`events.raw`: all events of an episode; the times count from its reset.
-
-    Args:
-        run: The recording.
 
     Raises:
         ConfigError: The trackers have no event camera, or it is too large for the format.
@@ -211,9 +202,6 @@ class MarkWriter(Writer):
     """Writes a mark for each frame, and the number of frames of each episode of each tracker.
 
     A mark is `[reward, action]`, or the target's direction (0 stop, 1 straight, 2 left, 3 right).
-
-    Args:
-        run: The recording.
     """
 
     files = Files(episode=(MARK,), run=(DIR_INFO,))

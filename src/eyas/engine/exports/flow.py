@@ -34,9 +34,6 @@ class FlowWriter(Writer):
     """`flow/NNNNNN.png`: where each pixel's point is in the next picture of the episode, as KITTI
     has it; the last picture of an episode has no valid pixel.
 
-    Args:
-        run: The recording.
-
     Raises:
         ConfigError: Rows of pictures are exposed one after the other (`camera.shutter.readout`).
     """
@@ -62,11 +59,7 @@ class FlowWriter(Writer):
 
 
 class FlowEpisode(EpisodeWriter):
-    """The flow of one episode; that of a frame is known when the next one is.
-
-    Args:
-        episode: The episode.
-    """
+    """The flow of one episode; that of a frame is known when the next one is."""
 
     def __init__(self, episode: Episode) -> None:
         self._folder, self._size = episode.folder, (episode.height, episode.width)
@@ -113,10 +106,6 @@ def forward_flow(first: Frame, second: Frame) -> NDArray[np.uint16]:
     Red and green are the motion to the right and down [pixels], as 32768 + 64 times that; blue is 1
     where it is valid. It is not, and all is 0, where the point leaves the picture, moves farther
     than 512 pixels, or is hidden in the second frame.
-
-    Args:
-        first: A frame with its parts.
-        second: The next frame of the same episode.
     """
     assert first.parts is not None
     assert second.parts is not None

@@ -180,9 +180,6 @@ _PICTURE, _POSES = "cameras/{:02d}-{:06d}.png", "cameras.json"
 class CameraWriter(Writer):
     """`cameras/NN-NNNNNN.png`: the picture of each further camera, by its number in the setting
     `cameras`, in each frame; `cameras.json`: names, camera matrices, poses.
-
-    Args:
-        run: The recording.
     """
 
     wants = frozenset({"cameras"})

@@ -18,10 +18,6 @@ _LARGEST = 1 << 30
 def labels_in(path: Path, reader: SchemaValidator) -> list[dict[str, Any]]:
     """Return the labels of an episode.
 
-    Args:
-        path: The file.
-        reader: Of one line.
-
     Raises:
         DataFileError: The file is missing, cut off, or does not hold labels; the line and the
             field are told.

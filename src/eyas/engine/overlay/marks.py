@@ -158,13 +158,7 @@ CIRCLE = 72  # Number of corners of the circle within which distances are reward
 
 
 class Marks:
-    """Makes the overlays of trackers in their current state.
-
-    Args:
-        snapshot: The trackers and their targets.
-        terrain: The ground.
-        camera: Shape of the pictures.
-    """
+    """Makes the overlays of trackers in their current state."""
 
     def __init__(self, snapshot: Snapshot, terrain: Terrain, camera: CameraConfig) -> None:
         self._snapshot = snapshot

@@ -101,11 +101,7 @@ class Failure(NamedTuple):
 
 
 class PolicyFailedError(Exception):
-    """A policy has failed elsewhere, in its own process.
-
-    Args:
-        failure: What with.
-    """
+    """A policy has failed elsewhere, in its own process."""
 
     def __init__(self, failure: Failure) -> None:
         super().__init__(failure.line)
@@ -146,11 +142,6 @@ class Policy(Protocol):
 
 def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
     """Return the changes of the defaults of `env` that a policy's file holds.
-
-    Args:
-        path: The file.
-        place: Where in it they stand.
-        said: What stands there.
 
     Raises:
         DataFileError: Something else stands there, or a setting is wrong.

@@ -123,12 +123,6 @@ def export(
 def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[RecordedEpisode]) -> None:
     """Put episodes into the export of a data set that is being made; they are known to be whole.
 
-    Args:
-        folder: The folder of the export.
-        named: Name of the data set.
-        name: The format.
-        episodes: The episodes.
-
     Raises:
         EyasError: As `export`.
     """
@@ -141,12 +135,6 @@ def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[Recorde
 
 def finish_export(folder: Path, named: str, name: str, recording: Recording) -> None:
     """Complete the export of a data set, all episodes of which have been added.
-
-    Args:
-        folder: The folder of the export.
-        named: Name of the data set.
-        name: The format.
-        recording: The data set.
 
     Raises:
         EyasError: As `export`.

@@ -58,10 +58,6 @@ class VideoFolder:
         path: The recording's folder.
         trackers: Names of the trackers and of their folders.
         writers: One for each format.
-
-    Args:
-        path: The recording's folder.
-        config: The settings.
     """
 
     def __init__(self, path: Path, config: EyasConfig) -> None:

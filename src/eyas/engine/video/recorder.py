@@ -94,12 +94,7 @@ def missed(reached: ReachedShares, video: VideoConfig) -> Iterator[str]:
 
 
 class Checksums:
-    """The checksums of the episodes that have ended. Its methods may be called in any thread.
-
-    Args:
-        run: The recording's folder.
-        writers: Whose files are meant.
-    """
+    """The checksums of the episodes that have ended. Its methods may be called in any thread."""
 
     def __init__(self, run: Path, writers: Sequence[Writer]) -> None:
         self._run, self._growing = run, run / GROWING
@@ -174,9 +169,6 @@ class WriterThreads:
     Drawing, video encoding and writing release Python's global lock, so that they use cores that
     others leave idle: with one such core, four pictures of 320 x 240 took 22 ms instead of 31.
     Pillow's JPEG encoder does not release it.
-
-    Args:
-        count: Largest number of keys.
     """
 
     def __init__(self, count: int) -> None:
@@ -240,11 +232,6 @@ class Recorder:
 
     An episode that an earlier run has recorded completely is kept and not drawn again, if its files
     are what they were.
-
-    Args:
-        sim: What is recorded.
-        config: Its settings.
-        folder: The folder of the recording.
     """
 
     episodes: list[list[EndedEpisode]]

@@ -225,11 +225,6 @@ def step_log(
     A log is written as a whole: if the recording stops early there is none, and a continued
     recording, which passes through all steps again, makes it.
 
-    Args:
-        folder: The folder of the recording.
-        trackers: Names of the trackers.
-        verbose: Whether anything is logged.
-
     Raises:
         OutputError: A log cannot be written.
     """
@@ -251,11 +246,7 @@ def step_log(
 
 
 class RecordingProgress:
-    """A progress bar on stderr with frames per second; only on a terminal.
-
-    Args:
-        quiet: Whether nothing is shown anywhere.
-    """
+    """A progress bar on stderr with frames per second; only on a terminal."""
 
     def __init__(self, *, quiet: bool) -> None:
         console = Console(stderr=True)

@@ -46,11 +46,7 @@ class _Work(NamedTuple):
 
 
 def deflated(data: NDArray[np.uint8]) -> bytes:
-    """Return bytes as a deflate stream of one block.
-
-    Args:
-        data: Shape (N,).
-    """
+    """Return bytes as a deflate stream of one block."""
     work = _Work(
         data=data,
         words=data[: data.size & -8].view(np.int64),

@@ -57,11 +57,7 @@ class Build(Config):
         return self._id_of(WORLD)
 
     def id_without(self, names: Collection[str]) -> str:
-        """Return twelve hexadecimal digits that differ where others than these do.
-
-        Args:
-            names: Rooms, and houses with all their rooms.
-        """
+        """Return twelve hexadecimal digits that differ where others than these do."""
         return self._id_of([room for room in self.rooms if not _lies_in(room, names)])
 
     def _id_of(self, names: Collection[str]) -> str:

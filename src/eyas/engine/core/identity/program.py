@@ -109,12 +109,7 @@ _LANGUAGE = "<language>"
 
 @cache
 def _references(place: Place, package: str) -> tuple[Place, ...]:
-    """Return the definitions that one refers to.
-
-    Args:
-        place: The definition.
-        package: The package that is followed beside Eyas.
-    """
+    """Return the definitions that one refers to."""
     module, name = place
     if not name or name == _LANGUAGE:
         return ()

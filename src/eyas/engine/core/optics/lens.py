@@ -170,12 +170,6 @@ def distorted(lens: Lens, right: float, down: float, ahead: float) -> tuple[floa
 
     What is beyond the lens' limit lies on straight lines outwards, as it would for a pinhole, so
     that nothing folds back into the picture. A `BROWN` lens needs what is ahead.
-
-    Args:
-        lens: The lens.
-        right: The direction, of any length.
-        down: The same.
-        ahead: The same.
     """
     if lens.model == FISHEYE:
         aside = hypot(right, down)
@@ -197,11 +191,6 @@ def distorted(lens: Lens, right: float, down: float, ahead: float) -> tuple[floa
 @kernel
 def undistorted(lens: Lens, x: float, y: float) -> tuple[float, float, float, float]:
     """Return the direction that a place on the plane behind the lens shows, of length 1.
-
-    Args:
-        lens: The lens.
-        x: The place, to the right.
-        y: The same, downwards.
 
     Returns:
         Right, down and ahead, and the solid angle that an area of 1 there shows [sr]; 0 where the

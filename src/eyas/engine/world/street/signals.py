@@ -100,9 +100,6 @@ def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     """Return a traffic light, the finest level of detail first.
 
     The foot is at the origin, the arm along x; the lights face along y.
-
-    Args:
-        amber: Whether the amber lenses shine.
     """
     lenses = (_DARK[_RED], _SHINING[_AMBER] if amber else _DARK[_AMBER], _DARK[_GREEN])
     heads = [_head(centre, lenses) for centre in _CENTRES]
