@@ -91,7 +91,7 @@ class Problem:
     names: tuple[str, ...] = ()
     """Allowed values of a choice of names; for an unknown key, the known keys."""
     unknown_key: bool = False  # Whether the key is wrong, not its value
-    instead: str = ""  # What else is allowed instead of this value, in words
+    instead: str = ""  # Other allowed kinds of values, in words
     others: tuple["Problem", ...] = ()  # Further unknown keys
 
     def error(self) -> ConfigError:

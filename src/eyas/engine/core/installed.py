@@ -1,4 +1,4 @@
-"""How Eyas was installed, to tell how what is missing is installed beside it."""
+"""The way in which Eyas was installed, from which the command for a missing extra follows."""
 
 import json
 import shlex

@@ -175,14 +175,14 @@ def _texts(value: object) -> Iterator[str]:
 
 
 class Origin(Config):
-    """What code of a user's is, for results that depend on it."""
+    """Identity of code of a user, for results that depend on it."""
 
     path: str
     """`package.module:attribute`."""
     package: str | None
     """The installed package that has it; None: a module that belongs to none."""
     version: str | None
-    """Of that package."""
+    """Version of that package."""
     code: str
     """Twelve hexadecimal digits of all Python files of the package, or of the one module."""
 

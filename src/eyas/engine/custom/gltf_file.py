@@ -1,4 +1,4 @@
-"""What of a glTF or GLB file is checked and mended before trimesh reads it.
+"""Checks and repairs of glTF and GLB files before trimesh reads them.
 
 trimesh reads numbers as they are stored: it does not divide normalised integers, leaves sparse
 accessors at zero, and warns where an extension holds the geometry.
@@ -90,11 +90,7 @@ def _joined(header: dict[str, Any], rest: bytes) -> bytes:
 
 
 def _left_out(header: dict[str, Any]) -> str:
-    """Return what is not read, in words.
-
-    Raises:
-        ValueError: Something is that the shape cannot do without.
-    """
+    """Return what is not read, in words; `ValueError` if the shape cannot do without it."""
     primitives = [one for mesh in header.get("meshes", ()) for one in mesh["primitives"]]
     needed = {*header.get("extensionsRequired", ())}
     for part in (*primitives, *header.get("bufferViews", ())):

@@ -1,4 +1,4 @@
-"""What is wrong with a shape or a trajectory, one line each."""
+"""Problems of a shape or a trajectory, one line each."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""How environments show themselves in notebooks: a strip of pictures, and a line about them."""
+"""Environments in notebooks: a strip of pictures, and a line about them."""
 
 import base64
 import sys

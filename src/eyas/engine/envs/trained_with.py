@@ -1,5 +1,5 @@
-"""What an environment is, written onto its space of actions: libraries save the space with a model,
-so that what a policy was trained with travels with it.
+"""Settings of an environment, written onto its space of actions: libraries save the space with a
+model, so that the settings of a policy's training travel with it.
 """
 
 from collections.abc import Mapping

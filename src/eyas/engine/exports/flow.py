@@ -94,7 +94,7 @@ class _Camera(NamedTuple):
 
 
 class _Motion(NamedTuple):
-    """How each of the I parts moves to the next frame."""
+    """Motion of each of I parts to the next frame."""
 
     known: NDArray[np.bool_]  # Whether it is in both frames, shape (I,)
     move: Floats  # World at the first frame to world at the second, shape (I, 3, 4)
@@ -125,9 +125,7 @@ def _camera(pose: CameraPose, parts: MovingParts) -> _Camera:
 
 
 def _motion(first: MovingParts, second: MovingParts) -> _Motion:
-    """Return the motion of all parts: to the frame of the part by its first pose, and back by its
-    second one.
-    """
+    """Return the motion of all parts: by the inverse of the first pose, then by the second one."""
     known = (first.part >= 0) & (first.part == second.part)
     shown = np.unique(first.row[first.row >= 0])
     used = shown[known[shown]]

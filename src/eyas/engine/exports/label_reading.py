@@ -12,7 +12,7 @@ from eyas.engine.core.files import read_limited
 __all__ = ["labels_in", "reader_of"]
 
 _LARGEST = 1 << 30
-"""Of the labels of an episode [bytes]: a hundred thousand frames with many others."""
+"""Largest file of labels of an episode [bytes]: a hundred thousand frames with many others."""
 
 
 def labels_in(path: Path, reader: SchemaValidator) -> list[dict[str, Any]]:

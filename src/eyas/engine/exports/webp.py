@@ -25,14 +25,14 @@ __all__ = ["WebpEpisode", "WebpWriter"]
 MOVIE = "episode.webp"
 
 _QUALITY, _EFFORT = 75, 0
-"""Of 320 x 240 pixels, a picture takes 1.8 ms and 15 kB, and is nearer to the true one than in our
+"""A picture of 320 x 240 pixels takes 1.8 ms and 15 kB, and is nearer to the true one than in our
 MP4 (1.7 ms, 5.6 kB). The default effort, 4, makes it 12 kB in 6.3 ms."""
 
 _HEAD = struct.Struct("<4sI4s")
 _CHUNK = struct.Struct("<4sI")
 _ANIMATED, _UNBLENDED = 0x02, 0x02
-_LARGEST = 0xFFFF_FFF6  # Of a file [bytes]
-_LONGEST = 0xFF_FFFF  # That a picture can stay [ms]
+_LARGEST = 0xFFFF_FFF6  # Largest file [bytes]
+_LONGEST = 0xFF_FFFF  # Longest duration of one frame [ms]
 
 
 class WebpWriter(Writer):

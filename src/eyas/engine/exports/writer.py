@@ -150,9 +150,9 @@ class Run:
     target_direction: bool
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     jpeg_quality: int
-    """Of pictures in the JPEG format, 1 to 100."""
+    """Quality of pictures in the JPEG format, 1 to 100."""
     depth_unit: float
-    """Of depth as PNG files [m]."""
+    """Unit of depth in PNG files [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ class Episode:
     """One episode of one tracker."""
 
     folder: Path
-    """Its folder, `<run>/<tracker>/episode<number>`."""
+    """Folder of the episode, `<run>/<tracker>/episode<number>`."""
     tracker: str
     """Name of the tracker."""
     number: int
@@ -290,7 +290,7 @@ class PerFrameWriter(Writer):
     """Writes one file for each frame; `files` names it, and nothing else."""
 
     name: ClassVar[str]
-    """Its name relative to the episode's folder, with the number of the frame."""
+    """Name of the file relative to the episode's folder, with the number of the frame."""
 
     @abstractmethod
     def encoded(self, frame: Frame) -> bytes:

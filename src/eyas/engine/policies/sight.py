@@ -1,4 +1,4 @@
-"""What cameras see of their targets: boxes, and pixels that are visible or hidden."""
+"""Targets in pictures: boxes, and pixels that are visible or hidden."""
 
 from typing import Any
 

@@ -53,9 +53,9 @@ _LOG = logging.getLogger("eyas")
 EXPORTS = "exports"  # Folder of the exports in that of a recording or data set
 
 FINISHED, GROWING = "export.json", ".export.json"
-"""What an export is of, when it is complete, and while it is in progress."""
+"""Files with the identity of an export: when it is complete, and while it is in progress."""
 
-_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # What is no part of a finished export
+_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # Names that are no part of a finished export
 
 DONE = ".done"  # Names of the episodes that are written completely, a line each
 
@@ -64,7 +64,7 @@ Told = Callable[[int], None]  # Is told how many frames have been exported
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """What may be chosen of an export, see `Job`."""
+    """Options of an export, see `Job`."""
 
     copies: bool = False
     least_side: int = 1
@@ -217,10 +217,8 @@ def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[s
 
 
 def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> bool:
-    """Prepare the folder; return whether something is left to do.
-
-    Raises:
-        OutputError: It is not empty, or not of the same export.
+    """Prepare the folder; return whether something is left to do. `OutputError` if it is not empty,
+    or not of the same export.
     """
     with refusals(folder):
         names = {inside.name for inside in folder.iterdir()} - {LOCK}
@@ -320,8 +318,8 @@ def _done(path: Path) -> set[str]:
 
 
 class _Checksums:
-    """What the recordings of the episodes say of their files; of one recording at a time, as a
-    data set may have a million files.
+    """Checksums of the files of recordings; one recording at a time, as a data set may have a
+    million files.
     """
 
     def __init__(self) -> None:

@@ -71,7 +71,7 @@ class Exported(NamedTuple):
 class SeenObject(NamedTuple):
     """A moving or parked object in a frame: the target, or another one."""
 
-    label: Label  # Its fields by the names of the entries of `others`: `id`, `box`, `words`, ...
+    label: Label  # By the names of the entries of `others`: `id`, `box`, `words`, ...
     is_target: bool
 
     @property
@@ -95,7 +95,7 @@ _TARGET_KEYS = {field.others: field.key for field in FIELDS if field.others and 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What is exported, and how.
+    """An export: folder, name, and the options of its user.
 
     Attributes:
         folder: The folder of the export.
@@ -216,7 +216,7 @@ class Format(Protocol):
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
     job: Job
-    """What is exported, and how."""
+    """The export that is written."""
 
     def __init__(self, job: Job) -> None:
         self.job = job

@@ -33,7 +33,7 @@ _LOG = logging.getLogger("eyas")
 Nested = dict[str, Any]
 
 SCHEMA_KEY = "$schema"
-"""By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
+"""Key by which editors find the schema of a file (`eyas config schema`); it changes nothing."""
 
 _LARGEST = 16 << 20  # Largest file of settings [bytes]
 
@@ -139,7 +139,7 @@ def read_settings(path: Path) -> Nested:
 _STRING = r'"(?:\\.|[^"\\])*(?:"|\Z)'
 _COMMENT = re.compile(rf"({_STRING})|//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _LAST_COMMA = re.compile(rf"((?:{_STRING}|[^\s\[{{,:\"])\s*),(?=\s*[}}\]])|({_STRING})", re.DOTALL)
-"""What is left out; groups stay."""
+"""Comments, and the commas before closing brackets, that are left out; groups stay."""
 
 
 def _parsed(text: str, path: Path) -> Any:  # noqa: ANN401  # JSON

@@ -1,4 +1,4 @@
-"""Which files of settings may name code: only those that the user trusts.
+"""Trust in files of settings: only those that the user trusts may name code.
 
 Settings name code by `package.module:attribute`: terms of the reward, targets, trackers, maps and
 writers of one's own. Importing and calling these is as good as running a program of whoever wrote

@@ -30,7 +30,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 class EndingSignals:
-    """What a program does with signals that ask it to end: the first one raises `Interrupted`.
+    """Handlers of the signals that ask a program to end: the first one raises `Interrupted`.
 
     Those that were ignored when the program started stay ignored, as `nohup` and shells expect.
 

@@ -1,4 +1,4 @@
-"""How the trackers of a recording move: with their targets, at random, on paths, by a policy."""
+"""Motion of the trackers of a recording: with their targets, at random, on paths, by a policy."""
 
 from typing import Protocol
 

@@ -1,4 +1,4 @@
-"""When a recording has frames, and when its episodes and it itself end."""
+"""Times of the frames of a recording, of the ends of its episodes, and of its own end."""
 
 import math
 

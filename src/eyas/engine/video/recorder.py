@@ -224,7 +224,7 @@ class _Going:
 
     episode: Episode
     files: EpisodeFiles | None  # None: an earlier run has recorded it completely
-    summary: Summary  # Of the frames up to now, or of all frames of an earlier run
+    summary: Summary  # Summary of the frames up to now, or of all frames of an earlier run
 
 
 class Recorder:

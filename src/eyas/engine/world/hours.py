@@ -14,7 +14,7 @@ Colour = tuple[float, float, float]  # Linear red, green and blue; also a direct
 _LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)
 """A day in May at 45 degrees north; the sun stands in the south at 12."""
 _DIMMING = (0.06, 0.12, 0.26)
-"""How much of red, green and blue a vertical way through the air takes; a low sun is orange."""
+"""Optical depth of a vertical way through the air for red, green and blue: a low sun is orange."""
 
 
 def sun_at(hour: float) -> Colour:
@@ -40,11 +40,12 @@ _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 """Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
 the third it is night."""
 _LAMPS = ("lamps", "windows", "daytime_lamps")
-"""What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
+"""Lights that are switched on as the sun sinks, from the horizon to as far below it as
+`_LOW_SUN`."""
 _LOWEST = 1.5  # Height of the sun below which the formulas of daylight would go on to black [deg]
 
 
-_SIDEREAL = math.radians(15.041)  # How far the stars turn in an hour [rad]
+_SIDEREAL = math.radians(15.041)  # Turn of the stars in an hour [rad]
 _MOONRISE = 3.0  # Height of the moon below which it throws no light [deg]
 _STARLIGHT = 0.35
 """Share of the night's ambient light that is not the moon's, but the stars' and the town's."""

@@ -1,4 +1,4 @@
-"""What the text of a file of Python defines: each name of the module, what it says, and what it
+"""Definitions in the text of a file of Python: each name of the module, what it says, and what it
 refers to; see `eyas.engine.core.identity.program`.
 
 Comments, docstrings, annotations, and the texts of errors and of the log say nothing. Classes that
@@ -21,9 +21,9 @@ _PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")
 
 
 class Definition(NamedTuple):
-    """What a module says about one of its names."""
+    """A definition: what a module says about one of its names."""
 
-    digest: str  # Of what it says; empty: the name is imported
+    digest: str  # Digest of what it says; empty: the name is imported
     refers: tuple[str, ...]
     """Other names of the module, `name`, and of others, `package.module:name.attribute`."""
 

@@ -134,13 +134,7 @@ def _modules_in(package: str) -> list[str]:
 
 @cache
 def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
-    """Return the definitions that a name of a module stands for; all of the module's for "".
-
-    Args:
-        module: The module.
-        chain: Name and attributes, `exact.length`.
-        package: See `_references`.
-    """
+    """Return the definitions that a name with attributes, `exact.length`, stands for; "": all."""
     if module.partition(".")[0] not in (_OWN, package):
         return ((module.partition(".")[0], ""),)
     if _lies_in(module, _COMPILER) and not _lies_in(module, _COMPUTING):

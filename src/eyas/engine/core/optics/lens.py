@@ -65,7 +65,7 @@ class Lens(NamedTuple):
     p1: float  # Tangential coefficients, of `BROWN` only
     p2: float
     right: float  # Principal point right of the middle of the picture, as a share of the width
-    below: float  # The same below it, as a share of the height
+    below: float  # Offset of the principal point below the middle, as a share of the height
     limit: float
     """Tangent (`BROWN`) or angle (`FISHEYE`) from the optical axis at which the picture ends."""
 
@@ -166,7 +166,7 @@ def _brown_slopes(lens: Lens, x: float, y: float) -> tuple[float, float, float]:
 
 @kernel
 def distorted(lens: Lens, right: float, down: float, ahead: float) -> tuple[float, float]:
-    """Return where a direction is shown on the plane behind the lens, right and down.
+    """Return where a direction (right, down, ahead) is shown on the plane behind the lens.
 
     What is beyond the lens' limit lies on straight lines outwards, as it would for a pinhole, so
     that nothing folds back into the picture. A `BROWN` lens needs what is ahead.

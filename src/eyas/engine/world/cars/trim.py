@@ -24,9 +24,9 @@ from eyas.lanes import exact
 
 __all__ = ["AHEAD", "add_bumpers", "add_trimmings"]
 
-AHEAD = 0.04  # How far a bumper stands out from the end of the body [m]
+AHEAD = 0.04  # Depth of a bumper beyond the end of the body [m]
 
-_ASIDE = 0.025  # How far it stands out from the sides [m]
+_ASIDE = 0.025  # Depth of a bumper beyond the sides [m]
 
 _TOP = 0.565  # Height of its upper edge, as a share of that of the belt line above the floor
 

@@ -136,7 +136,7 @@ class MapRecipe:
     file: Path | None = None
     """File with the plan of a map that has neither."""
     notice: str = ""
-    """What must be said wherever the map is shown, unless a file beside it says so."""
+    """Attribution wherever the map is shown, unless a file beside it has it."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0
