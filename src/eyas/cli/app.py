@@ -15,7 +15,7 @@ from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
 from eyas.engine.core.registry import Registry
 from eyas.engine.core.scratch import remove_left_scratch
-from eyas.engine.terminal.said import lacks_memory, say
+from eyas.engine.terminal.stderr import lacks_memory, say
 
 __all__ = ["app", "run"]
 

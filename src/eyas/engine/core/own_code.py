@@ -112,8 +112,8 @@ def running(setting: str, name: str) -> Iterator[None]:
 def ended(error: BaseException) -> str:
     """Return in words what raised, and where; for exceptions that are no `Exception`."""
     last = extract_tb(error.__traceback__)[-1]
-    said = f"{type(error).__name__}({error})"
-    return f"tried to end the program: {said} in {last.filename}, line {last.lineno}"
+    raised = f"{type(error).__name__}({error})"
+    return f"tried to end the program: {raised} in {last.filename}, line {last.lineno}"
 
 
 def left_out(kind: object, members: Iterable[str]) -> list[str]:

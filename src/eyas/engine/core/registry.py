@@ -16,7 +16,7 @@ from eyas.engine.core.own_code import imported
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-__all__ = ["OWN", "Found", "Registry"]
+__all__ = ["OWN", "FileObjects", "Registry"]
 
 OWN = "package.module:attribute"  # Notation of the path of an object of a user
 
@@ -24,7 +24,7 @@ T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Found(Protocol[T_co]):
+class FileObjects(Protocol[T_co]):
     """Objects that are made of files, wherever these lie."""
 
     form: str  # Notation of the path of such a file, for messages
@@ -139,9 +139,9 @@ class Registry(Generic[T]):
         return installed[name]
 
     @cached_property
-    def _files(self) -> Found[T] | None:
+    def _files(self) -> FileObjects[T] | None:
         """Objects that are made of files; asked for late, as they may need the table itself."""
-        found: Found[T] | None = first_brought(self._file_group) if self._file_group else None
+        found: FileObjects[T] | None = first_brought(self._file_group) if self._file_group else None
         return found
 
     def of_files(self) -> tuple[str, ...]:

@@ -101,8 +101,8 @@ def _left_out(header: dict[str, Any]) -> str:
         raise ValueError(f"it needs {', '.join(unread):.200}, which is not read; save it without")
     used = [name for name in header.get("extensionsUsed", ()) if not _READ.fullmatch(name)]
     others = sum(one.get("mode", 4) not in _MODES for one in primitives)
-    told = sorted(used) + [f"{others} primitives of points, lines or fans"] * bool(others)
-    return f"left out, as not read: {', '.join(told):.300}" if told else ""
+    unread_parts = sorted(used) + [f"{others} primitives of points, lines or fans"] * bool(others)
+    return f"left out, as not read: {', '.join(unread_parts):.300}" if unread_parts else ""
 
 
 def _lacks_data(header: dict[str, Any], primitive: dict[str, Any]) -> bool:

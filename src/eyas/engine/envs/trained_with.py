@@ -29,5 +29,5 @@ def describe(space: gymnasium.Space[Any], config: EyasConfig) -> None:
 
 def trained_with(space: object) -> Mapping[str, Any]:
     """Return the settings of the environment that a space is of; none if it says nothing."""
-    told = getattr(space, _KEY, {})
-    return told if isinstance(told, Mapping) else {}
+    settings = getattr(space, _KEY, {})
+    return settings if isinstance(settings, Mapping) else {}

@@ -285,8 +285,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             self._ring.reverse()
             out = self._ring[0]
         if self._there is not None:
-            told: Observation = self._there.latest(out)
-            return told
+            latest: Observation = self._there.latest(out)
+            return latest
         out = self._new_observations() if out is None else out
         self._batch.copy_to(out)
         return out

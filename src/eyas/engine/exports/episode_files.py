@@ -55,8 +55,8 @@ class TableWriter(Writer):
 
     def _row(self, frame: Frame) -> str:
         values = self.numbers(frame).tolist()
-        told = (f"{value:.10g}" if np.isfinite(value) else "" for value in values)
-        return ",".join([str(frame.number), str(frame.step), *told])
+        texts = (f"{value:.10g}" if np.isfinite(value) else "" for value in values)
+        return ",".join([str(frame.number), str(frame.step), *texts])
 
     def _encoded(self, rows: Sequence[str]) -> bytes:
         count = rows[0].count(",") - 1 if rows else 0

@@ -197,8 +197,8 @@ class CameraWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of frames; None if a file is missing."""
         try:
-            told = read_json(folder / _POSES, 1 << 30)
-            frames = {told["frames"], *(len(camera["poses"]) for camera in told["cameras"])}
+            content = read_json(folder / _POSES, 1 << 30)
+            frames = {content["frames"], *(len(camera["poses"]) for camera in content["cameras"])}
         except (DataFileError, KeyError, TypeError):
             return None
         for number in range(self._count):
@@ -212,7 +212,7 @@ class _CameraFiles(EpisodeWriter):
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._told: dict[str, dict[str, Any]] = {}
+        self._by_name: dict[str, dict[str, Any]] = {}
         self._frames = 0
 
     def add(self, frame: Frame) -> None:
@@ -221,13 +221,15 @@ class _CameraFiles(EpisodeWriter):
         for number, camera in enumerate(frame.cameras):
             name = _PICTURE.format(number, frame.number)
             write_atomic(self._folder / name, png_bytes(camera.rgb))
-            told = self._told.setdefault(camera.name, _optics(camera.name, number, camera.pose))
-            told["poses"].append(_pose(camera.pose, frame.camera))
+            content = self._by_name.setdefault(
+                camera.name, _optics(camera.name, number, camera.pose)
+            )
+            content["poses"].append(_pose(camera.pose, frame.camera))
 
     def finish(self) -> None:
         """Write `cameras.json`."""
-        told = {"frames": self._frames, "cameras": [*self._told.values()]}
-        text = json.dumps(told, indent=1)
+        content = {"frames": self._frames, "cameras": [*self._by_name.values()]}
+        text = json.dumps(content, indent=1)
         write_atomic(self._folder / _POSES, text.encode())
 
 

@@ -140,19 +140,19 @@ class Policy(Protocol):
         ...
 
 
-def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
+def settings_in(path: Path, place: str, settings: object) -> Mapping[str, Any]:
     """Return the changes of the defaults of `env` that a policy's file holds.
 
     Raises:
         DataFileError: Something else stands there, or a setting is wrong.
     """
-    if not isinstance(said, Mapping) or not all(isinstance(key, str) for key in said):
-        raise DataFileError(f"{path}: {place}: {shown(said)} is not allowed: settings of env")
+    if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+        raise DataFileError(f"{path}: {place}: {shown(settings)} is not allowed: settings of env")
     try:
-        env_config(said)
+        env_config(settings)
     except ConfigError as error:
         raise DataFileError(f"{path}: {place}: {error}") from None
-    return said
+    return settings
 
 
 def env_config(settings: Mapping[str, Any], changes: Mapping[str, Any] | None = None) -> EnvConfig:

@@ -59,7 +59,7 @@ _ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # Names that are no part of a
 
 DONE = ".done"  # Names of the episodes that are written completely, a line each
 
-Told = Callable[[int], None]  # Is told how many frames have been exported
+Progress = Callable[[int], None]  # Gets the number of exported frames
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ def export(
     name: str,
     folder: Path,
     options: ExportOptions,
-    told: Told = lambda frames: None,
+    progress: Progress = lambda frames: None,
 ) -> None:
     """Export a recording or a data set in one format.
 
@@ -90,7 +90,7 @@ def export(
         name: The format: a name of `FORMATS`, or `package.module:Class`.
         folder: The folder of the export.
         options: What was chosen.
-        told: Is told the frames that are done, after each episode.
+        progress: Gets the number of frames that are done, after each episode.
 
     Raises:
         ConfigError: There is no such format.
@@ -111,10 +111,10 @@ def export(
     form = make(job)
     with folder_lock(folder, "exporting into it"):
         if _open(folder, _identity(recording, name, options), options):
-            form.finish(_add_all(form, recording, folder, told))
+            form.finish(_add_all(form, recording, folder, progress))
             _finish(folder, _identity(recording, name, options))
         else:
-            told(recording.frame_count)
+            progress(recording.frame_count)
         # Last, so that an export which is killed here has all that it needs, or is finished.
         shutil.rmtree(folder / KEPT, ignore_errors=True)
         (folder / DONE).unlink(missing_ok=True)
@@ -280,7 +280,9 @@ def _delete_parts(folder: Path) -> None:
             part.unlink()
 
 
-def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> list[Exported]:
+def _add_all(
+    form: Format, recording: Recording, folder: Path, progress: Progress
+) -> list[Exported]:
     """Export all episodes but those that an earlier run has written completely."""
     done, sums = _done(folder / DONE), _Checksums()
     exported, frames = [], 0
@@ -301,7 +303,7 @@ def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> li
                 exported.append(Exported(episode.name, episode.split or "train", len(shown)))
             frames += count
             episode.__dict__.pop("labels", None)  # those of one episode are in memory at a time
-            told(frames)
+            progress(frames)
     return exported
 
 

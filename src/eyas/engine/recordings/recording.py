@@ -151,8 +151,8 @@ class RecordedFrame:
                 picture = next(container.decode(video=0))
                 stored: NDArray[np.uint16] = picture.to_ndarray(format="rgb48le")
         except (av.error.FFmpegError, OSError, ValueError, EOFError, StopIteration) as error:
-            told = getattr(error, "strerror", None) or error
-            raise DataFileError(f"{path}: cannot read: {told}") from error
+            reason = getattr(error, "strerror", None) or error
+            raise DataFileError(f"{path}: cannot read: {reason}") from error
         if stored.shape[1::-1] != self.episode.size:
             raise DataFileError(f"{path}: has another size than its header tells")
         return stored
@@ -318,8 +318,8 @@ def load(folder: Path | str) -> Recording:
             return Recording(root, [each for part in _parts(root) for each in part])
         return Recording(root, _episodes(root, "", ""))
     except (OSError, ValueError) as error:  # a name that no file can have
-        told = getattr(error, "strerror", None) or error
-        raise DataFileError(f"{root!s:.300}: cannot read: {told}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise DataFileError(f"{root!s:.300}: cannot read: {reason}") from error
 
 
 def _parts(root: Path) -> Iterator[list[RecordedEpisode]]:
@@ -405,11 +405,11 @@ def from_first_sight(episode: RecordedEpisode) -> RecordedEpisode | None:
     """
     for label in episode.labels:
         if label["visible_fraction"] > 0.0:
-            return _Later(episode, label["frame"]) if label["frame"] else episode
+            return _TrimmedEpisode(episode, label["frame"]) if label["frame"] else episode
     return None
 
 
-class _Later(RecordedEpisode):
+class _TrimmedEpisode(RecordedEpisode):
     """An episode without its first frames."""
 
     def __init__(self, whole: RecordedEpisode, skipped: int) -> None:

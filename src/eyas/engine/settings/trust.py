@@ -49,18 +49,18 @@ def is_trusted(path: Path) -> bool:
     return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
-def refuse_code(path: Path, config: EyasConfig, said: Collection[str] = ()) -> None:
+def refuse_code(path: Path, config: EyasConfig, typed: Collection[str] = ()) -> None:
     """Refuse code that only a file names.
 
     Args:
         path: The file.
         config: The settings that it has led to.
-        said: Texts that the user has said beside it; code that is named there is the user's.
+        typed: Texts that the user has typed beside it; code that is named there is the user's.
 
     Raises:
         ConfigError: It names code, and is not trusted: one line with all that would run.
     """
-    refuse_named(path, [(setting, name) for setting, name in code_of(config) if name not in said])
+    refuse_named(path, [(setting, name) for setting, name in code_of(config) if name not in typed])
 
 
 def refuse_named(path: Path, code: Collection[tuple[str, str]]) -> None:

@@ -102,5 +102,7 @@ def gathered(
 ) -> list[str]:
     """Return all changes of settings as `key=value`; short options come last and so win."""
     short = {"world.map": map_name, "world.weather": weather, "seed": seed}
-    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    return [*(overrides or []), *said]
+    from_options = [
+        f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None
+    ]
+    return [*(overrides or []), *from_options]

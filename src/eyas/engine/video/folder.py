@@ -239,14 +239,14 @@ def _require_same_build(path: Path) -> None:
         origin = _origin(path)
         version, build = origin["eyas"], Build(**origin["build"])
     except (DataFileError, ConfigError, ValueError, TypeError, LookupError):
-        told = "of an unknown version"
+        by = "of an unknown version"
     else:
         differs = build.difference(this_build(), without=_NOT_PICTURED)
         if not differs:
             return
-        told = f"{version!s:.40}, build {build.id}, which differs from this one in {differs}"
+        by = f"{version!s:.40}, build {build.id}, which differs from this one in {differs}"
     raise OutputError(
-        f"{path}: recorded by Eyas {told}; pictures may differ, so continue with that build, or "
+        f"{path}: recorded by Eyas {by}; pictures may differ, so continue with that build, or "
         "start again with --overwrite"
     )
 

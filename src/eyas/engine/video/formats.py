@@ -56,9 +56,9 @@ def write_formats(names: Sequence[str], folder: Path, *, quiet: bool) -> None:
         return
     recording = load(folder)
     for name in formats:
-        with frames_bar(f"writing {name}", recording.frame_count, quiet=quiet) as told:
+        with frames_bar(f"writing {name}", recording.frame_count, quiet=quiet) as progress:
             target = exports_folder(folder, name, None)
-            export(recording, name, target, ExportOptions(resume=True), told)
+            export(recording, name, target, ExportOptions(resume=True), progress)
 
 
 def _is_format(name: str) -> bool:

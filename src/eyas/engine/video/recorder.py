@@ -219,7 +219,7 @@ class WriterThreads:
 
 
 @dataclass(slots=True)
-class _Going:
+class _OpenEpisode:
     """An episode in progress."""
 
     episode: Episode
@@ -264,7 +264,7 @@ class Recorder:
             subject=True,
             actors=sim.actors if "others" in wanted else 0,
         )
-        self._going: list[_Going | None] = [None] * count
+        self._open: list[_OpenEpisode | None] = [None] * count
         self._begun: list[EpisodeFiles] = []
         self.episodes = [[] for _ in range(count)]
         self.drawn = 0
@@ -290,27 +290,27 @@ class Recorder:
             self._write(tracker, picture, view, action_of(tracker))
         self.drawn += len(drawn)
 
-    def _begin(self, tracker: int) -> _Going:
+    def _begin(self, tracker: int) -> _OpenEpisode:
         """Return the episode of a tracker, after beginning it if needed."""
-        going = self._going[tracker]
+        going = self._open[tracker]
         if going is None:
-            going = self._going[tracker] = self._found_or_new(tracker)
+            going = self._open[tracker] = self._found_or_new(tracker)
         return going
 
-    def _found_or_new(self, tracker: int) -> _Going:
+    def _found_or_new(self, tracker: int) -> _OpenEpisode:
         writers = self._folder.writers
         field = float(self._sim.snapshot.cameras.field_of_view[tracker])
         lens = self._sim.view.lens_of(tracker) or NO_LENS
         episode = self._folder.episode(tracker, len(self.episodes[tracker]), field, lens)
         found = read_complete(writers, episode.folder)
         if found is not None and self._checksums.match(episode.folder):
-            return _Going(episode, None, found)
+            return _OpenEpisode(episode, None, found)
         files = EpisodeFiles(writers, episode)
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
-        return _Going(episode, files, Summary(0, Scores()))
+        return _OpenEpisode(episode, files, Summary(0, Scores()))
 
     def _write(self, tracker: int, picture: Picture, view: int, action: RecordedAction) -> None:
-        going = self._going[tracker]
+        going = self._open[tracker]
         assert going is not None
         assert going.files is not None
         number = going.summary.frames
@@ -327,13 +327,13 @@ class Recorder:
             OutputError: Writing failed.
         """
         for tracker in np.flatnonzero(trackers).tolist():
-            going = self._going[tracker]
+            going = self._open[tracker]
             if going is not None:
                 if going.files is not None:
                     self._threads.submit(tracker, going.files.finish)
                     self._threads.submit(tracker, self._checksums.add, going.episode.folder)
                 self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
-            self._going[tracker] = None
+            self._open[tracker] = None
 
     def finish(self) -> None:
         """End all episodes, and describe the whole recording.
@@ -341,7 +341,7 @@ class Recorder:
         Raises:
             OutputError: Writing failed.
         """
-        self.end(np.ones(len(self._going), np.bool_))
+        self.end(np.ones(len(self._open), np.bool_))
         self._threads.finish()
         for writer in self._folder.writers:
             writer.finish([ended for own in self.episodes for ended in own])

@@ -318,8 +318,10 @@ def print_report(
     ):
         whole = total(summary for _, summary in episodes)
         shares = "/".join(f"{100.0 * share:.0f}" for share in reached.shares().values())
-        told = f"{shares} %" if reached.frames else "-"
-        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), told)
+        reached_shares = f"{shares} %" if reached.frames else "-"
+        table.add_row(
+            tracker, str(len(episodes)), str(whole.frames), *_means(whole), reached_shares
+        )
         every = every.plus(reached)
     console = Console()
     console.print(table)

@@ -62,8 +62,8 @@ class Build(Config):
 
     def _id_of(self, names: Collection[str]) -> str:
         rooms = [room for room in sorted(self.rooms) if _lies_in(room, names)]
-        said = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
-        return sha256(said.encode()).hexdigest()[:12]
+        lines = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
+        return sha256(lines.encode()).hexdigest()[:12]
 
     def difference(
         self, other: "Build", *, without: Collection[str] = (), libraries: bool = False
@@ -77,12 +77,12 @@ class Build(Config):
         """
         rooms = sorted(self.rooms.keys() | other.rooms.keys())
         differ = [room for room in rooms if self.rooms.get(room) != other.rooms.get(room)]
-        told = [room for room in differ if not _lies_in(room, without)]
+        differences = [room for room in differ if not _lies_in(room, without)]
         for name in _LIBRARIES if libraries else ():
             one, two = (each.libraries.get(name, "none") for each in (self, other))
             if one != two:
-                told.append(f"{name} {one} and {two}")
-        return ", ".join(f"{each:.40}" for each in told[:12])
+                differences.append(f"{name} {one} and {two}")
+        return ", ".join(f"{each:.40}" for each in differences[:12])
 
 
 def houses_of_results() -> dict[str, Path]:

@@ -70,16 +70,16 @@ def code_of(what: Callable[..., Any]) -> str:
 
 @cache
 def _code(module: str, name: str) -> str:
-    said = []
+    texts = []
     for at, what in sorted(closure_of(module, name)):
         if not what:
-            said.append(_library(at))
+            texts.append(_library(at))
         elif what == _LANGUAGE:
-            said.append(f"language of kernels {language_hash()}")
+            texts.append(f"language of kernels {language_hash()}")
         else:
-            said.append(f"{at}:{what} {definitions_of(at)[what].digest}")
+            texts.append(f"{at}:{what} {definitions_of(at)[what].digest}")
     INDEX.keep()
-    return digest_of("\n".join(filter(None, said)))
+    return digest_of("\n".join(filter(None, texts)))
 
 
 def closure_of(module: str, name: str) -> set[Place]:
@@ -151,7 +151,7 @@ def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
         return _targets(_absolute(at, module), ".".join(filter(None, (name, rest))), package)
     if first and _path(inner) is not None:
         return _targets(inner, rest, package)
-    return tuple((module, name) for name, said in known.items() if said.digest)
+    return tuple((module, name) for name, texts in known.items() if texts.digest)
 
 
 def _lies_in(module: str, rooms: tuple[str, ...]) -> bool:
