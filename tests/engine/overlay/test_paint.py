@@ -203,6 +203,19 @@ def test_a_solid_at_the_camera_is_left_out(plain, painted):
     assert not changed(before, after).any()
 
 
+def test_what_is_near_the_camera_is_drawn(plain, painted):
+    views = looking([(0.0, 0.0, 5.0)], fov=FOV)
+    line = ThinLine(np.array([0.5, -0.1, 5.0]), np.array([0.5, 0.1, 5.0]), BLUE)
+    label = Label(np.array([0.5, 0.0, 5.0]), "0.8", RED)
+    for near in (
+        Overlay(solids=(octahedron((0.5, 0.0, 5.0), 0.1),)),
+        Overlay(lines=(line,)),
+        Overlay(labels=(label,)),
+    ):
+        before, after = painted(plain, views, near)
+        assert changed(before, after).any()
+
+
 def test_labels_stand_beside_their_point_or_in_the_corner(plain, painted):
     views = looking([(0.0, 0.0, 5.0)], fov=FOV)
     near = Label(np.array([20.0, 0.0, 5.0]), "0.8", RED, clear=1.0)

@@ -12,19 +12,21 @@ method that writes may raise `OutputError`.
 """
 
 import math
+import os
 import re
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from string import Formatter
-from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
+from typing import BinaryIO, ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.files import part_path, refusals, write_atomic
 from eyas.engine.exports.frame import Frame, Output
 from eyas.engine.sim.config import SimConfig
 
@@ -33,6 +35,7 @@ __all__ = [
     "Episode",
     "EpisodeWriter",
     "Files",
+    "FilmEpisode",
     "Gather",
     "PerFrameWriter",
     "Run",
@@ -284,6 +287,49 @@ class Gather(EpisodeWriter, Generic[Record]):
             OutputError: The file cannot be written.
         """
         write_atomic(self._path, self._encode(self._records))
+
+
+class FilmEpisode(EpisodeWriter):
+    """Encodes pictures into one file, one by one; it gets its final name when it is complete.
+
+    Args:
+        path: The file.
+
+    Raises:
+        OutputError: The file cannot be written; raised by every method.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._part = path, part_path(path)
+        with refusals(path):
+            self._file: BinaryIO = self._part.open("wb")
+
+    @abstractmethod
+    def add_picture(self, rgb: NDArray[np.uint8]) -> None:
+        """Append the next picture, shape (H, W, 3)."""
+
+    @abstractmethod
+    def _complete(self) -> None:
+        """Write what is left of the film."""
+
+    def add(self, frame: Frame) -> None:
+        """Append the picture of a frame."""
+        assert frame.rgb is not None
+        self.add_picture(frame.rgb)
+
+    def finish(self) -> None:
+        """Write the remaining pictures, and give the file its final name."""
+        with refusals(self._path):
+            self._complete()
+            self._file.close()
+            os.replace(self._part, self._path)
+
+    def abandon(self) -> None:
+        """Delete the unfinished file."""
+        with refusals(self._path):
+            self._part.unlink(missing_ok=True)
+        with suppress(OSError):  # writing the last buffer may fail again
+            self._file.close()
 
 
 class PerFrameWriter(Writer):

@@ -169,7 +169,10 @@ def _tell_surprises(config: EyasConfig) -> None:
             "%s: %g does not divide %d; an action lasts %d steps of 2 ms, "
             "so the effective rate is %.4g Hz",
             named_path(config, "control.frequency"),
-            *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
+            frequency,
+            PHYSICS_RATE,
+            steps,
+            PHYSICS_RATE / steps,
         )
 
 

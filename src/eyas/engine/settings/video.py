@@ -63,7 +63,10 @@ class VideoConfig(ActionSpeeds):
     episodes: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Episodes of each tracker, if `episode_frames` is set."""
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
-        *("jpeg", "mp4", "labels", "mark"),
+        "jpeg",
+        "mp4",
+        "labels",
+        "mark",
     )
     """Output formats; where the extra `video` is not installed, the default has `webp` instead of
     `mp4`. `jpeg`, `png`, `mp4`, `webp`, `labels`, `mark`, `clean`, `cameras`, `masks`,

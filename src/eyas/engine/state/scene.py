@@ -67,9 +67,15 @@ class ObjectClass(IntEnum):
 
 LABELLED = frozenset(
     {
-        *(ObjectClass.CAR, ObjectClass.TRUCK, ObjectClass.BUS, ObjectClass.MOTORCYCLE),
-        *(ObjectClass.PERSON, ObjectClass.ROBOT, ObjectClass.BICYCLE),
-        *(ObjectClass.BOAT, ObjectClass.TRAIN),
+        ObjectClass.CAR,
+        ObjectClass.TRUCK,
+        ObjectClass.BUS,
+        ObjectClass.MOTORCYCLE,
+        ObjectClass.PERSON,
+        ObjectClass.ROBOT,
+        ObjectClass.BICYCLE,
+        ObjectClass.BOAT,
+        ObjectClass.TRAIN,
     }
 )
 """Classes of what labels list: whatever moves, and what of the same looks stands still."""

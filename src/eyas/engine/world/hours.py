@@ -39,6 +39,13 @@ def _seen_at(turn: float, declination: float) -> Colour:
 _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 """Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
 the third it is night."""
+_MIXED = tuple(
+    "zenith_colour horizon_colour fog_colour ambient_up ambient_down fog_density exposure "
+    "luminosity clouds snow flakes rain leaves wet litter mist mist_depth glare "
+    "longest_shadow".split()
+)
+"""Fields of a `Lighting` that are mixed by share in twilight."""
+
 _LAMPS = ("lamps", "windows", "daytime_lamps")
 """Lights that are switched on as the sun sinks, from the horizon to as far below it as
 `_LOW_SUN`."""
@@ -111,14 +118,7 @@ def at_hour(by_day: Lighting, by_night: Lighting, hour: float) -> Lighting:
         return by_night
     day = _by_day(by_day, _lifted(direction, max(height, _LOWEST)))
     night, share = by_night, (_LOW_SUN - height) / (_LOW_SUN - _DARK)
-    mixed = {
-        name: _mixed(getattr(day, name), getattr(night, name), share)
-        for name in (
-            *("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down"),
-            *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
-            *("rain", "leaves", "wet", "litter", "mist", "mist_depth", "glare", "longest_shadow"),
-        )
-    }
+    mixed = {name: _mixed(getattr(day, name), getattr(night, name), share) for name in _MIXED}
     (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)
     mixed["stars"] = day.stars if height > _MOONLIGHT else night.stars
     for name in ("star_turn", "moon_limb", "moon_lit"):

@@ -102,8 +102,15 @@ BEAMS = (0.03, 0.5, 0.97)
 """Beginning of the side windows, pillar between the doors, end of the side windows."""
 
 STYLES = (
-    *("saloon", "saloon_sunroof", "saloon_worn", "hatch", "hatch_sunroof", "hatch_worn"),
-    *("van", "van_worn", "bus"),
+    "saloon",
+    "saloon_sunroof",
+    "saloon_worn",
+    "hatch",
+    "hatch_sunroof",
+    "hatch_worn",
+    "van",
+    "van_worn",
+    "bus",
 )
 """Kinds of bodywork."""
 
