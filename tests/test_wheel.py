@@ -88,7 +88,7 @@ def test_the_wheel_has_every_file_of_the_package_and_no_other(wheel):
     with zipfile.ZipFile(wheel) as archive:
         packed = {name for name in archive.namelist() if not name.endswith("/")}
     indexes = {name for name in packed if name.endswith(".eyi")}
-    assert indexes == {"eyas/core/definitions.eyi", "eyas/lanes/syntax.eyi"}
+    assert indexes == {"eyas/engine/core/identity/definitions.eyi", "eyas/lanes/syntax.eyi"}
     assert {name for name in packed - indexes if ".dist-info/" not in name} == sources
     assert any(name.endswith("/LICENSE") for name in packed - sources)
 

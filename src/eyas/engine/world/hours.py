@@ -39,6 +39,7 @@ def _seen_at(turn: float, declination: float) -> Colour:
 _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 """Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
 the third it is night."""
+
 _MIXED = tuple(
     "zenith_colour horizon_colour fog_colour ambient_up ambient_down fog_density exposure "
     "luminosity clouds snow flakes rain leaves wet litter mist mist_depth glare "
