@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.renderer import CpuRenderer, build_renderer

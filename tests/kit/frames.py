@@ -7,7 +7,7 @@ import pytest
 from eyas.engine.camera.config import CameraConfig, FurtherCameraConfig
 from eyas.engine.camera.esim import EVENT
 from eyas.engine.camera.events import EventsConfig
-from eyas.engine.core.pinhole import intrinsics
+from eyas.engine.core.optics.pinhole import intrinsics
 from eyas.engine.exports.frame import (
     CameraPicture,
     CameraPose,

@@ -15,7 +15,7 @@ from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
 from eyas.engine.core.registry import Registry
 from eyas.engine.core.scratch import remove_left_scratch
-from eyas.engine.terminal.said import lacks_memory, say
+from eyas.engine.terminal.stderr import lacks_memory, say
 
 __all__ = ["app", "run"]
 
@@ -82,7 +82,9 @@ _add_commands()
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
-        from eyas.engine.core.build import this_build  # reads files, so only when it is asked for
+        from eyas.engine.core.identity.build import (
+            this_build,  # reads files, so only when it is asked for
+        )
         from eyas.engine.core.installed import installed_version
 
         typer.echo(f"eyas {installed_version()} (build {this_build().id})")

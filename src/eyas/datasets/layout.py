@@ -8,11 +8,11 @@ from typing import Any
 from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.statistics import PartFacts
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.core.installed import installed_version
 from eyas.engine.exports.checksums import SEALED
 from eyas.engine.recordings.recording import DATASET_FILE

@@ -6,9 +6,9 @@ import pytest
 
 from eyas.engine.camera.glass import change_light, vignette
 from eyas.engine.camera.lens import LensConfig, Lenses
-from eyas.engine.core import pinhole
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.lens import BROWN, FISHEYE, NO_LENS, Lens, rays
+from eyas.engine.core.optics import pinhole
+from eyas.engine.core.optics.lens import BROWN, FISHEYE, NO_LENS, Lens, rays
 from eyas.engine.core.variation import Uniform
 from eyas.engine.overlay.canvas import Canvas
 from eyas.engine.state.draw import Views

@@ -12,7 +12,7 @@ from eyas.engine.camera.thermal import (
     slot_heat,
 )
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.lens import FISHEYE, lens_of, rays
+from eyas.engine.core.optics.lens import FISHEYE, lens_of, rays
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.engine.world.weather import DAY, FOGGY, SNOW

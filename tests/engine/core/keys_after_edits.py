@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import eyas
-from eyas.engine.core import build, program
+from eyas.engine.core.identity import build, program
 from eyas.engine.render.bake import ambient, shadows
 from eyas.engine.render.pack import light
 from eyas.engine.sensors.obstacles import solids_of

@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.engine.core import build as builds
-from eyas.engine.core.build import WORLD, this_build
-from eyas.engine.core.program import UnknownCodeError, closure_of, code_of, definitions_in
+from eyas.engine.core.identity import build as builds
+from eyas.engine.core.identity.build import WORLD, this_build
+from eyas.engine.core.identity.program import UnknownCodeError, closure_of, code_of, definitions_in
 from eyas.lanes import jit
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make

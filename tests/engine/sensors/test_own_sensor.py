@@ -12,8 +12,8 @@ import pytest
 import eyas
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
+from eyas.engine.exports.episode_files import SensorWriter
 from eyas.engine.exports.label import LabelWriter
-from eyas.engine.exports.table import SensorWriter
 from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.sensors.table import SENSORS, further_sensors
 from eyas.engine.settings.config import EyasConfig

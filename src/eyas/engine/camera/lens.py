@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, model_validator
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.lens import BROWN, FISHEYE, NO_LENS, Lens, lens_of, widest
-from eyas.engine.core.pinhole import focal_length
+from eyas.engine.core.optics.lens import BROWN, FISHEYE, NO_LENS, Lens, lens_of, widest
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.core.variation import Variation, bounds, sample, within
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import exact
@@ -23,7 +23,7 @@ Fringe = Annotated[Variation, AfterValidator(within(-0.05, 0.05))]
 
 
 class LensModel(StrEnum):
-    """How directions are shown, see `eyas.engine.core.lens`."""
+    """How directions are shown, see `eyas.engine.core.optics.lens`."""
 
     PINHOLE = "pinhole"
     BROWN = "brown"
@@ -94,7 +94,7 @@ class Lenses:
     """The lenses of N trackers.
 
     Attributes:
-        numbers: See `eyas.engine.core.lens.Lens`, shape (N, 10).
+        numbers: See `eyas.engine.core.optics.lens.Lens`, shape (N, 10).
         vignetting: See `LensConfig`, shape (N,).
         fringes: Its `red` and `blue`, shape (N, 2).
         vary: Whether they differ from episode to episode.

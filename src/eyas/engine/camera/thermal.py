@@ -20,7 +20,7 @@ from eyas.engine.camera.temperature import (
 )
 from eyas.engine.core.config import Config
 from eyas.engine.core.counter_rng import mixed
-from eyas.engine.core.lens import Lens, undistorted
+from eyas.engine.core.optics.lens import Lens, undistorted
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.lanes import address_of, kernel, parallel, thread_count

@@ -17,12 +17,11 @@ from typing import Any, Final, NamedTuple
 
 __all__ = ["STREET", "House", "brought", "brought_object", "first_brought", "houses", "installed"]
 
-STREET: Final = (
-    *("lanes", "engine", "maps", "gpu", "benchmark", "datasets", "learning", "robotics", "dat"),
-    *("demo", "cli"),
+STREET: Final = tuple(
+    "lanes engine maps gpu benchmark datasets learning robotics dat demo cli".split()
 )
-"""The houses in the order in which what they bring is listed: the order of maps in messages and of
-sections in files of settings."""
+"""Houses in the order in which what they bring is listed: bytes of messages, of files of settings
+(their sections) and of lists of maps depend on it."""
 
 
 class House(NamedTuple):

@@ -35,10 +35,6 @@ _Parts = ObservationPart
 def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Space[Any]:
     """Return the space of one agent's observations.
 
-    Args:
-        config: What is observed.
-        sim: Which sensors there are.
-
     Raises:
         ConfigError: The agent is to observe a sensor that it does not have, or words alone.
     """

@@ -208,11 +208,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     @property
     def _batch(self) -> MixedBatch:
-        """The environments, if they are on this processor.
-
-        Raises:
-            EyasError: They are on a device.
-        """
+        """The environments on this processor; `EyasError` if they are on a device."""
         if self._here is None:
             raise EyasError("device: it is not known here what only this processor knows")
         return self._here
@@ -291,8 +287,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             self._ring.reverse()
             out = self._ring[0]
         if self._there is not None:
-            told: Observation = self._there.latest(out)
-            return told
+            latest: Observation = self._there.latest(out)
+            return latest
         out = self._new_observations() if out is None else out
         self._batch.copy_to(out)
         return out
@@ -319,11 +315,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         return chosen
 
     def _seeds(self, seed: Seed, chosen: Mask) -> list[int | None]:
-        """Return the seed of each environment, None where it continues.
-
-        Raises:
-            ConfigError: One is wrong, or there is not one for each.
-        """
+        """Return the seed of each environment, None where it continues."""
         each: list[int | None] = [None] * self.num_envs
         if seed is None:
             pass

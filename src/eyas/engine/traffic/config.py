@@ -26,7 +26,7 @@ class VehicleType(StrEnum):
 class Mix(Config):
     """Classes of vehicles that share the roads, each with its share of them."""
 
-    written: ClassVar[str] = '{"passenger": 0.8, "bus": 0.2}'
+    notation: ClassVar[str] = '{"passenger": 0.8, "bus": 0.2}'
     passenger: Share = 0.0
     bus: Share = 0.0
     truck: Share = 0.0

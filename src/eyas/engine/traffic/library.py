@@ -13,7 +13,7 @@ from eyas.engine.core.cache.folder import Kind, cache_limit
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import user_path
-from eyas.engine.core.program import code_of
+from eyas.engine.core.identity.program import code_of
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.traffic.config import Demand, Drivers, Mix, Signals, TrafficConfig

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.camera.lens import LensConfig
-from eyas.engine.core.lens import BROWN, FISHEYE, project, rays
+from eyas.engine.core.optics.lens import BROWN, FISHEYE, project, rays
 from eyas.engine.core.variation import Uniform
 from eyas.engine.exports.capture import frame_of, moment_of
 from eyas.engine.exports.flow import forward_flow

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.camera.config import FurtherCameraConfig, MountConfig
 from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.frames import rotate
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.core.variation import sample
 from eyas.engine.sensors.mount import mount_of
 from eyas.engine.sim.assets import Assets

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import NO_LENS, Lens, distorted, principal_point
-from eyas.engine.core.pinhole import focal_length
+from eyas.engine.core.optics.lens import NO_LENS, Lens, distorted, principal_point
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.render.kernels.scalars import i8
 from eyas.engine.state.scene import LABELLED, LAST_PARKED, ObjectClass, Scene

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.camera.lens import Lenses
 from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.overlay.marks import Marks
 from eyas.engine.overlay.paint import paint_overlays, with_depth
 from eyas.engine.render.outputs import picture_size

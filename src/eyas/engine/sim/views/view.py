@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.camera.event_sensor import EventSensors
 from eyas.engine.camera.exposure import ExposureState
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.sensors.lidar import Lidar
 from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.sensors.table import Fitted

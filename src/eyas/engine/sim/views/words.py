@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens, places, principal_point, widest
+from eyas.engine.core.optics.lens import Lens, places, principal_point, widest
 from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of

@@ -8,7 +8,7 @@ shaded along its own ray. Nothing is shaded that is not seen, and nothing is blu
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens, distorted
+from eyas.engine.core.optics.lens import Lens, distorted
 from eyas.engine.render.kernels.bundles import (
     ELSEWHERE,
     Band,

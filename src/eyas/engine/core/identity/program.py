@@ -6,7 +6,7 @@ definition is all that it refers to, directly or not, however late it is importe
 the sources without running them, because a start that finds everything in the cache imports little
 of what once made it.
 
-What a definition says and refers to is read by `eyas.engine.core.definitions`. A package that uses
+What a definition says and refers to is read by `definitions.py`. A package that uses
 `import_module` refers to all its modules. Where a name cannot be found, its whole module is taken:
 one dependency too many costs seconds, a missing one a wrong result.
 """
@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eyas.engine.core.definitions import INDEX, Definition
+from eyas.engine.core.identity.definitions import INDEX, Definition
 from eyas.lanes.identity import language_hash
 from eyas.lanes.text_index import digest_of
 
@@ -72,16 +72,16 @@ def code_of(what: Callable[..., Any]) -> str:
 
 @cache
 def _code(module: str, name: str) -> str:
-    said = []
+    texts = []
     for at, what in sorted(closure_of(module, name)):
         if not what:
-            said.append(_library(at))
+            texts.append(_library(at))
         elif what == _LANGUAGE:
-            said.append(f"language of kernels {language_hash()}")
+            texts.append(f"language of kernels {language_hash()}")
         else:
-            said.append(f"{at}:{what} {definitions_of(at)[what].digest}")
+            texts.append(f"{at}:{what} {definitions_of(at)[what].digest}")
     INDEX.keep()
-    return digest_of("\n".join(filter(None, said)))
+    return digest_of("\n".join(filter(None, texts)))
 
 
 def closure_of(module: str, name: str) -> set[Place]:
@@ -111,12 +111,7 @@ _LANGUAGE = "<language>"
 
 @cache
 def _references(place: Place, package: str) -> tuple[Place, ...]:
-    """Return the definitions that one refers to.
-
-    Args:
-        place: The definition.
-        package: The package that is followed beside Eyas.
-    """
+    """Return the definitions that one refers to."""
     module, name = place
     if not name or name == _LANGUAGE:
         return ()
@@ -141,13 +136,7 @@ def _modules_in(package: str) -> list[str]:
 
 @cache
 def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
-    """Return the definitions that a name of a module stands for; all of the module's for "".
-
-    Args:
-        module: The module.
-        chain: Name and attributes, `exact.length`.
-        package: See `_references`.
-    """
+    """Return the definitions that a name with attributes, `exact.length`, stands for; "": all."""
     if module.partition(".")[0] not in (_OWN, package):
         return ((module.partition(".")[0], ""),)
     first, _, rest = chain.partition(".")
@@ -166,7 +155,7 @@ def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
         return _targets(_absolute(at, module), ".".join(filter(None, (name, rest))), package)
     if first and _path(inner) is not None:
         return _targets(inner, rest, package)
-    return tuple((module, name) for name, said in known.items() if said.digest)
+    return tuple((module, name) for name, texts in known.items() if texts.digest)
 
 
 def _lies_in(module: str, rooms: tuple[str, ...]) -> bool:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.deflate import deflated
+from eyas.engine.core.codecs.deflate import deflated
 from eyas.lanes import compiled
 
 __all__ = ["PAETH", "png_bytes"]

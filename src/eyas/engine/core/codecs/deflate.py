@@ -26,15 +26,15 @@ class _Tables(NamedTuple):
 
     symbol: NDArray[np.int64]
     bits: NDArray[np.int64]
-    rest: NDArray[np.int64]  # What these bits say
+    rest: NDArray[np.int64]  # Values of these bits
 
 
 class _Work(NamedTuple):
     """Input, working memory and output."""
 
     data: NDArray[np.uint8]  # Shape (N,)
-    words: NDArray[np.int64]  # The same, eight bytes at once, shape (N / 8,)
-    counts: NDArray[np.int64]  # How often each symbol occurs, shape (286,)
+    words: NDArray[np.int64]  # The bytes, eight at once, shape (N / 8,)
+    counts: NDArray[np.int64]  # Number of occurrences of each symbol, shape (286,)
     length: NDArray[np.int64]  # Bits of its code, shape (286,)
     code: NDArray[np.int64]  # The code, its first bit lowest, shape (286,)
     order: NDArray[np.int64]  # The symbols that occur, the rarest first, shape (286,)
@@ -46,11 +46,7 @@ class _Work(NamedTuple):
 
 
 def deflated(data: NDArray[np.uint8]) -> bytes:
-    """Return bytes as a deflate stream of one block.
-
-    Args:
-        data: Shape (N,).
-    """
+    """Return bytes as a deflate stream of one block."""
     work = _Work(
         data=data,
         words=data[: data.size & -8].view(np.int64),
@@ -185,7 +181,7 @@ class _Bits(NamedTuple):
 
     bits: int
     have: int
-    at: int  # Where the next word is written
+    at: int  # Index of the next word
 
 
 @kernel(inline=True)

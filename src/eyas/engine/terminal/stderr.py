@@ -21,7 +21,7 @@ _SIGNS = (
     "can't start new thread",
     "error return without exception set",  # Python itself, where it cannot even make the error
 )
-"""What libraries and Python say where memory is too little for a library or a thread."""
+"""Messages of libraries and of Python where memory is too little for a library or a thread."""
 
 
 def lacks_memory(error: BaseException | None) -> bool:

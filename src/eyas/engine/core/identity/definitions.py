@@ -1,5 +1,5 @@
-"""What the text of a file of Python defines: each name of the module, what it says, and what it
-refers to; see `eyas.engine.core.program`.
+"""Definitions in the text of a file of Python: each name of the module, what it says, and what it
+refers to; see `eyas.engine.core.identity.program`.
 
 Comments, docstrings, annotations, and the texts of errors and of the log say nothing. Classes that
 annotations name are referred to, since their methods are called. A text `package.module:attribute`
@@ -21,9 +21,9 @@ _PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")
 
 
 class Definition(NamedTuple):
-    """What a module says about one of its names."""
+    """A definition: what a module says about one of its names."""
 
-    digest: str  # Of what it says; empty: the name is imported
+    digest: str  # Digest of what it says; empty: the name is imported
     refers: tuple[str, ...]
     """Other names of the module, `name`, and of others, `package.module:name.attribute`."""
 
@@ -44,7 +44,7 @@ class _Reader:
     def __init__(self, text: bytes) -> None:
         self._body = cast("ast.Module", tree_of(text)).body
         self._imports = dict(_imported(self._body))
-        self._said: dict[str, list[str]] = {}
+        self._texts: dict[str, list[str]] = {}
         self._refers: dict[str, set[str]] = {}
 
     def read(self) -> dict[str, Definition]:
@@ -53,17 +53,17 @@ class _Reader:
         own = {name for _, names in bound for name in names}
         for node, names in bound:
             refers = self._references(node, own) if names else set()
-            said = _said(node) if names else ""
+            text = _texts(node) if names else ""
             for name in names:
-                self._said.setdefault(name, []).append(said)
+                self._texts.setdefault(name, []).append(text)
                 self._refers.setdefault(name, set()).update(refers)
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
                 for changed in set(_changed(node)) & own:  # a table that it fills
                     self._refers.setdefault(changed, set()).add(node.name)
         imported = {name: Definition("", (at,)) for name, at in sorted(self._imports.items())}
         return imported | {
-            name: Definition(digest_of("".join(said)), tuple(sorted(self._refers[name] - {name})))
-            for name, said in sorted(self._said.items())
+            name: Definition(digest_of("".join(text)), tuple(sorted(self._refers[name] - {name})))
+            for name, text in sorted(self._texts.items())
         }
 
     def _references(self, node: ast.stmt, own: set[str]) -> set[str]:
@@ -145,11 +145,11 @@ def _is_message(node: object) -> bool:
     value = node.value
     if isinstance(value, ast.Constant):
         return isinstance(value.value, str)
-    told = value.func if isinstance(value, ast.Call) else None
+    called = value.func if isinstance(value, ast.Call) else None
     return (
-        isinstance(told, ast.Attribute)
-        and isinstance(told.value, ast.Name)
-        and told.value.id == "_LOG"
+        isinstance(called, ast.Attribute)
+        and isinstance(called.value, ast.Name)
+        and called.value.id == "_LOG"
     )
 
 
@@ -207,7 +207,7 @@ def _read_text(text: str, *, annotation: bool) -> Iterator[str]:
         yield text
 
 
-def _said(node: ast.AST) -> str:
+def _texts(node: ast.AST) -> str:
     """Return what a statement says, in the same words in all versions of Python."""
     words: list[str] = []
     _say(node, words, fields=False)

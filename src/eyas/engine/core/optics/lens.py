@@ -1,9 +1,8 @@
 """Lenses that bend the picture: Brown-Conrady's and Kannala-Brandt's models, as OpenCV has them.
 
 A lens takes a direction, right, down and ahead of the camera, to a place on a plane at distance 1
-behind the lens; the camera matrix (`eyas.engine.core.pinhole.intrinsics`, with the principal point
-moved) takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV
-calibrates:
+behind the lens; the camera matrix (`pinhole.intrinsics`, with the principal point moved)
+takes that place to the picture. `k1` to `k4`, `p1` and `p2` are the numbers that OpenCV calibrates:
 
 - Brown-Conrady (D. C. Brown, Decentering distortion of lenses, 1966; `cv2.projectPoints` with k1,
   k2, p1, p2, k3), for lenses that are nearly pinholes;
@@ -19,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.engine.core import pinhole
+from eyas.engine.core.optics import pinhole
 from eyas.lanes import compiled, exact, kernel
 from eyas.lanes.elementary import atan2, hypot, sin_cos
 
@@ -66,7 +65,7 @@ class Lens(NamedTuple):
     p1: float  # Tangential coefficients, of `BROWN` only
     p2: float
     right: float  # Principal point right of the middle of the picture, as a share of the width
-    below: float  # The same below it, as a share of the height
+    below: float  # Offset of the principal point below the middle, as a share of the height
     limit: float
     """Tangent (`BROWN`) or angle (`FISHEYE`) from the optical axis at which the picture ends."""
 
@@ -167,16 +166,10 @@ def _brown_slopes(lens: Lens, x: float, y: float) -> tuple[float, float, float]:
 
 @kernel
 def distorted(lens: Lens, right: float, down: float, ahead: float) -> tuple[float, float]:
-    """Return where a direction is shown on the plane behind the lens, right and down.
+    """Return where a direction (right, down, ahead) is shown on the plane behind the lens.
 
     What is beyond the lens' limit lies on straight lines outwards, as it would for a pinhole, so
     that nothing folds back into the picture. A `BROWN` lens needs what is ahead.
-
-    Args:
-        lens: The lens.
-        right: The direction, of any length.
-        down: The same.
-        ahead: The same.
     """
     if lens.model == FISHEYE:
         aside = hypot(right, down)
@@ -198,11 +191,6 @@ def distorted(lens: Lens, right: float, down: float, ahead: float) -> tuple[floa
 @kernel
 def undistorted(lens: Lens, x: float, y: float) -> tuple[float, float, float, float]:
     """Return the direction that a place on the plane behind the lens shows, of length 1.
-
-    Args:
-        lens: The lens.
-        x: The place, to the right.
-        y: The same, downwards.
 
     Returns:
         Right, down and ahead, and the solid angle that an area of 1 there shows [sr]; 0 where the
@@ -263,7 +251,7 @@ def principal_point(lens: Lens, width: float, height: float) -> tuple[float, flo
 
 
 def camera_matrix(lens: Lens, width: int, height: int, fov: float) -> Floats:
-    """Return the camera matrix, see `eyas.engine.core.pinhole.intrinsics`."""
+    """Return the camera matrix, see `eyas.engine.core.optics.pinhole.intrinsics`."""
     matrix = pinhole.intrinsics(width, height, fov)
     matrix[0, 2], matrix[1, 2] = principal_point(lens, width, height)
     return matrix
@@ -296,7 +284,7 @@ def project(
     fields: tuple[float, float | None],
     lens: Lens,
 ) -> tuple[Floats, Floats, Floats]:
-    """Return where points appear in a picture, see `eyas.engine.core.pinhole.project`.
+    """Return where points appear in a picture, see `eyas.engine.core.optics.pinhole.project`.
 
     Args:
         points: World frame [m], shape (..., 3).

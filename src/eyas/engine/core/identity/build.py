@@ -13,9 +13,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.definitions import INDEX
 from eyas.engine.core.doors import houses
-from eyas.engine.core.program import definitions_in
+from eyas.engine.core.identity.definitions import INDEX
+from eyas.engine.core.identity.program import definitions_in
 from eyas.lanes.text_index import SUFFIX
 
 __all__ = ["WORLD", "Build", "houses_of_results", "rooms_of", "this_build"]
@@ -27,7 +27,7 @@ WORLD = frozenset(
 )
 """Houses, and rooms of the engine, that make what happens in an episode and what is seen of it."""
 
-_ROOT = Path(__file__).parents[2]
+_ROOT = Path(__file__).parents[3]
 
 _ENGINE = "engine"
 
@@ -58,17 +58,13 @@ class Build(Config):
         return self._id_of(WORLD)
 
     def id_without(self, names: Collection[str]) -> str:
-        """Return twelve hexadecimal digits that differ where others than these do.
-
-        Args:
-            names: Rooms, and houses with all their rooms.
-        """
+        """Return twelve hexadecimal digits that differ where others than these do."""
         return self._id_of([room for room in self.rooms if not _lies_in(room, names)])
 
     def _id_of(self, names: Collection[str]) -> str:
         rooms = [room for room in sorted(self.rooms) if _lies_in(room, names)]
-        said = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
-        return sha256(said.encode()).hexdigest()[:12]
+        lines = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
+        return sha256(lines.encode()).hexdigest()[:12]
 
     def difference(
         self, other: "Build", *, without: Collection[str] = (), libraries: bool = False
@@ -82,12 +78,12 @@ class Build(Config):
         """
         rooms = sorted(self.rooms.keys() | other.rooms.keys())
         differ = [room for room in rooms if self.rooms.get(room) != other.rooms.get(room)]
-        told = [room for room in differ if not _lies_in(room, without)]
+        differences = [room for room in differ if not _lies_in(room, without)]
         for name in _LIBRARIES if libraries else ():
             one, two = (each.libraries.get(name, "none") for each in (self, other))
             if one != two:
-                told.append(f"{name} {one} and {two}")
-        return ", ".join(f"{each:.40}" for each in told[:12])
+                differences.append(f"{name} {one} and {two}")
+        return ", ".join(f"{each:.40}" for each in differences[:12])
 
 
 def houses_of_results() -> dict[str, Path]:
