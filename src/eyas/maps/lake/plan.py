@@ -17,7 +17,7 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_out
 from eyas.maps.lake.roads import NAME
-from eyas.maps.lake.shores import boats, shore_life, water_in
+from eyas.maps.lake.scenery import boats, shore_life, water_in
 from eyas.maps.land import ground
 from eyas.maps.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds, wild_kinds
 from eyas.maps.plan.plan import (

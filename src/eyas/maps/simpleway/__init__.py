@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
 from eyas.engine.world.weather import Weather, in_fog
-from eyas.maps.desert.air import desert_weather
+from eyas.maps.desert import desert_weather
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork

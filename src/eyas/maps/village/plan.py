@@ -41,9 +41,8 @@ from eyas.maps.street import gantries
 from eyas.maps.street.dressing import VILLAGE_KERBS, Ground, along_kerbs
 from eyas.maps.street.lamps import lamps_along
 from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
-from eyas.maps.village.paths import grown, trodden
 from eyas.maps.village.roads import NAME
-from eyas.maps.village.yards import yard_things
+from eyas.maps.village.scenery import grown, trodden, yard_things
 
 __all__ = ["GRASS", "VALLEY", "make_plan"]
 

@@ -1,4 +1,4 @@
-"""The fields of the farmland: squares of one crop each, in rows beside the roads."""
+"""Layout of the farmland: squares of one crop each, in rows beside the roads."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,9 @@ from eyas.engine.world.build.materials import material, without_snow
 from eyas.engine.world.weather import Season
 from eyas.maps.farmland.roads import ROAD_WIDTH
 
-__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "FieldLot", "lay_out"]
+__all__ = ["CROPS", "FLOOR", "SIDE", "VERGE", "Crop", "FieldLot", "lay_out"]
+
+FLOOR = (982.0, 998.0)  # Extent of the floor, as in the original [m]
 
 SIDE = 80.0  # Largest side of a field [m]
 VERGE = 1.6  # Soil between a road and a field, and the least between two fields [m]

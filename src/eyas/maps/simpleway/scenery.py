@@ -1,4 +1,4 @@
-"""The grounds of the simple maps: what lies between the roads, and on them."""
+"""Scenery of the simple maps: the kinds of ground, and what lies between the roads on each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -1,20 +1,39 @@
-"""Bars of sand that the wind has blown across roads."""
+"""Layout of the simple maps: the asphalt, its loops, and bars of sand blown across the roads."""
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.build.millimetres import rounded
-from eyas.engine.world.roads.areas import polygons_of
+from eyas.engine.world.roads.areas import corridors, polygons_of, streets
+from eyas.engine.world.roads.curves import rounded_kerbs
 from eyas.lanes import exact
+from eyas.maps.roads.painting import Stripe
+from eyas.maps.simpleway.roads import is_loop
 
-__all__ = ["sand_bars"]
+__all__ = ["FLOOR", "loop_lines", "paved", "sand_bars"]
 
+FLOOR = (7000.0, 5000.0)  # Extent of the floor, as in the original [m]
 _ROWS = 7  # Bars on each road
 _REACH = 1110.0  # From the middle of a road to its first and last bar [m]
 _LENGTH = (10.0, 25.0)  # Extent of a bar along the road [m]
 _HALF = 50.0  # Half its extent across [m]
 _TUFTS = 9  # Small drifts before and behind each bar
+
+
+def paved(network: RoadNetwork) -> shapely.Geometry:
+    """Return the asphalt [m]."""
+    return rounded_kerbs(corridors(network), [])
+
+
+def loop_lines(network: RoadNetwork) -> list[Stripe]:
+    """Return lines along the inner edges of loops: `road_paint` draws them on one half only."""
+    return [
+        Stripe(middle=street.left, width=0.2)
+        for edge, street in zip(network.edges, streets(network), strict=True)
+        if is_loop(edge)
+    ]
 
 
 def sand_bars(
