@@ -194,7 +194,7 @@ OWN = {
     "modes.video.checksums:Checksums._of": _OUTPUT,
     "modes.video.folder:_origin": _OUTPUT,
     "settings.file:parsed_override": "the command line",
-    "settings.legacy.layout:legacy_defaults": _PACKAGE,
+    "settings.legacy.layout:original_defaults": _PACKAGE,
     "traffic.network:network_xml": _OUTPUT,
     "traffic.network:without_comments": _OUTPUT,
     "traffic.osm_network:osm_network": _OUTPUT,

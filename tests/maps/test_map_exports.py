@@ -16,12 +16,12 @@ from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.mesh.assembly import transformed
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.state.scene import Fixtures, Lamps, ObjectClass, Scene
-from eyas.maps.exports.gltf.file import GltfFile
-from eyas.maps.exports.gltf.world import add_lamps, add_world
-from eyas.maps.exports.welding import welded
+from eyas.maps.formats import layers, usd
+from eyas.maps.formats.gltf.file import GltfFile
+from eyas.maps.formats.gltf.world import add_lamps, add_world
+from eyas.maps.formats.meshes import welded
+from eyas.maps.formats.registry import ExportOptions, export
 from eyas.maps.plants.wild import WILD
-from eyas.maps.programs import plan_files, usd
-from eyas.maps.programs.export import ExportOptions, export
 
 NODE = """
 require("gltf-validator").validateBytes(new Uint8Array(require("fs").readFileSync(process.argv[1])))
@@ -366,9 +366,9 @@ def test_few_cells_are_filled_as_many_are(monkeypatch, scene):
     owner = rng.integers(0, 4, 200).astype(np.int32)
     messy = replace(scene, static=heap, static_object=owner, size=(14.0, 14.0))
     ways = []
-    for few in (0, plan_files._FEW, 10**6):
-        monkeypatch.setattr(plan_files, "_FEW", few)
-        ways.append(plan_files.rasters_of(messy, 0.5))
+    for few in (0, layers._FEW, 10**6):
+        monkeypatch.setattr(layers, "_FEW", few)
+        ways.append(layers.rasters_of(messy, 0.5))
     for occupancy, height in ways[1:]:
         assert (occupancy == ways[0][0]).all()
         assert (height == ways[0][1]).all()

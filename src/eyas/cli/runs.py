@@ -179,7 +179,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if preset is None:
-        from eyas.dat.settings.of_a_run import of_a_run
+        from eyas.dat.settings.runs import of_a_run
 
         settings = of_a_run(settings)
         load = partial(_again, load, settings.seed)
@@ -194,7 +194,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 
 def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     """Return the settings of a server as they are now, for the same run."""
-    from eyas.dat.settings.of_a_run import of_a_run
+    from eyas.dat.settings.runs import of_a_run
 
     return of_a_run(load(), seed)
 
@@ -228,7 +228,7 @@ def run(
     In mode train, an env_config.json serves the benchmark's clients (eyas serve), and native
     settings teach a network (eyas train).
     """
-    from eyas.dat.serve.source import quietly
+    from eyas.dat.serve.run import quietly
     from eyas.dat.wire.exchange import SETTINGS_FILE
     from eyas.engine.settings.config import Mode
     from eyas.engine.settings.file import load_settings

@@ -2,7 +2,7 @@
 
 import pytest
 
-from eyas.maps.programs.export import ExportOptions, export
+from eyas.maps.formats.registry import ExportOptions, export
 
 from .grammar import Reader
 

@@ -5,9 +5,8 @@ from numpy.typing import NDArray
 
 from eyas.dat.webots.vrml import Is, Node, Use, Value, floats, indices, label
 from eyas.engine.state.mesh import Material, Mesh, Surface
-from eyas.maps.exports.gltf.file import PLAIN
-from eyas.maps.exports.scene_parts import subset
-from eyas.maps.exports.welding import Indexed, welded
+from eyas.maps.formats.gltf.file import PLAIN
+from eyas.maps.formats.meshes import Indexed, subset, welded
 
 __all__ = ["Shapes", "face_set"]
 

@@ -13,8 +13,7 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import Lamps, ObjectClass, Scene
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact
-from eyas.maps.exports.scene_parts import Part, copies_of, parts_of, prototypes_of
-from eyas.maps.programs.prisms import prism
+from eyas.maps.formats.meshes import Part, copies_of, parts_of, prism, prototypes_of
 
 __all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
 

@@ -9,19 +9,97 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.decoding import decoded_json
-from eyas.engine.exports.boxes import quaternion_of
+from eyas.engine.exports.boxes import box_of, quaternion_of
 from eyas.engine.exports.frame import CameraPose, Frame, Subject
+from eyas.engine.exports.resting import painted, resting_mesh
 from eyas.engine.exports.writer import Episode, Files, Gather, Run, Summary, Writer
+from eyas.engine.mesh.assembly import transformed
 from eyas.engine.sim.scenes import load_scene, load_textures
+from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
+from eyas.engine.targets.catalogue import MODELS
 from eyas.engine.world.maps import MAPS
 from eyas.lanes import exact
-from eyas.maps.exports.gltf.boxes import box_mesh
-from eyas.maps.exports.gltf.file import GltfFile
-from eyas.maps.exports.gltf.movers import mover_mesh, pose_of
-from eyas.maps.exports.gltf.world import add_world
+from eyas.maps.formats.gltf.file import GltfFile
+from eyas.maps.formats.gltf.world import add_world
 
-__all__ = ["SceneWriter"]
+__all__ = ["SceneWriter", "box_mesh", "mover_mesh", "pose_of"]
+
+_TINTS = {
+    ObjectClass.CAR: (0.85, 0.25, 0.2),
+    ObjectClass.TRUCK: (0.9, 0.6, 0.2),
+    ObjectClass.BUS: (0.95, 0.85, 0.25),
+    ObjectClass.MOTORCYCLE: (0.7, 0.3, 0.7),
+    ObjectClass.PERSON: (0.25, 0.6, 0.9),
+    ObjectClass.ROBOT: (0.3, 0.8, 0.5),
+    ObjectClass.BICYCLE: (0.5, 0.8, 0.9),
+}
+"""Colour of each class, sRGB."""
+
+_SIDES = np.array([(axis, sign) for axis in range(3) for sign in (-1.0, 1.0)])
+
+
+def box_mesh(size: tuple[float, float, float], kind: ObjectClass) -> Mesh:
+    """Return a box about the origin, length along x, width along y, in the colour of a class.
+
+    Args:
+        size: Length, width, height [m].
+        kind: The class.
+    """
+    positions, normals = [], []
+    for axis, sign in _SIDES.tolist():
+        normal = np.zeros(3)
+        normal[int(axis)] = sign
+        first, second = (np.eye(3)[(int(axis) + step) % 3] for step in (1, 2))
+        second = second * sign  # counter-clockwise from outside
+        for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+            positions.append(0.5 * (normal + a * first + b * second) * size)
+            normals.append(normal)
+    faces = np.arange(24).reshape(6, 4)
+    triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+    return Mesh(
+        positions=np.array(positions, np.float32),
+        normals=np.array(normals, np.float32),
+        uvs=np.zeros((24, 2), np.float32),
+        triangles=triangles.astype(np.int32),
+        materials=np.zeros(12, np.int32),
+        palette=(Material(tint=_TINTS.get(kind, (0.6, 0.6, 0.6))),),
+    )
+
+
+_MOVER_DETAIL = 1
+
+Floats = NDArray[np.float64]
+
+
+def pose_of(subject: Subject) -> tuple[Floats, Floats]:
+    """Return where the point on the ground below the reference point is [m], shape (3,), and the
+    axes of a moving object, columns forward, left and up, shape (3, 3).
+    """
+    motion = subject.motion
+    slope = 0.0 if motion.upright else motion.slope
+    c, s = float(exact.cos(subject.yaw)), float(exact.sin(subject.yaw))
+    cp, sp = float(exact.cos(slope)), float(exact.sin(slope))
+    axes = np.array([[c * cp, -s, -c * sp], [s * cp, c, -s * sp], [sp, 0.0, cp]])
+    return subject.position - motion.rise * np.array([0.0, 0.0, 1.0]), axes
+
+
+def mover_mesh(subject: Subject, colour: tuple[float, ...]) -> Mesh:
+    """Return the mesh of a moving object in the frame of `pose_of`; its limbs and wheels rest.
+
+    Args:
+        subject: The object.
+        colour: Of its body, sRGB.
+    """
+    if any(model.name == subject.type for model in MODELS):
+        return painted(resting_mesh(subject.type, _MOVER_DETAIL), colour)
+    place, axes = pose_of(subject)
+    box = box_of(subject.corners)
+    length, width, height = subject.size.tolist()
+    middle = exact.product(box.centre - place, axes)
+    pose = np.column_stack([np.eye(3), middle])
+    return transformed(box_mesh((length, width, height), subject.object_class), pose)
+
 
 NAME = "scene.glb"
 _FRAMES = "eyas_frames"
@@ -29,8 +107,6 @@ _DETAIL = 9  # The coarsest trees
 _BODY = (0.8, 0.8, 0.35)  # Length, width and height of the box that stands for the tracker [m]
 _NEAR = 0.05  # [m]
 _LONGEST = 1 << 28  # Of the part of a file that tells what is in it [bytes]
-
-Floats = NDArray[np.float64]
 
 
 class _Pose(NamedTuple):

@@ -1,17 +1,21 @@
 """A map in a glTF file: a node for each class, below it one for each object."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.files import write_atomic
+from eyas.engine.sim.scenes import load_scene, load_textures
 from eyas.engine.state.scene import Lamps, ObjectClass, Scene
+from eyas.engine.world.maps import MAPS
 from eyas.lanes import exact
-from eyas.maps.exports.gltf.file import LIGHTS, GltfFile
-from eyas.maps.exports.scene_parts import copies_of, parts_of, prototypes_of
+from eyas.maps.formats.gltf.file import LIGHTS, GltfFile
+from eyas.maps.formats.meshes import copies_of, parts_of, prototypes_of
 
-__all__ = ["CANDELAS", "add_lamps", "add_world", "towards"]
+__all__ = ["CANDELAS", "add_lamps", "add_world", "towards", "write_gltf"]
 
 CANDELAS = 1500.0  # Of a street lamp along its axis: some 10,000 lumen in its cone [cd]
 
@@ -92,3 +96,25 @@ def towards(axis: NDArray[np.float32]) -> NDArray[np.float64]:
     turn = np.array([y, -x, 0.0, 1.0 - z])
     found: NDArray[np.float64] = turn / exact.length(turn)
     return found
+
+
+def write_gltf(name: str, seed: int, path: Path, detail: int, *, lamps: bool = True) -> int:
+    """Write a map as a `.glb` file; return its number of triangles.
+
+    Args:
+        name: Name of the map.
+        seed: Seed of the map.
+        path: The file.
+        detail: Level of detail of trees and furniture; 0 is the finest.
+        lamps: Whether its street lamps are lights.
+
+    Raises:
+        EyasError: The map cannot be built, or the file not written.
+    """
+    scene = load_scene(name, seed)
+    file = GltfFile(scene.name, load_textures(), MAPS.get(name).attribution())
+    triangles = add_world(file, scene, detail)
+    if lamps:
+        add_lamps(file, scene.lamps)
+    write_atomic(path, file.encoded())
+    return triangles

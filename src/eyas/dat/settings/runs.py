@@ -1,4 +1,6 @@
-"""The seed of a run whose `env_config.json` asks for another world each time (`fixed_seed`)."""
+"""What an `env_config.json` leaves open for a run: its seed (`fixed_seed`), and the time before the
+first episode, which grows with the trackers in the original's program.
+"""
 
 import logging
 import random
@@ -10,7 +12,7 @@ from eyas.engine.core.rng import TEST_SEEDS, fresh_seed
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.traffic.config import Source
 
-__all__ = ["of_a_run"]
+__all__ = ["AGENT_STEPS", "CHANNEL_STEPS", "of_a_run", "started_later"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -73,3 +75,19 @@ def _sumo() -> bool:
         _LOG.info("rou_update is true, but without SUMO the run begins somewhere in a recording")
         return False
     return True
+
+
+CHANNEL_STEPS = 4  # Steps for each channel of a recording [2 ms]
+
+AGENT_STEPS = 6  # Steps for each agent of a training [2 ms]
+
+
+def started_later(config: EyasConfig, steps: int) -> EyasConfig:
+    """Return settings by which the first episode begins some steps of 2 ms later, as with the
+    original, if they come from its file; native ones state the whole time.
+    """
+    if config.original is None:
+        return config
+    later = config.start.warm_up_steps + steps
+    start = config.start.model_copy(update={"warm_up_steps": later})
+    return config.model_copy(update={"start": start})

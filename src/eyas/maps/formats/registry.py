@@ -49,33 +49,33 @@ def export(name: str, out: Path | None, options: ExportOptions) -> Iterator[str]
 
 
 def _gltf(path: Path, options: ExportOptions) -> Iterator[str]:
-    from eyas.maps.programs.gltf import run
+    from eyas.maps.formats.gltf.world import write_gltf
 
-    triangles = run(options.name, options.seed, path, options.detail, lamps=options.lamps)
+    triangles = write_gltf(options.name, options.seed, path, options.detail, lamps=options.lamps)
     yield f"{path}: {triangles} triangles"
 
 
 def _usd(path: Path, options: ExportOptions) -> Iterator[str]:
-    from eyas.maps.programs.usd import run
+    from eyas.maps.formats.usd import write_usd
 
-    yield f"{path}: {run(options.name, options.seed, path, options.detail)} triangles"
+    yield f"{path}: {write_usd(options.name, options.seed, path, options.detail)} triangles"
 
 
 def _opendrive(path: Path, options: ExportOptions) -> Iterator[str]:
-    from eyas.maps.programs.roads import write_opendrive
+    from eyas.maps.formats.roads import write_opendrive
 
     write_opendrive(options.name, options.seed, path)
     yield str(path)
 
 
 def _sumo(path: Path, options: ExportOptions) -> Iterator[str]:
-    from eyas.maps.programs.roads import write_sumo
+    from eyas.maps.formats.roads import write_sumo
 
     yield from map(str, write_sumo(options.name, options.seed, path))
 
 
 def _geojson(path: Path, options: ExportOptions) -> Iterator[str]:
-    from eyas.maps.programs.plan_files import write_layers
+    from eyas.maps.formats.layers import write_layers
 
     yield from map(str, write_layers(options.name, options.seed, path, options.cell))
 

@@ -1,9 +1,6 @@
-"""A map in files: its plan, written and checked; GeoJSON of streets and buildings; rasters."""
+"""A map as GeoJSON of its streets and buildings, and as rasters of occupancy and height."""
 
-import gzip
 import json
-from collections.abc import Iterator
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,22 +10,17 @@ import shapely
 from numpy.typing import NDArray
 from PIL import Image
 
-from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import atomic_path, refusals, write_atomic
 from eyas.engine.mesh.assembly import transformed
-from eyas.engine.sim.scenes import load_network, load_scene
+from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
-from eyas.engine.traffic.net_file import SumoNet, road_network
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.place import projection_of
-from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
-from eyas.maps.files import roads_in
-from eyas.maps.plan.file import write_plan
-from eyas.maps.plan.plan import MapPlan, Roads
-from eyas.maps.programs.info import street_lines
+from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
+from eyas.maps.commands.info import street_lines
 
-__all__ = ["CLASSES", "named_file_problems", "write_layers", "write_plan_of"]
+__all__ = ["CLASSES", "rasters_of", "write_layers"]
 
 CLASSES = {
     0: "ground", 1: "road", 2: "pavement", 3: "building", 4: "tree", 5: "structure", 6: "water",
@@ -47,33 +39,6 @@ _FINE, _COARSE = 0.5, 1.0  # Side of a cell unless another is asked for [m]
 _MOST = 40_000_000  # Number of fine cells of a map from which on they are coarse
 
 Points = NDArray[np.float64]
-
-
-def named_file_problems(plan: MapPlan, folder: Path) -> Iterator[str]:
-    """Yield what is wrong with the file that a plan names, its roads, a line each.
-
-    Args:
-        plan: The plan.
-        folder: The folder of its file.
-    """
-    if not plan.roads.file:
-        return
-    path = folder / plan.roads.file
-    try:
-        network = road_network(SumoNet(roads_in(path), str(path)), "")
-    except EyasError as error:
-        yield f"roads.file: {error}"
-        return
-    lanes = np.abs(network.lane_points)
-    outside = int((lanes > 0.5 * np.array(plan.size)).any(axis=1).sum())
-    if outside:
-        width, height = plan.size
-        low, high = network.lane_points.min(axis=0), network.lane_points.max(axis=0)
-        yield (
-            f"roads.file: {plan.roads.file!r} is not allowed: {outside} of {len(lanes)} points of "
-            f"its lanes are outside of size, {width:g} x {height:g} m about the origin; they reach "
-            f"from ({low[0]:.0f}, {low[1]:.0f}) to ({high[0]:.0f}, {high[1]:.0f})"
-        )
 
 
 def write_layers(name: str, seed: int, folder: Path, cell: float | None) -> list[Path]:
@@ -265,33 +230,3 @@ def _lay_small(
                 if z > height[row, column]:
                     height[row, column] = z
                     occupancy[row, column] = value
-
-
-def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
-    """Write the complete plan of a map, and its streets where they are of no graph.
-
-    Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file, whose name ends in `.plan.json` or `.plan.json.gz`.
-
-    Returns:
-        The files.
-
-    Raises:
-        EyasError: The map cannot be made, or a file not written.
-    """
-    suffix = next((one for one in PLAN_SUFFIXES if path.name.endswith(one)), None)
-    if suffix is None:
-        allowed = " or ".join(PLAN_SUFFIXES)
-        raise ConfigError(f"--out: {path.name!r} is not allowed: a name that ends in {allowed}")
-    recipe, made = MAPS.get(name), [path]
-    graph, plan = recipe.roads(seed), recipe.complete_plan(load_network(name, seed), seed)
-    roads = Roads(nodes=graph.nodes, edges=graph.edges)
-    if graph.finished:
-        streets = path.with_name(f"{path.name.removesuffix(suffix)}.net.xml.gz")
-        write_atomic(streets, gzip.compress(graph.finished, mtime=0))
-        roads, made = Roads(file=streets.name), [path, streets]
-    title = plan.title or recipe.title
-    write_plan(path, replace(plan, title=title, attribution=recipe.attribution(), roads=roads))
-    return made

@@ -87,7 +87,7 @@ def new_map(
     seed: Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the new map.")],
 ) -> None:
     """Make another map of a kind now, with its traffic, not on first use."""
-    from eyas.maps.programs.info import make_another
+    from eyas.maps.commands.info import make_another
 
     for line in make_another(name, seed):
         typer.echo(line)
@@ -96,7 +96,7 @@ def new_map(
 @app.command("info")
 def show_info(name: Name, seed: Seed = 0, *, as_json: AsJson = False) -> None:
     """Print figures of a map: its size, streets, buildings, trees, and whose data it is."""
-    from eyas.maps.programs.info import about, describe
+    from eyas.maps.commands.info import about, describe
 
     if as_json:
         typer.echo(json.dumps(asdict(about(name, seed)), indent=1))
@@ -119,7 +119,7 @@ def show_map(
 ) -> None:
     """Draw a map from above: streets, buildings, trees, and where its cars drive."""
     from eyas.engine.world.maps import MAPS
-    from eyas.maps.programs.show import run
+    from eyas.maps.commands.show import run
 
     path = out if out is not None else Path(f"{MAPS.get(name).name}.png")
     run(name, seed, path, width, tracks=tracks)
@@ -136,7 +136,7 @@ def write_plan(
 ) -> None:
     """Write the plan of a map: all that stands on it. Use it, or a copy, with --map FILE."""
     from eyas.engine.world.maps import MAPS
-    from eyas.maps.programs.plan_files import write_plan_of
+    from eyas.maps.commands.plan import write_plan_of
 
     path = out if out is not None else Path(f"{MAPS.get(name).name}.plan.json")
     for made in write_plan_of(name, seed, path):
@@ -148,8 +148,8 @@ def check_plan(
     file: Annotated[Path, typer.Argument(help="A plan of a map: .plan.json or .plan.json.gz.")],
 ) -> None:
     """Say what is wrong with a plan, one line each."""
+    from eyas.maps.commands.plan import named_file_problems
     from eyas.maps.plan.file import problems
-    from eyas.maps.programs.plan_files import named_file_problems
 
     wrong = problems(file, named_file_problems)
     for line in wrong:
@@ -196,7 +196,7 @@ def export_map(
     ] = None,
 ) -> None:
     """Write a map for other programs: shapes, roads, or a plan."""
-    from eyas.maps.programs.export import ExportOptions, export
+    from eyas.maps.formats.registry import ExportOptions, export
 
     options = ExportOptions(name, seed, detail, lamps, cell, weather, hour)
     for line in export(kind, out, options):
