@@ -24,7 +24,6 @@ class DemoFlight:
         world: Simulation and map.
 
     Args:
-        config: The settings.
         vehicles: Largest number of vehicles that drive.
 
     Raises:

@@ -116,7 +116,6 @@ class Stream:
 
     Args:
         height: Of the pictures, an even number [pixels].
-        width: The same.
         factor: x264's constant rate factor; greater is smaller and blurrier.
 
     Raises:
@@ -189,9 +188,7 @@ def packed(frame: DemoFrame, kind: str, picture: bytes) -> bytes:
     The length has 4 bytes, little-endian.
 
     Args:
-        frame: The frame.
         kind: What the picture is, see `Viewer.coded`.
-        picture: Its bytes.
     """
     text = frame.state[:-1] + f',"picture":"{kind}"}}'.encode()
     return struct.pack("<I", len(text)) + text + picture

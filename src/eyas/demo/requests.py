@@ -83,9 +83,6 @@ class Gate:
 
     Attributes:
         token: What the address must hold; None: nothing.
-
-    Args:
-        host: The address that is bound.
     """
 
     def __init__(self, host: str) -> None:
@@ -95,7 +92,6 @@ class Gate:
         """Return why a request is refused; None: it is not.
 
         Args:
-            request: The request.
             private: Whether it needs the token, as all but the page's own files.
         """
         hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))

@@ -49,7 +49,6 @@ class DemoServer:
 
     Args:
         session: What is flown.
-        host: The address that is bound.
         listening: Its socket, see `listen`.
     """
 

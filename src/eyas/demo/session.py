@@ -26,9 +26,7 @@ class Session:
     """State of the demo, in the thread that flies.
 
     Args:
-        config: The settings.
         policies: Names of the policies that may fly.
-        recordings: The folder in which recordings are made.
     """
 
     def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
@@ -61,7 +59,6 @@ class Session:
         """Hold controls, until something else is said, or nothing for half a second.
 
         Args:
-            held: The controls.
             source: Sequence number of the message, and the page's time of the last change [ms].
             now: The time [s].
         """

@@ -44,8 +44,6 @@ def parked_car(assets: Assets, samples: int, rate: float) -> Motion | None:
     """Return the motion of the car; None if no ground is free, or no cars can be drawn.
 
     Args:
-        assets: The map.
-        samples: Number of samples of the other motion.
         rate: Samples per second.
     """
     car = kind_index(VehicleType.PASSENGER)
@@ -160,7 +158,6 @@ def build_world(config: EyasConfig, vehicles: int) -> DemoWorld:
     """Return the world of a configuration.
 
     Args:
-        config: The settings.
         vehicles: Largest number of vehicles that drive.
 
     Raises:

@@ -32,11 +32,7 @@ def make_plan(
     """Return roads on plain ground.
 
     Args:
-        name: Name of the map.
-        network: The roads.
-        seed: Seed of the map, >= 0.
         floor: Extent of the floor [m].
-        cover: Material of the ground.
         horizon: Hills beyond the map.
         centre: The line between the two directions of a road.
     """

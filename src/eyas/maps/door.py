@@ -29,12 +29,8 @@ HOUSE = House(
             "scene": "eyas.maps.formats.gltf.flight:SceneWriter",
             "openscenario": "eyas.maps.formats.openscenario:ScenarioWriter",
         },
-        "eyas.planner": {
-            "plans": "eyas.maps.plan.planner:PLANNER",
-        },
-        "eyas.map_files": {
-            "files": "eyas.maps.files:MAP_FILES",
-        },
+        "eyas.planner": {"plans": "eyas.maps.plan.planner:PLANNER"},
+        "eyas.map_files": {"files": "eyas.maps.files:MAP_FILES"},
         "eyas.commands": {
             "maps": "eyas.maps.commands.app:app",
             "traffic": "eyas.maps.traffic.commands:app",

@@ -180,10 +180,7 @@ def _roads(
 
 
 def _plan(
-    path: Path,
-    network: "RoadNetwork",
-    seed: int,
-    sums: Mapping[str, str] = MappingProxyType({}),
+    path: Path, network: "RoadNetwork", seed: int, sums: Mapping[str, str] = MappingProxyType({})
 ) -> "MapPlan":
     """Return a plan in a file; the seed decides anew what it leaves open."""
     from dataclasses import replace

@@ -31,7 +31,6 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
     """Let an autopilot fly until the user stops it.
 
     Args:
-        config: The settings.
         px4: Address on which PX4 is waited for, `HOST:PORT`.
         ardupilot: The same for ArduPilot; one of both is given.
 

@@ -32,7 +32,6 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
     """Fly vehicles until the user stops it.
 
     Args:
-        config: The settings.
         addresses: Where to send and to listen, see `Endpoint`.
 
     Raises:

@@ -47,7 +47,6 @@ class Bridge(Face):
 
     Args:
         simulation: One tracker, not yet reset.
-        config: Its settings.
         bus: Where messages go and come from.
         messages: Makes the messages.
     """
@@ -136,10 +135,6 @@ def _numbers(vector: Any) -> Sequence[float]:  # noqa: ANN401  # of a message
 
 def run(config: EyasConfig, domain: int) -> None:
     """Fly until the user stops it.
-
-    Args:
-        config: The settings.
-        domain: Number of the domain of DDS.
 
     Raises:
         EyasError: A setting cannot be used, or a library is missing.

@@ -108,7 +108,6 @@ class SettingsSource:
     """Settings that are read anew when their file has changed.
 
     Args:
-        config: The settings as they are now.
         path: Their file; None: they never change.
         load: Reads them again.
     """
@@ -203,7 +202,6 @@ def run(
     existing file is never changed.
 
     Args:
-        config: The settings.
         root: Folder with the original's `Webots_Simulation` and `Alg_Base`.
         load: Reads the settings again where `env_config.json` holds them, as programs of clients
             change it before they announce themselves; None: they do not change.
@@ -235,7 +233,6 @@ class _Desk:
 
     Args:
         source: The settings, which may change.
-        config: The settings as they are.
         root: Folder with the original's files.
     """
 

@@ -75,7 +75,6 @@ def with_original(config: EyasConfig, changes: Nested) -> EyasConfig:
     """Return settings with some of the original's keys changed.
 
     Args:
-        config: The settings.
         changes: The keys that change; keys that had no effect so far, but have one now, have their
             values of `config.original`, or else the manual's defaults.
 

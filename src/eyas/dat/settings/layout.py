@@ -20,7 +20,7 @@ _RENAMED = {
     ("Reward_Config", "reward_range"): (
         "distance_range",
         "that version had the reward_type 'distance' only, which is 'view' unless it is given",
-    ),
+    )
 }
 """Keys in groups, their names in the present version, and a remark."""
 

@@ -27,7 +27,6 @@ def of_a_run(config: EyasConfig, seed: int | None = None) -> EyasConfig:
     returned as they are.
 
     Args:
-        config: The settings.
         seed: The seed, if the settings have none; None: it is drawn, and a line names it.
     """
     if config.original is None or config.traffic.seed is not None:

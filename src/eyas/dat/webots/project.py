@@ -57,10 +57,7 @@ def run(name: str, seed: int, folder: Path, detail: int, condition: Condition) -
     """Write a project; another weather of a map, or another map, may be written beside it.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
         folder: What holds `Webots_Simulation`; made if it does not exist.
-        detail: Level of detail of trees and furniture; 0 is the finest.
         condition: Weather and hour.
 
     Returns:
@@ -128,10 +125,7 @@ def _robots(name: str) -> list[Node]:
         "supervisor": True,
     }
     roads: dict[str, Value] = {"networkFiles": f"{name}_net", "maxVehicles": 40}
-    return [
-        Node("Robot", receiver, "GLOBAL_RECEIVER"),
-        Node(INTERFACE, roads, "SUMO_INTERFACE"),
-    ]
+    return [Node("Robot", receiver, "GLOBAL_RECEIVER"), Node(INTERFACE, roads, "SUMO_INTERFACE")]
 
 
 def _ground(scene: Scene) -> dict[str, bytes]:

@@ -93,9 +93,7 @@ def scene_nodes(scene: Scene, shapes: Shapes, detail: int, *, shining: bool) -> 
     and the like, and one for each class of repeated things.
 
     Args:
-        scene: The map.
         shapes: Makes the shapes of the file.
-        detail: Level of detail of trees and furniture; 0 is the finest.
         shining: Whether street lamps shine.
     """
     solid = _Solids(scene)

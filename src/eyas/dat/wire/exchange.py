@@ -74,7 +74,6 @@ class Names:
         picture: The answer's picture.
 
     Args:
-        folder: The folder of the files.
         tracker: Name of the tracker.
     """
 

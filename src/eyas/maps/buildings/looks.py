@@ -56,7 +56,6 @@ def roof_cover(top: float, rng: np.random.Generator, *, pyramid: bool) -> Materi
 
     Args:
         top: z of the roof [m].
-        rng: Random numbers of the buildings.
         pyramid: Whether the roof slopes.
     """
     age = float(rng.uniform(_FADED, 1.0))

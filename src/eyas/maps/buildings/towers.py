@@ -54,7 +54,6 @@ def divided(block: Box, core: float, rng: np.random.Generator) -> list[Lot]:
     Args:
         block: Ground within the building lines, in the frame of the grid [m].
         core: 0 in an old quarter to 1 among the towers, where lots are larger.
-        rng: Random numbers of the lots.
     """
     west, south, east, north = block
     lots: list[Lot] = []
@@ -145,10 +144,8 @@ def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> 
     """Return the parts of a building, each within the one below it.
 
     Args:
-        lot: Its ground.
         storeys: Storeys of the whole building.
         stepped: Whether it steps back like old towers of stone; otherwise a shaft rises at once.
-        rng: Random numbers of the buildings.
     """
     if storeys <= _PLAIN:
         return [Part(_house(lot, rng), 0, storeys)]

@@ -46,7 +46,6 @@ def _car(
         size: Length, width with mirrors, height [m].
         wheels: Wheelbase, radius, and x of the front axle as a share of half the length [m].
         heights: Lower edge of the rear window, belt line, lower edge of the windscreen [m].
-        roof: Its roof.
         more: Other lines.
     """
     (length, width, high), (base, radius, share) = size, wheels

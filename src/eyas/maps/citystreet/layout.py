@@ -86,12 +86,7 @@ class CityLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> CityLayout:
-    """Return the plan of a city.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a city."""
     roads = road_area(network)
     closed, _ = blocks(sharp := corridors(network), EXTENT)
     middle = _overpass_path(seed)

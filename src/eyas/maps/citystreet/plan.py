@@ -62,12 +62,7 @@ _LEGS = 9  # Number of pillars beyond the floor, below the descent of the elevat
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the street city.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the street city."""
     city = lay_out(network, seed)
     yards = gardens.paved_yards(city.footprints, city.pavement, no_lawn(city))
     trunks, beds = stream(seed, "citystreet trees", 1), stream(seed, "citystreet gardens")

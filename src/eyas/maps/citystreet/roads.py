@@ -30,9 +30,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: nine blocks, six crossings, four T junctions, the rest corners and bends.
 
     Seed 0 is the canonical city; other seeds change distances, rotation and outline.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "citystreet roads")
     columns, rows, rotation, kept = np.array(_COLUMNS), np.array(_ROWS), _ROTATION, 0

@@ -62,9 +62,7 @@ def greenery(plan: CityLayout, taken: shapely.Geometry, rng: np.random.Generator
     """Return borders along walls, hedges around car parks, and small trees.
 
     Args:
-        plan: The layout of the city.
         taken: Area that is paved or where something stands [m].
-        rng: Random numbers of the gardens.
     """
     deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
     inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
@@ -90,12 +88,7 @@ def greenery(plan: CityLayout, taken: shapely.Geometry, rng: np.random.Generator
 
 
 def parked(plan: CityLayout, rng: np.random.Generator) -> list[Placed]:
-    """Return what is in the bays of the car parks: islands, small trees and cars.
-
-    Args:
-        plan: The layout of the city.
-        rng: Random numbers of the car parks.
-    """
+    """Return what is in the bays of the car parks: islands, small trees and cars."""
     made = []
     for park in plan.car_parks:
         for index, (x, y, turn) in enumerate(park.bays.tolist()):

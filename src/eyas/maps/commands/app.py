@@ -49,8 +49,7 @@ def draw_gallery(
         list[str] | None, typer.Option("--map", help=f"Only this map; {SEVERAL}.")
     ] = None,
     weather: Annotated[
-        list[str] | None,
-        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
+        list[str] | None, typer.Option("--weather", help=f"Only this weather; {SEVERAL}.")
     ] = None,
 ) -> None:
     """Draw a page of pictures of each map in each weather."""
@@ -165,9 +164,7 @@ def export_map(
     kind: Annotated[
         str,
         typer.Option(
-            "--format",
-            help="gltf, usd, opendrive, sumo, geojson or webots.",
-            show_default=False,
+            "--format", help="gltf, usd, opendrive, sumo, geojson or webots.", show_default=False
         ),
     ],
     out: Annotated[

@@ -23,11 +23,6 @@ __all__ = ["named_file_problems", "write_plan_of"]
 def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
     """Write the complete plan of a map, and its streets where they are of no graph.
 
-    Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file, whose name ends in `.plan.json` or `.plan.json.gz`.
-
     Returns:
         The files.
 
@@ -51,12 +46,7 @@ def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
 
 
 def named_file_problems(plan: MapPlan, folder: Path) -> Iterator[str]:
-    """Yield what is wrong with the file that a plan names, its roads, a line each.
-
-    Args:
-        plan: The plan.
-        folder: The folder of its file.
-    """
+    """Yield what is wrong with the file that a plan names, its roads, a line each."""
     if not plan.roads.file:
         return
     path = folder / plan.roads.file

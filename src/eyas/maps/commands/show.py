@@ -40,9 +40,6 @@ def run(name: str, seed: int, path: Path, width: int, *, tracks: bool) -> None:
     """Draw a map from above into a PNG file.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file.
         width: Width of the picture [pixels].
         tracks: Whether the ways of the recorded cars are drawn.
 

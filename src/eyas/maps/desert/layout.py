@@ -73,12 +73,7 @@ class DesertLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> DesertLayout:
-    """Return the plan of a desert.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a desert."""
     roads = road_area(network)
     closed, _ = blocks(roads, EXTENT)
     ways = [way for way in streets(network) if way.start < way.end]

@@ -32,12 +32,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.street.lamps import lamps_along
 
-__all__ = [
-    "DRIFT_HEIGHT",
-    "DUNES",
-    "SAND",
-    "make_plan",
-]
+__all__ = ["DRIFT_HEIGHT", "DUNES", "SAND", "make_plan"]
 
 SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
@@ -67,12 +62,7 @@ _SNOWED = 22  # Number of dunes under snow in winter, as in the original
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the desert; in winter, nearly every second dune is white.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the desert; in winter, nearly every second dune is white."""
     desert = lay_out(network, seed)
     dunes = Hills(
         mounds=tuple(desert.dunes),

@@ -40,9 +40,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: four T junctions on the outer road, and a crossing in the middle.
 
     Seed 0 is the canonical desert; other seeds have other proportions, and some are mirrored.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "desert roads")
     half, crossing, mirror = 0.5 * np.array(_SIZE), _CROSSING, 1.0

@@ -34,9 +34,7 @@ def scattered_over(
 
     Args:
         desert: Where roads, houses and drifts are.
-        ground: The dunes.
         taken: Where nothing may lie [m].
-        rng: Random numbers of the groups.
     """
     sand = [drift.fringe for drift in desert.drifts]
     closed = shapely.buffer(shapely.union_all([taken, *sand, *desert.tongues]), _BESIDE)

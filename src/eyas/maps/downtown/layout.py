@@ -89,7 +89,6 @@ def facade_of(height: float, rng: np.random.Generator) -> tuple[str, Tint]:
 
     Args:
         height: Height of the building [m].
-        rng: Random numbers of the buildings.
     """
     table = _OLD if height < 36.0 else _MIDDLE if height < 110.0 else _TALL
     shares = np.array([odds for _, odds in table])
@@ -123,7 +122,6 @@ def inner_blocks(grid: Grid, sharp: list[shapely.Polygon]) -> dict[Cell, Box]:
     """Return the ground between the kerbs of each block, in the frame of the grid [m].
 
     Args:
-        grid: The grid.
         sharp: Ground between streets, with sharp corners, world frame [m].
     """
     found: dict[Cell, Box] = {}
@@ -253,12 +251,7 @@ Points = NDArray[np.float64]
 
 
 def make_viaduct(network: RoadNetwork, grid: Grid) -> Viaduct:
-    """Return the railway of a city.
-
-    Args:
-        network: The roads.
-        grid: Their grid.
-    """
+    """Return the railway of a city."""
     u = _middle(grid)
     start, end = grid.world(np.array([[u, -_REACH], [u, _REACH]]))
     line = shapely.LineString([start, end])
@@ -326,12 +319,7 @@ class DowntownLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> DowntownLayout:
-    """Return the layout of a city.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the layout of a city."""
     plan = grid(seed)
     closed, _ = blocks(corridors(network), EXTENT)
     cells = inner_blocks(plan, closed)

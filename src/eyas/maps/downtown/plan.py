@@ -117,14 +117,7 @@ def _surfaces(city: DowntownLayout, scenery: DowntownScenery, seed: int) -> list
 
 
 def _paved(area: shapely.Geometry, road: shapely.Geometry, turn: float, slabs: Material) -> Paved:
-    return Paved(
-        area=area,
-        beside=road,
-        slabs=slabs,
-        kerb=_KERB,
-        kerb_width=_KERB_WIDTH,
-        turn=turn,
-    )
+    return Paved(area=area, beside=road, slabs=slabs, kerb=_KERB, kerb_width=_KERB_WIDTH, turn=turn)
 
 
 def _park_wall(grid: Grid, park: Park) -> Flat:
@@ -182,12 +175,7 @@ _FROM_END, _BEYOND = 9.0, 2.3  # From the end of the road, and from the kerb, to
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of downtown.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of downtown."""
     city = lay_out(network, seed)
     scenery = scenery_of(network, city, seed)
     buildings = (
@@ -293,9 +281,7 @@ def _entrances(
     """Return entrances of the subway beside the ends of wide roads.
 
     Args:
-        network: The roads.
         keep_free: Area where something else stands or drives [m].
-        rng: Random numbers of the street furniture.
     """
     meeting, made = joints(network), []
     for street in streets(network):

@@ -83,11 +83,7 @@ def grid(seed: int) -> Grid:
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads around all blocks.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads around all blocks."""
     plan = grid(seed)
     links: dict[tuple[Cell, Cell], int] = {}
     for cell in plan.blocks:

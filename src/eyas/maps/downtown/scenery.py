@@ -85,7 +85,6 @@ def crossing_lamps(network: RoadNetwork, beyond: float) -> list[tuple[Points, fl
     The lamp stands beside the crossing for walkers that lies on the widest road into it.
 
     Args:
-        network: The roads.
         beyond: From the kerb to the pole [m].
     """
     meeting = joints(network)
@@ -341,9 +340,7 @@ def _skyways(
     """Return skyways between fronts that are high enough on both sides.
 
     Args:
-        city: The layout of the city.
         keep_free: Ground of trees, poles and the railway [m].
-        rng: Random numbers of the skyways.
     """
     buildings, roads = city.buildings, city.roads
     high = [parts[0].height >= STOREY * (FLOORS_UNDER + 2) for parts in buildings]
@@ -432,13 +429,7 @@ class DowntownScenery:
 
 
 def scenery_of(network: RoadNetwork, city: DowntownLayout, seed: int) -> DowntownScenery:
-    """Return the scenery of a city.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        city: The layout of `seed`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the scenery of a city."""
     roads, railway = city.roads, city.viaduct.ground
     park = _park(city.grid, roads, stream(seed, "downtown park"))
     kerbs = _kerbs(network, railway, stream(seed, "downtown kerbs"))

@@ -71,7 +71,6 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
     Args:
         x: Middles of the roads that run north, from the west [m].
         y: Middles of the roads that run east, from the south [m].
-        rng: Random numbers of the fields.
     """
     columns, rows = _spans(x), _spans(y)
     made: list[FieldLot] = []

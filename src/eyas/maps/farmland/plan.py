@@ -34,12 +34,7 @@ _LIGHT = LampLight(axis=(0.7, 0.0, -1.0), intensity=45.0, cut_off=1.57)
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the farmland.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the farmland."""
     nodes = [(node.x, node.y) for node in road_graph(seed).nodes]
     x, y = (sorted(set(places)) for places in zip(*nodes, strict=True))
     roads = road_area(network)

@@ -21,9 +21,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: 16 nodes, 24 straight links, two lanes in each direction.
 
     Seed 0 is the canonical farmland; other seeds change distances.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     columns, rows = np.array(_COLUMNS), np.array(_ROWS)
     if seed:

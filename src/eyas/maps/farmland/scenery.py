@@ -13,11 +13,7 @@ from eyas.engine.world.weather import Season
 from eyas.lanes import exact
 from eyas.maps.farmland.layout import CROPS, FieldLot
 from eyas.maps.farmland.roads import ROAD_WIDTH, road_graph
-from eyas.maps.plan.plan import (
-    Chance,
-    Far,
-    Field,
-)
+from eyas.maps.plan.plan import Chance, Far, Field
 from eyas.maps.plants.gardens import scattered
 
 __all__ = ["SOIL", "bales", "far_fields", "field", "lamps_of"]

@@ -45,8 +45,6 @@ def write_layers(name: str, seed: int, folder: Path, cell: float | None) -> list
     """Write streets, buildings and rasters of a map into a folder; return the files.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
         folder: The folder; made if it does not exist.
         cell: Side of a raster cell [m]; None: 0.5, or 1 on a large map.
 
@@ -148,7 +146,6 @@ def rasters_of(scene: Scene, cell: float) -> tuple[NDArray[np.uint8], NDArray[np
     """Return what is seen from straight above, from south to north.
 
     Args:
-        scene: The map.
         cell: Side of a cell [m].
 
     Returns:

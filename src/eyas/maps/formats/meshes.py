@@ -88,7 +88,6 @@ def prototypes_of(fixtures: Fixtures, detail: int) -> list[Mesh]:
     """Return the mesh of each prototype, without vertices that no triangle has.
 
     Args:
-        fixtures: The repeated things.
         detail: Level of detail; 0 is the finest.
     """
     chosen = [levels[min(detail, len(levels) - 1)] for levels in fixtures.levels]
@@ -122,7 +121,6 @@ def welded(mesh: Mesh, step: float = 0.0) -> Welded:
     """Return a mesh with every point once, without triangles that have no area.
 
     Args:
-        mesh: The mesh.
         step: Numbers are rounded to whole multiples of this; 0: they stay as they are.
     """
     points, where = distinct(_rounded(mesh.positions, step))

@@ -73,9 +73,6 @@ class _Entity(NamedTuple):
 class ScenarioWriter(Writer):
     """`traffic.xosc`: the ways of all that moves, and `roads.xodr` for all episodes.
 
-    Args:
-        run: The recording.
-
     Raises:
         MissingExtraError: SUMO, whose netconvert writes the roads, is not installed.
     """

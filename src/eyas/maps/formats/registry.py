@@ -36,7 +36,6 @@ def export(name: str, out: Path | None, options: ExportOptions) -> Iterator[str]
     """Write a map in a format; yield what was written, a line each.
 
     Args:
-        name: The format.
         out: The file or folder; None: one in the present folder that is named after the map.
         options: What is exported.
 

@@ -18,8 +18,6 @@ def write_sumo(name: str, seed: int, folder: Path) -> list[Path]:
     """Write SUMO's network, routes and configuration of a map into a folder; return the files.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
         folder: The folder; made if it does not exist.
 
     Raises:
@@ -37,8 +35,6 @@ def sumo_files_of(name: str, seed: int, stem: str) -> Mapping[str, bytes]:
     """Return SUMO's network, routes and configuration of a map, by the names of the files.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
         stem: Of the names of the files.
 
     Raises:
@@ -50,11 +46,6 @@ def sumo_files_of(name: str, seed: int, stem: str) -> Mapping[str, bytes]:
 
 def write_opendrive(name: str, seed: int, path: Path) -> None:
     """Write the roads of a map, with their traffic lights, as OpenDRIVE.
-
-    Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file.
 
     Raises:
         EyasError: SUMO is not installed, or the file cannot be written.

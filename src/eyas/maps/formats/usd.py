@@ -39,7 +39,6 @@ class Materials:
         textures: Names of the textures that they show.
 
     Args:
-        layer: The layer.
         folder: Name of the folder of the textures, beside the layer's file.
     """
 
@@ -123,12 +122,6 @@ def write_usd(name: str, seed: int, path: Path, detail: int) -> int:
     """Write a map as a stage, and its textures into a folder beside it; return its number of
     triangles.
 
-    Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file, which ends in one of `ENDINGS`.
-        detail: Level of detail of trees and furniture; 0 is the finest.
-
     Raises:
         MissingExtraError: The extra `usd` is not installed.
         EyasError: The map cannot be built, or a file not written.
@@ -167,10 +160,7 @@ class _Stage:
     """A stage under construction.
 
     Args:
-        stage: An empty one.
-        scene: The map.
         folder: Name of the folder of its textures.
-        detail: Level of detail of trees and furniture.
     """
 
     def __init__(self, stage: "Usd.Stage", scene: Scene, folder: str, detail: int) -> None:

@@ -30,7 +30,6 @@ def overview(still: StillScene, side: float, cars: Cars) -> Viewpoint:
     maps, whose rings show little: the one without a wall in front in which most stands.
 
     Args:
-        still: The world.
         side: Direction to the sun [rad].
         cars: Cars on the roads.
     """

@@ -59,7 +59,6 @@ def page(shown: Sequence[Shown], sheet: str) -> str:
     """Return the page, which needs only the pictures beside it.
 
     Args:
-        shown: Every map and weather.
         sheet: Name of the file of the contact sheet.
     """
     what = " &middot; ".join(f'<a href="#{_id(one)}">{_heading(one)}</a>' for one in shown)

@@ -29,7 +29,6 @@ def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> lis
     """Return the viewpoints of a map, without those for which it has no suitable place.
 
     Args:
-        still: The world.
         sun: Direction to the sun; distant views have it behind the camera, so that walls are lit.
     """
     cars = all_cars(still)

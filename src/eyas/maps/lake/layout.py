@@ -60,12 +60,7 @@ class LakeLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> LakeLayout:
-    """Return the plan.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan."""
     roads, grid, rng = road_area(network), lattice(seed), stream(seed, "lake blocks")
     cells = _cells(grid)
     pairs = [cell for cell in cells if cell not in (grid.double, _beside(grid.double))]

@@ -67,12 +67,7 @@ _OCCUPIED = 0.45
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the lake district.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the lake district."""
     district = lay_out(network, seed)
     rng = stream(seed, "lake forests")
     forests = [stand for strip in district.strips for stand in _stands(strip, rng)]

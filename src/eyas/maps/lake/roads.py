@@ -85,11 +85,7 @@ def _winding(
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads, all of them two-way and none of them a dead end.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads, all of them two-way and none of them a dead end."""
     draft, grid = _Draft(), lattice(seed)
     _add_grid(draft, grid)
     _add_north(draft, grid, stream(seed, "lake roads"))

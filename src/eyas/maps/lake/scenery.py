@@ -33,7 +33,6 @@ def water_in(shape: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygo
 
     Args:
         shape: The basin [m].
-        rng: Random numbers of the shore.
     """
     cut, kept, depth = _POND if shape.area < 2e4 else _LAKE
     smooth = shapely.buffer(shapely.buffer(shape, -cut, quad_segs=4), kept, quad_segs=6)
@@ -50,7 +49,6 @@ def shore_life(
     Args:
         waters: Ponds and lakes [m].
         near: Where they are seen [m].
-        rng: Random numbers of the shores.
     """
     made: list[Placed] = []
     for water in waters:
@@ -87,7 +85,6 @@ def boats(
         waters: Ponds and lakes [m].
         district: Where roads are.
         near: Where they are seen [m].
-        rng: Random numbers of the boats.
     """
     made: list[Placed] = []
     for water in waters:

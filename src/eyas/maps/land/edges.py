@@ -29,7 +29,6 @@ def edged(
     Args:
         area: The ground [m].
         beside: From what the distance is measured; None: from the edge of the area inwards.
-        cover: Its material.
         z: Its height [m].
     """
     if beside is None:

@@ -53,7 +53,6 @@ def relief(
         half: Half the side of the square in the middle, and of the whole relief [m].
         spacing: Distance between points in the middle and outside of it [m].
         flat: Area that no triangle may touch [m].
-        rng: Random numbers of the relief.
     """
     inner = _lattice(half[0], spacing[0], rng)
     outer = _lattice(half[1], spacing[1], rng)
@@ -80,7 +79,6 @@ def terrain_of(ground: Relief, floor: float, half: float, spacing: float = 4.0) 
     """Return the raster of a relief.
 
     Args:
-        ground: The relief.
         floor: z of the floor [m].
         half: Half the side of the raster [m].
         spacing: Distance between its points [m].
@@ -97,7 +95,6 @@ def heights_of(ground: Relief, points: Points) -> Points:
     """Return the height of a relief above the floor at points, 0 beside it [m].
 
     Args:
-        ground: The relief.
         points: East and north [m], shape (P, 2).
     """
     corners = ground.corners
@@ -125,10 +122,8 @@ def surface_of(
     """Return the surface of a relief.
 
     Args:
-        ground: The relief.
         floor: z of the floor [m].
         cover: Materials.
-        kind: Index of the material of each triangle, shape (T,).
         smooth: Whether light changes smoothly over the edges of triangles; otherwise each is flat.
         along: u of each point where the second cover has a distance there, shape (V,) [m].
     """

@@ -10,14 +10,7 @@ from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 from eyas.maps.plan.plan import Flat
 
-__all__ = [
-    "PAVEMENT_WIDTH",
-    "asphalt",
-    "lawn",
-    "pavement_area",
-    "verge_area",
-    "yards",
-]
+__all__ = ["PAVEMENT_WIDTH", "asphalt", "lawn", "pavement_area", "verge_area", "yards"]
 
 PAVEMENT_WIDTH = 2.6  # From the kerb to the lawn [m]
 
@@ -72,7 +65,6 @@ def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generat
     Args:
         areas: Paving of each building [m].
         turn: Direction of the streets [rad].
-        rng: Random numbers for the choice of the paving.
     """
     kinds = rng.choice(len(_YARDS), len(areas)).tolist()
     return [
@@ -93,7 +85,6 @@ def lawn(
     Args:
         extent: The floor [m].
         covered: Area that is not lawn [m].
-        rng: Random numbers of the lawn.
         mown: Area mown in swaths [m].
         turn: Direction of the swaths [rad].
     """

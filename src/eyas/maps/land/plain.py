@@ -30,7 +30,6 @@ def plain(
     Args:
         area: The ground [m].
         near: Where it is cut into small squares, so that those out of sight are skipped [m].
-        cover: Its material.
         z: Its height [m].
     """
     pieces = []
@@ -46,7 +45,6 @@ def far_plain(floor: tuple[float, float], cover: Material) -> Mesh:
 
     Args:
         floor: Extent of the floor [m].
-        cover: Material of the ground.
     """
     ring = shapely.difference(rectangle(_FAR, _FAR), rectangle(*floor))
     pieces = split_on_grid(ring, _FAR_CELL)
@@ -59,7 +57,6 @@ def blob(middle: NDArray[np.float64], radius: float, rng: np.random.Generator) -
     Args:
         middle: Its middle, shape (2,) [m].
         radius: Its mean radius [m].
-        rng: Random numbers for the outline.
     """
     angle = np.linspace(0.0, 2 * np.pi, _CORNERS, endpoint=False)
     phase, swing = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.05, 0.16, (3, 1))

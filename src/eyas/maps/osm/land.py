@@ -61,10 +61,8 @@ def add_land(features: Survey, shapes: Shapes, odd: Odd, rng: np.random.Generato
     """Add ground, trees, lamps, crossings and railways.
 
     Args:
-        features: To add to.
         shapes: Polygons and lines of the file.
         odd: Told of tags whose values make no sense.
-        rng: Random numbers for distances between the trees of rows.
     """
     for tags, shape in shapes.areas(lambda tags: bool(_kind(tags))):
         features.areas.append(Area(_kind(tags), shape))

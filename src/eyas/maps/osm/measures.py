@@ -21,7 +21,6 @@ def length(tags: Tags, key: str, limits: tuple[float, float], odd: Odd) -> float
     """Return the length that a tag tells, in metres.
 
     Args:
-        tags: The tags.
         key: The one to read; absent, odd or outside of the limits: None.
         limits: Least and largest believable value [m].
         odd: Told of a value that is not believed.

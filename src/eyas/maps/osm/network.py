@@ -47,7 +47,6 @@ def osm_network(streets: bytes, projection: str, source: str) -> bytes:
 
     Args:
         streets: The streets as an OpenStreetMap file (XML).
-        projection: The projection in the words of PROJ.
         source: Name of the user's file, for the message.
 
     Raises:

@@ -19,7 +19,6 @@ class Shapes:
     """Polygons and lines of a file, in metres.
 
     Args:
-        data: The content of the file.
         projection: From degrees to metres.
         extent: The area of the map; everything is cut to it [m].
         broken: Called with a word for each area that has no valid outline.

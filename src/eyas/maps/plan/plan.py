@@ -552,7 +552,6 @@ def things(placed: Sequence[Placed], kinds: Sequence[str] = (), solid: str = "")
     """Return the layer of things at their places.
 
     Args:
-        placed: The things.
         kinds: Names of kinds that come first, whether any is placed or not.
         solid: See `Things.solid`.
     """

@@ -32,10 +32,6 @@ def cone_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]
     """Return a tree of height 1 that stands on the origin, the finest level of detail first.
 
     The levels have about 1,700, 480 and 40 triangles.
-
-    Args:
-        rng: Random numbers of the trees.
-        variant: Index of the shape and the green.
     """
     kind = variant % VARIANTS
     half, greens = _HALF_WIDTH[kind], _GREENS[kind]

@@ -70,10 +70,8 @@ def leaf_cards(
 
     Args:
         crown: Crown to cover.
-        count: Number of cards.
         size: Least and largest side of a card.
         tints: Factors on the leaves' colour, from the darkest (below, in clefts) to the lightest.
-        rng: Random numbers of the tree.
         bent: Fold each card along its middle (4 triangles); otherwise flat (2 triangles).
     """
     points, facing = crown.surface(count, rng)
@@ -140,7 +138,6 @@ def shell(
     """Return the dark inside of a crown: one closed surface, seen through gaps between the cards.
 
     Args:
-        crown: The crown.
         subdivisions: Subdivisions of its icosphere.
         shrink: Size of the inside, as a share of the crown.
         tint: Factor on the leaves' colour.

@@ -73,7 +73,6 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, season: Sea
 
     Args:
         kinds: Kinds of its trees.
-        rng: Random numbers of the forest.
         season: Of their leaves; frost covers them in winter.
     """
     shapes = [_unit_levels(kinds[k % len(kinds)], rng, season) for k in range(_SHAPES)]

@@ -99,7 +99,6 @@ def borders(
         footprints: Corners of buildings, counter-clockwise [m].
         room: Lawn on which plants may stand [m].
         floor: z of the lawn [m].
-        rng: Random numbers of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
     shapely.prepare(free)
@@ -128,7 +127,6 @@ def row(
         line: Both ends [m], shape (2, 2).
         room: Area in which pieces must lie [m].
         floor: z of the lawn [m].
-        rng: Random numbers of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(exact.atan2(along[1], along[0]))
@@ -153,8 +151,6 @@ def scattered(
     Args:
         room: The shape [m].
         apart: Least distance between two points [m].
-        density: Number of attempts on each square metre.
-        rng: Random numbers of the points.
 
     Returns:
         Shape (K, 2) [m].
@@ -185,7 +181,6 @@ def sown(
         kinds: Kinds; one is chosen for each place.
         sizes: Least and largest scale.
         z: Height of their feet [m], one or shape (K,).
-        rng: Random numbers of the plants.
     """
     spots, feet = rounded(spots), rounded(np.broadcast_to(np.asarray(z, np.float64), len(spots)))
     which = rng.integers(len(kinds), size=len(spots)).tolist()
@@ -209,7 +204,6 @@ def clustered(
         spread: Standard deviation about the centres [m].
         count: Least and largest number in a group.
         room: Area within which the points must lie [m].
-        rng: Random numbers of the points.
     """
     groups = [c + exact.normal(rng, 0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
@@ -230,7 +224,6 @@ def small_trees(
         heights: Least and largest height [m].
         floor: z of the ground [m].
         kinds: Kinds; one is chosen for each tree.
-        rng: Random numbers of the gardens.
     """
     made = []
     for x, y in places.tolist():

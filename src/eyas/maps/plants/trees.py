@@ -39,10 +39,6 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
 
     The levels have about 2,700, 530, 130 and 30 triangles; the last is for crowns of a few pixels.
     Multiply by 15 to 27 for metres.
-
-    Args:
-        rng: Random numbers of the trees.
-        variant: Index of the shape and the green.
     """
     kind = variant % VARIANTS
     crown = _crown(_WIDTHS[kind] / 2, rng)
@@ -124,7 +120,6 @@ def place_along(
     Args:
         line: Line of the row [m].
         spacing: Least and largest distance from one tree to the next [m].
-        rng: Random numbers of the trees.
         keep_free: Area without trunks; trees there are left out.
     """
     gaps = rng.uniform(*spacing, int(line.length / spacing[0]) + 2)

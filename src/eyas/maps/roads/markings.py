@@ -36,7 +36,6 @@ def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool =
     """Return the paint of all roads.
 
     Args:
-        network: The roads.
         centre: The line between the two directions, `white` or `double yellow`.
         crossings: Whether there are zebra crossings where three or more roads meet.
     """

@@ -74,11 +74,8 @@ def tunnel_mesh(
     """Return the mound over the road and the rock inside of it.
 
     Args:
-        tunnel: The tunnel.
         floor: z of the ground [m].
-        outside: Material of the mound.
         inside: Material of the opening and of both fronts.
-        rng: Random numbers of the lumps.
     """
     at = np.linspace(-0.5, 0.5, _SECTIONS) * tunnel.length
     lumps = _lumps(rng)

@@ -67,11 +67,7 @@ def _skinned(
 
 GRASS = _skinned("grass", "Straight roads on a lawn", partial(_weather, visibility=500.0))
 CLINKER = _skinned(
-    "clinker",
-    "Straight roads on a grey plain",
-    _purple_by_night,
-    seasons=False,
-    without=("snow",),
+    "clinker", "Straight roads on a grey plain", _purple_by_night, seasons=False, without=("snow",)
 )
 DESERT = _skinned("desert", "Straight roads under bars of sand", desert_weather)
 FARM = _skinned("farm", "Straight roads between coloured strips")

@@ -44,7 +44,6 @@ def sand_bars(
     Args:
         lines: Ends of the roads, shape (R, 2, 2) [m].
         roads: Asphalt [m].
-        rng: Random numbers of the bars.
     """
     shapes: list[shapely.Geometry] = []
     for south, north in lines:

@@ -10,16 +10,7 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import ObjectClass
 from eyas.maps.land.plain import blob, rectangle
-from eyas.maps.plan.plan import (
-    Chance,
-    Far,
-    Flat,
-    GroundCover,
-    Layer,
-    MapPlan,
-    Paint,
-    Roadway,
-)
+from eyas.maps.plan.plan import Chance, Far, Flat, GroundCover, Layer, MapPlan, Paint, Roadway
 from eyas.maps.simpleway.layout import FLOOR, loop_lines, paved, sand_bars
 from eyas.maps.simpleway.roads import road_lines
 from eyas.maps.simpleway.scenery import SKINS, Skin
@@ -39,8 +30,6 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
 
     Args:
         skin_name: One of `SKINS`.
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
     """
     skin, roads = SKINS[skin_name], paved(network)
     layers: list[Layer] = [

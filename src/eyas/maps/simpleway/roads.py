@@ -38,11 +38,7 @@ def road_lines(seed: int) -> Points:
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads, which never meet: at each end a loop leads back.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads, which never meet: at each end a loop leads back."""
     nodes: list[RoadNode] = []
     edges: list[RoadEdge] = []
     for index, (south, north) in enumerate(road_lines(seed)):

@@ -44,7 +44,6 @@ def place_car_parks(
     Args:
         blocks: Ground between kerbs [m].
         sizes: Length along the street and depth of each; those that fit nowhere are left out [m].
-        rng: Random numbers of the car parks.
         keep_free: Area where none may be.
     """
     order = [blocks[int(index)] for index in rng.permutation(len(blocks))]
@@ -70,7 +69,6 @@ def place_rectangle(
     Args:
         block: Ground between kerbs [m].
         size: Lengths along the side and away from it [m].
-        rng: Random numbers for the choice of the position.
         keep_free: Area that it may not touch.
 
     Returns:

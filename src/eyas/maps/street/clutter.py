@@ -68,7 +68,6 @@ def _scraps(
 
     Args:
         which: Number of the patch: each lies otherwise.
-        tints: Their colours.
         sizes: Shortest and longest side [m].
         count: How many.
     """

@@ -118,10 +118,8 @@ def along_kerbs(
     """Return things along the kerbs of all streets.
 
     Args:
-        network: The roads.
         grounds: Where things may stand, by the names in the rules; prepared.
         rules: What stands there, the largest first.
-        rng: Random numbers of the clutter.
         apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []
@@ -152,7 +150,6 @@ def at_fronts(
         footprints: Corners of the houses, counter-clockwise [m].
         ground: Where things may stand; prepared.
         rules: What stands there, the largest first.
-        rng: Random numbers of the clutter.
         apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []

@@ -48,11 +48,9 @@ def furniture_along(
     """Return what furnishes the pavements beside kerbs.
 
     Args:
-        network: The roads.
         pavement: Area where furniture may stand [m].
         keep_free: Area where something else stands, people walk or cars drive [m].
         height: z of the pavement [m].
-        rng: Random numbers of the furniture.
     """
     room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
     shapely.prepare(room)

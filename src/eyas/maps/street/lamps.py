@@ -54,10 +54,8 @@ def lamps_along(
     """Return street lamps on both sides of the roads, their arms over the road.
 
     Args:
-        network: The roads.
         count: Number of lamps, if there is room.
         keep_free: Area where no pole may stand.
-        rng: Random numbers of the lamps.
     """
     feet, turns = _candidates(network)
     blocked = shapely.buffer(keep_free, _CLEAR)

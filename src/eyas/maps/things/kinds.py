@@ -201,8 +201,7 @@ THINGS: Mapping[str, Thing] = {
     },
     **{
         name: Thing(
-            levels=_always(make),
-            kind=ObjectClass.BICYCLE if name == "bicycle rack" else _STRUCTURE,
+            levels=_always(make), kind=ObjectClass.BICYCLE if name == "bicycle rack" else _STRUCTURE
         )
         for name, make in clutter.CLUTTER.items()
     },

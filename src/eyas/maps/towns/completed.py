@@ -221,10 +221,7 @@ def _ground(
     parking = ground.asphalt(town.ground["parking"], light=True)
     made: list[Layer] = [
         Roadway(
-            area=town.roads,
-            paint=paint,
-            wear=Chance(stream="town road wear"),
-            worn_from=_WORN_FROM,
+            area=town.roads, paint=paint, wear=Chance(stream="town road wear"), worn_from=_WORN_FROM
         ),
         Paved(area=town.pavement, beside=town.roads),
         GroundCover(kind=ObjectClass.ROAD, pieces=(parking,)),
@@ -299,9 +296,7 @@ def _usual_lamps(
     """Return places beside all kerbs, those of both sides in turn [m].
 
     Args:
-        network: The streets.
         taken: Where no pole may stand [m].
-        rng: Random numbers of the lamps.
     """
     shapely.prepare(taken)
     kept = Apart(_APART)
@@ -324,7 +319,6 @@ def _lamps(
     """Return street lamps, their arms towards the nearest lane, where nothing else stands.
 
     Args:
-        network: The streets.
         places: Feet of the lamps [m].
         taken: Where no pole may stand [m].
     """

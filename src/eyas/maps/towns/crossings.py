@@ -53,7 +53,6 @@ def crosswalks_of(
     """Return all crossings, and the islands in their course [m].
 
     Args:
-        network: The streets.
         roads: Their asphalt [m].
         walked: Sidewalks and the corners between them [m].
         features: The crossings that are mapped, and those at traffic lights.
@@ -157,10 +156,7 @@ def town_paint(
     by itself.
 
     Args:
-        network: The streets.
         roads: Their asphalt [m].
-        crosswalks: Their crossings.
-        signalled: The streets that end at signals.
     """
     every = streets(network)
     ways = {(street.start, street.end) for street in every}

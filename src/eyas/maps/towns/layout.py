@@ -63,15 +63,11 @@ class Town:
 
 
 def lay_out(
-    network: RoadNetwork,
-    features: Survey,
-    size: tuple[float, float],
-    given: Given,
+    network: RoadNetwork, features: Survey, size: tuple[float, float], given: Given
 ) -> Town:
     """Return which ground of a town is what.
 
     Args:
-        network: The streets.
         features: What the map tells besides.
         size: Extent of the floor [m].
         given: What is there already.
@@ -177,7 +173,6 @@ def _yards(
     """Return the paving between and around buildings, where no other ground is.
 
     Args:
-        houses: All buildings.
         kerbs: Streets with their pavements [m].
         free: Ground that nothing covers [m].
     """

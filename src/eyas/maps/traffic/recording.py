@@ -78,8 +78,6 @@ def run(
     """Record traffic into files.
 
     Args:
-        world: The map.
-        config: The traffic.
         duration: Time to record [s].
         path: The file; for several seeds the folder; None: `<map>-<seed>-<type>.npz` in the current
             folder.
@@ -152,12 +150,7 @@ def run_canonical(world: WorldConfig) -> None:
         cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, town)
         with sumo_progress() as progress:
             record_canonical(
-                recipe.roads(town),
-                folder / name,
-                config,
-                progress,
-                cover=cover,
-                duration=duration,
+                recipe.roads(town), folder / name, config, progress, cover=cover, duration=duration
             )
         _report(folder / name, "a shipped recording")
 

@@ -82,10 +82,8 @@ def cottages_along(
     """Return houses in clusters on both sides of roads.
 
     Args:
-        ways: The roads.
         inside: Area in which they stand [m].
         keep_free: Area where none may stand [m].
-        rng: Random numbers of the houses.
     """
     sites = _sites(ways, rng)
     shapely.prepare(inside)
@@ -214,12 +212,7 @@ class VillageLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> VillageLayout:
-    """Return the plan of a village.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a village."""
     roads = road_area(network)
     closed, _ = blocks(roads, EXTENT)
     ways = streets(network)

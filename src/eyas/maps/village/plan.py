@@ -81,20 +81,12 @@ _BUSHES = (26.0, 0.004)
 _TREE_HEIGHTS = (10.0, 11.8)
 _WOOD_HEIGHTS = (5.0, 11.0)
 _SHORE_WIDTH = 5.0
-_WILD = (
-    *wild_kinds("green tuft", "dry tuft"),
-    *wild_kinds("stones", "boulder", looks=(2, 3)),
-)
+_WILD = (*wild_kinds("green tuft", "dry tuft"), *wild_kinds("stones", "boulder", looks=(2, 3)))
 _CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the village.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the village."""
     valley = lay_out(network, seed)
     hills = _hills(valley)
     relief = relief_of(hills, seed)
@@ -105,10 +97,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     ground, paths = _ground(valley, rising, seed)
     closed = [*paths, _paving(valley), shapely.buffer(valley.lake, 3.0), valley.walls]
     wild = grown(
-        valley,
-        relief,
-        shapely.union_all([*closed, valley.covered]),
-        stream(seed, "village grass"),
+        valley, relief, shapely.union_all([*closed, valley.covered]), stream(seed, "village grass")
     )
     woods = _woods(valley, relief, stream(seed, "village woods"))
     signs = _signs(valley, stream(seed, "village signs"))

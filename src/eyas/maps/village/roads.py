@@ -59,9 +59,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: eight T junctions, the rest bends.
 
     Seed 0 is the canonical village; other seeds move its nodes, and some mirror it.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "village roads")
     points = np.array(list(_NODES.values()))

@@ -76,9 +76,7 @@ def grown(
 
     Args:
         valley: Where roads are.
-        ground: The hills.
         taken: Where nothing grows: paving, paths, water [m].
-        rng: Random numbers of them.
     """
     least, most = (shapely.buffer(valley.roads, far, quad_segs=3) for far in _BESIDE)
     spots = gardens.scattered(shapely.difference(most, shapely.union(least, taken)), *_TUFTS, rng)
@@ -116,10 +114,8 @@ def yard_things(
     """Return what stands about the houses.
 
     Args:
-        cottages: The houses.
         roads: Asphalt [m].
         free: Where nothing else stands [m].
-        rng: Random numbers of the yards.
     """
     walls = shapely.union_all([shapely.Polygon(house.outline) for house in cottages])
     made = []

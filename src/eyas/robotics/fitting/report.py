@@ -11,7 +11,6 @@ def lines(fit: Fit, mass: float | None, thrust_constant: float | None) -> Iterat
     """Yield lines that tell a fit.
 
     Args:
-        fit: The fit.
         mass: Of the drone, where it is known [kg].
         thrust_constant: Thrust of a rotor over its squared rate, where it is known.
     """

@@ -28,8 +28,6 @@ class Autopilot:
     """Lets others fly a vehicle.
 
     Args:
-        component: Its component.
-        pilot: Its pilot.
         now: Returns the present instant.
     """
 

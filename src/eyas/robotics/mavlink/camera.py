@@ -48,8 +48,6 @@ class Camera:
         zoom: By how much its field of view is narrowed, from 1.
 
     Args:
-        component: Its component.
-        lens: Its picture.
         now: Returns the present instant.
         choose: Makes what is in a box of the picture (left, top, right, bottom, as shares of the
             sides) the target; returns whether there is anything.

@@ -54,7 +54,6 @@ class Component:
 
     Args:
         system: As above.
-        component: Its component id.
         out: Takes packets.
     """
 

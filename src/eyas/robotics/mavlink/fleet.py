@@ -46,7 +46,6 @@ class Fleet(Face):
 
     Args:
         simulation: Trackers in one world, not yet reset.
-        config: Its settings.
         endpoints: Where messages go and come from.
 
     Raises:

@@ -93,8 +93,6 @@ class Instant:
         origin: Origin of the vehicle's local frame, world frame [m].
 
     Args:
-        readings: The readings of all vehicles.
-        vehicle: Its number.
         origin: As above.
         seconds: As above.
     """

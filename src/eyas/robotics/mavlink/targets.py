@@ -25,11 +25,7 @@ class Seen(NamedTuple):
 
 
 class Sights:
-    """Looks through the cameras of a simulation's trackers.
-
-    Args:
-        simulation: The trackers are in it.
-    """
+    """Looks through the cameras of a simulation's trackers."""
 
     def __init__(self, simulation: Simulation) -> None:
         camera = simulation.config.camera

@@ -45,7 +45,6 @@ class Telemetry:
 
     Args:
         component: The autopilot, whose messages these become.
-        pilot: Its pilot.
         now: Returns the present instant.
     """
 

@@ -30,7 +30,6 @@ class Vehicle:
         camera: Its camera.
 
     Args:
-        number: Number of the tracker.
         system: As above.
         readings: What all vehicles know of themselves.
         sights: What their cameras see.

@@ -83,7 +83,6 @@ class VideoSender:
 
     Args:
         stream: How.
-        source: Number of the sender.
 
     Raises:
         MissingExtraError: PyAV is not installed.

@@ -112,7 +112,6 @@ class Messages:
 
     Args:
         types: The types of messages, see `message_types`.
-        run: The recording.
     """
 
     def __init__(self, types: "Typestore", run: Run) -> None:
@@ -222,9 +221,7 @@ class Messages:
         self, stamp: _Stamp, frames: tuple[str, str], pose: Pose, moves: tuple[Floats, Floats]
     ) -> Message:
         twist = self._make(
-            "geometry_msgs/msg/Twist",
-            linear=self._vector(moves[0]),
-            angular=self._vector(moves[1]),
+            "geometry_msgs/msg/Twist", linear=self._vector(moves[0]), angular=self._vector(moves[1])
         )
         return self._make(
             "nav_msgs/msg/Odometry",
@@ -401,9 +398,7 @@ class Messages:
             "vision_msgs/msg/ObjectHypothesisWithPose",
             hypothesis=self._make("vision_msgs/msg/ObjectHypothesis", class_id=name, score=1.0),
             pose=self._make(
-                "geometry_msgs/msg/PoseWithCovariance",
-                pose=self._pose(pose),
-                covariance=_EXACTLY,
+                "geometry_msgs/msg/PoseWithCovariance", pose=self._pose(pose), covariance=_EXACTLY
             ),
         )
 

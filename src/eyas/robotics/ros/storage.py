@@ -70,7 +70,6 @@ class Storage(Protocol):
 
     Args:
         path: The file; it has another name until it is complete.
-        topics: All topics.
     """
 
     kind: str  # Name of this kind in descriptions of bags
@@ -195,7 +194,6 @@ def described_bag(file: str, kind: str, topics: Sequence[Topic], frames: int) ->
 
     Args:
         file: Name of the bag's file.
-        kind: Its kind of storage.
         topics: All topics, with the times of their messages.
         frames: Number of frames; ours, among the data that anyone may add.
     """

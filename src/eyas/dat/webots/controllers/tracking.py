@@ -75,7 +75,6 @@ class Tracker:
 
     Args:
         settings: `env_config.json`, whole.
-        camera: The camera.
         floor: z of the land [m].
         chance: Where random starts come from.
     """
@@ -133,7 +132,6 @@ class Tracker:
 
         Args:
             command: See `exchange.Request`.
-            before: The target a step ago.
             target: The target now; None: it is gone.
         """
         forward, left, turn = (

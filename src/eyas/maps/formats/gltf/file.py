@@ -113,10 +113,7 @@ class GltfFile:
         """Let a property of a node take values at times.
 
         Args:
-            node: The node.
             path: The property: translation, rotation or scale.
-            times: Index of the times [s].
-            values: Index of the values.
             between: How values between these are found: LINEAR or STEP.
         """
         self._samplers.append({"input": times, "output": values, "interpolation": between})

@@ -44,7 +44,6 @@ def box_mesh(size: tuple[float, float, float], kind: ObjectClass) -> Mesh:
 
     Args:
         size: Length, width, height [m].
-        kind: The class.
     """
     positions, normals = [], []
     for axis, sign in _SIDES.tolist():
@@ -88,7 +87,6 @@ def mover_mesh(subject: Subject, colour: tuple[float, ...]) -> Mesh:
     """Return the mesh of a moving object in the frame of `pose_of`; its limbs and wheels rest.
 
     Args:
-        subject: The object.
         colour: Of its body, sRGB.
     """
     if any(model.name == subject.type for model in MODELS):
@@ -133,11 +131,7 @@ class _Moment(NamedTuple):
 
 
 class SceneWriter(Writer):
-    """`scene.glb`: the map with the flight as an animation.
-
-    Args:
-        run: The recording.
-    """
+    """`scene.glb`: the map with the flight as an animation."""
 
     wants = frozenset({"others", "traffic"})
     files = Files(episode=(NAME,))

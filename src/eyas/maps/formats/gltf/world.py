@@ -21,13 +21,7 @@ CANDELAS = 1500.0  # Of a street lamp along its axis: some 10,000 lumen in its c
 
 
 def add_world(file: GltfFile, scene: Scene, detail: int) -> int:
-    """Add all that stands on a map; return its number of triangles.
-
-    Args:
-        file: The file.
-        scene: The map.
-        detail: Level of detail of trees and furniture; 0 is the finest.
-    """
+    """Add all that stands on a map; return its number of triangles."""
     groups: dict[ObjectClass, int] = {}
     triangles = 0
     for part in parts_of(scene):
@@ -102,10 +96,6 @@ def write_gltf(name: str, seed: int, path: Path, detail: int, *, lamps: bool = T
     """Write a map as a `.glb` file; return its number of triangles.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        path: The file.
-        detail: Level of detail of trees and furniture; 0 is the finest.
         lamps: Whether its street lamps are lights.
 
     Raises:

@@ -41,7 +41,6 @@ class DrivenDrone:
 
     Args:
         simulation: One tracker, made with `driven_drone`, and `equipped`.
-        config: Its settings.
     """
 
     def __init__(self, simulation: Simulation, config: MavlinkConfig) -> None:
