@@ -29,7 +29,7 @@ HOUSE = House(
             "scene": "eyas.maps.formats.gltf.flight:SceneWriter",
             "openscenario": "eyas.maps.formats.openscenario:ScenarioWriter",
         },
-        "eyas.planner": {"plans": "eyas.maps.plan.planner:PLANNER"},
+        "eyas.planner": {"plans": "eyas.maps.plan.build:PLANNER"},
         "eyas.map_files": {"files": "eyas.maps.files:MAP_FILES"},
         "eyas.commands": {
             "maps": "eyas.maps.commands.app:app",

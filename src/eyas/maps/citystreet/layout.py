@@ -29,7 +29,7 @@ from eyas.maps.land import ground, outskirts
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants import trees
 from eyas.maps.roads import overpass
-from eyas.maps.roads.pillars import Pillar, pillars
+from eyas.maps.roads.overpass import Pillar, pillars
 from eyas.maps.street.car_parks import CarPark, place_car_parks, place_rectangle
 
 __all__ = ["EXTENT", "FLOOR", "CityLayout", "lay_out"]

@@ -47,9 +47,9 @@ from eyas.maps.plan.plan import (
     things,
 )
 from eyas.maps.plants import gardens
-from eyas.maps.roads.pillars import pillars
+from eyas.maps.roads.overpass import pillars
 from eyas.maps.street import furniture
-from eyas.maps.street.furnishing import furniture_along
+from eyas.maps.street.furniture import furniture_along
 from eyas.maps.street.lamps import lamps_along, lit_by
 from eyas.maps.street.parked_cars import CARS
 

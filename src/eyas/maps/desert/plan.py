@@ -16,7 +16,7 @@ from eyas.engine.world.street.signals import signal_places, signals_along
 from eyas.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.maps.desert.roads import NAME
 from eyas.maps.desert.scenery import scattered_over, wheel_tracks
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import relief_of
 from eyas.maps.plan.library import STREET_KINDS, houses, wild_kinds
 from eyas.maps.plan.plan import (
     Chance,

@@ -7,7 +7,7 @@ from eyas.engine.world.build.millimetres import rounded
 from eyas.engine.world.build.placed import Placed
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.desert.layout import EXTENT, DesertLayout
-from eyas.maps.land.facets import Points, Relief, heights_of
+from eyas.maps.land.relief import Points, Relief, heights_of
 from eyas.maps.plants import gardens
 
 __all__ = ["scattered_over", "wheel_tracks"]

@@ -51,8 +51,7 @@ from eyas.maps.plan.plan import (
 from eyas.maps.plants import gardens
 from eyas.maps.street import lamps
 from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
-from eyas.maps.street.furnishing import furniture_along
-from eyas.maps.street.furniture import FURNITURE
+from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.parked_cars import CARS
 from eyas.maps.things.subway import LONG, WIDE
 

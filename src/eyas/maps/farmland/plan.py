@@ -9,7 +9,7 @@ from eyas.engine.world.roads.areas import road_area
 from eyas.maps.farmland.layout import CROPS, FLOOR, VERGE, lay_out
 from eyas.maps.farmland.roads import NAME, road_graph
 from eyas.maps.farmland.scenery import SOIL, bales, far_fields, field, lamps_of
-from eyas.maps.land.plain import rectangle
+from eyas.maps.land.ground import rectangle
 from eyas.maps.plan.library import STREET_KINDS
 from eyas.maps.plan.plan import (
     Chance,

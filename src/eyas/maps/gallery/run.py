@@ -15,9 +15,18 @@ from eyas.engine.sim.assets import load_assets
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
-from eyas.maps.gallery.distant import along, horizon, overview
 from eyas.maps.gallery.page import MARK, Shown, contact_sheet, page, png
-from eyas.maps.gallery.places import POSES, STOPS, all_cars, beside_most, on_open_roads, stop
+from eyas.maps.gallery.places import (
+    POSES,
+    STOPS,
+    all_cars,
+    along,
+    beside_most,
+    horizon,
+    on_open_roads,
+    overview,
+    stop,
+)
 from eyas.maps.gallery.still import StillScene, Viewpoint
 
 __all__ = ["INDEX", "SHEET", "choose_viewpoints", "conditions", "run"]

@@ -14,7 +14,7 @@ from eyas.engine.world.build.millimetres import rounded, unit
 from eyas.engine.world.roads.areas import blocks, road_area, streets
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.lake.roads import COLUMNS, ROWS, Lattice, lattice
-from eyas.maps.land.plain import blob
+from eyas.maps.land.ground import blob
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants.forest import SPECIES
 from eyas.maps.street.car_parks import CarPark, place_car_parks

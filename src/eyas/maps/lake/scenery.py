@@ -8,8 +8,8 @@ from eyas.engine.world.build.placed import Placed
 from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.lake.layout import LakeLayout
-from eyas.maps.land.facets import Points
 from eyas.maps.land.outlines import wavy
+from eyas.maps.land.relief import Points
 from eyas.maps.plants import gardens
 from eyas.maps.plants.wild import BED
 from eyas.maps.things.jetties import BESIDE, LONG

@@ -49,14 +49,12 @@ from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
 from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.maps.osm.data import Bounds, OsmData
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
-from eyas.maps.osm.network import osm_network
-from eyas.maps.osm.reader import covered, read_osm
+from eyas.maps.osm.reader import Bounds, OsmData, covered, read_osm
 from eyas.maps.osm.rings import Shapes
-from eyas.maps.osm.streets import street_file
+from eyas.maps.osm.streets import osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
 

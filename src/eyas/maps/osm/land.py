@@ -5,9 +5,9 @@ import shapely
 
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.roads.areas import polygons_of
-from eyas.maps.osm.data import Tags
 from eyas.maps.osm.features import Area, Survey
 from eyas.maps.osm.measures import Odd, length
+from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import is_street
 

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Callable
 
-from eyas.maps.osm.data import Tags
+from eyas.maps.osm.reader import Tags
 
 __all__ = ["Odd", "colour", "length", "number"]
 

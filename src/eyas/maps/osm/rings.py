@@ -8,7 +8,7 @@ import shapely
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
-from eyas.maps.osm.data import OsmData, Relation, Tags, Way
+from eyas.maps.osm.reader import OsmData, Relation, Tags, Way
 
 __all__ = ["Shapes"]
 

@@ -43,8 +43,8 @@ from eyas.maps.build.values import (
 )
 from eyas.maps.land.mounds import Mound
 from eyas.maps.osm.features import Survey
+from eyas.maps.roads.overpass import Pillar
 from eyas.maps.roads.painting import Stripe
-from eyas.maps.roads.pillars import Pillar
 from eyas.maps.roads.tunnels import Tunnel
 from eyas.maps.things.railway import Viaduct
 from eyas.maps.things.skyways import Skyway

@@ -9,7 +9,7 @@ from eyas.engine.core.rng import stream
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import ObjectClass
-from eyas.maps.land.plain import blob, rectangle
+from eyas.maps.land.ground import blob, rectangle
 from eyas.maps.plan.plan import Chance, Far, Flat, GroundCover, Layer, MapPlan, Paint, Roadway
 from eyas.maps.simpleway.layout import FLOOR, loop_lines, paved, sand_bars
 from eyas.maps.simpleway.roads import road_lines

@@ -20,7 +20,7 @@ from eyas.maps.build.apart import Apart
 from eyas.maps.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.maps.buildings.parts import rings
 from eyas.maps.land import ground, outskirts
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import relief_of
 from eyas.maps.osm.features import Survey
 from eyas.maps.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.maps.plan.plan import (
@@ -42,9 +42,8 @@ from eyas.maps.plan.plan import (
     things,
 )
 from eyas.maps.plants import gardens, trees
-from eyas.maps.street.bays import bays_in
-from eyas.maps.street.furnishing import furniture_along
-from eyas.maps.street.furniture import FURNITURE
+from eyas.maps.street.car_parks import bays_in
+from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.lamps import BEYOND_KERB, POLE_RADIUS, lit_by
 from eyas.maps.street.parked_cars import CARS
 from eyas.maps.towns.buildings import building_of

@@ -17,8 +17,7 @@ from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.street.signals import signal_places, signals_along
 from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
-from eyas.maps.land.facets import Relief, heights_of
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import Relief, heights_of, relief_of
 from eyas.maps.plan.library import CLUTTER_KINDS, STREET_KINDS, houses, plant_kinds, wild_kinds
 from eyas.maps.plan.plan import (
     Chance,
@@ -36,7 +35,7 @@ from eyas.maps.plan.plan import (
     things,
 )
 from eyas.maps.plants import gardens
-from eyas.maps.plants.cones import VARIANTS
+from eyas.maps.plants.trees import CONES
 from eyas.maps.street import gantries
 from eyas.maps.street.dressing import VILLAGE_KERBS, Ground, along_kerbs
 from eyas.maps.street.lamps import lamps_along
@@ -82,7 +81,7 @@ _TREE_HEIGHTS = (10.0, 11.8)
 _WOOD_HEIGHTS = (5.0, 11.0)
 _SHORE_WIDTH = 5.0
 _WILD = (*wild_kinds("green tuft", "dry tuft"), *wild_kinds("stones", "boulder", looks=(2, 3)))
-_CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
+_CONES = tuple(f"cone tree {k}" for k in range(CONES))
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:

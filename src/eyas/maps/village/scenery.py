@@ -10,7 +10,7 @@ from eyas.engine.world.build.placed import Placed
 from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.buildings.cottages import Cottage
-from eyas.maps.land.facets import Points, Relief, heights_of
+from eyas.maps.land.relief import Points, Relief, heights_of
 from eyas.maps.plants import gardens
 from eyas.maps.village.layout import VillageLayout
 
