@@ -162,7 +162,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
         return
     if root is None:
         from eyas.engine.settings.file import load_settings
-        from eyas.robotics.serve_mavlink import AS_FLOWN
+        from eyas.robotics.serving.mavlink import AS_FLOWN
 
         file = chosen_file(config, preset)
         _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
@@ -268,7 +268,7 @@ def _announce(command: str) -> None:
 def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
     """Fly a drone for nodes of ROS 2, until Ctrl-C."""
     from eyas.engine.settings.file import load_settings
-    from eyas.robotics.serve_ros import AS_FLOWN, run
+    from eyas.robotics.serving.ros import AS_FLOWN, run
 
     run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
 
@@ -278,10 +278,10 @@ def _fly(
 ) -> None:
     """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
     if addresses:
-        from eyas.robotics.serve_mavlink import run
+        from eyas.robotics.serving.mavlink import run
 
         run(settings, addresses)
         return
-    from eyas.robotics import serve_hil as hil
+    from eyas.robotics.serving import hil
 
     hil.run(settings, px4=px4, ardupilot=ardupilot)
