@@ -30,11 +30,11 @@ from eyas.engine.traffic.replay import Replay
 
 __all__ = ["DemoFlight", "DemoSimulation", "DemoWorld", "build_world"]
 
-COLOUR = (0.62, 0.05, 0.06)  # Of the first model of a car, as the manual says
+COLOUR = (0.62, 0.05, 0.06)  # Colour of the first model of a car, as the manual says
 
 WANTED = (30.0, 30.0)
 """Where the car stands in most worlds of the original [m]; here, by the road nearest to that."""
-REACH, CELL = 80.0, 0.5  # How far from that road a place is looked for, and how finely [m]
+REACH, CELL = 80.0, 0.5  # Reach of the search for a place from that road, and its step [m]
 EYE = 400.0  # Height of the camera that looks for it [m]
 FREE_SIDE, ROAD_SIDE = 6.5, 16.0
 """Squares around the car: all free ground, and some of it a road [m]."""

@@ -32,7 +32,7 @@ WANTED = 25.0
 """Frames that should get through in a second. If fewer do, the line is to blame if it takes longer
 for each than the time between them."""
 EASY = 0.024  # A line that takes less time for a frame may have room for larger pictures [s]
-PERIOD = 2.0  # From one decision to the next [s]
+PERIOD = 2.0  # Time from one decision to the next [s]
 PATIENCE = 5  # Easy periods after which larger pictures are tried; it doubles each time
 HELP = 1.3  # If smaller pictures do not shorten the time by this factor, no smaller ones will
 PAUSE = 60.0  # After that, for how long smaller pictures are not tried [s]
@@ -149,7 +149,7 @@ class Stream:
         return b"".join(bytes(packet) for packet in self._coder.encode(picture))
 
 
-QUALITY = 82  # Of JPEG: 640 x 360 pixels take about 45 kB
+QUALITY = 82  # JPEG quality: 640 x 360 pixels take about 45 kB
 
 
 class DemoFrame:

@@ -19,7 +19,7 @@ __all__ = ["FRAME", "Clock", "PictureSize", "Session"]
 
 FRAME = 1.0 / 30.0  # Between frames [s]
 LONGEST = 0.1
-"""Of a frame, in seconds of the clock: a slower machine flies slower, not farther at a time."""
+"""Longest frame, in seconds of the clock: a slower machine flies slower, not farther at a time."""
 SMALLEST, FIRST, LARGEST = 480 * 270, 640 * 360, 1280 * 720  # Pixels of a picture
 STEP = 1.3
 """From one number of pixels to the next: seldom, for each change takes a whole picture of H.264."""

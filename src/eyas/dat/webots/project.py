@@ -30,7 +30,7 @@ from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
-from eyas.maps.formats.registry import ExportOptions, MapFormat
+from eyas.maps.formats.registry import MapExport, MapFormat
 from eyas.maps.formats.roads import sumo_files_of
 
 __all__ = ["WEBOTS", "Condition", "run"]
@@ -158,7 +158,7 @@ def _settings(name: str, weather: str) -> dict[str, bytes]:
     return {f"config/{file}.json": text for file in ("env_config", "env_config_backup")}
 
 
-def _written(path: Path, options: ExportOptions) -> Iterator[str]:
+def _written(path: Path, options: MapExport) -> Iterator[str]:
     condition = Condition(options.weather, options.hour)
     yield from map(str, run(options.name, options.seed, path, options.detail, condition))
 

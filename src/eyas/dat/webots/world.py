@@ -17,7 +17,7 @@ from eyas.maps.formats.meshes import Part, copies_of, parts_of, prism, prototype
 
 __all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
 
-BASIC_STEP = 2  # Of physics, as in the original [ms]
+BASIC_STEP = 2  # Step of the physics, as in the original [ms]
 
 _SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colour 1
 

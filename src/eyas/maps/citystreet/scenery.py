@@ -23,7 +23,7 @@ __all__ = ["TREES", "clutter", "great_trees", "greenery", "no_lawn", "parked", "
 _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
 """Heights and least distance [m], and number of attempts on a square metre."""
 _MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
-"""The same for the groups of trees beyond the outer streets."""
+"""Heights, least distance and attempts of the groups of trees beyond the outer streets."""
 _FROM_WALL = 4.5
 _FROM_STREET = 14.0  # Least distance of the trees beyond the outer streets from a street [m]
 _OCCUPIED = 0.62  # Share of the bays with a car

@@ -193,9 +193,9 @@ def export_map(
     ] = None,
 ) -> None:
     """Write a map for other programs: shapes, roads, or a plan."""
-    from eyas.maps.formats.registry import ExportOptions, export
+    from eyas.maps.formats.registry import MapExport, export
 
-    options = ExportOptions(name, seed, detail, lamps, cell, weather, hour)
+    options = MapExport(name, seed, detail, lamps, cell, weather, hour)
     for line in export(kind, out, options):
         typer.echo(line)
 

@@ -18,19 +18,27 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import Original
 
-__all__ = ["About", "Figures", "about", "describe", "figures_of", "make_another", "street_lines"]
+__all__ = [
+    "MapFacts",
+    "MapFigures",
+    "about",
+    "describe",
+    "figures_of",
+    "make_another",
+    "street_lines",
+]
 
 
 @dataclass(frozen=True, slots=True)
-class Figures:
+class MapFigures:
     """Figures of a scene."""
 
     size: tuple[float, float]  # Extent of the floor [m]
-    area: float  # Of the rectangle around the streets [km^2]
+    area: float  # Area of the rectangle around the streets [km^2]
     road: float
     """Length of the streets from the middle of one junction to that of the next, both directions
     counted once [km]."""
-    between: float  # The same without what lies within junctions [km]
+    between: float  # Length of the streets without what lies within junctions [km]
     lanes: float  # Length of all lanes [km]
     buildings: int
     height: float  # Median height of the buildings [m]
@@ -39,7 +47,7 @@ class Figures:
     lamps: int
 
 
-def figures_of(scene: Scene) -> Figures:
+def figures_of(scene: Scene) -> MapFigures:
     """Return the figures of a scene."""
     network, solids = scene.network, scene.colliders
     span = np.ptp(network.lane_points, axis=0) if len(network.lane_points) else np.zeros(2)
@@ -53,7 +61,7 @@ def figures_of(scene: Scene) -> Figures:
     ways = _ways(network)
     within = sum(_within_junctions(network, edge, line) for edge, line in ways)
     between = sum(line.length for _, line in ways)
-    return Figures(
+    return MapFigures(
         size=scene.size,
         area=float(np.prod(span)) / 1e6,
         road=(between + within) / 1000.0,
@@ -113,23 +121,23 @@ def _ways(network: RoadNetwork) -> list[tuple[int, shapely.LineString]]:
 
 
 @dataclass(frozen=True, slots=True)
-class About:
+class MapFacts:
     """What there is to say about a map with a seed."""
 
     name: str
     title: str
     seed: int
     weathers: tuple[str, ...]
-    figures: Figures
-    crossings: int  # From pavement to pavement
+    figures: MapFigures
+    crossings: int  # Number of crossings from pavement to pavement
     crossings_with_lights: int
     original: Original | None  # Figures of the map of the DAT benchmark that it stands for
     recorded_traffic: list[str]  # Names of the recordings that ship with it
-    folder: str | None  # Where the files of an imported map are
-    attribution: list[str]  # Whose data it is
+    folder: str | None  # Folder of an imported map; None: it comes with Eyas
+    attribution: list[str]  # Notices of whose data the map is made of
 
 
-def about(name: str, seed: int) -> About:
+def about(name: str, seed: int) -> MapFacts:
     """Return what there is to say about a map.
 
     Raises:
@@ -137,7 +145,7 @@ def about(name: str, seed: int) -> About:
     """
     recipe, scene = MAPS.get(name), load_scene(name, seed)
     lights = usable_crossings(scene)
-    return About(
+    return MapFacts(
         name=recipe.name,
         title=recipe.title,
         seed=seed,

@@ -71,7 +71,7 @@ def _runs(there: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 class _Paper:
-    """Where the points of a map lie in its picture."""
+    """A picture under construction, with the frame from metres to pixels."""
 
     def __init__(self, scene: Scene, width: int) -> None:
         low, high = _bounds(scene)

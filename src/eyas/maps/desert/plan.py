@@ -41,7 +41,7 @@ _DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)  # Asphalt under a thin lay
 
 _SNOW = replace(SAND, surface=Surface.DESERT_SNOW)  # Dunes under snow
 
-_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)  # Where wheels have left the road
+_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)  # Ruts of wheels that have left the road
 
 _HOUSES = (
     (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),

@@ -27,7 +27,7 @@ __all__ = ["EXTENT", "FLOOR", "DowntownLayout", "facade_of", "lay_out", "roof_of
 _HEIGHT = ((0.0, 6.0), (0.25, 19.0), (0.5, 28.0), (0.75, 58.0), (0.88, 105.0), (0.95, 190.0), (0.985, 290.0), (1.0, 436.0))  # noqa: E501  # fmt: skip
 """Share of the buildings and height [m]: quantiles of the original's downtown."""
 _CORES = ((-60.0, -40.0, 190.0), (290.0, 90.0, 150.0))
-"""Where towers stand: u, v and reach of each quarter [m]."""
+"""Quarters of towers: u, v and reach of each [m]."""
 _SLENDER = 12.0  # Greatest height as a multiple of the shorter side of the lot
 
 _OLD = (("facade_brick", 0.38), ("facade_stone", 0.18), ("facade_concrete", 0.12),
@@ -242,8 +242,8 @@ def _part(grid: Grid, part: Part, look: _Look, cover: Material, pointed: bool) -
 
 _COLUMN = 4  # The column of blocks in whose middle it runs
 _STOP = 4  # The street over which the station lies
-_REACH = 1248.0  # From the middle of the floor to either end, beyond its edges [m]
-_BESIDE_ROAD = 3.2  # From a kerb to the columns beside it: behind parked cars [m]
+_REACH = 1248.0  # Distance from the middle of the floor to either end, beyond its edges [m]
+_BESIDE_ROAD = 3.2  # Distance from a kerb to the columns beside it: behind parked cars [m]
 _BETWEEN = 15.0  # Greatest distance between columns off the roads [m]
 _NARROWEST = 8.0  # Narrower rests of lots that it cuts stay empty [m]
 

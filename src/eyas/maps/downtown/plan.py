@@ -59,7 +59,7 @@ __all__ = ["make_plan"]
 
 _STEP = (72.0, 66.0)
 """Distances between the middles of neighbours, along the streets and the avenues [m]."""
-_REACH = 420.0  # From the outermost roads to the farthest [m]
+_REACH = 420.0  # Distance from the outermost roads to the farthest [m]
 _BACKDROP_APART = 36.0  # Least distance from blocks, fronts and the park [m]
 _FROM_EDGE = 30.0
 _SHARE = 0.7  # Share of the places that are built on
@@ -67,7 +67,7 @@ _SIDES = (17.0, 40.0)
 _MEDIAN, _SPREAD, _HIGHEST = 26.0, 0.75, 150.0
 """Median height [m], spread of its logarithm, and limit [m]."""
 
-_KERB_WIDTH = 0.8  # As wide as the original's [m]
+_KERB_WIDTH = 0.8  # Width of kerbs, as in the original [m]
 _KERB = material("paving", (1.0, 0.94, 0.90))
 _SLABS = material("paving", (0.84, 0.91, 0.95))
 _COURT = material("concrete", (0.97, 0.97, 0.93))

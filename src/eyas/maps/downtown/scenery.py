@@ -24,7 +24,7 @@ from eyas.maps.things.skyways import FLOORS_UNDER, Skyway
 __all__ = ["DowntownScenery", "Kerbs", "Park", "crossing_lamps", "scenery_of"]
 
 _BAY_DEPTH, _BAY_LENGTH = 2.3, 6.1  # Size of a bay along a kerb [m]
-_FROM_CROSSING = 17.0  # From the end of a street to the nearest bay [m]
+_FROM_CROSSING = 17.0  # Distance from the end of a street to the nearest bay [m]
 _BAYS = (4, 9)  # Bays in a row; between two rows the pavement reaches out to the kerb
 _BETWEEN = 11.0
 _OCCUPIED = 0.82
@@ -35,7 +35,7 @@ _SLIM_SPACING, _SLIM_BEYOND = 10.6, 1.5  # The same for the slim trees of the st
 _SLIM = 59
 _SLIM_STREET = 5  # The street with slim trees on both sides, counted from the south
 _PARK_STREET = 7
-_PAST_LINE = 2.2  # From a stop line to the lamp at the crossing for walkers beyond it [m]
+_PAST_LINE = 2.2  # Distance from a stop line to the lamp at the crossing for walkers beyond it [m]
 
 Points = NDArray[np.float64]
 
@@ -163,7 +163,7 @@ def _row_of_trees(rows: list[Street], spacing: float, beyond: float, clear: floa
     return np.concatenate(trunks)
 
 
-_DEPTH = 345.0  # From the street along its south side to its far end [m]
+_DEPTH = 345.0  # Distance from the street along its south side to its far end [m]
 _WALK = 4.2  # Width of the pavement along its edge [m]
 _POND_AREA = 15_325.0  # As in the original [m^2]
 _POND_LINE = ((-72.0, -34.0), (-50.0, 26.0), (4.0, 40.0), (46.0, 10.0), (88.0, 44.0))
@@ -325,7 +325,7 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
 _COUNT = 46  # Number of skyways, if there are so many places
 _APART = 44.0  # Least distance between two [m]
 _WIDEST_STREET = 32.0  # Fronts farther apart than this are not joined [m]
-_FROM_CORNER = 5.0  # From the corners of blocks to the side of a skyway [m]
+_FROM_CORNER = 5.0  # Distance from the corners of blocks to the side of a skyway [m]
 _STEP = 3.0  # Distance between the places tried along a street [m]
 
 

@@ -25,7 +25,7 @@ _LAMPS_APART = 64.0
 _FROM_KERB = 1.4
 _BALES_APART, _BALES = 17.0, 0.0035
 """Least distance between bales of hay [m], and number of attempts on a square metre."""
-_FROM_EDGE = 7.0  # From the edge of a field to its bales [m]
+_FROM_EDGE = 7.0  # Distance from the edge of a field to its bales [m]
 _SEASONS = (Season.SUMMER, Season.WINTER)  # Seasons in which crops differ
 
 

@@ -32,7 +32,7 @@ __all__ = [
 class Part(NamedTuple):
     """An object that is there once."""
 
-    name: str  # Its own, such as `building-12`
+    name: str  # Name of the object, such as `building-12`
     object_class: ObjectClass
     mesh: Mesh  # World-space triangles
 
@@ -40,7 +40,7 @@ class Part(NamedTuple):
 class Copies(NamedTuple):
     """All copies of a prototype that are of one class."""
 
-    name: str  # Of the prototype, such as `street lamp`
+    name: str  # Name of the prototype, such as `street lamp`
     object_class: ObjectClass
     prototype: int
     pose: NDArray[np.float32]  # Rotation times scale, and translation [m], shape (K, 3, 4)

@@ -10,10 +10,10 @@ from typing import NamedTuple
 from eyas.engine.core.registry import Registry
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["MAP_FORMATS", "ExportOptions", "MapFormat", "export"]
+__all__ = ["MAP_FORMATS", "MapExport", "MapFormat", "export"]
 
 
-class ExportOptions(NamedTuple):
+class MapExport(NamedTuple):
     """What is exported, and how fine."""
 
     name: str  # Name of the map
@@ -29,10 +29,10 @@ class MapFormat(NamedTuple):
     """A format."""
 
     ending: str  # of the name of a file or folder that the user does not name
-    write: Callable[[Path, ExportOptions], Iterator[str]]  # yields what was written, a line each
+    write: Callable[[Path, MapExport], Iterator[str]]  # yields what was written, a line each
 
 
-def export(name: str, out: Path | None, options: ExportOptions) -> Iterator[str]:
+def export(name: str, out: Path | None, options: MapExport) -> Iterator[str]:
     """Write a map in a format; yield what was written, a line each.
 
     Args:
@@ -47,33 +47,33 @@ def export(name: str, out: Path | None, options: ExportOptions) -> Iterator[str]
     yield from form.write(out or Path(f"{MAPS.get(options.name).name}{form.ending}"), options)
 
 
-def _gltf(path: Path, options: ExportOptions) -> Iterator[str]:
+def _gltf(path: Path, options: MapExport) -> Iterator[str]:
     from eyas.maps.formats.gltf.world import write_gltf
 
     triangles = write_gltf(options.name, options.seed, path, options.detail, lamps=options.lamps)
     yield f"{path}: {triangles} triangles"
 
 
-def _usd(path: Path, options: ExportOptions) -> Iterator[str]:
+def _usd(path: Path, options: MapExport) -> Iterator[str]:
     from eyas.maps.formats.usd import write_usd
 
     yield f"{path}: {write_usd(options.name, options.seed, path, options.detail)} triangles"
 
 
-def _opendrive(path: Path, options: ExportOptions) -> Iterator[str]:
+def _opendrive(path: Path, options: MapExport) -> Iterator[str]:
     from eyas.maps.formats.roads import write_opendrive
 
     write_opendrive(options.name, options.seed, path)
     yield str(path)
 
 
-def _sumo(path: Path, options: ExportOptions) -> Iterator[str]:
+def _sumo(path: Path, options: MapExport) -> Iterator[str]:
     from eyas.maps.formats.roads import write_sumo
 
     yield from map(str, write_sumo(options.name, options.seed, path))
 
 
-def _geojson(path: Path, options: ExportOptions) -> Iterator[str]:
+def _geojson(path: Path, options: MapExport) -> Iterator[str]:
     from eyas.maps.formats.layers import write_layers
 
     yield from map(str, write_layers(options.name, options.seed, path, options.cell))

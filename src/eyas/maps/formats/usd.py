@@ -112,7 +112,7 @@ class Materials:
 
 ENDINGS = (".usdc", ".usda", ".usd")  # Binary, text, either
 
-_RADIUS = 0.1  # Of the sphere that shines in a street lamp [m]
+_RADIUS = 0.1  # Radius of the sphere that shines in a street lamp [m]
 
 _TOUCHED = {ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT}
 """What is solid by its triangles; all else that is solid has colliders of its own."""

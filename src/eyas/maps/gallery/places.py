@@ -197,10 +197,10 @@ STOPS: tuple[tuple[str, str, Callable[[Scene, Cars], Points]], ...] = (
 _WIDE = 1.2  # Field of view of the horizon view; the drone camera's would end at the horizon [rad]
 _BROAD = 700.0  # Distance from the middle to the farthest street of a wide map [m]
 _BEHIND, _OVER = 90.0, 120
-"""From a car to the overview behind it [m], and the number of cars that are tried."""
+"""Distance from a car to the overview behind it [m], and the number of cars that are tried."""
 _RING, _LIT = 24, 9  # Number of views around the streets, and of those on the lit side
 _ALONG = (26.0, 21.0, 0.36)
-"""From a drone back to the view along its road [m], height [m] and pitch [rad]."""
+"""Distance from a drone back to the view along its road [m], height [m] and pitch [rad]."""
 
 
 def overview(still: StillScene, side: float, cars: Cars) -> Viewpoint:

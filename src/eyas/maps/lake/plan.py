@@ -58,7 +58,7 @@ _SHRUBS, _BESIDE = (16.0, 0.004), 7.0
 """Least distance between two shrubs [m], and number of attempts on a square metre; their least
 distance from a road [m]."""
 _SHORE_SHRUBS, _BANK = (3.5, 0.03), 1.4
-"""The same of those along shores, which stand closer; their least distance from a basin [m]."""
+"""Least distance and attempts of shrubs along shores; their least distance from a basin [m]."""
 _NEAR = 90.0  # Reach of the ground that is cut into small squares beside a road [m]
 _LAMPS = 48
 _ZEBRAS_EVERY = 4  # One stop line in so many has a crossing

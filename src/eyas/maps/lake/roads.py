@@ -33,8 +33,8 @@ Kind = tuple[int, float]
 class Lattice:
     """The streets of the grid."""
 
-    x: NDArray[np.float64]  # Of those that run north, from the west, shape (COLUMNS + 1,) [m]
-    y: NDArray[np.float64]  # Of those that run east, from the south, shape (ROWS + 1,) [m]
+    x: NDArray[np.float64]  # Roads that run north, from the west, shape (COLUMNS + 1,) [m]
+    y: NDArray[np.float64]  # Roads that run east, from the south, shape (ROWS + 1,) [m]
     double: tuple[int, int]  # Column and row of the western half of the block that is twice as wide
 
 

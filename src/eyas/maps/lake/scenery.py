@@ -20,8 +20,8 @@ SHORE_KINDS = ("reeds 0", "reeds 1", "stones 2", "stones 3")
 """Kinds of what stands and lies along shores."""
 
 _POND, _LAKE = (7.0, 5.6, 3.2), (40.0, 34.0, 13.0)
-"""Of ponds and lakes: how deep corners are cut, how much of that is kept, and the most by which
-the shore wanders [m]."""
+"""Ponds and lakes: depth of cut corners, the part of it that is kept, and the largest wandering of
+the shore [m]."""
 _BEDS, _GAPS = (2, 9), (1, 6)  # Lengths of reed beds and of the gaps between them, in pieces
 _STONES_EVERY, _STONES_AWAY = 11.0, (0.2, 2.6)
 _WITH_JETTY = 0.6  # Share of the waters near roads that have a jetty

@@ -33,7 +33,7 @@ __all__ = [
     "yards",
 ]
 
-PAVEMENT_WIDTH = 2.6  # From the kerb to the lawn [m]
+PAVEMENT_WIDTH = 2.6  # Distance from the kerb to the lawn [m]
 
 _VERGE = 1.5  # Width of the pavement along the outer side of the outer streets [m]
 

@@ -47,7 +47,7 @@ class Relief:
 
     @property
     def area(self) -> shapely.Geometry:
-        """Where the ground rises, in plan view [m]."""
+        """Area of rising ground, in plan view [m]."""
         return shapely.union_all(shapely.polygons(self.corners[..., :2]))
 
 
@@ -193,8 +193,8 @@ def _pairs(points: Points) -> NDArray[np.complex128]:
 
 _TOP = 45.0  # Height from which the last cover lies [m]
 _SNOW_LINE = 4.0  # Height from which snow lies on a white mound [m]
-_MARGIN = 1.0  # How much higher than a mound beside it a white one is there [m]
-_WAVE = 1.5  # By how much the line rises and falls [m]
+_MARGIN = 1.0  # Height by which a white mound must top its neighbour to be white there [m]
+_WAVE = 1.5  # Amplitude of the border's waves [m]
 
 
 def relief_of(layer: plan.Hills, seed: int) -> Relief:

@@ -181,7 +181,7 @@ def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
 
 
 class _Place(NamedTuple):
-    """Where on earth the map lies."""
+    """Position of the map on earth."""
 
     source: str  # name of the file, for messages
     limits: Bounds  # [degrees]

@@ -53,7 +53,7 @@ _PATHS = {"footway": 2.0, "path": 1.6, "pedestrian": 4.0, "cycleway": 2.2, "step
 _STREAMS = {"river": 18.0, "canal": 12.0, "stream": 2.5, "ditch": 1.2, "drain": 1.2}
 """Width of flowing water whose banks are not drawn [m]."""
 _TRACKS = ("rail", "light_rail", "tram", "narrow_gauge", "subway")
-_BALLAST = 1.9  # From the middle of a track to the edge of its ballast [m]
+_BALLAST = 1.9  # Distance from the middle of a track to the edge of its ballast [m]
 _APART = (8.0, 12.0)  # Distances between the trees of a row [m]
 
 

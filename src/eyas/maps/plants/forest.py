@@ -38,10 +38,10 @@ class Species:
     name: str
     shape: str  # `round`, `cone` or `palm`
     heights: tuple[float, float]  # Least and largest height [m]
-    width: float  # Of the crown, as a share of the height
+    width: float  # Width of the crown, as a share of the height
     leaves: Tint  # Colour of the sunlit leaves, sRGB
     bark: Tint = (0.80, 0.76, 0.70)
-    autumn: Tint | None = None  # The same in autumn; None: it is evergreen
+    autumn: Tint | None = None  # Tint in autumn; None: evergreen
 
     def look(self, season: Season) -> Tint:
         """Return the colour of its leaves in a season."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.world.build.millimetres import length, rounded, unit
 from eyas.engine.world.build.placed import Placed
 from eyas.lanes import exact
-from eyas.maps.build.apart import Apart
+from eyas.maps.build.apart import SpacedPoints
 from eyas.maps.plants.shrubs import PIECE
 
 __all__ = [
@@ -155,7 +155,7 @@ def scattered(
     Returns:
         Shape (K, 2) [m].
     """
-    chosen = Apart(apart)
+    chosen = SpacedPoints(apart)
     for part in shapely.get_parts(room):
         if part.is_empty:
             continue

@@ -34,14 +34,14 @@ __all__ = [
 
 DECK_WIDTH = 14.0  # Distance between the walls [m]
 
-DECK_DEPTH = 1.5  # From the surface down to the underside [m]
+DECK_DEPTH = 1.5  # Distance from the surface down to the underside [m]
 
 SOLID_BELOW = 7.0  # Height up to which a ramp has solid sides instead of columns [m]
 
 _STATION = 4.5  # Distance between two cross-sections, and length of a dash and of a gap [m]
 _PRISM = 4  # Number of stations in each solid of the deck
 _WALL = 0.3
-_SKIRT = 0.4  # From the surface down to the top of the solid sides [m]
+_SKIRT = 0.4  # Distance from the surface down to the top of the solid sides [m]
 
 _HALF = DECK_WIDTH / 2
 _OUT = _HALF + _WALL

@@ -16,7 +16,7 @@ __all__ = ["FLOOR", "loop_lines", "paved", "sand_bars"]
 
 FLOOR = (7000.0, 5000.0)  # Extent of the floor, as in the original [m]
 _ROWS = 7  # Bars on each road
-_REACH = 1110.0  # From the middle of a road to its first and last bar [m]
+_REACH = 1110.0  # Distance from the middle of a road to its first and last bar [m]
 _LENGTH = (10.0, 25.0)  # Extent of a bar along the road [m]
 _HALF = 50.0  # Half its extent across [m]
 _TUFTS = 9  # Small drifts before and behind each bar

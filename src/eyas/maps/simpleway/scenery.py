@@ -16,7 +16,7 @@ __all__ = ["SKINS", "Patch", "Skin"]
 
 Points = NDArray[np.float64]
 
-_STRIP_REACH = 2000.0  # From the middle of the map to the ends of coloured strips [m]
+_STRIP_REACH = 2000.0  # Distance from the middle of the map to the ends of coloured strips [m]
 _OUTER_STRIP = 350.0  # Width of the strips beyond the outer roads [m]
 _FROM_ROAD = (7.5, 16.0)  # From the middle of a road to the strips beside it, least and most [m]
 _SQUARES, _SQUARE = 35, 300.0  # Number and side of the white squares in the desert's winter [m]

@@ -146,7 +146,7 @@ def _bays(rectangle: shapely.Polygon) -> list[shapely.Polygon]:
 
 _ROW_MODULE = 16.4  # Depth of two rows of bays and the aisle between them [m]
 _ROW_BAY_LENGTH, _ROW_BAY_WIDTH = 5.1, 2.6
-_EDGE = 0.4  # From the edge of the car park to the bays [m]
+_EDGE = 0.4  # Distance from the edge of the car park to the bays [m]
 _PAINT = 0.12  # Width of a line between bays [m]
 
 Bays = NDArray[np.float64]

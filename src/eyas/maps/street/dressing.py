@@ -24,7 +24,7 @@ __all__ = ["CITY_KERBS", "SHOP_FRONTS", "VILLAGE_KERBS", "Ground", "along_kerbs"
 _CLEAR: Final = 0.3  # Room between two things [m]
 
 _FROM_WALL: Final = 0.75
-"""From a wall to the middle of what stands before it, besides half its depth [m]."""
+"""Distance from a wall to the middle of what stands before it, besides half its depth [m]."""
 
 _FROM_CORNER: Final = 2.0  # Least distance from the corner of a house [m]
 
@@ -32,7 +32,7 @@ Points = NDArray[np.float64]
 
 
 class Ground(NamedTuple):
-    """Where things may stand."""
+    """Area on which things may stand, and its height."""
 
     area: shapely.Geometry  # In plan view [m]
     height: float  # z [m]

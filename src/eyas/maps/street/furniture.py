@@ -20,7 +20,7 @@ from eyas.lanes import exact
 
 __all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels", "furniture_along"]
 
-BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Of a bale of hay [m]
+BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Size of a bale of hay [m]
 
 _HAY = material("crops_tan", (0.98, 0.9, 0.66))
 _JET = material("plain", (0.93, 0.95, 0.97))
@@ -154,7 +154,7 @@ _CLEAR = 0.5  # Room around each thing [m]
 class _Rule:
     """Spacing of one kind of furniture along a kerb."""
 
-    beyond_kerb: float  # From the kerb to its centre [m]
+    beyond_kerb: float  # Distance from the kerb to its centre [m]
     every: float  # Mean distance to the next [m]
     room: float  # Radius of the space that it needs [m]
     from_end: float  # Least distance to the end of the street [m]

@@ -49,7 +49,7 @@ class CarType:
 class _Roof(NamedTuple):
     """What is above the belt line: x as shares of half the length, from the middle."""
 
-    cowl: float  # Where the windscreen begins
+    cowl: float  # x of the foot of the windscreen, a share of half the length
     front: float  # Front edge of the roof
     back: float  # Rear edge of the roof
     low: float  # Lower edge of the rear window
@@ -246,7 +246,7 @@ class ParkedKind(NamedTuple):
     """A car as it stands there."""
 
     type: str  # A name in `eyas.maps.street.parked_cars.TYPES`.
-    colour: str  # Of the paint
+    colour: str  # Name of the paint's colour
     look: str = ""
     """What it has: `sunroof`, `worn`, `rack`, `dark` bumpers; `covered` by a tarpaulin; none."""
     steer: float = 0.0  # Angle of the front wheels, to the left [rad]

@@ -31,7 +31,7 @@ _FROM_BEND = 13.0  # Least distance from a tunnel to the end of its road [m]
 
 _CLUSTERS = (8, 6, 4, 3, 3)  # Houses in each cluster
 _SETBACKS = (4.2, 8.0)  # Least and largest distance from the kerb to a house [m]
-_EVERY = 29.0  # From one house to the next [m]
+_EVERY = 29.0  # Distance from one house to the next [m]
 _APART = 6.5  # Least distance of two houses [m]
 
 _GANTRIES = 7
@@ -170,7 +170,7 @@ FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
 HALF = 730.0  # Half the side of the square that the hills fill [m]
 
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # That square
+EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # Extent of the hills [m]
 
 _INSIDE, _INSIDE_RADII = 15, (60.0, 86.0, 134.0)
 _RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
@@ -183,7 +183,7 @@ _LAKESIDE = "o14"  # Node of the outer road beside the lake's block
 _LAKE = 41_979.0  # Area of the lake, as in the original [m^2]
 _LAKE_SHARE = 0.64  # Most that the lake takes of its block
 _TREES, _TREE_SPACING = 41, (11.0, 17.0)
-_BEYOND_KERB = 5.0  # From the kerb to the trunks [m]
+_BEYOND_KERB = 5.0  # Distance from the kerb to the trunks [m]
 
 
 @dataclass(frozen=True, slots=True)

@@ -74,7 +74,7 @@ _WOODS, _WOOD_TREES, _WOOD_RADIUS = 40, (5, 14), 24.0
 """Number of groups of trees on the hills, of trees in each, and radius of a group [m]."""
 _BESIDE_WOODS, _FARTHEST_WOODS = 30.0, 240.0
 """Least and largest distance of these trees from a road [m]."""
-_ROOTS = 0.5  # How deep a tree stands in a slope [m]
+_ROOTS = 0.5  # Depth of a trunk's foot in a slope [m]
 _BUSHES = (26.0, 0.004)
 """Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)

@@ -27,7 +27,7 @@ _TUFTS, _BESIDE = (5.0, 0.014), (1.8, 16.0)
 """Least distance between groups of tufts [m], and number of attempts on a square metre; their
 least and largest distance from a road [m]."""
 _STONES, _STONES_BESIDE, _STONES_REACH = (19.0, 0.004), 6.0, 110.0
-"""The same of stones; their least and largest distance from a road [m]."""
+"""Least distance and attempts of stones; their least and largest distance from a road [m]."""
 
 
 def trodden(
@@ -101,8 +101,8 @@ _REACH = 17.0  # Largest distance of these from a wall [m]
 _ROOM = 3.2  # Room that each of them needs [m]
 _YARD_APART, _YARD_DENSITY = 7.0, 0.02
 """Least distance between two of them [m], and number of attempts on a square metre."""
-_BESIDE_PATH = 2.6  # From the middle of the path to a house to what stands beside it [m]
-_FROM_DOOR = 12.5  # From the middle of a house to its bins and its bicycles [m]
+_BESIDE_PATH = 2.6  # Distance from the middle of the path to a house to what stands beside it [m]
+_FROM_DOOR = 12.5  # Distance from the middle of a house to its bins and its bicycles [m]
 
 
 def yard_things(

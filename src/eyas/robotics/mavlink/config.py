@@ -32,11 +32,11 @@ class MavlinkConfig(Section):
     first_system: Annotated[int, Field(ge=1, le=190)] = 1
     """System id of the first vehicle; those of the others follow."""
     latitude: Annotated[float, Field(ge=-80, le=80)] = 47.397742
-    """Of the origin of the world [degrees]."""
+    """Latitude of the origin of the world [degrees]."""
     longitude: Annotated[float, Field(ge=-180, le=180)] = 8.545594
-    """[degrees]"""
+    """Longitude of the origin of the world [degrees]."""
     altitude: Annotated[float, Field(ge=-500, le=9000)] = 488.0
-    """Of the origin of the world above mean sea level [m]."""
+    """Height of the origin of the world above mean sea level [m]."""
     lockstep: bool = False
     """Whether time stands still until each vehicle in offboard mode has got another set point."""
     video: Annotated[str, Field(pattern=r"^(\S+:\d{1,5})?$"), Said("HOST:PORT, or empty")] = ""

@@ -136,7 +136,7 @@ class Instant:
 
     @cached_property
     def attitude(self) -> Quaternion:
-        """The same as a quaternion."""
+        """Attitude as a quaternion."""
         return of_body(self._trackers.orientation[self._vehicle])
 
     @cached_property

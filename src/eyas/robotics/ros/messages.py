@@ -77,7 +77,7 @@ _QUANTITIES = {
 """Messages of further sensors by `Sensor.unit`."""
 
 NOWHERE = Projection(longitude=8.545594, latitude=47.397742)
-"""Where maps that lie nowhere have their middle: the usual home of PX4's simulators, in Zurich."""
+"""Origin of maps that lie nowhere: the usual home of PX4's simulators, in Zurich."""
 
 _POSITION, _FELT, _TURNING, _ATTITUDE = slice(0, 3), slice(6, 9), slice(9, 12), slice(12, 16)
 """Columns of `Frame.sensors`."""

@@ -39,7 +39,7 @@ AS_FLOWN = updated(
 HEARD = {"/cmd_vel": "geometry_msgs/msg/Twist", "/camera/cmd_vel": "geometry_msgs/msg/Twist"}
 """What it listens to: velocities of the body, and turn rates of the camera."""
 
-_PATIENCE = 0.5  # How long a velocity holds [s]
+_PATIENCE = 0.5  # Longest time that a velocity holds [s]
 
 
 class Bridge(Face):

@@ -44,7 +44,7 @@ class GltfFile:
 
     name: str  # Name of the scene and of its root
     textures: dict[str, NDArray[np.uint8]]  # Rows from the top; sRGB and alpha
-    notice: str = ""  # Whose data it is
+    notice: str = ""  # Notice of whose data the map is made of
     extras: dict[str, Any] = field(default_factory=dict)  # What else is told about the file
     lights: list[dict[str, Any]] = field(default_factory=list)
     meshes: list[dict[str, Any]] = field(default_factory=list)

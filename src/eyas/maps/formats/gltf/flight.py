@@ -104,7 +104,7 @@ _FRAMES = "eyas_frames"
 _DETAIL = 9  # The coarsest trees
 _BODY = (0.8, 0.8, 0.35)  # Length, width and height of the box that stands for the tracker [m]
 _NEAR = 0.05  # [m]
-_LONGEST = 1 << 28  # Of the part of a file that tells what is in it [bytes]
+_LONGEST = 1 << 28  # Largest JSON chunk of a file that is read [bytes]
 
 
 class _Pose(NamedTuple):
@@ -116,7 +116,7 @@ class _Mover(NamedTuple):
     """A moving object in a frame."""
 
     subject: Subject
-    colour: tuple[float, ...]  # Of its body, sRGB
+    colour: tuple[float, ...]  # Colour of the body, sRGB
     pose: _Pose
 
 

@@ -17,7 +17,7 @@ from eyas.maps.formats.meshes import copies_of, parts_of, prototypes_of
 
 __all__ = ["CANDELAS", "add_lamps", "add_world", "towards", "write_gltf"]
 
-CANDELAS = 1500.0  # Of a street lamp along its axis: some 10,000 lumen in its cone [cd]
+CANDELAS = 1500.0  # Intensity of a street lamp along its axis: some 10,000 lm in its cone [cd]
 
 
 def add_world(file: GltfFile, scene: Scene, detail: int) -> int:
