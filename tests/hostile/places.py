@@ -198,7 +198,7 @@ OWN = {
     "traffic.network:network_xml": _OUTPUT,
     "traffic.network:without_comments": _OUTPUT,
     "traffic.osm_network:osm_network": _OUTPUT,
-    "traffic.road_files:opendrive_xml": _OUTPUT,
+    "maps.formats.roads:opendrive_xml": _OUTPUT,
     "traffic.signals:load_plan": _PACKAGE,
     "world.maps.recipe:MapRecipe.attribution": _PACKAGE,
     "world.maps.recipe:_digest_of": _PACKAGE,

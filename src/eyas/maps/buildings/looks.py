@@ -10,6 +10,7 @@ __all__ = ["roof_cover", "wall_tint"]
 Tint = tuple[float, float, float]
 
 # Factors on the facade's own colour, sRGB: from washed out to sooty, warm to cold.
+# order: bytes of plans depend on it, which draw an index of it
 _WALLS: tuple[Tint, ...] = (
     (1.0, 1.0, 1.0),
     (1.0, 0.96, 0.88),

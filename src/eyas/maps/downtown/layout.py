@@ -30,6 +30,7 @@ _CORES = ((-60.0, -40.0, 190.0), (290.0, 90.0, 150.0))
 """Quarters of towers: u, v and reach of each [m]."""
 _SLENDER = 12.0  # Greatest height as a multiple of the shorter side of the lot
 
+# order: bytes of plans depend on it, which draw an index of these tables by their shares
 _OLD = (("facade_brick", 0.38), ("facade_stone", 0.18), ("facade_concrete", 0.12),
         ("facade_red_white", 0.09), ("facade_old", 0.10), ("facade_plaster", 0.13))  # fmt: skip
 _MIDDLE = (("facade_brick", 0.20), ("facade_stone", 0.22), ("facade_concrete", 0.22),

@@ -39,6 +39,7 @@ class Crop:
 
 _TAN, _YELLOW = material("crops_tan"), material("crops_yellow")
 
+# order: bytes of plans depend on it, whose fields hold an index of it
 CROPS = (
     Crop("green", material("crops_green"), material("snow", (0.97, 0.97, 0.98)), 0.22, 19 / 68),
     # As in the original, snow greys the lilac fields, and leaves yellow and tan ones as they are.

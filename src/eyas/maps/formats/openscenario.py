@@ -19,10 +19,10 @@ from eyas.engine.state.motion import ActorView
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.engine.targets.catalogue import MODELS, kind_of
 from eyas.engine.traffic.network import network_xml
-from eyas.engine.traffic.road_files import opendrive_xml
 from eyas.engine.traffic.sumo_install import sumo_binary
 from eyas.engine.world.maps import MAPS
 from eyas.lanes import exact
+from eyas.maps.formats.roads import opendrive_xml
 
 __all__ = ["ScenarioWriter"]
 

@@ -50,6 +50,7 @@ class Species:
         return (self.autumn or self.leaves) if season is Season.AUTUMN else self.leaves
 
 
+# order: bytes of plans depend on it, whose strips hold an index of it
 SPECIES = (
     Species("crab apple", "round", (3.0, 6.5), 0.72, (1.0, 0.62, 0.76), autumn=(0.74, 0.34, 0.20)),
     Species("hackberry", "round", (4.0, 9.0), 0.58, (0.74, 0.92, 0.32), autumn=(0.94, 0.78, 0.26)),

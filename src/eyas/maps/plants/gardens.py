@@ -33,6 +33,7 @@ _PLANTED = 0.45  # Share of the walls with plants along them
 _CLIPPED = 0.4  # Share of those walls with a hedge instead of shrubs
 _ROOM = 0.9  # Radius of the space that a plant needs [m]
 
+# order: bytes of plans depend on it, which draw an index of it
 BORDERS = ("border", "low border", "tall border")  # Kinds of borders of shrubs
 
 Points = NDArray[np.float64]

@@ -60,6 +60,7 @@ _GREEN = _coloured("crops_green", (1.0, 1.0, 0.62))
 _OCHRE = _coloured("crops_yellow", (0.86, 0.72, 0.42))
 _BROWN = _coloured("crops_tan", (0.74, 0.72, 0.70))
 _OLIVE = _coloured("crops_yellow", (0.78, 0.90, 0.80))
+# order: bytes of plans depend on it, which draw a permutation of it
 _STRIPS = (*(4 * [_WATER]), *(3 * [_PINK]), *(3 * [_GREEN]), *(3 * [_OCHRE]),
            *(2 * [_BROWN]), *(2 * [_OLIVE]))  # fmt: skip
 """What lies in the 17 strips of the farm, in any order."""

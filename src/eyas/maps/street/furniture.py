@@ -104,6 +104,7 @@ def _tub(sides: int, subdivisions: int) -> Mesh:
     return concatenate([tub, transformed(ball, pose)])
 
 
+# order: bytes of plans depend on it, whose library lists these names in turn
 FURNITURE: dict[str, Callable[[], Levels]] = {
     "bench": lambda: (_bench(), _part((1.8, 0.5, 0.45), (0, 0, 0.22), _WOOD)),
     "bin": lambda: (_bin(10), _bin(4)),
@@ -160,6 +161,7 @@ class _Rule:
     from_end: float  # Least distance to the end of the street [m]
 
 
+# order: bytes of plans depend on it, since all rules draw from one stream in turn
 _RULES = {
     "shelter": _Rule(1.75, 190.0, 2.4, 24.0),
     "bench": _Rule(2.05, 42.0, 1.1, 9.0),

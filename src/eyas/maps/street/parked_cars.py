@@ -253,6 +253,7 @@ class ParkedKind(NamedTuple):
     rims: int = 0  # Design of its wheel discs
 
 
+# order: bytes of plans depend on it, which draw an index of `CARS`
 KINDS: tuple[ParkedKind, ...] = (
     ParkedKind("compact", "white", rims=1),
     ParkedKind("compact", "black", "sunroof", 0.22),

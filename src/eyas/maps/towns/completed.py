@@ -57,6 +57,7 @@ _WATER = Material("water", (0.16, 0.38, 0.50), Surface.WATER)
 _WATER_DEPTH = 0.15  # Depth of water below the road [m]
 _BELOW_BANK = 0.4  # How far water reaches below its banks, so that no gap is seen [m]
 
+# order: bytes of plans depend on it, since all kinds of ground draw from one stream in turn
 _COVERS: dict[str, tuple[ObjectClass, tuple[Material, ...]]] = {
     "plaza": (ObjectClass.PAVEMENT, (material("paving", (0.98, 0.96, 0.92)),)),
     "path": (ObjectClass.PAVEMENT, (material("concrete", (0.97, 0.93, 0.85)),)),

@@ -54,7 +54,7 @@ class Px4(Autopilot):
 
     @property
     def speed(self) -> float:
-        """Factor on the clock's speed; 1 until PX4 sends outputs: it starts its parts by the clock."""
+        """Factor on the clock's speed; 1 until PX4 sends outputs: it starts by the clock."""
         return self._speed or (0.0 if self._lockstep else 1.0)
 
     def receive(self, wait: float) -> Iterable[tuple[str, Any]]:
