@@ -14,8 +14,8 @@ from eyas.lanes import exact
 
 __all__ = ["CORNER", "NAME", "road_graph"]
 
-# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`, and `traffic*.npz` index the
-# edges of the network: other names, or another order, make all of them anew.
+# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "desert"
 
 CORNER = 50.0  # Radius of the rounded corners [m]

@@ -8,8 +8,8 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 
 __all__ = ["NAME", "ROAD_WIDTH", "road_graph"]
 
-# `network.npz` here name the nodes and edges of `road_graph`, and `traffic*.npz` index the
-# edges of the network: other names, or another order, make all of them anew.
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "farmland"
 
 ROAD_WIDTH = 16.0  # Four lanes [m]

@@ -12,8 +12,8 @@ from eyas.lanes import exact
 
 __all__ = ["COLUMNS", "NAME", "ROWS", "Lattice", "lattice", "road_graph"]
 
-# `network.npz` here name the nodes and edges of `road_graph`, and `traffic*.npz` index the
-# edges of the network: other names, or another order, make all of them anew.
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "lake"
 
 COLUMNS, ROWS = 11, 3  # Blocks of the grid, from west to east and from south to north

@@ -10,8 +10,8 @@ from eyas.lanes import exact
 
 __all__ = ["NAME", "ROADS", "ROAD_WIDTH", "is_loop", "road_graph", "road_lines"]
 
-# `network.npz` here name the nodes and edges of `road_graph`, and `traffic*.npz` index the
-# edges of the network: other names, or another order, make all of them anew.
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "simpleway"
 
 ROADS = 16
