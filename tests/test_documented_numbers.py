@@ -12,7 +12,7 @@ from eyas.engine.targets.catalogue import KINDS, habit_of, kind_index
 from eyas.engine.targets.config import TargetName
 from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.engine.world.maps import MAPS
-from eyas.maps.programs.info import figures_of
+from eyas.maps.commands.info import figures_of
 
 ROOT = Path(__file__).parent.parent
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from eyas.benchmark.api import list_protocols as list_protocols
     from eyas.benchmark.box_trackers import BoxTracker as BoxTracker
     from eyas.benchmark.protocols import protocol_named as protocol_named
-    from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
+    from eyas.dat.observation import LegacyObservation as LegacyObservation
     from eyas.datasets.api import make_dataset as make_dataset
     from eyas.datasets.api import track as track
     from eyas.engine.api import export as export
@@ -147,7 +147,7 @@ _PLACES = {
     "benchmark.api": "evaluate list_policies list_protocols",
     "benchmark.box_trackers": "BoxTracker",
     "benchmark.protocols": "protocol_named",
-    "dat.legacy_observation": "LegacyObservation",
+    "dat.observation": "LegacyObservation",
     "datasets.api": "make_dataset track",
     "engine.api": "export make make_config make_vec record",
     "engine.core.clock": "PHYSICS_STEP",

@@ -144,8 +144,8 @@ EXAMPLE = {
 
 @row("plan")
 def _plan(folder, chance, most):
+    from eyas.maps.commands.plan import named_file_problems
     from eyas.maps.plan.file import problems
-    from eyas.maps.programs.plan_files import named_file_problems
 
     path = folder / "own.plan.json"
     path.write_text(json.dumps(EXAMPLE))
@@ -223,7 +223,7 @@ def _network(folder, chance, most):
     from eyas.engine.traffic.net_file import SumoNet, road_network
     from eyas.engine.world.roads import network_file
     from eyas.engine.world.roads.network_file import load_network, save_network
-    from eyas.maps.programs.info import _lengths, street_lines
+    from eyas.maps.commands.info import _lengths, street_lines
 
     limited(network_file)
     path = folder / "network.npz"

@@ -29,7 +29,7 @@ from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture
 from eyas.robotics.mavlink.equipment import equipped
-from eyas.robotics.serve_mavlink import AS_FLOWN
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 from .values import ABSURD, HUGE_WHOLE, NOT_FINITE, json_contents, mutated
 
@@ -260,7 +260,7 @@ def feed_wire(simulation, tmp_path, caplog):
 
 
 def feed_ros(simulation, tmp_path, caplog):
-    from eyas.robotics.serve_ros import HEARD, Bridge
+    from eyas.robotics.serving.ros import HEARD, Bridge
 
     class Bus:
         """Hears what is put into `next`; a bus that needs no network."""

@@ -162,7 +162,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
         return
     if root is None:
         from eyas.engine.settings.file import load_settings
-        from eyas.robotics.serve_mavlink import AS_FLOWN
+        from eyas.robotics.serving.mavlink import AS_FLOWN
 
         file = chosen_file(config, preset)
         _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
@@ -179,7 +179,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if preset is None:
-        from eyas.dat.settings.of_a_run import of_a_run
+        from eyas.dat.settings.runs import of_a_run
 
         settings = of_a_run(settings)
         load = partial(_again, load, settings.seed)
@@ -194,7 +194,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 
 def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     """Return the settings of a server as they are now, for the same run."""
-    from eyas.dat.settings.of_a_run import of_a_run
+    from eyas.dat.settings.runs import of_a_run
 
     return of_a_run(load(), seed)
 
@@ -228,7 +228,7 @@ def run(
     In mode train, an env_config.json serves the benchmark's clients (eyas serve), and native
     settings teach a network (eyas train).
     """
-    from eyas.dat.serve.source import quietly
+    from eyas.dat.serve.run import quietly
     from eyas.dat.wire.exchange import SETTINGS_FILE
     from eyas.engine.settings.config import Mode
     from eyas.engine.settings.file import load_settings
@@ -268,7 +268,7 @@ def _announce(command: str) -> None:
 def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
     """Fly a drone for nodes of ROS 2, until Ctrl-C."""
     from eyas.engine.settings.file import load_settings
-    from eyas.robotics.serve_ros import AS_FLOWN, run
+    from eyas.robotics.serving.ros import AS_FLOWN, run
 
     run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
 
@@ -278,10 +278,10 @@ def _fly(
 ) -> None:
     """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
     if addresses:
-        from eyas.robotics.serve_mavlink import run
+        from eyas.robotics.serving.mavlink import run
 
         run(settings, addresses)
         return
-    from eyas.robotics import serve_hil as hil
+    from eyas.robotics.serving import hil
 
     hil.run(settings, px4=px4, ardupilot=ardupilot)

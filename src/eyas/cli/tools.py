@@ -119,14 +119,14 @@ def convert_config(
     set_: Overrides = None,
 ) -> None:
     """Convert settings between the native and the DAT benchmark's notation."""
-    from eyas.dat.settings.adapter import is_legacy
+    from eyas.dat.settings.adapter import is_original
     from eyas.engine.core.errors import OutputError
     from eyas.engine.core.files import write_atomic
     from eyas.engine.settings.file import load_settings, read_settings
 
     if target.exists():
         raise OutputError(f"{target}: already exists; settings files are never overwritten")
-    legacy = not is_legacy(read_settings(source))
+    legacy = not is_original(read_settings(source))
     text = _text(load_settings(source, gathered(set_), trust=True), legacy=legacy)
     write_atomic(target, f"{text}\n".encode())
 
@@ -140,10 +140,10 @@ def print_schema() -> None:
 
 
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
-    from eyas.dat.settings.adapter import to_legacy
+    from eyas.dat.settings.adapter import to_original
 
     if legacy:
-        return json.dumps(to_legacy(settings), indent=4)
+        return json.dumps(to_original(settings), indent=4)
     return settings.model_dump_json(indent=2)
 
 

@@ -37,8 +37,7 @@ def demo(  # noqa: PLR0913  # one parameter for each option
         ),
     ] = None,
     host: Annotated[
-        str,
-        typer.Option("--host", help="Address to serve; others than loopback ask for a token."),
+        str, typer.Option("--host", help="Address to serve; others than loopback ask for a token.")
     ] = "127.0.0.1",
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="Port to serve; 0: any.")
