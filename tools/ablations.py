@@ -20,16 +20,16 @@ from unittest.mock import patch
 import numpy as np
 
 import eyas
-from eyas.benchmark.comparison import differences
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker import tracker as flying
 from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.policies.tracker.tracker import Tracker
-from eyas.benchmark.protocols import protocol_named
-from eyas.benchmark.record import EpisodeRecord
-from eyas.benchmark.result import RESULT, cell, load_run
-from eyas.benchmark.rows import rows_of
+from eyas.benchmark.protocols.table import protocol_named
+from eyas.benchmark.records.record import EpisodeRecord
+from eyas.benchmark.records.result import RESULT, cell, load_run
+from eyas.benchmark.statistics.comparison import differences
+from eyas.benchmark.statistics.table_rows import rows_of
 from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated
 from eyas.engine.settings.file import load_settings

@@ -7,8 +7,8 @@ from hashlib import sha256
 import mlcroissant
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import EvaluationPlan
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from own_policies import TimesOfLooks
 
-from eyas.benchmark.delay import PROFILES, delay_from
+from eyas.benchmark.plan.latency import PROFILES, delay_from
 from eyas.engine.core.errors import EyasError
 
 

@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan, check
+from eyas.benchmark.plan.plan import EvaluationPlan, check
 from eyas.engine.core.errors import EyasError
 
 IMAGE = {"width": 16, "height": 12, "layout": "chw"}

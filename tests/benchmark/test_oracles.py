@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.policies.lane_graph import SPACING, Lanes, lane_graph
 from eyas.benchmark.policies.predictors import AlongLanes, ConstantVelocity
 from eyas.benchmark.policies.road_search import RoadSearch
 from eyas.benchmark.policies.sighted import Clue, Motion
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.sim.scenes import load_network
 from eyas.engine.traffic.config import TrafficConfig

@@ -5,11 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.losses import (
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.target_losses import (
     COVERED,
     SEARCH_LIMIT,
     Loss,
@@ -17,12 +15,14 @@ from eyas.benchmark.losses import (
     hidden_spans,
     losses_by_things,
 )
-from eyas.benchmark.plots import draw_plots
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.flight.recovery import RecoveryScenario, followed, recovery_figures
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.predictors import ConstantVelocity
 from eyas.benchmark.policies.sighted import SightOracle
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.recovery import RecoveryScenario, followed, recovery_figures
+from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.benchmark.report.plots import draw_plots
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.policies.policy import Decision
 from eyas.engine.policies.sight import visible_shares

@@ -14,7 +14,8 @@ pytest.importorskip("torch")
 
 import torch
 
-from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
+from eyas.benchmark.flight.policy_runner import fly_batch
+from eyas.benchmark.plan.plan import EvaluationPlan, batches
 from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError

@@ -11,7 +11,7 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import POLICIES, SEVERAL
 
 if TYPE_CHECKING:
-    from eyas.benchmark.fliers import Flier
+    from eyas.benchmark.flight.policy_runner import Runner
 
 __all__ = ["compare", "evaluate", "leaderboard"]
 
@@ -137,8 +137,8 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
 
     The exit code is 1 if the policy has failed in all episodes.
     """
-    from eyas.benchmark.episode import seed_sets
-    from eyas.benchmark.plan import EvaluationPlan, folder_name
+    from eyas.benchmark.episodes.episode import seed_sets
+    from eyas.benchmark.plan.plan import EvaluationPlan, folder_name
     from eyas.engine.core.config import validated
 
     values: dict[str, Any] = {
@@ -162,30 +162,30 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
     if ray and latency == "measured":
         raise ConfigError("--ray: not together with --latency measured: that is of this machine")
-    with _flier(ray=ray) as flier:
+    with _runner(ray=ray) as runner:
         common: Any = {"resume": resume, "overwrite": overwrite, "plots": plots, "quiet": quiet}
         if latency_curve:
-            from eyas.benchmark.latency_curve import run_curve
+            from eyas.benchmark.report.latency_curve import run_curve
 
-            records = run_curve(plan, folder, flier=flier, **common)
+            records = run_curve(plan, folder, runner=runner, **common)
         else:
-            from eyas.benchmark.run import run
+            from eyas.benchmark.evaluation import run
 
             own: Any = {"as_published": as_published, "videos": videos}
-            records = run(plan, folder, flier=flier, **own, **common)
+            records = run(plan, folder, runner=runner, **own, **common)
     if all(record.error is not None for record in records):
         raise typer.Exit(1)
 
 
-def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
+def _runner(*, ray: bool) -> "AbstractContextManager[Runner]":
     """Return what flies the batches."""
     if ray:
-        from eyas.benchmark.fliers import on_ray
+        from eyas.benchmark.flight.policy_runner import on_ray
 
         return on_ray()
-    from eyas.benchmark.fliers import fly_here
+    from eyas.benchmark.flight.policy_runner import run_here
 
-    return nullcontext(fly_here)
+    return nullcontext(run_here)
 
 
 _FREE = (["start", "velocity"], ["extras"])
@@ -228,8 +228,8 @@ def compare(
     json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
-    from eyas.benchmark.comparison import differences, refuse_incomparable, text_of
-    from eyas.benchmark.result import load_run
+    from eyas.benchmark.records.result import load_run
+    from eyas.benchmark.statistics.comparison import differences, refuse_incomparable, text_of
 
     (stamp_a, records_a), (stamp_b, records_b) = (
         load_run(folder, trust=trust) for folder in (first, second)
@@ -258,7 +258,7 @@ def page(
     ] = None,
 ) -> None:
     """Write a page that ranks all evaluations in a folder."""
-    from eyas.benchmark.leaderboard.page import run
+    from eyas.benchmark.report.leaderboard.page import run
 
     typer.echo(run(folder, out or folder / "index.html"))
 
@@ -280,7 +280,7 @@ def verify(
 
     The exit code is 1 if the records of one are not those of its flights.
     """
-    from eyas.benchmark.leaderboard.verify import Verdict, verify
+    from eyas.benchmark.report.leaderboard.verify import Verdict, verify
 
     found = []
     for finding in verify(folder, share=share, seed=seed, trust=trust):

@@ -14,7 +14,7 @@ HOUSE = House(
             "evaluate": "eyas.benchmark.commands:evaluate",
             "compare": "eyas.benchmark.commands:compare",
             "leaderboard": "eyas.benchmark.commands:leaderboard",
-            "reproduce": "eyas.benchmark.reproduce.command:reproduce",
+            "reproduce": "eyas.benchmark.report.reproduce.command:reproduce",
             "policies": "eyas.benchmark.policies.commands:app",
         },
     },

@@ -112,7 +112,7 @@ def track(  # noqa: PLR0913  # one parameter for each option
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> None:
     """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
-    from eyas.benchmark.plots import require_matplotlib
+    from eyas.benchmark.report.plots import require_matplotlib
     from eyas.datasets.tracking.report import draw_curves, print_figures
     from eyas.datasets.tracking.run import Scoring, run
     from eyas.engine.core.errors import ConfigError

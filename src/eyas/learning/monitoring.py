@@ -9,11 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import EpisodeSpec, Place, episodes_of
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.protocol import Protocol
-from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place, episodes_of
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
+from eyas.benchmark.protocols.protocol import Protocol
+from eyas.benchmark.protocols.table import protocol_named
 from eyas.engine.policies.policy import Decision, PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
@@ -25,7 +25,7 @@ __all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "e
 
 
 class EvaluationScores(NamedTuple):
-    """Means over the episodes, see `eyas.benchmark.record.EpisodeRecord`."""
+    """Means over the episodes, see `eyas.benchmark.records.record.EpisodeRecord`."""
 
     cr: float
     tsr: float

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 import torch
 
-from eyas.benchmark.fliers import connected, one_line
+from eyas.benchmark.flight.policy_runner import connected, one_line
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.box_trackers import Box, BoxTracker, box_tracker
-from eyas.benchmark.policies.each import Each
+from eyas.benchmark.policies.box_trackers import Box, BoxTracker, box_tracker
+from eyas.benchmark.policies.own_policy import Each
 from eyas.engine.policies.policy import env_config
 from eyas.engine.policies.steering import pixel_offset, towards
 from eyas.engine.settings.env import EnvConfig

@@ -21,7 +21,7 @@ def list_policies(*, as_json: AsJson = False) -> None:
     """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
     from eyas.benchmark.policies.shipped import card_of, shipped_names
     from eyas.benchmark.policies.table import POLICIES
-    from eyas.benchmark.reproduce.tables import flown_of
+    from eyas.benchmark.report.reproduce.tables import flown_of
 
     if as_json:
         listed: list[dict[str, Any]] = [{"name": name} for name in POLICIES.names()]
@@ -49,7 +49,7 @@ def policy_card(
 ) -> None:
     """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
     from eyas.benchmark.policies.shipped import shipped_names
-    from eyas.benchmark.reproduce.model_card import model_card
+    from eyas.benchmark.report.reproduce.model_card import model_card
     from eyas.engine.core.errors import UnknownNameError
 
     if name not in shipped_names():

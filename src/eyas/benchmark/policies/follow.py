@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from eyas.benchmark.policies.oracle_helm import actions_of_oracles, flown_over
+from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
 __all__ = ["Follow", "follow"]

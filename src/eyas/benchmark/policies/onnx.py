@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.policies.choice import Chooser
+from eyas.benchmark.policies.action_choice import Chooser
 from eyas.benchmark.policies.listener.detector import VehicleDetector
 from eyas.benchmark.policies.listener.listener import Listener
 from eyas.benchmark.policies.simple import HOVER

@@ -26,7 +26,7 @@ class Card(Config):
     command: str
     """The command that trained it."""
     entry_class: str = "pixels"
-    """What it knows, see `eyas.benchmark.entry.EntryClass`."""
+    """What it knows, see `eyas.benchmark.plan.entry.EntryClass`."""
     decisions: int
     """Of all environments, in training; of trackers, pictures that they were shown."""
     version: str

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.policies.oracle_helm import actions_of_oracles, flown_over
+from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 

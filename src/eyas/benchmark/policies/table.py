@@ -106,7 +106,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
         policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
         _refuse_large(path, policy, changes)
     elif own is not None:
-        from eyas.benchmark.policies.each import load_callable
+        from eyas.benchmark.policies.own_policy import load_callable
 
         _refuse_sampled(said, sampled=sampled)
         policy = load_callable(own, changes)

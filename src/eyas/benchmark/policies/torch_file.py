@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.policies.choice import Chooser
+from eyas.benchmark.policies.action_choice import Chooser
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 

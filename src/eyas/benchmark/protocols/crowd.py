@@ -6,13 +6,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.envelope import Envelope
-from eyas.benchmark.episode import EpisodeSpec
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.neighbours import in_company
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.scenario import Scenario
+from eyas.benchmark.episodes.episode import EpisodeSpec
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.neighbours import in_company
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.flight.scenario import Scenario
+from eyas.benchmark.protocols.envelope import Envelope
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.policies.sight import nearest_to_middle
 
 __all__ = ["CROWD", "CrowdScenario", "switches"]

@@ -1,8 +1,8 @@
 """The target is out of sight for seconds, and must be found again."""
 
-from eyas.benchmark.losses import COVERED, with_losses
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.recovery import RecoveryScenario
+from eyas.benchmark.episodes.target_losses import COVERED, with_losses
+from eyas.benchmark.flight.recovery import RecoveryScenario
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
 __all__ = ["RECOVER", "RECOVER_CAMERA"]
 

@@ -8,10 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.envelope import Envelope
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.episode_batch import EpisodeBatch, episode_groups
-from eyas.benchmark.look_alikes import (
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch, episode_groups
+from eyas.benchmark.episodes.look_alikes import (
     HEIGHT,
     PITCH,
     StagedStart,
@@ -19,9 +18,10 @@ from eyas.benchmark.look_alikes import (
     repeat_start,
     staged_start,
 )
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.scenario import Scenario
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.flight.scenario import Scenario
+from eyas.benchmark.protocols.envelope import Envelope
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import SpawnError

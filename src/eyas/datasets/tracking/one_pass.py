@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.box_trackers import Box, BoxTracker
-from eyas.benchmark.statistics import Interval, clusters_of, interval_of
+from eyas.benchmark.policies.box_trackers import Box, BoxTracker
+from eyas.benchmark.statistics.intervals import Interval, clusters_of, interval_of
 from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = [

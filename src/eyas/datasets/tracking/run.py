@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.box_trackers import box_tracker
-from eyas.benchmark.strata import strata_of
+from eyas.benchmark.policies.box_trackers import box_tracker
+from eyas.datasets.tracking.frame_strata import strata_of
 from eyas.datasets.tracking.one_pass import (
     Figures,
     centre_errors,

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.episode_batch import EpisodeGroup, episode_groups
+from eyas.benchmark.episodes.episode_batch import EpisodeGroup, episode_groups
 from eyas.benchmark.policies.tracker.course import HORIZONS, Course
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.protocols.lasting import LONG
+from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.rng import stream
 from eyas.engine.targets.config import TargetName
 from eyas.learning.tracking.pilots import Oracle, Pupil

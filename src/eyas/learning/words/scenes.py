@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.look_alikes import COLOURS, HEIGHT, PITCH
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.look_alikes import COLOURS, HEIGHT, PITCH
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES
 from eyas.benchmark.protocols.referring import REFERRING
 from eyas.engine.core.rng import stream

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from eyas.benchmark.policies.tracker.course import Course
 from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
 from eyas.benchmark.policies.tracker.ground import Ground
-from eyas.benchmark.policies.tracker.helm import Helm, turned
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.policies.policy import (
@@ -101,7 +101,7 @@ class Tracker:
         self._renewed = np.zeros(count)
         """How often each memory of how the target looks was renewed."""
         own = self.settings
-        self._helm = Helm(count, self.env, self.ground, own.gain, own.lag)
+        self._steering = Steering(count, self.env, self.ground, own.gain, own.lag)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Look, and fly to where the targets should be when the action takes effect."""
@@ -113,10 +113,10 @@ class Tracker:
             seen: Any = sight.observation
             sensed = seen["sensors"][rows].astype(np.float64)
             place, yaw = sensed[:, :2], sensed[:, -1]
-            since = self._helm.time_since(rows, sight.clock)
+            since = self._steering.time_since(rows, sight.clock)
             self.look(rows, seen["image"][rows], place, yaw, since)
             target = self.motion.place[rows], self.motion.velocity[rows]
-            actions[rows, :2] = self._helm.steer(rows, (place, yaw), since, target)
+            actions[rows, :2] = self._steering.steer(rows, (place, yaw), since, target)
         return Decision(actions, failed)
 
     def look(
