@@ -4,7 +4,6 @@ import json
 import warnings
 from hashlib import sha256
 
-import mlcroissant
 import pytest
 
 from eyas.benchmark.evaluation import run
@@ -19,6 +18,7 @@ def folder(tmp_path_factory):
 
 
 def test_the_metadata_are_valid_and_the_records_are_read(folder):
+    mlcroissant = pytest.importorskip("mlcroissant")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of mlcroissant's own
         data = mlcroissant.Dataset(folder / "croissant.json")

@@ -117,7 +117,9 @@ def test_what_another_build_has_flown_is_compared_and_continued_only_if_asked(fo
     words = ["compare", str(folder / "hover"), str(changed)]
     answer = CliRunner().invoke(app, words)
     assert isinstance(answer.exception, EyasError)
-    assert "of Eyas; the world differs in engine/targets; fly one again, or" in str(answer.exception)
+    assert "of Eyas; the world differs in engine/targets; fly one again, or" in str(
+        answer.exception
+    )
     assert "B - A" in CliRunner().invoke(app, [*words, "--across-builds"]).output
     figures = other_build(folder / "follow", tmp_path / "b", "benchmark")
     answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(figures)])

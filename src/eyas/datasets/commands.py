@@ -154,7 +154,7 @@ def make_dataset(
         typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False),
     ],
     out: Annotated[
-        str, typer.Option("--out", help="Folder to write to, or a URL: s3://bucket/folder.")
+        str, typer.Option("--out", help="Folder to write to.")
     ],
     workers: _Workers = None,
     sample: Annotated[
