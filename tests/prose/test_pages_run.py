@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 RUNNER = Path(__file__).with_name("page_runner.py")
 spec = importlib.util.spec_from_file_location("page_runner", RUNNER)
 runner = importlib.util.module_from_spec(spec)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 SOURCES = sorted([*ROOT.glob("src/eyas/**/*.py"), *ROOT.glob("examples/*.py")])
 NAMING = [
@@ -19,7 +19,7 @@ NAMING = [
 ELSEWHERE = {
     *(".venv/bin", "definitions/", "eyas/_src", "eyas.json", "eyas.onnx"),
     *("eyas.steps", "eyas.formats", "eyas.writers", "eyas.weathers", "eyas.maps"),
-    *("eyas.algorithms", "eyas.policies", "eyas.protocols"),
+    *("eyas.algorithms", "eyas.policies", "eyas.protocols", "eyas.mesh_files"),
 }
 """What these texts name that is no file or name of the code: loggers, groups of entry points, what
 another build has or a user makes."""

@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 BLOCK = re.compile(
     r"(?:^<!-- (?!before)([^>]*) -->\n)?^```(\w+)\n(.*?)^```$"
     r"|^<!-- before (sh|python)\n(.*?)^-->$",

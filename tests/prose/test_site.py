@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 LOADED = re.compile(r'<(?:script|link|img|video|iframe)\b[^>]*?\b(?:src|href)="([^"]+)"')
 
 pytestmark = pytest.mark.thorough

@@ -14,7 +14,7 @@ from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.engine.world.maps import MAPS
 from eyas.maps.programs.info import figures_of
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parents[2]
 
 
 def text(page):
