@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.terminal.options import POLICIES, SEVERAL
+from eyas.engine.terminal.options import (
+    SEVERAL,
+    AsJson,
+    Overwrite,
+    Plots,
+    Quiet,
+    Ray,
+    Resume,
+    by_policy,
+    to_write,
+)
 
 if TYPE_CHECKING:
     from eyas.benchmark.flight.policy_runner import Runner
@@ -16,13 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["compare", "evaluate", "leaderboard"]
 
 
-_Policy = Annotated[
-    str,
-    typer.Option(
-        "--policy",
-        help=f"{POLICIES}, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
-    ),
-]
 _Protocol = Annotated[
     str,
     typer.Option(
@@ -89,28 +92,16 @@ _Changes = Annotated[
         "camera, start.velocity or extras makes another protocol.",
     ),
 ]
-_Out = Annotated[Path | None, typer.Option("--out", help="Folder to write to.")]
 _AsPublished = Annotated[
     bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
-]
-_Plots = Annotated[
-    bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
 ]
 _Videos = Annotated[
     bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
 ]
-_Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted evaluation.")]
-_Overwrite = Annotated[
-    bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
-]
-_Ray = Annotated[
-    bool, typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster).")
-]
-_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
-def evaluate(  # noqa: PLR0913  # one parameter for each option
-    policy: _Policy,
+def evaluate(
+    policy: Annotated[str, by_policy("")],
     protocol: _Protocol = "paper",
     maps: _Maps = None,
     weathers: _Weathers = None,
@@ -124,14 +115,14 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     in_process: _InProcess = False,
     batch: _Batch = 64,
     set_: _Changes = None,
-    out: _Out = None,
+    out: Annotated[Path | None, to_write("Folder to write to.")] = None,
     as_published: _AsPublished = False,
-    plots: _Plots = False,
+    plots: Plots = False,
     videos: _Videos = False,
-    resume: _Resume = False,
-    overwrite: _Overwrite = False,
-    ray: _Ray = False,
-    quiet: _Quiet = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    ray: Ray = False,
+    quiet: Quiet = False,
 ) -> None:
     """Fly a policy in the episodes of a protocol, and tell how well it tracks.
 
@@ -225,7 +216,7 @@ def compare(
     trust: Annotated[
         bool, typer.Option("--trust", help="Run the code of a protocol that they name by a path.")
     ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json_: AsJson = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
     from eyas.benchmark.records.result import load_run
@@ -253,9 +244,7 @@ _Entries = Annotated[
 @leaderboard.command()
 def page(
     folder: _Entries,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
-    ] = None,
+    out: Annotated[Path | None, to_write("The page; by default DIR/index.html.")] = None,
 ) -> None:
     """Write a page that ranks all evaluations in a folder."""
     from eyas.benchmark.report.leaderboard.page import run

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from eyas.engine.terminal.options import Quiet, to_write
+
 __all__ = ["reproduce"]
 
 
@@ -13,11 +15,9 @@ def reproduce(
         list[str] | None, typer.Argument(metavar="TABLE", help="Names of tables; none: list them.")
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", help="Folder for their evaluations; continued if interrupted.")
+        Path, to_write("Folder for their evaluations; continued if interrupted.")
     ] = Path("runs/reproduce"),
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Do not tell what is flown.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Fly tables of the documents again, and tell whether every printed digit is equal."""
     from eyas.benchmark.report.reproduce.run import listing, run
