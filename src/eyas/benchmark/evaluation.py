@@ -66,15 +66,7 @@ def run(
     """Fly all episodes of a plan, or those that are missing in the folder; print a table.
 
     Args:
-        plan: The plan.
-        out: Folder to write to.
-        resume: Whether an interrupted evaluation in the folder is continued.
-        overwrite: Whether one that is in the folder is deleted first.
         as_published: Whether the figures are those that the original's code would have printed.
-        plots: Whether plots are drawn.
-        videos: Whether the worst, the median and the best flight are filmed.
-        quiet: Whether nothing is printed but failures of the policy.
-        runner: Flies the batches.
 
     Raises:
         EyasError: A setting is wrong, or the folder is taken.

@@ -43,9 +43,7 @@ def card(plan: Plan, statistics: Mapping[str, Any], notices: Mapping[str, str]) 
     """Return the datasheet.
 
     Args:
-        plan: The plan of the data set.
         statistics: The content of `statistics.json`.
-        notices: What must be said of maps that are made of others' data, by map.
     """
     recipe, total = plan.recipe, statistics["total"]
     sample = " (a sample of a hundredth)" if plan.sample else ""

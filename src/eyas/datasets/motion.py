@@ -38,9 +38,6 @@ GIMBAL_NAMES = ("gimbal_pitch_rate", "gimbal_yaw_rate")
 def action_names(widths: Iterable[int]) -> tuple[str, ...]:
     """Return the names of the numbers of an action of a data set.
 
-    Args:
-        widths: How many each of its episodes has: four or six.
-
     Raises:
         ConfigError: Not all have as many.
     """

@@ -100,9 +100,7 @@ def page(plan: Plan, statistics: Mapping[str, Any], sheets: Mapping[str, NDArray
     """Return the page, which needs no other file.
 
     Args:
-        plan: The plan of the data set.
         statistics: The content of `statistics.json`.
-        sheets: The contact sheet of each split.
     """
     recipe = plan.recipe
     title = html.escape(recipe.title + (" (a sample of a hundredth)" if plan.sample else ""))

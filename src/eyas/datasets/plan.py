@@ -98,11 +98,6 @@ def place_of(part: Part) -> tuple[str, str]:
 def shard_of(parts: Sequence[Part], number: int, count: int) -> list[Part]:
     """Return the parts of one shard: of few maps, and all variants of a part together.
 
-    Args:
-        parts: All parts.
-        number: Number of the shard, from 1.
-        count: Number of all shards.
-
     Raises:
         ConfigError: There are fewer parts than shards.
     """
@@ -320,9 +315,6 @@ def _timed(config: EyasConfig, recipe: Recipe, size: tuple[int, int], share: flo
     """Return settings that record so many trackers and episodes, all frames of each.
 
     Args:
-        config: The other settings.
-        recipe: The recipe.
-        size: Number of trackers, and of the episodes of each.
         share: Where in the traffic's recording it begins, 0 to 1; the parts of a map begin at
             different times.
 

@@ -56,8 +56,6 @@ def facts_of(
     """Return what is known of a part.
 
     Args:
-        episodes: Its episodes.
-        checksums: See `PartFacts`.
         place: What is the same in all of its frames: `split`, `map`, `weather`, `flight`.
     """
     counts = {name: Counter[str]() for name in ("classes", "types", "targets", "episodes_by")}

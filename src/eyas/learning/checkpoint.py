@@ -48,11 +48,7 @@ class TrainingProgress:
 
 
 class RunFolder:
-    """A folder with `config.json`, `checkpoint.pt`, `curve.csv`, `policy.onnx`, `tensorboard/`.
-
-    Args:
-        path: The folder.
-    """
+    """A folder with `config.json`, `checkpoint.pt`, `curve.csv`, `policy.onnx`, `tensorboard/`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -88,9 +84,7 @@ class RunFolder:
         """Write a checkpoint and the curve.
 
         Args:
-            progress: How far the run has come.
             parts: What learns, `network` among them.
-            code: What identifies code of a user's that teaches.
         """
         data = io.BytesIO()
         torch.save(

@@ -90,11 +90,7 @@ def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol
 
 
 class TensorBoardWriter:
-    """Writes numbers for TensorBoard, if it is installed.
-
-    Args:
-        folder: Where its files are.
-    """
+    """Writes numbers for TensorBoard, if it is installed."""
 
     def __init__(self, folder: Path) -> None:
         try:

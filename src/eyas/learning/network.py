@@ -43,10 +43,6 @@ class TrackingNetwork(nn.Module):
 
     Attributes:
         shape: What it is made for.
-
-    Args:
-        shape: What it is made for.
-        channels_last: Whether pictures and weights have their channels last in memory.
     """
 
     def __init__(self, shape: NetworkShape, *, channels_last: bool = False) -> None:

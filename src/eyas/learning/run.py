@@ -14,13 +14,6 @@ __all__ = ["run"]
 def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: bool) -> Path:
     """Train a network; return the path of the ONNX file.
 
-    Args:
-        config: The settings.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        quiet: Whether to print no progress.
-        ray: Whether the environments run on a cluster of Ray.
-
     Raises:
         MissingExtraError: PyTorch, onnx or Ray is not installed.
         EyasError: A setting is wrong, or the folder.

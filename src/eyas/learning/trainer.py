@@ -58,10 +58,6 @@ def train(
 
     Args:
         config: The settings; `env` and `train` say what is seen and how it is learned.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        say: Called with a line for each block.
-        make_shards: Makes the environments, here or elsewhere.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.

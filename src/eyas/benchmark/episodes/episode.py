@@ -61,10 +61,7 @@ def episodes_of(
     nor on `count`, so that more episodes include the fewer ones.
 
     Args:
-        places: The places.
         directions: Start directions [rad].
-        count: Number of episodes for each place and direction.
-        first_seed: Seed of the first episode.
     """
     turns = len(directions)
     return [

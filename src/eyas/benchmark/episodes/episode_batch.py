@@ -45,11 +45,7 @@ class EpisodeGroup(NamedTuple):
     """What the protocol's `stage` has returned for each; empty: there is none."""
 
     def subjects(self, size: tuple[int, int] = SIZE) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the pixels of each target, visible and all, shape (K, 2), and its box (K, 4).
-
-        Args:
-            size: Height and width of the picture.
-        """
+        """Return the pixels of each target, visible and all, shape (K, 2), and its box (K, 4)."""
         return subjects(self.simulation, np.arange(len(self.rows), dtype=np.int32), size)
 
 
@@ -90,11 +86,6 @@ class EpisodeBatch:
     Attributes:
         observations: Latest observation of each, shape (N, ...).
         covered: Whose cameras show nothing, shape (N,); to be written.
-
-    Args:
-        episodes: N episodes.
-        protocol: Their protocol.
-        env: What the policy sees, and how it acts.
     """
 
     def __init__(self, episodes: Sequence[EpisodeSpec], protocol: Protocol, env: EnvConfig) -> None:
@@ -170,7 +161,6 @@ class EpisodeBatch:
         """Return whether nothing stands over cars at places around a drone, shape (P,).
 
         Args:
-            row: Number of the drone.
             places: East and north [m], shape (P, 2).
         """
         simulation = next(group for group in self.groups if row in group.rows).simulation

@@ -49,13 +49,6 @@ def evenly_in(
     square of the map that has been visited least, and of these the one whose vehicle has been
     followed least.
 
-    Args:
-        recordings: Seeds of the traffic, which are taken in turn.
-        places: The places.
-        protocol: The protocol.
-        count: Number of episodes for each place and direction.
-        first_seed: Seed of the first start that is tried.
-
     Raises:
         SpawnError: None of the starts for an episode will do.
     """

@@ -31,15 +31,6 @@ def first_fitting(
 ) -> list[EpisodeSpec]:
     """Return the first episodes of each place and direction that fit, in all variants.
 
-    Args:
-        places: The places.
-        protocol: The protocol.
-        count: Number of episodes for each place and direction.
-        first_seed: Seed of the first one that is tried.
-        fits: Tells which fit.
-        wanted: What they must have, for the message.
-        tried: Number of seeds that are tried for each episode.
-
     Raises:
         SpawnError: There are too few.
     """

@@ -41,8 +41,6 @@ def seen_from_above(
     """Return what is seen of the targets of N episodes.
 
     Args:
-        episodes: N episodes.
-        protocol: Their protocol.
         period: Time from the start to the first look, and between two [s].
     """
     if protocol.reference:  # its variants differ by cameras and air, which hide nothing

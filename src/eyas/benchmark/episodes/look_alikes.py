@@ -116,8 +116,6 @@ def staged_start(simulation: Simulation, tracker: int, seed: int) -> StagedStart
 
     Args:
         simulation: Its simulation, in which the tracker has a world of its own and begins.
-        tracker: The tracker.
-        seed: Of the episode; everything depends on it.
 
     Returns:
         None if there is nothing to refer to at any of the times that are tried: too few vehicles,

@@ -46,11 +46,6 @@ def setting_out(
 ) -> list[bool]:
     """Return whether the target of each episode stands at first, or drives, and then does something
     else than to go on so.
-
-    Args:
-        episodes: The episodes.
-        protocol: Their protocol.
-        at_rest: Whether it has to stand.
     """
     seen = seen_from_above(episodes, protocol, _PERIOD)
     first = (seen.places[:, 1] - seen.places[:, 0]) / _PERIOD

@@ -44,9 +44,6 @@ class BatchFlight:
         answers: How long each call of the policy has taken [s].
 
     Args:
-        episodes: N episodes.
-        protocol: Their protocol.
-        policy: Flies them all.
         delay: How long its answers take; until then the last action is held, and the policy takes
             no new picture.
     """

@@ -123,13 +123,7 @@ def evading(
 
 
 class EvasionScenario(Scenario):
-    """Measures after which evasions a drone still has its target.
-
-    Args:
-        batch: The drones.
-        protocol: Their protocol.
-        episodes: Their episodes.
-    """
+    """Measures after which evasions a drone still has its target."""
 
     def __init__(
         self, batch: EpisodeBatch, protocol: Protocol, episodes: Sequence[EpisodeSpec]

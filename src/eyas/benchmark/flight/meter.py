@@ -133,12 +133,7 @@ class _Sums(NamedTuple):
 
 
 class Meter:
-    """Measures N flights.
-
-    Args:
-        batch: The drones, at their start.
-        protocol: The protocol.
-    """
+    """Measures N flights."""
 
     def __init__(self, batch: EpisodeBatch, protocol: Protocol) -> None:
         count, steps = batch.count, protocol.steps
@@ -181,15 +176,7 @@ class Meter:
         failure: Failure | None,
         figures: dict[str, float | None],
     ) -> EpisodeRecord:
-        """Return the record of a flight that has ended.
-
-        Args:
-            row: Its place in the batch.
-            episode: The episode.
-            clear: See `EpisodeRecord`.
-            failure: What its policy has failed with, if it has.
-            figures: Those that only the protocol has.
-        """
+        """Return the record of a flight that has ended."""
         protocol, length = self._protocol, int(self.length[row])
         reward, flown = self._reward[row, :length], max(length, 1)
         reason = DoneReason(int(self.reason[row]))
@@ -240,8 +227,6 @@ def published(reward: Floats, steps: int, seed: int) -> Published:
 
     Args:
         reward: Rewards of the flown control steps, shape (M,).
-        steps: Control steps in a full episode.
-        seed: Seed of the episode.
     """
     low, high = _PUBLISHED_ACTIONS
     sampled = int(stream(seed, "published").integers(low, high + 1))

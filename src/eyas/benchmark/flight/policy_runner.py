@@ -75,10 +75,7 @@ def fly_batch(
     """Yield the records of a batch, whenever some of its episodes end.
 
     Args:
-        plan: The plan.
-        episodes: One of its batches.
         answers: Gets how long each call of the policy has taken [s].
-        watcher: Called after each control step.
 
     Raises:
         EyasError: The policy cannot be loaded, or a setting is not supported.

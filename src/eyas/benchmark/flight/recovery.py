@@ -36,9 +36,7 @@ class RecoveryScenario(Scenario):
     """Covers cameras where the protocol does so, and measures what happens after losses.
 
     Args:
-        batch: The drones.
         protocol: Their protocol; its variants, if it has some, are lengths of covers.
-        episodes: Their episodes.
     """
 
     def __init__(
@@ -114,7 +112,6 @@ def recovery_figures(losses: Sequence[Loss], sees: Mask, period: float) -> dict[
     early would be asked less often.
 
     Args:
-        losses: The losses of the episode.
         sees: Whether the target is seen at each look, shape (K,).
         period: Time between two looks [s].
     """

@@ -11,11 +11,7 @@ Mask = NDArray[np.bool_]
 
 
 class Scenario:
-    """Nothing happens beside N flights: protocols override what they need.
-
-    Args:
-        count: N.
-    """
+    """Nothing happens beside N flights: protocols override what they need."""
 
     def __init__(self, count: int) -> None:
         self._nobody = np.zeros(count, np.bool_)
@@ -36,9 +32,5 @@ class Scenario:
         return ~active
 
     def figures(self, row: int) -> dict[str, float | None]:
-        """Return the figures of an episode that has ended, beside those of all protocols.
-
-        Args:
-            row: Its place in the batch.
-        """
+        """Return the figures of an episode that has ended, beside those of all protocols."""
         return {}

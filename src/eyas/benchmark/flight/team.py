@@ -34,9 +34,7 @@ class TeamScenario(Scenario):
     """Covers the camera of one drone of each team for a while, and measures what the team sees.
 
     Args:
-        batch: The drones.
         protocol: Their protocol; its variants are the drones of a team.
-        episodes: Their episodes.
     """
 
     def __init__(

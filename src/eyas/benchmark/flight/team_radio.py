@@ -26,12 +26,7 @@ def mates(episodes: Sequence[EpisodeSpec], size: int) -> NDArray[np.int64]:
 
 
 class Radio:
-    """Carries the messages of N drones: what one says at a look, its mates hear at their next look.
-
-    Args:
-        episodes: N episodes, the drones of a team one after the other.
-        protocol: Their protocol.
-    """
+    """Carries the messages of N drones: what one says at a look, its mates hear at the next."""
 
     def __init__(self, episodes: Sequence[EpisodeSpec], protocol: Protocol) -> None:
         self._mates = mates(episodes, len(protocol.variants))

@@ -51,12 +51,7 @@ class Entry(Config):
 
 
 def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
-    """Return the class of a policy.
-
-    Args:
-        policy: The policy.
-        beside: Whether code of a user's flies in the process of the simulator.
-    """
+    """Return the class of a policy."""
     parts = set(policy.env.observation.parts)
     if beside or "truth" in policy.told or parts & _TRUTH:
         return EntryClass.PRIVILEGED
@@ -68,14 +63,7 @@ def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
 
 
 def entry_of(policy: Policy, latency: str, *, apart: bool, beside: bool) -> Entry:
-    """Return what a result says of a policy.
-
-    Args:
-        policy: The policy.
-        latency: See `eyas.benchmark.plan.plan.EvaluationPlan`.
-        apart: See `Entry`.
-        beside: See `entry_class`.
-    """
+    """Return what a result says of a policy."""
     env = policy.env
     return Entry(
         entry_class=entry_class(policy, beside=beside),

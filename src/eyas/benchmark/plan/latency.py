@@ -55,7 +55,6 @@ class Delay(Protocol):
         """Return the latency of the next answer of an episode [s].
 
         Args:
-            row: The episode's place in the batch.
             taken: How long the policy has really taken [s].
         """
         ...
@@ -97,9 +96,6 @@ class SampledDelay:
 class Profiled:
     """Sampled from the lognormal distribution with a system's mean and 95th percentile, by the seed
     of each episode.
-
-    Args:
-        name: Its name in `PROFILES`.
     """
 
     def __init__(self, name: str) -> None:

@@ -9,11 +9,7 @@ __all__ = ["Chooser"]
 
 
 class Chooser:
-    """Chooses actions of N episodes by their scores.
-
-    Args:
-        sampled: Whether actions are sampled with the probabilities of a softmax.
-    """
+    """Chooses actions of N episodes by their scores."""
 
     def __init__(self, *, sampled: bool) -> None:
         self._sampled = sampled

@@ -79,7 +79,6 @@ class AttributeServo:
     """Flies to what the attributes say, from pictures alone.
 
     Args:
-        changes: Changes of `env`.
         listens: Whether it uses attributes; False: it does the same with any words.
     """
 

@@ -63,10 +63,6 @@ class Blobs(NamedTuple):
 def painted(picture: NDArray[np.uint8], name: str) -> Mask:
     """Return which pixels look like paint of a colour, and about as much as of any other name.
 
-    Args:
-        picture: Shape (H, W, 3).
-        name: In `COLOUR_NAMES`.
-
     Returns:
         Shape (H, W).
     """
@@ -108,7 +104,6 @@ def coloured(picture: NDArray[np.uint8], colour: Floats) -> Mask:
     """Return which pixels have about the hue of a colour that the camera has seen, shape (H, W).
 
     Args:
-        picture: Shape (H, W, 3).
         colour: 0 to 255, shape (3,).
     """
     bright = picture.sum(axis=2, dtype=np.float64)
@@ -131,9 +126,7 @@ def blobs_in(mask: Mask, scale: float, each: float | None = None, *, apart: bool
 
     Args:
         mask: Shape (H, W).
-        scale: Metres in a pixel.
         each: Length of all of them, so that queues can be divided [m]; None: not known.
-        apart: Whether vehicles of different sizes may be near each other.
     """
     cv2 = _opencv()
     reach = max(round(_BRIDGED[apart] / scale), 1)

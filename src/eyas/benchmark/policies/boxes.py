@@ -18,12 +18,7 @@ _SIZE = 240, 320  # Height and width of the pictures
 
 
 class BoxPilot:
-    """Tracks one target; hovers while it is lost.
-
-    Args:
-        make: Makes the box tracker.
-        env: How long an action lasts.
-    """
+    """Tracks one target; hovers while it is lost."""
 
     def __init__(self, make: Callable[[], BoxTracker], env: EnvConfig) -> None:
         self._tracker, self._env = make(), env
@@ -53,7 +48,6 @@ def pilot(said: str, changes: Mapping[str, Any]) -> Each:
 
     Args:
         said: A name of `BOX_TRACKERS`, or `package.module:Class`.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The box tracker cannot be used here.

@@ -71,7 +71,6 @@ class Lanes:
         """Return the points of lanes where a vehicle may be, the nearest first; maybe none.
 
         Args:
-            row: Number of the drone.
             place: East and north [m], shape (2,).
             heading: Of the vehicle [rad]; None: nobody knows.
             reach: Largest distance [m].

@@ -44,12 +44,6 @@ _IMAGE, _LAST, _TOLD, _NEXT = "image", "last_action", "attributes", "next_"
 class OnnxPolicy:
     """A network.
 
-    Args:
-        path: The file, for messages.
-        session: The network, as onnxruntime runs it.
-        changes: Changes of `env`.
-        sampled: Whether discrete actions are sampled.
-
     Raises:
         DataFileError: The file does not hold such a network.
     """

@@ -32,10 +32,8 @@ def flown_over(
     be, not where it is: else what it cannot follow at once would be asked for twice.
 
     Args:
-        state: Of N drones.
         places: The points, east and north [m], shape (N, 2).
         velocities: How they move [m/s], shape (N, 2).
-        env: The oracle's.
 
     Returns:
         Numbers of actions, shape (N,), or velocities, shape (N, 4).

@@ -93,11 +93,6 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
 class _Child:
     """The process of a policy.
 
-    Args:
-        said: What a user calls it.
-        changes: Changes of `env`.
-        sampled: Whether a network's actions are sampled.
-
     Raises:
         ConfigError: The policy cannot be loaded.
     """
@@ -200,11 +195,7 @@ def open_sandboxed(said: str, changes: Mapping[str, Any], *, sampled: bool) -> "
 
 
 class SandboxedPolicy:
-    """A policy in a process of its own.
-
-    Args:
-        child: The process.
-    """
+    """A policy in a process of its own."""
 
     def __init__(self, child: _Child) -> None:
         self._child = child

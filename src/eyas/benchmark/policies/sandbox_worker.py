@@ -47,11 +47,7 @@ def main() -> None:
 
 
 class _Answers:
-    """Flies N episodes by messages.
-
-    Args:
-        policy: The policy.
-    """
+    """Flies N episodes by messages."""
 
     def __init__(self, policy: Policy) -> None:
         self._policy = policy

@@ -34,7 +34,6 @@ class Sb3Policy:
 
     Args:
         path: The `.zip`. It holds pickles, which run code: load only files that you trust.
-        changes: Changes of `env`.
         sampled: Whether actions are sampled; not repeatable, as the library seeds no single ones.
 
     Raises:

@@ -77,10 +77,6 @@ class SightOracle:
 
     Attributes:
         clue: What it knew when it last acted.
-
-    Args:
-        changes: Changes of `env`.
-        predictor: Says where a hidden target is.
     """
 
     sampled = False

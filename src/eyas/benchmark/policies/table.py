@@ -88,8 +88,6 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 
     Args:
         said: A name of `policy_names`, the path of a file, or `package.module:name`.
-        changes: Changes of `env`.
-        sampled: Whether a network's actions are sampled instead of the best ones.
 
     Raises:
         EyasError: There is no such policy, or it cannot be loaded.

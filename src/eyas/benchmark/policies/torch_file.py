@@ -26,8 +26,6 @@ class TorchPolicy:
     Args:
         path: A program of `torch.export.save`, `.pt2`; or a whole module of `torch.save`. The
             latter is a pickle, which runs code: load only files that you trust.
-        changes: Changes of `env`.
-        sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file is neither.

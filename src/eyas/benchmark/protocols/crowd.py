@@ -57,8 +57,6 @@ def switches(nearest: NDArray[np.int64], target: int, least: int) -> int:
 
     Args:
         nearest: Whom it follows at each look, -1: nobody, shape (M,).
-        target: Whom it should follow.
-        least: Number of looks in a row for which another must be followed.
     """
     starts = np.flatnonzero(np.diff(nearest, prepend=nearest[0] - 1))
     lengths = np.diff(starts, append=len(nearest))

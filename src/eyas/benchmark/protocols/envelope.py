@@ -38,10 +38,6 @@ class Envelope:
     def refuse(self, env: EnvConfig, protocol: str) -> None:
         """Refuse speeds of actions that leave it.
 
-        Args:
-            env: How the policy acts.
-            protocol: Name of the protocol, for the message.
-
         Raises:
             ConfigError: A speed is too large.
         """

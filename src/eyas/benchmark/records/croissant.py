@@ -43,12 +43,7 @@ its own, are in the file too."""
 
 
 def croissant(made: Stamp, sha256: str) -> dict[str, Any]:
-    """Return the content of `croissant.json`.
-
-    Args:
-        made: The stamp of the evaluation.
-        sha256: Of `episodes.jsonl`.
-    """
+    """Return the content of `croissant.json`."""
     plan = made.plan
     title = f"{plan.policy} in protocol {plan.protocol}"
     return {

@@ -105,9 +105,6 @@ class RecordFile:
 
     A last line that was torn by a kill or a full disk is cut off when the file is opened.
 
-    Args:
-        path: The file.
-
     Raises:
         OutputError: The file cannot be written.
     """
@@ -164,10 +161,6 @@ def read_records(path: Path) -> list[EpisodeRecord]:
 
 def order_records(path: Path, keys: list[int]) -> None:
     """Sort a file that `read_records` can read; lines with the same key keep their order.
-
-    Args:
-        path: The file.
-        keys: Of each record.
 
     Raises:
         OutputError: The file cannot be written.

@@ -60,10 +60,6 @@ _LARGEST_STAMP = 1 << 24  # Largest plan of an evaluation [bytes]
 def load_run(folder: Path, *, trust: bool = False) -> tuple[Stamp, list[EpisodeRecord]]:
     """Return stamp and records of an evaluation.
 
-    Args:
-        folder: Its folder.
-        trust: Whether the code of a protocol that it names by a path may be run.
-
     Raises:
         DataFileError: The folder holds none, a file is damaged, or it names code.
     """

@@ -37,11 +37,6 @@ def film(folder: Path, plan: EvaluationPlan, records: Sequence[EpisodeRecord]) -
 
     The batches of these flights are flown again whole, so that each is the one of its record.
 
-    Args:
-        folder: Folder of the evaluation.
-        plan: The plan.
-        records: Its records, at least one.
-
     Raises:
         OutputError: A file cannot be written.
     """

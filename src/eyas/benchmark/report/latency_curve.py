@@ -45,12 +45,7 @@ def run_curve(
 
     Args:
         plan: The plan; it must not have a latency of its own.
-        out: Folder to write to.
-        resume: Whether interrupted evaluations are continued.
-        overwrite: Whether those in the folders are deleted first.
         plots: Whether `latency.png` is drawn.
-        quiet: Whether nothing is printed but failures of the policy.
-        runner: Flies the batches.
 
     Raises:
         EyasError: A setting is wrong, or a folder is taken.

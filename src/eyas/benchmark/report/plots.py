@@ -44,12 +44,6 @@ def draw_plots(
     """Write `plots/reward.png`, `lost.png`, for each map `flights-<map>.png`, and `recovered.png`
     where cameras were covered.
 
-    Args:
-        folder: Folder of the evaluation.
-        protocol: The protocol.
-        title: Written above each plot.
-        records: At least one.
-
     Raises:
         MissingExtraError: matplotlib is not installed.
         OutputError: A file cannot be written.

@@ -47,11 +47,6 @@ class Difference(NamedTuple):
 def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> None:
     """Refuse to compare what was flown in different protocols, or by different programs.
 
-    Args:
-        first: Of the first evaluation.
-        second: Of the second one.
-        across_builds: Whether the programs may differ.
-
     Raises:
         DataFileError: They differ.
     """
@@ -77,11 +72,6 @@ def differences(
     first: Sequence[EpisodeRecord], second: Sequence[EpisodeRecord], protocol: Protocol
 ) -> list[Difference]:
     """Return the differences in the episodes that both have, for each row of a table.
-
-    Args:
-        first: Records of the first policy.
-        second: Records of the second one.
-        protocol: The protocol of both.
 
     Raises:
         DataFileError: They have no episode in common.
@@ -147,7 +137,6 @@ def text_of(found: Sequence[Difference], rank: str) -> str:
     """Return a table as text, and below it whether the two are told apart.
 
     Args:
-        found: The differences.
         rank: The protocol's first figure; the other is TSR.
     """
     lines = [("", "n", "figure", "A", "B", "B - A", "95 %", "B larger")]

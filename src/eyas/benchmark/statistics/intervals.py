@@ -129,7 +129,6 @@ def clusters_of(keys: Sequence[Hashable], strata: Sequence[Hashable]) -> Cluster
     Strata with fewer than `FEWEST` clusters are pooled, all if the pool would still be too small.
 
     Args:
-        keys: Cluster of each sample.
         strata: Stratum of each sample; a cluster is in that of its first one.
     """
     number: dict[Hashable, int] = {}
@@ -153,13 +152,6 @@ def interval_of(
 
     Of a figure with an upper bound: Wilson's interval of a share, with the number of samples whose
     share would have this variance. Of one without: symmetric for the logarithm.
-
-    Args:
-        mean: The figure.
-        variance: Its variance.
-        count: Number of independent observations.
-        degrees: Degrees of freedom of the variance.
-        high: Upper bound of the figure, if it has one.
     """
     if count < FEWEST or degrees < 1:
         return None
@@ -186,8 +178,6 @@ def mean_of(values: ArrayLike, clusters: Clusters, high: float | None = None) ->
 
     Args:
         values: The samples, at least one, shape (N,).
-        clusters: Which of them belong together.
-        high: The largest value that is possible, if there is one.
     """
     array = np.asarray(values, np.float64)
     mean, spread = float(array.mean()), None
@@ -227,8 +217,6 @@ def difference_interval(
 
     Args:
         differences: Shape (N,).
-        clusters: Which of them belong together.
-        high: The largest difference that is possible, if there is one.
     """
     if clusters.count < FEWEST:
         return None
@@ -248,7 +236,6 @@ def episodes_to_tell(differences: Floats, clusters: Clusters) -> int | None:
 
     Args:
         differences: Shape (N,).
-        clusters: Which of them belong together.
 
     Returns:
         Their number, to two digits; None if there are too few pairs, or they differ by nothing.
@@ -269,10 +256,6 @@ def improvement(first: Sequence[float], second: Sequence[float]) -> float:
 
 def survival(times: ArrayLike, ended: ArrayLike) -> tuple[Floats, Floats]:
     """Return the Kaplan-Meier curve.
-
-    Args:
-        times: Time of each event, or until which none had come, n of them.
-        ended: Whether the event has come at this time.
 
     Returns:
         The K + 1 times from which each value holds, 0 and those with an event, and the share that

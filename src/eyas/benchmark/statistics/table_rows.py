@@ -38,7 +38,6 @@ def figures_of(
     """Return the figures that episodes have.
 
     Args:
-        protocol: The protocol.
         records: Records with the figures that only this protocol has. Of these, one whose values
             are all from 0 to 1 is a share.
         as_published: Whether CR and TSR are those that the original's code would have printed.
@@ -129,8 +128,6 @@ def rows_of(
     """Return the rows of a table.
 
     Args:
-        records: Episode records, at least one.
-        protocol: Their protocol.
         as_published: Whether CR and TSR are those that the original's code would have printed, of
             the episodes that it would not have dropped.
     """

@@ -138,10 +138,6 @@ def of_pictures(
     """Return the measurement of a call that draws pictures.
 
     Args:
-        name: Name of the line.
-        includes: What the figure covers.
-        draw: The call.
-        size: Number of pictures that it draws, their width and height.
         seconds: Time to measure [s].
     """
     timing = timed(draw, seconds)

@@ -37,7 +37,6 @@ def run(name: str, path: Path, custom: CustomConfig | None = None) -> None:
     Args:
         name: Name of a model or of a kind, `all`, a mesh file, or `package.module:Class`.
         path: A .png for a sheet; a .gif, .webp or .apng for a film.
-        custom: How to read a mesh file.
 
     Raises:
         EyasError: There is no such target or ending, or the file cannot be written.

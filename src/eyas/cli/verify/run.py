@@ -106,9 +106,7 @@ def run(*, quick: bool = False, map_name: str | None = None, as_json: bool = Fal
     """Compute, print what differs, and return whether all is as promised.
 
     Args:
-        quick: Whether to look at a tenth of the cases only.
         map_name: Look at the cases of this map only; None: at all.
-        as_json: Whether to print JSON.
 
     Raises:
         UnknownNameError: The manifest has no such map.

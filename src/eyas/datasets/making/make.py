@@ -73,9 +73,6 @@ def make(
     """Make a data set, or what is missing of it.
 
     Args:
-        plan: The plan.
-        root: Its folder.
-        making: How.
         recorded: What records parts; None: the processes of this machine.
 
     Raises:

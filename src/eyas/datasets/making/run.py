@@ -30,12 +30,7 @@ def run(
 
     Args:
         named: `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON.
-        out: Its folder.
-        making: How it is made.
-        sample: Whether only a hundredth is made.
         shard: Number of the shard, from 1, and of all shards; None: all of it.
-        ray: Whether the processes of Ray record.
-        trust: Whether the recipe may name code.
 
     Raises:
         EyasError: The recipe is wrong or cannot be met, the folder is taken, or something cannot

@@ -61,7 +61,6 @@ def track_episode(
     """Let a tracker find the target in all frames of an episode.
 
     Args:
-        make: Makes the tracker.
         episode: The episode. The tracker begins with the first frame in which the target is
             visible.
         restarts: Whether it gets the true box again after a failure: a box that does not overlap
@@ -106,7 +105,6 @@ def overlaps(boxes: Floats, truth: Floats, size: tuple[int, int] | None = None) 
 
     Args:
         boxes: Left, top, width, height [pixels], shape (T, 4).
-        truth: The same.
         size: Width and height of the picture that both are cut to; None: they are not.
     """
     ours, theirs = (_corners(each, size) for each in (boxes, truth))

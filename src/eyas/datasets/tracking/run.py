@@ -75,12 +75,7 @@ def run(
     The same tracker and episodes give the same bytes, with any number of processes.
 
     Args:
-        scoring: What is scored.
-        out: The folder.
         workers: Number of processes; None: one for each core.
-        resume: Whether an interrupted run in the folder is continued.
-        overwrite: Whether the run in the folder is replaced.
-        quiet: Whether nothing is printed.
 
     Raises:
         EyasError: Something is wrong with the tracker, the recording or the folder; one line.

@@ -63,9 +63,7 @@ def driven(env: EnvConfig, number: int, seed: int) -> Drives:
     """Return what drivers do in a batch of traffic.
 
     Args:
-        env: What the tracker sees and does.
         number: Of the batch; what is drawn depends on it and the seed only.
-        seed: Of the training.
     """
     rng = stream(seed, "tracking drives", number)
     groups = episode_groups(episodes_by_day(rng, number), protocol_of_batch(rng, varied=False), env)
@@ -98,12 +96,7 @@ def _ways(places: Floats) -> Floats:
 
 
 class _Sight:
-    """Which of K vehicles are seen, and where: as by a network.
-
-    Args:
-        count: K.
-        rng: Random numbers.
-    """
+    """Which of K vehicles are seen, and where: as by a network."""
 
     def __init__(self, count: int, rng: np.random.Generator) -> None:
         self._rng = rng

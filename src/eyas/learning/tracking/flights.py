@@ -61,9 +61,7 @@ def flown(
     """Yield the pictures of batches of flights.
 
     Args:
-        make: Makes who flies one, with its random numbers.
         batches: Numbers of the batches; each depends on its number and the seed only.
-        seed: Of the training.
     """
     for number in batches:
         rng = stream(seed, "tracking flights", number)

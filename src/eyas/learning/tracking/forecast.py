@@ -57,14 +57,7 @@ class Forecast(nn.Module):
 def taught_forecast(
     network: Forecast, drives: Drives, steps: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, float]]:
-    """Teach a network; yield the step and the mean loss since the last ten times.
-
-    Args:
-        network: The network.
-        drives: What drivers did.
-        steps: Number of steps.
-        rng: Chooses the pasts of a step.
-    """
+    """Teach a network; yield the step and the mean loss since the last ten times."""
     past, after = torch.from_numpy(drives.past), torch.from_numpy(drives.ahead)
     network.mean.copy_(past.mean(0))
     network.spread.copy_(past.std(0) + 1e-6)

@@ -51,13 +51,7 @@ class Loss(NamedTuple):
 
 
 def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> Loss:
-    """Return how wrong a network is.
-
-    Args:
-        network: The network.
-        sample: Groups of pictures.
-        rng: Chooses the pictures whose keys are shown.
-    """
+    """Return how wrong a network is."""
     features, answers = network.see(sample.picture)
     height, width = (length // STRIDE for length in network.size)
     column, row = (sample.place / STRIDE).long().unbind(1)
@@ -90,15 +84,7 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
 def taught(
     network: DetectorNetwork, samples: Samples, steps: int, rate: float, rng: np.random.Generator
 ) -> Iterator[Progress]:
-    """Teach a network; yield its progress ten times.
-
-    Args:
-        network: The network.
-        samples: What it sees.
-        steps: Number of steps.
-        rate: Largest rate of learning.
-        rng: See `loss_of`.
-    """
+    """Teach a network; yield its progress ten times."""
     optimiser = torch.optim.AdamW(network.parameters(), rate, weight_decay=1e-4)
     recent = []
     for step in range(steps):

@@ -30,8 +30,6 @@ class DetectorNetwork(nn.Module):
 
     Args:
         size: Height and width of the pictures [pixels].
-        width: Channels of the last convolutions.
-        keys: Numbers that tell how a target looks.
     """
 
     def __init__(self, size: tuple[int, int], width: int = 48, keys: int = 24) -> None:
@@ -53,11 +51,7 @@ class DetectorNetwork(nn.Module):
         """Middles of the cells, column and row [pixels], shape (C, 2)."""
 
     def see(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
-        """Return features (B, C, width) and answers (B, C, 4 + K) of the cells.
-
-        Args:
-            pictures: Shape (B, 3, H, W).
-        """
+        """Return features (B, C, width) and answers (B, C, 4 + K) of the cells."""
         value = scaled = (pictures.float() - MEAN) / SPREAD
         for layer in (self.first, self.second, self.third):
             value = torch.relu(layer(value))
@@ -82,8 +76,6 @@ class DetectorNetwork(nn.Module):
         """Return logarithms of unnormalised probabilities of all cells and "not seen", (B, C + 1).
 
         Args:
-            features: Of `see`.
-            answers: Of `see`.
             clue: As the inputs of `eyas.benchmark.policies.tracker.detector`.
         """
         expected, spread, key, known = clue

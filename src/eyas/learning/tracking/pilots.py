@@ -27,12 +27,7 @@ _AT_RANDOM = 0.01  # Share of the looks at which a pupil is corrected, lost or n
 
 
 class Oracle:
-    """Flies to the target's true place beside a wandering disturbance.
-
-    Args:
-        env: What the tracker sees.
-        rng: Of the disturbance.
-    """
+    """Flies to the target's true place beside a wandering disturbance."""
 
     sampled = False
     told = frozenset({"truth"})
@@ -65,12 +60,7 @@ class Oracle:
 
 
 class Pupil:
-    """Lets the tracker fly; sets its filter right when it has been lost for a while.
-
-    Args:
-        tracker: The tracker.
-        rng: Of corrections, which are a little wrong themselves.
-    """
+    """Lets the tracker fly; sets its filter right when it has been lost for a while."""
 
     sampled = False
     told = frozenset({"box", "truth"})

@@ -41,12 +41,7 @@ class Sample(NamedTuple):
 
 
 class Samples:
-    """Draws samples of pictures.
-
-    Args:
-        shots: All pictures.
-        rng: Random numbers.
-    """
+    """Draws samples of pictures."""
 
     def __init__(self, shots: Shots, rng: np.random.Generator) -> None:
         self._shots, self._rng = shots, rng

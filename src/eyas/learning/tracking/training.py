@@ -53,8 +53,6 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
     Args:
         config: The settings: those of the preset `eyas`, with any seed, size of the pictures and
             `train.tracker`.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
         say: Called with a line for each batch, and ten times in each round of lessons.
 
     Raises:

@@ -57,10 +57,7 @@ def lesson(
     """Return some pictures, mirrored, lighter or darker.
 
     Args:
-        scenes: All pictures.
         rows: Which are chosen, shape (B,).
-        grid: Cells of a picture, down and across.
-        rng: Of the changes.
     """
     vehicles = _chosen(scenes.vehicles, rows)
     picture, mirror = _changed(scenes.picture[rows].astype(np.float32), rng)
@@ -131,12 +128,7 @@ def _around(
 
 
 def loss_of(network: ListenerNetwork, shown: Lesson) -> Loss:
-    """Return how wrong a network is.
-
-    Args:
-        network: The network.
-        shown: What it is shown.
-    """
+    """Return how wrong a network is."""
     vehicle, places, headings, colours, bodies = network(shown.picture)
     at = shown.vehicle, shown.cell
     count = max(len(shown.cell), 1)

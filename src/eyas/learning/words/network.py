@@ -25,7 +25,6 @@ class ListenerNetwork(nn.Module):
 
     Args:
         size: Height and width of the pictures [pixels].
-        width: Channels of the last convolutions.
     """
 
     def __init__(self, size: tuple[int, int], width: int = 48) -> None:
@@ -56,11 +55,7 @@ class ListenerNetwork(nn.Module):
         return -(-self.size[0] // STRIDE), -(-self.size[1] // STRIDE)
 
     def forward(self, pictures: Tensor) -> tuple[Tensor, ...]:
-        """Return the outputs of `eyas.benchmark.policies.listener.detector`.
-
-        Args:
-            pictures: Shape (B, 3, H, W).
-        """
+        """Return the outputs of `eyas.benchmark.policies.listener.detector`."""
         value = (pictures.float() - MEAN) / SPREAD
         for number, layer in enumerate(self.layers):
             before = value

@@ -82,14 +82,7 @@ class Scenes(NamedTuple):
 
 
 def drawn(env: EnvConfig, seed: int, block: int, count: int = SCENES) -> Scenes:
-    """Return the pictures of a block; they depend on its number and the seed only.
-
-    Args:
-        env: What the listener sees.
-        seed: Of the training.
-        block: Number of the block.
-        count: Number of pictures, as many at each place as at the others.
-    """
+    """Return the pictures of a block; they depend on its number and the seed only."""
     rng = stream(seed, "scenes of words", block)
     pictures: list[NDArray[np.uint8]] = []
     found: list[Vehicles] = []

@@ -40,9 +40,6 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
 
     Args:
         config: The settings: those of the preset `eyas-words`, with any seed and `train.words`.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        say: Called with a line for each block.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.

@@ -110,7 +110,6 @@ class Candidates:
         """Take what a picture shows.
 
         Args:
-            found: D vehicles.
             where: Where they are, east and north [m], shape (D, 2).
             heading: As in `Seen`, shape (D, 4).
             since: Time since the last look [s].

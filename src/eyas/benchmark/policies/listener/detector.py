@@ -75,12 +75,7 @@ class Detections(NamedTuple):
 
 
 class VehicleDetector:
-    """The network.
-
-    Args:
-        session: Of onnxruntime.
-        scale: Pixels of a metre on the ground.
-    """
+    """The network."""
 
     def __init__(self, session: Any, scale: float) -> None:  # noqa: ANN401  # no types
         self._session, self._scale = session, scale
@@ -91,11 +86,7 @@ class VehicleDetector:
         return "vehicles" in {each.name for each in session.get_outputs()}
 
     def find(self, pictures: NDArray[np.uint8]) -> list[Detections]:
-        """Return what N pictures show.
-
-        Args:
-            pictures: Shape (N, 3, H, W).
-        """
+        """Return what N pictures show."""
         answers = self._session.run(OUTPUTS, {"image": pictures})
         vehicles, *rest = answers
         return [

@@ -51,8 +51,6 @@ def judged(claim: Claim, seen: Seen, place: Floats) -> Floats:
     """Return the logarithms of how probably each is meant, not normalised, shape (K,).
 
     Args:
-        claim: What is said.
-        seen: K vehicles.
         place: Where each was in the first picture, from the left and the upper edge [its width, its
             height], shape (K, 2).
     """
@@ -156,8 +154,6 @@ def _bears(bearing: Bearing, seen: Seen, other: Floats) -> Floats:
     """Return the probability that each is where a claim says from another one, shape (K,).
 
     Args:
-        bearing: Where.
-        seen: K vehicles.
         other: Probability that each is that other one, shape (K,).
     """
     lying = _lying(seen)

@@ -39,11 +39,8 @@ class Listener:
     """Follows N targets that it is told.
 
     Args:
-        path: The file of the network, for messages.
-        session: The network, as onnxruntime runs it.
         own: Changes of the defaults of `env` that belong to the file.
         said: `TrackerSettings` of the file.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The settings are wrong, or changes ask for what the network does not see.

@@ -42,11 +42,7 @@ of it sees it come out and pass; from one that is behind it drives away unseen."
 
 
 class Course:
-    """The courses of N targets.
-
-    Args:
-        count: N.
-    """
+    """The courses of N targets."""
 
     def __init__(self, count: int) -> None:
         self._now = np.zeros(count)

@@ -65,7 +65,6 @@ class Detector:
     """The network.
 
     Args:
-        session: Of onnxruntime.
         size: Height and width of the pictures [pixels].
     """
 
@@ -87,12 +86,7 @@ class Detector:
         return "past" in {each.name for each in session.get_inputs()}
 
     def find(self, pictures: NDArray[np.uint8], clue: Clue) -> Found:
-        """Find targets.
-
-        Args:
-            pictures: Shape (N, 3, H, W).
-            clue: What is known of them.
-        """
+        """Find targets."""
         feed = {
             "image": pictures,
             "expected": clue.expected.astype(np.float32),

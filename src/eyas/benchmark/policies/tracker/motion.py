@@ -29,7 +29,6 @@ class MotionFilter:
         acceleration: Their standard deviation in each axis [m/s^2], shape (N,).
 
     Args:
-        count: N.
         widest: Largest standard deviation of a place [m].
     """
 
@@ -144,7 +143,6 @@ class MotionFilter:
         """Return how far seen places are from the expected ones, in standard deviations, (K,).
 
         Args:
-            rows: K of the targets.
             place: Where they are seen [m], shape (K, 2).
             variance: Of that in each axis [m^2], shape (K,).
         """
@@ -158,9 +156,6 @@ class MotionFilter:
         association filter", equations 38 to 44).
 
         Args:
-            rows: As in `distance`.
-            place: As in `distance`.
-            variance: As in `distance`.
             belief: Probability that it is the target, shape (K,).
         """
         both = self._variance[rows, _PLACE]

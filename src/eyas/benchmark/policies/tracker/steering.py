@@ -20,13 +20,6 @@ class Steering:
 
     Attributes:
         period: How long an action lasts [s].
-
-    Args:
-        count: N.
-        env: Speeds of the actions, and how long they last.
-        ground: The camera over the level of the targets.
-        gain: Share of the distance from the middle that an action makes up for.
-        lag: Of `TrackerSettings`.
     """
 
     def __init__(
@@ -67,7 +60,6 @@ class Steering:
         Args:
             rows: K of the drones, shape (K,).
             pose: Where they are, east and north [m], (K, 2), and their heading [rad], (K,).
-            since: Of `time_since`.
             target: Where their targets are [m] and how these move [m/s], east and north, (K, 2).
         """
         (place, yaw), (where, velocity) = pose, target
@@ -93,7 +85,6 @@ class Steering:
         Args:
             rows: K of the drones, shape (K,).
             place: Where they are [m], shape (K, 2).
-            since: Of `time_since`.
         """
         time = np.where(np.isnan(since), 0.0, since)[:, None]
         told = self._told[rows] + self._command[rows] * time

@@ -54,11 +54,8 @@ class Tracker:
     """Follows N targets, each from its first box on.
 
     Args:
-        path: The file of the network, for messages.
-        session: The network, as onnxruntime runs it.
         own: Changes of the defaults of `env` that belong to the file.
         said: `TrackerSettings` of the file.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The settings are wrong, changes ask for what the network does not see, or it is

@@ -51,7 +51,6 @@ def run(folder: Path, out: Path) -> str:
 
     Args:
         folder: Evaluations lie in it, at any depth; a warning names those that are left out.
-        out: The page.
 
     Raises:
         DataFileError: There is no finished evaluation.

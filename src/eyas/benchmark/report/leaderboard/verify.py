@@ -76,10 +76,8 @@ def verify(
     together.
 
     Args:
-        folder: Evaluations lie in it, at any depth.
         share: Which part of the episodes, more than 0 and at most 1; at least one batch.
         seed: Which ones; None: nobody can know before.
-        trust: Whether code may run that entries bring.
 
     Raises:
         EyasError: There is no such folder, the share is wrong, or a mark cannot be written.
@@ -215,11 +213,6 @@ def _refuse_others(parts: list[list[EpisodeSpec]], records: list[EpisodeRecord])
 
 def _compare(line: bytes, told: EpisodeRecord, again: EpisodeRecord) -> None:
     """Refuse a record that is not that of the flight.
-
-    Args:
-        line: The record as it stands in the file.
-        told: The same, read.
-        again: That of the flight.
 
     Raises:
         _DifferenceError: With the first field that differs.

@@ -28,11 +28,6 @@ def run(names: tuple[str, ...], out: Path, *, quiet: bool = False) -> bool:
     """Fly tables again, or what an interrupted run has left; print them; return whether all cells
     are those of the documents.
 
-    Args:
-        names: The tables.
-        out: A folder for their evaluations.
-        quiet: Whether no progress is shown.
-
     Raises:
         EyasError: There is no such table, or the folder is taken.
     """
@@ -65,9 +60,6 @@ def made(table: Table, out: Path, *, quiet: bool = False, keep: bool = False) ->
     """Return what a table is when it is flown here.
 
     Args:
-        table: The table.
-        out: Folder for its evaluations.
-        quiet: Whether it is not told what is flown.
         keep: Whether what another build has flown into the folder stays, for developers who know
             that the figures did.
     """
