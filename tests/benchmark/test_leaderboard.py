@@ -9,9 +9,8 @@ from typer.testing import CliRunner
 from eyas.benchmark.evaluation import run
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.report.leaderboard import page
-from eyas.benchmark.report.leaderboard.card import read_card
 from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE
-from eyas.benchmark.report.leaderboard.submission import submissions_in
+from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
 from eyas.benchmark.report.leaderboard.verify import Verdict, verify
 from eyas.cli.app import app
 from eyas.engine.core.errors import EyasError

@@ -577,7 +577,7 @@ def _stamp(folder, chance, most):
 
 @row("card")
 def _card(folder, chance, most):
-    from eyas.benchmark.report.leaderboard.card import CARD, read_card
+    from eyas.benchmark.report.leaderboard.submission import CARD, read_card
 
     path = folder / CARD
     path.write_text(json.dumps({"name": "x", "authors": ["y"], "link": "https://a.b/c"}))

@@ -1,4 +1,4 @@
-"""`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
+"""`eyas evaluate`, `compare`, `leaderboard`, `reproduce` and `policies`."""
 
 import json
 from contextlib import AbstractContextManager, nullcontext
@@ -23,7 +23,7 @@ from eyas.engine.terminal.options import (
 if TYPE_CHECKING:
     from eyas.benchmark.flight.policy_runner import Runner
 
-__all__ = ["compare", "evaluate", "leaderboard"]
+__all__ = ["compare", "evaluate", "leaderboard", "policies", "reproduce"]
 
 
 _Protocol = Annotated[
@@ -277,3 +277,70 @@ def verify(
         found.append(finding.verdict)
     if Verdict.DIFFERENT in found:
         raise typer.Exit(1)
+
+
+def reproduce(
+    tables: Annotated[
+        list[str] | None, typer.Argument(metavar="TABLE", help="Names of tables; none: list them.")
+    ] = None,
+    out: Annotated[
+        Path, to_write("Folder for their evaluations; continued if interrupted.")
+    ] = Path("runs/reproduce"),
+    quiet: Quiet = False,
+) -> None:
+    """Fly tables of the documents again, and tell whether every printed digit is equal."""
+    from eyas.benchmark.report.reproduce.run import listing, run
+
+    if not tables:
+        typer.echo(listing())
+        return
+    if not run(tuple(tables), out, quiet=quiet):
+        raise typer.Exit(1)
+
+
+policies = typer.Typer(help="Tell of the policies that Eyas brings along.", no_args_is_help=True)
+
+
+@policies.callback()
+def _policies_group() -> None: ...
+
+
+@policies.command("list")
+def list_policies(*, as_json: AsJson = False) -> None:
+    """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
+    from eyas.benchmark.policies.shipped import card_of, shipped_names
+    from eyas.benchmark.policies.table import POLICIES
+    from eyas.benchmark.report.reproduce.tables import flown_of
+
+    if as_json:
+        listed: list[dict[str, Any]] = [{"name": name} for name in POLICIES.names()]
+        for name in shipped_names():
+            figures = [
+                {"table": table, **one.model_dump(mode="json"), "build_id": build}
+                for table, rows in flown_of(name).items()
+                for _, one, build in rows
+            ]
+            said = card_of(name).model_dump(mode="json")
+            listed.append({"name": name, **said, "figures": figures})
+        typer.echo(json.dumps(listed, indent=1))
+        return
+    for name in POLICIES.names():
+        typer.echo(f"{name} ({POLICIES.path(name) or 'built in'})")
+    for name in shipped_names():
+        card = card_of(name)
+        typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
+    typer.echo("What a trained policy reaches: eyas policies card NAME")
+
+
+@policies.command("card")
+def policy_card(
+    name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],
+) -> None:
+    """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
+    from eyas.benchmark.policies.shipped import shipped_names
+    from eyas.benchmark.report.reproduce.model_card import model_card
+    from eyas.engine.core.errors import UnknownNameError
+
+    if name not in shipped_names():
+        raise UnknownNameError("NAME", name, shipped_names())
+    typer.echo(model_card(name))

@@ -5,19 +5,27 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.flight.batch_flight import BatchFlight, Watcher
-from eyas.benchmark.flight.solvable import solvable
 from eyas.benchmark.plan.latency import Measured, delay_from
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, opened, stamp
+from eyas.benchmark.policies.road_search import sighted
+from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.records.record import EpisodeRecord
+from eyas.engine.core.build import this_build
+from eyas.engine.core.cache.cached import cached
+from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import ConfigError, EyasError, MissingExtraError
 from eyas.lanes import limit_threads
 
-__all__ = ["Runner", "connected", "flown", "on_ray", "one_line", "run_here"]
+__all__ = ["SOLVED", "Runner", "connected", "flown", "on_ray", "one_line", "run_here"]
 
 
 @contextmanager
@@ -174,3 +182,26 @@ def _with_whole_paths(plan: EvaluationPlan) -> EvaluationPlan:
     told = {"policy": plan.policy, "latency": plan.latency}
     whole = {name: str(Path(text).resolve()) for name, text in told.items() if Path(text).is_file()}
     return plan.model_copy(update=whole)
+
+
+SOLVED = 0.95  # TSR from which `sighted` has solved an episode
+
+
+def solvable(episodes: list[EpisodeSpec], protocol: Protocol) -> list[bool | None]:
+    """Return whether `sighted` solves each episode; None: the protocol does not ask.
+
+    Kept in the cache, since it depends on the episodes only.
+    """
+    if not protocol.tells_solvable:
+        return [None] * len(episodes)
+    make = partial(_kept_shares, episodes, protocol)
+    inputs = (this_build().world, protocol.hash, *episodes)
+    shares = np.asarray(cached(Kind.OCCLUSION, make, inputs, of=np.ndarray))
+    return [bool(share >= SOLVED) for share in shares.tolist()]
+
+
+def _kept_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
+    """Return the TSR of `sighted` in each episode, shape (E,)."""
+    flight = BatchFlight(episodes, protocol, sighted(protocol.oracles), delay_from("0"))
+    kept = {record.name: record.tsr for ended in flight.fly() for record in ended}
+    return np.array([kept[episode.name] for episode in episodes])

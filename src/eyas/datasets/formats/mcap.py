@@ -74,11 +74,11 @@ class Mcap(Format):
             from mcap import writer
         except ImportError as error:
             raise MissingExtraError("the format 'mcap'", "exports") from error
-        self._job, self._mcap = job, writer
+        self.job, self._mcap = job, writer
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its file."""
-        path = self._job.folder / split_of(episode) / f"{episode.name}.mcap"
+        path = self.job.folder / split_of(episode) / f"{episode.name}.mcap"
         with refusals(path):
             path.parent.mkdir(parents=True, exist_ok=True)
         with atomic_path(path) as part, part.open("wb") as file:

@@ -14,7 +14,6 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.engine.exports.label import Label
 from eyas.engine.recordings.format import (
     Format,
-    Job,
     SeenObject,
     left_top_width_height,
     lines,
@@ -43,13 +42,10 @@ class Uavdt(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         name = episode.name
-        self._job.place_all(episode, f"UAV-benchmark-M/{name}", 1, 6, "img")
+        self.job.place_all(episode, f"UAV-benchmark-M/{name}", 1, 6, "img")
         counted, whole, ignored = [], [], []
         for frame in episode:
             for seen in objects_of(frame.label):
@@ -59,17 +55,17 @@ class Uavdt(Format):
                 category = CATEGORIES.get(ObjectClass(label["class_id"]))
                 if category is None and label["class_id"] != ObjectClass.MOTORCYCLE:
                     continue
-                if category is None or label["truncated"] > 0.5 or self._job.ignores(seen):
+                if category is None or label["truncated"] > 0.5 or self.job.ignores(seen):
                     ignored.append((*row, *IGNORED))
                 else:
                     counted.append((*row, 1, category, -1))
                     whole.append((*row, *_levels(seen), category))
         truth = f"UAV-benchmark-MOTD_v1.0/GT/{name}_gt"
-        self._job.write(f"{truth}.txt", lines(counted))
-        self._job.write(f"{truth}_whole.txt", lines(whole))
-        self._job.write(f"{truth}_ignore.txt", lines(ignored))
+        self.job.write(f"{truth}.txt", lines(counted))
+        self.job.write(f"{truth}_whole.txt", lines(whole))
+        self.job.write(f"{truth}_ignore.txt", lines(ignored))
         folder = "test" if episode.split == "test" else "train"
-        self._job.write(f"M_attr/{folder}/{name}_attr.txt", lines([_attributes(episode)]))
+        self.job.write(f"M_attr/{folder}/{name}_attr.txt", lines([_attributes(episode)]))
 
 
 def _levels(seen: SeenObject) -> tuple[int, int]:

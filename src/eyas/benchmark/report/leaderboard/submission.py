@@ -1,9 +1,11 @@
-"""What is sent in to a leaderboard: a folder of records, whoever has made it."""
+"""What is sent in to a leaderboard: a folder of records and, beside them, a card of the policy."""
 
 import logging
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from pydantic import AfterValidator, Field
 
 from eyas.benchmark.evaluation import TIMING
 from eyas.benchmark.plan.entry import Entry
@@ -11,13 +13,21 @@ from eyas.benchmark.plan.plan import Stamp
 from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import STAMP, load_run
-from eyas.benchmark.report.leaderboard.card import ModelCard, read_card
 from eyas.benchmark.report.leaderboard.mark import Mark, fitting_mark
 from eyas.benchmark.statistics.table_rows import figures_of
+from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
-from eyas.engine.core.errors import DataFileError, EyasError
+from eyas.engine.core.errors import ConfigError, DataFileError, EyasError
 
-__all__ = ["Submission", "complete_run", "folders_in", "submissions_in"]
+__all__ = [
+    "CARD",
+    "ModelCard",
+    "Submission",
+    "complete_run",
+    "folders_in",
+    "read_card",
+    "submissions_in",
+]
 
 _LOG = logging.getLogger("eyas")
 
@@ -25,6 +35,54 @@ _LARGEST = 1 << 20  # Largest size of the file with the timing [bytes]
 
 
 _BEYOND = 1e9  # Larger than every figure of a flight
+
+
+CARD = "card.json"  # The file, beside the records of an evaluation
+
+_LARGEST_CARD = 1 << 20  # Largest size of the file [bytes]
+
+
+def _is_link(text: str) -> str:
+    if not text.startswith(("https://", "http://")) or not text.isprintable() or " " in text:
+        raise ValueError("must be an address that begins with https:// or http://")
+    return text
+
+
+Line = Annotated[str, Field(min_length=1, max_length=300)]
+Link = Annotated[str, Field(max_length=500), AfterValidator(_is_link)]
+
+
+class ModelCard(Config):
+    """What an entry says of itself; a page shows it as text, and nothing of it is checked."""
+
+    name: Line
+    """What the policy is called."""
+    authors: tuple[Line, ...] = ()
+    link: Link | None = None
+    """Where code, weights or a paper are."""
+    trained_on: Line | None = None
+    """The maps, recordings or films of training."""
+    license: Line | None = None
+    """Of the weights, for example `MIT`."""
+    remarks: Annotated[str, Field(max_length=2000)] | None = None
+
+
+def read_card(folder: Path) -> ModelCard | None:
+    """Return the card of an evaluation; None if it has none.
+
+    Raises:
+        DataFileError: The file cannot be read, or is no card: one line with the wrong key.
+    """
+    path = folder / CARD
+    if not path.exists():
+        return None
+    try:
+        values = read_json(path, _LARGEST_CARD, "a card")
+        if not isinstance(values, dict):
+            raise ValueError("not a JSON object")
+        return validated(ModelCard, values)
+    except (ValueError, ConfigError) as error:
+        raise DataFileError(f"{path}: not a card: {error}") from None
 
 
 class Submission(NamedTuple):
