@@ -45,9 +45,7 @@ from eyas.engine.core.pyav import pyav
 __all__ = ["TIMING", "run"]
 
 _LOG = logging.getLogger("eyas")
-
 CROISSANT = "croissant.json"  # What the episodes are, for machines
-
 TIMING = "timing.json"  # How long the policy takes; apart from the result, which repeats
 
 

@@ -31,7 +31,6 @@ Gathered = TypeVar("Gathered")
 
 
 _ROOF = 1.3  # Height of a car's roof, which is seen longest [m]
-
 _EYE = 22.0  # Height of the protocols' drones [m]
 
 

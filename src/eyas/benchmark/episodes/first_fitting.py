@@ -13,9 +13,7 @@ Fits = Callable[[Sequence[EpisodeSpec], Protocol], Sequence[object]]
 fit."""
 
 _TRIED = 50  # Number of seeds that are tried for each episode
-
 _HOPELESS = 1_000  # Number of starts after which no more are tried if none of them fits
-
 _PARTS = 25  # In how many parts: looking at a few together costs less than at each alone
 
 

@@ -25,7 +25,6 @@ AT_REST, AT_SPEED = "at-rest", "at-speed"
 """Variants: the target stands at the start, and the drone hovers; both drive."""
 
 _PERIOD = 0.256  # Time between two looks [s]
-
 _STANDS, _DRIVES = 0.3, 5.0  # Speed below which a target stands, and from which it drives [m/s]
 
 _VISIBLE, _FIRST = 0.5, 4

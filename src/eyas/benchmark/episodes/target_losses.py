@@ -31,14 +31,12 @@ __all__ = [
 ]
 
 LEAST_VISIBLE = 0.15  # Share of the target that must be visible, else it is out of sight
-
 SEARCH_LIMIT = 15.0  # Time within which a target must be seen again to count as recovered [s]
 
 COVERED = {"covered-2s": 2.0, "covered-5s": 5.0, "covered-10s": 10.0, "covered-15s": 15.0}
 """How long cameras are covered, by the name of the variant [s]."""
 
 _LENGTH = (4.0, 12.0)  # Shortest and longest loss by things [s]
-
 _MOST = 3  # Largest number of losses by things in an episode
 
 _PERIOD = 0.256
@@ -49,7 +47,6 @@ _FAR = 12.0
 waits where it has lost it has it in its picture again, whose half is 9 m wide at the most."""
 
 _STEADY = 0.77  # Shorter glimpses than this do not end a loss [s]: no more than two looks
-
 _BEGUN = 3.0  # Earliest time of a loss: before, a policy must get hold of its target [s]
 
 _ONSETS = (5.0, 20.0), (42.0, 58.0)

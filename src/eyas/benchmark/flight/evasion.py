@@ -24,21 +24,13 @@ KINDS = ("stop", "turn", "dash", "hiding")
 may, or is out of sight for a while."""
 
 _PERIOD = 0.25  # Time between two looks [s]
-
 _STANDING = 0.5  # Speed below which a target stands [m/s]
-
 _FAST = 17.0  # Speed of a dash [m/s]: others drive at most 16.5.
-
 _LEAST = {"stop": 1.5, "dash": 1.0, "hiding": 2.0}  # Shortest duration of each [s]
-
 _ABOUT_TURN = 2.6  # Least change of heading of who turns round [rad]
-
 _TURNING = 4.0  # Longest time that it takes [s]
-
 _BEGUN = 3.0  # Earliest time at which one counts [s]
-
 _HELD = 3.0  # Time within which the target must be seen after one [s]
-
 _EACH = 2  # Least number of them in an episode
 
 Floats = NDArray[np.float64]

@@ -84,9 +84,7 @@ def _gaps(in_view: NDArray[np.bool_], first: int) -> list[tuple[int, int]]:
 Floats = NDArray[np.float64]
 
 LOOK = 4  # Control steps between two counts of the target's pixels
-
 _TRACE = 20  # Control steps between two points of a trace
-
 TRACE_PERIOD = 0.16  # The same in the protocols' control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363

@@ -22,11 +22,8 @@ from eyas.benchmark.protocols.protocol import Protocol
 __all__ = ["RecoveryScenario", "followed", "recovery_figures", "time_to_see"]
 
 _STEADY = 0.5  # How long the target must be seen without a gap to count as seen again [s]
-
 _CENTRED = 3.0  # Distance from the middle of the picture within which a vehicle is followed [m]
-
 _WRONG = 2.0  # How long another vehicle must be in the middle to count as followed [s]
-
 _LOOKS = 8  # Looks between two at who is in the middle: as in 0.256 s, a car drives 3 m.
 
 Mask = NDArray[np.bool_]

@@ -15,7 +15,6 @@ from eyas.lanes import exact
 __all__ = ["PROFILES", "Delay", "Fixed", "Measured", "Profiled", "SampledDelay", "delay_from"]
 
 _LARGEST = 10_000.0  # Largest latency [ms]
-
 _GRACE = 3  # First answers whose measured latency does not count: libraries warm up
 
 

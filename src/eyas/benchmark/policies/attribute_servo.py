@@ -43,11 +43,8 @@ _CAR_LIKE: Final = 0.9
 """Largest difference of a blob's shape from a car's, as of `_unlike`: a van is one, a roof not."""
 
 _WATCHED: Final = 1.0  # How long it watches what moves, if the words are about that [s]
-
 _GATE: Final = 3.0  # Farthest from where it is expected that the target is looked for, at first [m]
-
 _WIDER: Final = 4.0  # How much farther, for each second in which it is not seen [m/s]
-
 _SPEEDS: Final = (0.8, 1.5)  # Below the first something stands, above the second it moves [m/s]
 
 _TURN: Final = 0.12

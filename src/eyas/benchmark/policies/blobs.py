@@ -28,9 +28,7 @@ _LIGHT: Final = (0.6, 1.15)
 """Brightness in shade and in sun, as a multiple of the paint's; measured likewise."""
 
 _DARKER: Final = 0.3  # Weight of the logarithm of what is beyond these
-
 _UNSURE: Final = 0.05  # A paint may be one of two names that differ by less
-
 _LEVELS: Final = 32  # Of each channel in the table of names
 
 _BRIDGED: Final = 0.8, 0.45
@@ -41,13 +39,9 @@ _FILLED: Final = 0.3
 """Least share of a blob's rectangle that has its colour: leaves have it here and there."""
 
 _QUEUE: Final = 1.4  # A blob that is so many times as long as one vehicle is a queue
-
 _SPACING: Final = 1.5  # Between the vehicles of a queue [m]
-
 _SIZES: Final = (0.8, 16.0)  # Shortest and longest blob that may be a vehicle [m]
-
 _WIDEST: Final = 4.0  # [m]
-
 _LEAST: Final = 4  # Fewest pixels
 
 

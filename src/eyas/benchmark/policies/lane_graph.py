@@ -15,7 +15,6 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SPACING = 2.0  # Distance of neighbouring points [m]
-
 _ALIKE = 0.8  # Largest angle between the heading of a vehicle and that of its lane [rad]
 
 

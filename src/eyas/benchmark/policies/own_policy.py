@@ -24,7 +24,6 @@ from eyas.engine.settings.env import EnvConfig
 __all__ = ["Each", "Whole", "load_callable"]
 
 _IN_WORDS = frozenset({"words", "attributes"})
-
 SETTINGS = "env_settings"  # Attribute of a user's policy: changes of the defaults of `env`
 
 

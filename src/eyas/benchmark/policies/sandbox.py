@@ -44,7 +44,6 @@ _WRONG = (
 """What reading raises where a message is of another form."""
 
 _WORKER = "eyas.benchmark.policies.sandbox_worker"
-
 _LARGEST = 1 << 30  # Largest part of a message [bytes]
 
 

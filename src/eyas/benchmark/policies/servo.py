@@ -18,7 +18,6 @@ _PATCH = 14  # Side of the pattern [pixels]
 _REACH = 11  # Farthest motion between two pictures [pixels]
 _LEARNING = 0.1  # Share of a new picture in the pattern, where the match is good
 _GOOD = 0.6  # Least correlation of a good match
-
 _GAIN = 5.0  # Rate at which a camera is turned, by how far it would have to be [1/s]
 _HIGHEST = 0.6  # How far it may be turned up [rad]
 _SHARES = np.zeros((7, 4))

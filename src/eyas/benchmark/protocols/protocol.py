@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "Stage", "in_order"]
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
-
 NEVER = 2**31 - 1  # As `done.no_reward_steps`: a lost target does not end the episode.
 
 Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]

@@ -11,7 +11,6 @@ from eyas.engine.recordings.croissant import CONFORMS_TO, CONTEXT
 __all__ = ["croissant"]
 
 _FILE = "episodes.jsonl"
-
 _TYPES = {str: "sc:Text", int: "sc:Integer", float: "sc:Float", bool: "sc:Boolean"}
 
 _MEANINGS = {

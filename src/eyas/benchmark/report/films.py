@@ -20,9 +20,7 @@ from eyas.engine.state.draw import Picture
 __all__ = ["FOLDER", "chosen_flights", "film"]
 
 FOLDER = "videos"
-
 _LOG = logging.getLogger("eyas")
-
 _SIZE = 480, 640  # Height and width of the pictures
 
 

@@ -17,9 +17,7 @@ from eyas.engine.core.files import write_atomic
 __all__ = ["LATENCIES", "run_curve"]
 
 LATENCIES = ("0", "20", "40", "80", "160")  # [ms]
-
 CURVE = "latency"  # Name of the files of the curve, without ending
-
 _FIGURES = ("tsr", "cr")
 
 

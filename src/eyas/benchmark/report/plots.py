@@ -19,9 +19,7 @@ from eyas.engine.sim.scenes import load_network
 __all__ = ["FOLDER", "draw_plots", "require_matplotlib", "save_plot"]
 
 FOLDER = "plots"
-
 _FLIGHTS = 8  # Flights that are drawn on a map; more could not be told apart
-
 _INK, _SECOND, _SOFT, _ROAD = "#1b6ca8", "#c8553d", "#9db9cc", "#d9d9d6"
 
 

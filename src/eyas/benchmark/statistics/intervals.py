@@ -47,7 +47,6 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 LEVEL = 0.95  # Share of repetitions of which the interval should hold the true value
-
 POWER = 0.8  # Share of repetitions in which a difference should be told, see `episodes_to_tell`
 
 _NORMAL, _NORMAL_OF_POWER = 1.959963984540054, 0.8416212335729143

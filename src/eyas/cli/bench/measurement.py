@@ -25,7 +25,6 @@ __all__ = [
 ]
 
 _CALL = {"x86_64": 298, "aarch64": 241}  # Number of the system call `perf_event_open`
-
 _CYCLES, _INSTRUCTIONS = 0, 1
 _SIZE = 64
 _OWN_CODE_ONLY = 1 << 5 | 1 << 6  # Neither the kernel of the system nor a hypervisor

@@ -18,7 +18,6 @@ from eyas.engine.targets.words import words_of
 __all__ = ["ALL", "run"]
 
 ALL = "all"  # Name by which all targets are shown in one picture
-
 _NEAR = 256  # Side of a picture from near [pixels]
 _SMALL = 168  # Side of a picture on the sheet of all [pixels]
 _HEIGHT = 22.0  # Distance of a tracker's camera [m]

@@ -27,9 +27,7 @@ _LARGEST = 1 << 28  # Largest arrays of an episode [bytes]
 __all__ = ["LeRobot"]
 
 CAMERA = "observation.images.camera"
-
 _CHUNK = 1000  # Files in a folder
-
 _LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated
 
 _FEATURES = {
@@ -37,7 +35,6 @@ _FEATURES = {
     "observation.environment_state": TRUTH_NAMES,
 }
 _ACTION = "action"
-
 _COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 
 Stats = dict[str, list[Any]]

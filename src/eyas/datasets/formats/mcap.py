@@ -31,9 +31,7 @@ TOPICS = {
 """Topics and the names of their schemas."""
 
 _TARGET, _OTHER = (1.0, 0.55, 0.0, 1.0), (0.35, 0.67, 1.0, 1.0)  # Colours of boxes
-
 _LINE_LOOP = 2  # Foxglove's number of a closed line
-
 _TIME = {"type": "object", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}}
 
 _KEYS: dict[str, Json] = {

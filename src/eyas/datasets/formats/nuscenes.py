@@ -53,7 +53,6 @@ ATTRIBUTES = (
 )
 
 MOVES = 0.2  # Speed from which something moves [m/s]
-
 CHANNEL, MAP = "CAM_FRONT", "maps/blank.png"
 
 PER_EPISODE = (

@@ -27,11 +27,8 @@ __all__ = ["Uavdt"]
 
 CATEGORIES = {ObjectClass.CAR: 1, ObjectClass.TRUCK: 2, ObjectClass.BUS: 3}
 IGNORED = (1, -1, -1)  # The last columns of an ignored box
-
 LOW, HIGH = 30.0, 70.0  # Altitudes up to which a sequence is low, and from which it is high [m]
-
 LONG_TERM = 1500  # Number of frames from which a sequence is long
-
 STEEP = math.radians(60.0)  # Pitch of the camera from which it looks as a bird does
 
 _wrapped = interpreted(wrap_angle)

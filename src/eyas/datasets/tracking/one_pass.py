@@ -31,9 +31,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 PRECISION_PIXELS = 20  # Largest distance of the centres that counts as precise [pixels]
-
 _SUCCESS = np.linspace(0.0, 1.0, 21)  # Thresholds of OTB's success curve
-
 _RESTART_AFTER = 5  # Frames after a failure until the tracker gets the true box again
 
 

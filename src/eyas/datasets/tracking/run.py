@@ -40,7 +40,6 @@ SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
 
 _LARGEST_BOXES = 1 << 28  # Largest file of boxes [bytes]
-
 SPEED = "timing.json"  # How fast the tracker was here; the one file that does not repeat
 
 

@@ -12,11 +12,8 @@ from eyas.learning.tracking.driving import Drives
 __all__ = ["FARTHEST", "Forecast", "taught_forecast"]
 
 _WIDTH = 64  # Numbers of a hidden layer
-
 FARTHEST = 6.0  # Limit of the scaled numbers of a past: rare ones are no reason for wild answers
-
 _BATCH = 1024  # Pasts in a step
-
 _RATE = 3e-3  # Largest rate of learning of Adam; it falls to nothing
 
 _FREEDOM = 3.0

@@ -15,9 +15,7 @@ from eyas.learning.tracking.samples import GROUP, Sample, Samples
 __all__ = ["Loss", "Progress", "loss_of", "taught"]
 
 _GROUPS = LESSON // GROUP  # In a step
-
 _SHOWN = 0.6  # Share of the other pictures of a group whose keys make the target's
-
 _UNKNOWN = 0.15  # Share of the pictures without any key
 
 _IMPOSTORS = 0.5
@@ -25,11 +23,8 @@ _IMPOSTORS = 0.5
 theirs is not seen. Else places are enough to be right, and keys would tell little."""
 
 _WIDE = 5.0  # Least standard deviation of such an expectation [pixels]
-
 _PLACE = 0.3  # Weight of the place within a cell
-
 _APART = 0.3  # Weight of whose key it is among those of all groups
-
 _WARM_UP = 200  # Steps in which the rate of learning rises, at most a quarter of all
 
 

@@ -14,14 +14,12 @@ from eyas.benchmark.policies.tracker.detector import STRIDE
 __all__ = ["MEAN", "SPREAD", "DetectorNetwork"]
 
 MEAN, SPREAD = 110.0, 60.0  # Of the pixels of a picture by day
-
 OFFSET = 4.0  # Place within a cell for an output of 1 [pixels]
 
 PATCH = 6
 """Side of the square around the middle of a cell whose mean colour is part of its key [pixels]."""
 
 CELL = 1.5  # Variance of a place in a cell, in one axis [pixels^2]
-
 SURE, UNSURE = -4.0, 3.0  # Limits of the logarithm of the standard deviation of a place [pixels]
 
 

@@ -14,7 +14,6 @@ __all__ = ["Oracle", "Pupil"]
 Floats = NDArray[np.float64]
 
 PERIOD = 0.128  # Time between two pictures [s]
-
 _FORGETS = 1.5  # Time constant of the oracle's disturbance [s]
 
 _LOST, _PATIENCE = 3.0, (1.5, 10.0)
@@ -22,7 +21,6 @@ _LOST, _PATIENCE = 3.0, (1.5, 10.0)
 more of its target, or late, to wait for it among others."""
 
 _PATIENT = 0.3  # Share of those who are found late
-
 _AT_RANDOM = 0.01  # Share of the looks at which a pupil is corrected, lost or not
 
 

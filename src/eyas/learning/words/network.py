@@ -16,7 +16,6 @@ PARTS = (1, 2, 4, len(NAMES), len(BODIES))
 """Numbers of a cell: vehicle, place, headings, colours, bodies."""
 
 PLAIN = 3  # Convolutions that are not added to what comes before them
-
 _RARE = -4.0  # Logarithm of the odds of a vehicle in a cell before anything is learned
 
 

@@ -35,25 +35,17 @@ PLACES: Final = tuple(
 """Where pictures are taken: where the protocol's recordings ship, in all weathers."""
 
 SCENES: Final = 1024  # Pictures of a block
-
 _TOGETHER: Final = 32  # That are drawn together
-
 _SEEDS: Final = 2**40  # Range of the seeds, which tests draw below 100,000,000
-
 _TRIED: Final = 4
 _NEAR: Final = 14.0
 """Of so many vehicles the camera looks at the one with the most others around it [m]."""
 
 _ASIDE: Final = 11.0  # Farthest from a vehicle that the camera looks [m]
-
 _HIGHER, _FLATTER = 2.0, 0.03  # Largest change of height [m] and pitch [rad]
-
 _NATURAL: Final = 0.15  # Share of the pictures in which vehicles have the colours of the traffic
-
 _UNIFORM: Final = 0.25  # Share of those in which all have two colours and two bodies
-
 _TOLD: Final = 0.6  # Share of the vehicles that have a colour of the protocol's look-alikes
-
 _CLEAR: Final = 1.3  # A colour has a name if the next one is so many times as far away
 
 

@@ -15,9 +15,7 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 _MOST: Final = 64  # Vehicles that are followed at once
-
 _NOISE: Final = 0.5  # Standard deviation of a place that the network finds [m]
-
 _ACCELERATION: Final = 4.0  # Of vehicles, in each direction [m/s^2]
 
 _SPEED: Final = 8.0
@@ -35,9 +33,7 @@ _OTHER: Final = -4.0
 them is known from so many pictures."""
 
 _LOOKED: Final = 5
-
 _ALIKE: Final = 0.7  # Weight of its looks, against that of its place
-
 _UNLIKE: Final = -6.0  # Least logarithm of how alike two looks are
 
 _KNOWN, _LONG = 0.25, 12.0
@@ -45,14 +41,12 @@ _KNOWN, _LONG = 0.25, 12.0
 one, if another has begun on the same vehicle."""
 
 _SURER: Final = 1.5  # Share of vehicles among things in which the network believes by 1
-
 _NEW: Final = 0.35  # Least belief in a vehicle that has not been seen before
 
 _FORGOTTEN: Final = 1.0
 """Time unseen after which a vehicle is forgotten, unless it is the target [s]."""
 
 _YOUNG: Final = 0.07  # The same for each look at which it has been seen [s]
-
 _REMEMBERED: Final = 0.05  # Least share of the latest look in what is known of a vehicle's looks
 
 

@@ -39,9 +39,7 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 OUTPUTS: Final = ("vehicles", "places", "headings", "colours", "bodies")
-
 STRIDE: Final = 4  # Side of a cell [pixels]
-
 NAMES: Final = tuple(COLOUR_NAMES)  # Of colours
 
 BODIES: Final = (

@@ -21,18 +21,14 @@ _LATE: Final = 0.3
 """Time after the first look from which on a vehicle that appears is hardly meant [s]."""
 
 _HARDLY: Final = 0.2  # How probable it is then, against one that was there
-
 _EDGE: Final = 0.02  # Softness of places in the picture [its width, its height]
-
 _STANDS: Final = 0.6, 0.15  # Speed between standing and moving, and the softness of that [m/s]
 
 _TURNS: Final = 0.12, 0.04
 """Yaw rate between straight on and a turn, and the softness of that [rad/s]."""
 
 _GAP: Final = 10.0  # Longest free road between two, one behind the other [m]
-
 _SOFT: Final = 0.6  # Softness of distances between vehicles [m]
-
 _ROLLS: Final = 1.0  # Speed from which on a vehicle heads where it moves [m/s]
 
 _WEIGHT: Final = 4.0

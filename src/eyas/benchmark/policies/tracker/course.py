@@ -27,7 +27,6 @@ PAST = 1 + 4 * len(LAGS)
 of the present velocity [m/s, m]."""
 
 _KEPT = 64  # States: two seconds of looks of 32 ms
-
 _SLOWEST = 0.5  # Of targets that have a course [m/s]
 
 _COVERED = 2.0

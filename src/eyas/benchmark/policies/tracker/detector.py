@@ -30,11 +30,8 @@ __all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
 Floats = NDArray[np.float64]
 
 OUTPUTS = ("scores", "places", "keys", "ahead")
-
 STRIDE = 4  # Side of a cell [pixels]
-
 _NEAR = 2  # Cells around the best one that are the same target
-
 _LEAST = np.finfo(np.float64).tiny  # Belief that is as good as none
 
 

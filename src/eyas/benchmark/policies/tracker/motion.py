@@ -17,7 +17,6 @@ Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 _PLACE, _VELOCITY, _ACCELERATION = range(3)  # Of a state
-
 _TOGETHER = 0.7  # Correlation of place and velocity on a course: who is ahead of it is fast
 
 

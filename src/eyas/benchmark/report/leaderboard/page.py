@@ -30,7 +30,6 @@ FIGURES = (
     "policy, and the machine it was timed on, are its authors' words."
 )
 ORACLES = "They know more than a drone can see, and are not ranked with the others."
-
 _STYLE = """
 :root { color-scheme: light dark; }
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; }

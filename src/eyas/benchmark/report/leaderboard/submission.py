@@ -30,7 +30,6 @@ __all__ = [
 ]
 
 _LOG = logging.getLogger("eyas")
-
 _LARGEST = 1 << 20  # Largest size of the file with the timing [bytes]
 
 
@@ -38,7 +37,6 @@ _BEYOND = 1e9  # Larger than every figure of a flight
 
 
 CARD = "card.json"  # The file, beside the records of an evaluation
-
 _LARGEST_CARD = 1 << 20  # Largest size of the file [bytes]
 
 
