@@ -156,7 +156,7 @@ def test_observations_hold_the_words_of_the_variant_not_the_truth():
     specs, group = group_of([FIRST], tuple(PROTOCOL.variants))
     env = EnvConfig.model_validate({"observation": {"parts": ["words", "attributes"]}})
     batch = EpisodeBatch(specs, PROTOCOL, env)
-    told = ReferringScenario(batch, PROTOCOL, specs).told()
+    told = ReferringScenario(batch, PROTOCOL, specs).instruction()
     batch.tell(told)
     everyone = np.ones(4, np.bool_)
     batch.look(everyone, everyone)

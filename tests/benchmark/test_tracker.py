@@ -11,7 +11,7 @@ from eyas.benchmark.plan.entry import EntryClass, entry_class
 from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, LAGS, PAST, Course
-from eyas.benchmark.policies.tracker.detector import Clue, Detector
+from eyas.benchmark.policies.tracker.detector import Detector, TargetPrior
 from eyas.benchmark.policies.tracker.ground import Ground
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
@@ -74,7 +74,7 @@ AHEAD = np.zeros((1, len(HORIZONS), 3), np.float32)
 def told():
     past = np.zeros((1, PAST), np.float32)
     key, known = np.zeros((1, 2), np.float32), np.ones(1, np.bool_)
-    return Clue(np.zeros((1, 2)), np.ones(1), key, known, past)
+    return TargetPrior(np.zeros((1, 2)), np.ones(1), key, known, past)
 
 
 def found(*shares):

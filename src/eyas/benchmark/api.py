@@ -22,7 +22,7 @@ class EvaluationChoices(TypedDict, total=False):
     target: Names
     """A target, or several; by default SUMO_VEHICLE."""
     episodes: int
-    """For each place and start direction; by default the protocol's number."""
+    """Episodes of each place and start direction; by default the protocol's number."""
     seeds: int | Sequence[int]
     """Seed of the first episode of each set of episodes: one, or several."""
     latency: str

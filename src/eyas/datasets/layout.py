@@ -31,7 +31,7 @@ class Plan(Config):
     eyas: str
     """Version of Eyas."""
     build_id: str
-    """Of Eyas, too."""
+    """Build of Eyas."""
     source: str
     """The recipe that ships, or `recipe.json`, which the data set then holds."""
     recipe: Recipe

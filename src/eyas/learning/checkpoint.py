@@ -42,9 +42,9 @@ class TrainingProgress:
 
     stage: int = 0
     block: int = 0  # Number of the next block
-    decisions: int = 0  # Of all stages
-    stage_decisions: int = 0  # Of the current stage
-    rows: list[Row] = field(default_factory=list)  # Of the curve, one for each block
+    decisions: int = 0  # Decisions of all stages
+    stage_decisions: int = 0  # Decisions of the current stage
+    rows: list[Row] = field(default_factory=list)  # Rows of the curve, one for each block
 
 
 class RunFolder:

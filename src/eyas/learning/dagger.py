@@ -23,8 +23,8 @@ class Lessons:
     states: Tensor  # What the network carried, shape (T, M, S)
     ended: Tensor  # Whether the episode ended with each decision, shape (T, M)
     labels: Tensor  # The teacher's actions, shape (T, M)
-    weights: Tensor  # Of these, shape (T, M)
-    targets: Tensor  # Of the values, shape (T, M)
+    weights: Tensor  # Weights of the labels, shape (T, M)
+    targets: Tensor  # Targets of the values, shape (T, M)
 
 
 class Buffer:

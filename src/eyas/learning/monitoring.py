@@ -32,7 +32,7 @@ class EvaluationScores(NamedTuple):
 
 
 NO_SCORES = EvaluationScores(float("nan"), float("nan"))
-"""Of a block that is not followed by an evaluation."""
+"""Figures of a block that no evaluation follows."""
 
 
 class _NetworkPolicy:

@@ -22,7 +22,7 @@ _MOST_SETS = 100
 class Place(NamedTuple):
     """Where episodes are, and what is followed."""
 
-    map: str  # Its name or path; a town of another seed than 0 is written `citystreet:900000001`
+    map: str  # Name or path; a town of another seed than 0 is written `citystreet:900000001`
     weather: str
     target: str
 

@@ -39,7 +39,7 @@ class EpisodeGroup(NamedTuple):
 
     config: EyasConfig
     simulation: Simulation
-    rows: NDArray[np.int64]  # Their places in the batch, shape (K,)
+    rows: NDArray[np.int64]  # Index of each episode in the batch, shape (K,)
     staged: Sequence[Any] = ()
     """What the protocol's `stage` has returned for each; empty: there is none."""
 
@@ -84,7 +84,7 @@ class EpisodeBatch:
 
     Attributes:
         observations: Latest observation of each, shape (N, ...).
-        covered: Whose cameras show nothing, shape (N,); to be written.
+        covered: Mask of drones whose camera is covered, shape (N,); the flight writes it.
     """
 
     def __init__(self, episodes: Sequence[EpisodeSpec], protocol: Protocol, env: EnvConfig) -> None:

@@ -14,7 +14,7 @@ fit."""
 
 _TRIED = 50  # Number of seeds that are tried for each episode
 _HOPELESS = 1_000  # Number of starts after which no more are tried if none of them fits
-_PARTS = 25  # In how many parts: looking at a few together costs less than at each alone
+_PARTS = 25  # Groups in which starts are tried: a few together cost less than each alone
 
 
 def first_fitting(

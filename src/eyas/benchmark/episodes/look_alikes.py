@@ -40,11 +40,12 @@ __all__ = [
 ]
 
 HEIGHT: Final = 45.0
-"""Of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other protocols it
-would hardly ever see four vehicles, and cars of 4.5 m are still 10 of 84 pixels long."""
+"""Height of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other
+protocols it would hardly ever see four vehicles, and cars of 4.5 m are still 10 of 84 pixels
+long."""
 
 PITCH: Final = 1.37
-"""Of the camera, as in the other protocols [rad]: a flatter view is soon blocked by buildings."""
+"""Pitch of the camera, as in the other protocols [rad]: buildings soon block a flatter view."""
 
 CASES: Final = (
     (PhraseKind.COLOUR, 1),
@@ -61,8 +62,9 @@ CASES: Final = (
     (PhraseKind.PLACE, 7),
     (PhraseKind.BODY, 1),
 )
-"""By what targets are told apart, and from how many look-alikes; the cases of seeds in a row. Of
-eight alike, hardly ever one alone does something, or is beside something."""
+"""What tells targets apart, and from how many look-alikes, for seeds in a row (order: the episodes
+of published figures depend on it). Of eight alike, hardly ever one alone does something, or is
+beside something."""
 
 COLOURS: Final = (
     "red",
@@ -99,10 +101,10 @@ it. 0.5 and 1 s."""
 class StagedStart(NamedTuple):
     """A start, and what may be said of it."""
 
-    case: tuple[PhraseKind, int]  # By what the target is told apart, and the number of look-alikes
+    case: tuple[PhraseKind, int]  # What tells the target apart; number of look-alikes
     actor: int  # The target
     other: int  # The look-alike that the words are about in the variant `other`
-    pose: NDArray[np.float64]  # Of the drone: east, north, up [m], heading [rad], shape (4,)
+    pose: NDArray[np.float64]  # Pose of the drone: east, north, up [m], heading [rad], (4,)
     phrases: dict[str, Phrase]  # What is said in each variant
 
 

@@ -81,7 +81,7 @@ def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:
 
 
 def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Loss]]:
-    """Return the losses of each episode; none where it is not one of the protocol.
+    """Return the losses of each episode; empty for episodes that the protocol does not choose.
 
     An episode of the protocol has one to three of 4 to 12 s each and none that is longer; its
     target is visible at the start, comes out of each loss far from where it vanished, and the last
@@ -112,7 +112,7 @@ def _moved(places: Floats, loss: Loss) -> float:
 
 
 def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Loss]]:
-    """Return when the camera of each episode is covered; never where it is not one of the protocol.
+    """Return when the camera of each episode is covered; empty if the protocol does not choose it.
 
     The variants of an episode are covered at the same times, but for different lengths. The target
     is visible when the cover comes and for a second after it goes, whichever length it has.

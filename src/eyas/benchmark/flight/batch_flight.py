@@ -78,7 +78,7 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        words = self._scenario.told()
+        words = self._scenario.instruction()
         self._batch.tell(words)
         start = Start(seeds, self._boxes, words, self._batch.roads, self._batch.is_open)
         self._guarded(lambda: self._policy.begin(start))
@@ -153,7 +153,9 @@ class BatchFlight:
             self._ready[row] = step + max(late, repeat)
 
     def _control_steps(self, seconds: float) -> int:
-        """Return a time, rounded up to control steps; rounding errors of the quotient are not."""
+        """Return a time in control steps, rounded up; 1e-9 ignores the quotient's rounding
+        error.
+        """
         return int(np.ceil(seconds / self._protocol.period - 1e-9))
 
     def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's

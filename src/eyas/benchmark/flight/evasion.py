@@ -20,8 +20,8 @@ from eyas.lanes import exact
 __all__ = ["KINDS", "Evasion", "EvasionScenario", "evading", "evasions_of"]
 
 KINDS = ("stop", "turn", "dash", "hiding")
-"""What is told from a target's path: it stops on the road, turns round, drives faster than anybody
-may, or is out of sight for a while."""
+"""Evasions that a target's path shows: a stop on the road, an about-turn, a dash over every speed
+limit, a while out of sight (order: that of the printed figures)."""
 
 _PERIOD = 0.25  # Time between two looks [s]
 _STANDING = 0.5  # Speed below which a target stands [m/s]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch, EpisodeGroup
 from eyas.benchmark.protocols.protocol import Protocol
-from eyas.benchmark.records.record import EpisodeRecord, Published, Trace
+from eyas.benchmark.records.record import EpisodeRecord, PublishedFigures, Trace
 from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Failure
 from eyas.engine.task.done import DoneReason
@@ -85,7 +85,7 @@ Floats = NDArray[np.float64]
 
 LOOK = 4  # Control steps between two counts of the target's pixels
 _TRACE = 20  # Control steps between two points of a trace
-TRACE_PERIOD = 0.16  # The same in the protocols' control steps of 8 ms [s]
+TRACE_PERIOD = 0.16  # Time between two points, with control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363
 """Fewest and most actions that the original's client makes in 1,500 physics steps."""
@@ -102,10 +102,10 @@ class _Measured(NamedTuple):
 
     reward: Floats
     reason: NDArray[np.int64]
-    position: Floats  # Of the drone [m], shape (N, 3)
-    acceleration: Floats  # Of the drone [m/s^2], shape (N, 3)
-    target: Floats  # Its centre, east, north and up [m], shape (N, 3)
-    middle: Floats  # What the middle of the picture shows, east and north [m], shape (N, 2)
+    position: Floats  # Place of the drone [m], shape (N, 3)
+    acceleration: Floats  # Acceleration of the drone [m/s^2], shape (N, 3)
+    target: Floats  # Centre of the target, east, north, up [m], shape (N, 3)
+    middle: Floats  # Ground point in the middle of the picture, east, north [m], (N, 2)
 
 
 def _measured(group: EpisodeGroup) -> _Measured:
@@ -217,7 +217,7 @@ class Meter:
         )
 
 
-def published(reward: Floats, steps: int, seed: int) -> Published:
+def published(reward: Floats, steps: int, seed: int) -> PublishedFigures:
     """Return the figures that the original's code prints, see docs/published-results.md.
 
     Its client makes 305 to 363 actions in an episode, here sampled from the seed and spread evenly,
@@ -231,6 +231,6 @@ def published(reward: Floats, steps: int, seed: int) -> Published:
     full = sampled * steps / _PUBLISHED_LENGTH
     last = np.round(np.arange(1, int(full) + 1) * (steps / full)).astype(np.int64) - 1
     kept = reward[last[last < len(reward)]][:-1]
-    return Published(
+    return PublishedFigures(
         actions=len(kept) + 1, cr=float(kept.sum()), tsr=int((kept > 0.0).sum()) / steps
     )

@@ -16,8 +16,8 @@ class Scenario:
     def __init__(self, count: int) -> None:
         self._nobody = np.zeros(count, np.bool_)
 
-    def told(self) -> Instruction | None:
-        """Return what policies are told at the start; None: no words."""
+    def instruction(self) -> Instruction | None:
+        """Return the instruction of policies at the start; None: no words."""
         return None
 
     def covered(self, step: int) -> Mask:

@@ -19,8 +19,8 @@ class EntryClass(StrEnum):
     """What a policy knows."""
 
     PIXELS = "pixels"  # What its camera and its own sensors show
-    WORDS = "text+pixels"  # Also words, or the attributes that they name
-    BOX = "box"  # Also the target's true box in the first picture
+    WORDS = "text+pixels"  # Pixels, and words or the attributes that they name
+    BOX = "box"  # Pixels, and the true box in the first picture
     PRIVILEGED = "privileged"
     """More than a drone can know: the true state, classes of pixels, or code that flies in the
     process of the simulator, and could read it."""

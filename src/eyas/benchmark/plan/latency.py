@@ -15,7 +15,7 @@ from eyas.lanes import exact
 __all__ = ["PROFILES", "Delay", "Fixed", "Measured", "Profiled", "SampledDelay", "delay_from"]
 
 _LARGEST = 10_000.0  # Largest latency [ms]
-_GRACE = 3  # First answers whose measured latency does not count: libraries warm up
+_GRACE = 3  # First answers that count as immediate: libraries warm up
 
 
 class Profile(NamedTuple):
@@ -43,7 +43,7 @@ _P95 = 1.6448536269514722  # The quantile of the normal distribution that `Profi
 class Delay(Protocol):
     """The latency of a policy."""
 
-    name: str  # As the user has written it
+    name: str  # Text of the option `--latency`
     period: float  # Shortest time from one look to the next [s]
 
     def begin(self, seeds: list[int]) -> None:
@@ -61,7 +61,7 @@ class Delay(Protocol):
 
 @dataclass
 class Fixed:
-    """Always the same."""
+    """A fixed latency."""
 
     name: str
     seconds: float
@@ -77,7 +77,7 @@ class Fixed:
 
 @dataclass
 class SampledDelay:
-    """SampledDelay from measured ones, by the seed of each episode."""
+    """Latencies sampled from a list, by the seed of each episode."""
 
     name: str
     values: list[float]  # [s]
@@ -118,7 +118,7 @@ class Profiled:
 
 @dataclass
 class Measured:
-    """That of this machine; episodes must be flown one by one."""
+    """Time that this machine takes; episodes must be flown one by one."""
 
     name: str = "measured"
     period: float = 0.0

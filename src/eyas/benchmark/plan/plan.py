@@ -42,9 +42,9 @@ class EvaluationPlan(Config):
     maps: Names = ("citystreet",)
     weathers: Names = ("day",)
     targets: Names | None = None
-    """None: the protocol's."""
+    """What is followed; None: the protocol's targets."""
     episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
-    """For each place and start direction; None: the protocol's number."""
+    """Episodes of each place and start direction; None: the protocol's number."""
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (FIRST_SEED,)
     """Seed of the first episode of each set of episodes."""
     latency: str = "0"
@@ -125,16 +125,16 @@ _NOT_FLOWN = ("learning", "robotics", "engine/exports", "engine/overlay", "engin
 
 
 class Stamp(Config):
-    """What tells whether records belong together."""
+    """Identity of an evaluation: records with equal stamps belong together."""
 
     version: str
-    """Of Eyas."""
+    """Version of Eyas."""
     build: Build
-    """Of Eyas, too: what its code and data are."""
+    """Digests of the code and data of Eyas."""
     protocol: str
     """Hash of the protocol."""
     rules: Origin | None = None
-    """Whose protocol it is; None: one of Eyas."""
+    """Origin of the protocol's code; None: Eyas."""
     policy: str | None
     """Hash of the policy's file; None if it has none."""
     plan: EvaluationPlan

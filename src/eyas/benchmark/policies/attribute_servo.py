@@ -64,8 +64,8 @@ class _Drone:
 
     def __init__(self, claim: Claim | None) -> None:
         self.claim = claim
-        self.colour: Floats | None = None  # Of what it follows without words, as seen [0 to 255]
-        self.own = np.zeros(2)  # Its way so far, ahead and left [m]
+        self.colour: Floats | None = None  # Colour that is followed without words [0 to 255]
+        self.own = np.zeros(2)  # Distance flown so far, ahead and left [m]
         self.time = 0.0
         self.watched: list[tuple[float, Floats]] = []
         """Times and places of all candidates while it watches."""

@@ -29,7 +29,7 @@ _LIGHT: Final = (0.6, 1.15)
 
 _DARKER: Final = 0.3  # Weight of the logarithm of what is beyond these
 _UNSURE: Final = 0.05  # A paint may be one of two names that differ by less
-_LEVELS: Final = 32  # Of each channel in the table of names
+_LEVELS: Final = 32  # Levels of each channel in the table of names
 
 _BRIDGED: Final = 0.8, 0.45
 """Windows and roofs up to twice as long do not divide a blob, where it is one vehicle or a queue of

@@ -116,8 +116,8 @@ def _networks() -> tuple[Path, Path]:
 
 
 _OF_OPENCV = {"csrt": "CSRT", "kcf": "KCF", "mosse": "MOSSE", "medianflow": "MedianFlow"}
-"""Their names. MIL is not among them: it samples of one generator for all sequences, which cannot
-be seeded, so that its boxes depend on what was tracked before."""
+"""OpenCV's classes by our names. MIL is not among them: it samples of one generator for all
+sequences, which cannot be seeded, so that its boxes depend on what was tracked before."""
 
 
 BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")  # Names of all

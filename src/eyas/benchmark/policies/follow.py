@@ -21,7 +21,7 @@ class Follow:
         )
 
     def begin(self, start: Start) -> None:
-        """Do nothing, for it remembers nothing."""
+        """No-op: this oracle is stateless."""
 
     def act(self, sight: PolicyInput) -> Decision:
         """Fly there."""

@@ -22,7 +22,7 @@ class LaneGraph(NamedTuple):
     """Points along the lanes, and along the ways over junctions from lane to lane; P points."""
 
     place: Floats  # East and north [m], shape (P, 2)
-    heading: Floats  # Of the lane [rad], shape (P,)
+    heading: Floats  # Heading of the lane [rad], shape (P,)
     speed: Floats  # Speed limit [m/s], shape (P,)
     after: Integers
     """Points that follow, the straightest first; each row is filled up by repeating them, shape
@@ -55,8 +55,8 @@ class Lanes:
         self.graph = LaneGraph(place, heading, speed, np.concatenate(after))
         self._spans = [spans[id(roads)] for roads in networks]
 
-    def told(self, tell: Callable[[int, Floats], NDArray[np.bool_]]) -> NDArray[np.bool_]:
-        """Return what is told of all points, shape (P,).
+    def evaluated(self, tell: Callable[[int, Floats], NDArray[np.bool_]]) -> NDArray[np.bool_]:
+        """Return the values of a function at all points, shape (P,).
 
         Args:
             tell: Function of the number of a drone and of places around it, shape (M, 2).

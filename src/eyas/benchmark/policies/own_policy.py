@@ -21,13 +21,13 @@ from eyas.engine.policies.policy import (
 )
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["Each", "Whole", "load_callable"]
+__all__ = ["BatchedFunction", "PerEpisodePolicy", "load_callable"]
 
 _IN_WORDS = frozenset({"words", "attributes"})
 SETTINGS = "env_settings"  # Attribute of a user's policy: changes of the defaults of `env`
 
 
-class Each:
+class PerEpisodePolicy:
     """Calls one object for each episode.
 
     Args:
@@ -97,7 +97,7 @@ class Each:
         return Decision(actions, failed, messages)
 
 
-class Whole:
+class BatchedFunction:
     """Calls one function with the observations of all episodes; it cannot tell them apart."""
 
     sampled = False
@@ -107,7 +107,7 @@ class Whole:
         self.env, self._function, self._path = env, function, path
 
     def begin(self, start: Start) -> None:
-        """Do nothing: a function remembers nothing."""
+        """No-op: a function is stateless."""
 
     def act(self, sight: PolicyInput) -> Decision:
         """Call the function."""
@@ -170,10 +170,10 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
     if made and hasattr(found, "begin"):
         return _together(found, env, path)
     if made:
-        return Each(found, env, path, _asked_for(found))
+        return PerEpisodePolicy(found, env, path, _asked_for(found))
     if getattr(found, "batched", False):
-        return Whole(found, env, path)
-    return Each(lambda: found, env, path)
+        return BatchedFunction(found, env, path)
+    return PerEpisodePolicy(lambda: found, env, path)
 
 
 def _together(found: type, env: EnvConfig, path: str) -> Policy:

@@ -55,7 +55,7 @@ class RoadSearch:
         self._ahead = AlongLanes()
         self._ahead.begin(start)
         self._lanes = Lanes(start.roads())
-        self._open = self._lanes.told(start.is_open)
+        self._open = self._lanes.evaluated(start.is_open)
         self._exit = self._exits()
         self._random = [stream(seed, "search") for seed in start.seeds.tolist()]
         shape = count, _GUESSES

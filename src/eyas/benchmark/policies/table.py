@@ -54,7 +54,7 @@ POLICIES: Registry[Callable[..., Any]] = Registry(
 add is what `package.module:name` may be, see `load_callable`."""
 
 ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
-"""Those that are told the truth, and fly by seven actions or, where `env.actions` says so, by
+"""Policies that know the truth; they fly by seven actions or, where `env.actions` says so, by
 velocities."""
 
 FILES = {

@@ -18,7 +18,8 @@ from eyas.engine.policies.sight import nearest_to_middle
 __all__ = ["CROWD", "CrowdScenario", "switches"]
 
 _HEIGHT: Final = 12.0
-"""Of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22 m."""
+"""Height of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22
+m."""
 
 _SWITCHED: Final = 0.5  # Time for which another must be followed to count as a switch [s]
 

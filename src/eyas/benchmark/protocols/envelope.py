@@ -72,4 +72,4 @@ class Envelope:
         return held
 
 
-ENVELOPE = Envelope()  # That of all protocols of today
+ENVELOPE = Envelope()  # Default flight limits, shared by every protocol

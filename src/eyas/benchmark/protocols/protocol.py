@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "Stage", "in_order"]
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
-NEVER = 2**31 - 1  # As `done.no_reward_steps`: a lost target does not end the episode.
+NEVER = 2**31 - 1  # Value of `done.no_reward_steps` with which a lost target ends no episode
 
 Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]
 """Chooses the episodes of places: so many for each place and direction, from a first seed on. More
@@ -108,7 +108,7 @@ class Protocol:
     """The figures that are printed; the files have all."""
     rank: str = "tsr"  # The figure by which a leaderboard ranks
     gaps: tuple[str, ...] = ()
-    """Those of its own figures that are differences of two shares, from -1 to 1."""
+    """Names of its figures that are differences of two shares, from -1 to 1."""
     alike: bool = False  # Whether all others of the target's kind look like it
     choose: Chooser = in_order  # Which its episodes are
     stage: Stage | None = None  # Changes how its episodes begin; None: they begin as sampled

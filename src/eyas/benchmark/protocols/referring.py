@@ -128,7 +128,7 @@ class ReferringScenario(Scenario):
         self._nearest = np.full((batch.count, protocol.steps // LOOK), -1, np.int64)
         """Whom each follows at each look; -1: nobody is in the picture."""
 
-    def told(self) -> Instruction:
+    def instruction(self) -> Instruction:
         """Return the words of each episode's variant."""
         phrases: list[Phrase] = [
             self._starts[row].phrases[variant] for row, variant in enumerate(self._variant)

@@ -11,13 +11,20 @@ from eyas.engine.core.decoding import decoded_json
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import read_limited, refusals, write_atomic
 
-__all__ = ["EpisodeRecord", "Published", "RecordFile", "Trace", "order_records", "read_records"]
+__all__ = [
+    "EpisodeRecord",
+    "PublishedFigures",
+    "RecordFile",
+    "Trace",
+    "order_records",
+    "read_records",
+]
 
 
 _LARGEST = 1 << 31  # Largest size of a file of records [bytes]: half a million episodes of 90 s
 
 
-class Published(Config):
+class PublishedFigures(Config):
     """The figures that the original's code would have printed for the same flight."""
 
     actions: int
@@ -34,7 +41,7 @@ class Trace(Config):
     drone: tuple[tuple[float, float], ...]
     """Place at the end of each step, east and north [m]."""
     target: tuple[tuple[float, float], ...]
-    """The same of the target."""
+    """Place of the target at the end of each step, east and north [m]."""
 
 
 class EpisodeRecord(Config):
@@ -57,7 +64,7 @@ class EpisodeRecord(Config):
     error: str | None = None
     """What the policy failed with; its figures count what it had reached until then."""
     traceback: str | None = None
-    """Where in its code."""
+    """Traceback in the policy's code."""
     reason: str
     """`DoneReason` in small letters, or `policy_failed`."""
     duration: float
@@ -72,7 +79,7 @@ class EpisodeRecord(Config):
     visible: float
     """Mean share of the target that nothing hides, 0 where it is out of the picture."""
     clear: float
-    """The same under exact following, so that it is the place's and not the policy's."""
+    """Mean visible share under exact following: a property of the place, not of the policy."""
     found_after: float | None
     """When the target is first in the picture; None: never."""
     lost_after: float | None
@@ -95,8 +102,8 @@ class EpisodeRecord(Config):
     jerk: float
     """Root mean square [m/s^3]: how rough the flight is."""
     figures: dict[str, float | None]
-    """Those that only the protocol has, see docs/evaluation.md; None: not defined here."""
-    published: Published
+    """Figures that only the protocol has, see docs/evaluation.md; None: not defined here."""
+    published: PublishedFigures
     trace: Trace
 
 

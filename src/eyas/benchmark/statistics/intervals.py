@@ -68,7 +68,7 @@ _LARGEST_AGAIN = 0.5
 """How many more clusters a variance counts that differ by the largest deviation seen. Without, the
 intervals of differences of two good policies held in 89 % of samples of 40; with one, 98 %."""
 
-_WORST = 0.2  # Share of the flights of which the mean of the worst is
+_WORST = 0.2  # Share of the flights that `worst_fifth` is the mean of
 
 
 class Interval(NamedTuple):
@@ -196,7 +196,7 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
     limit = float(np.sort(array)[math.ceil(size) - 1])
     below = np.maximum(limit - array, 0.0)
     mean = limit - float(below.sum()) / size
-    # Those of the fifth alone tell how much it varies.
+    # Only the clusters of the fifth say how much it varies.
     count = int(_WORST * clusters.count)
     if count < FEWEST:
         return Estimate(len(array), clusters.count, mean, None)

@@ -29,7 +29,7 @@ class Figure(NamedTuple):
     read: Callable[[EpisodeRecord], float | None]
     """Reads it from the record; records for which it is None are left out of a row's mean."""
     high: float | None = None  # The largest value that is possible, if there is one
-    signed: bool = False  # Whether it may be less than 0; all others are not
+    signed: bool = False  # True if negative values are valid
 
 
 def figures_of(

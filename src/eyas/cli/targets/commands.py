@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app"]
 
-_WIDTH = 190  # Of the table [characters]; a narrower terminal breaks its lines
+_WIDTH = 190  # Width of the table [characters]; a narrower terminal breaks its lines
 
 _Scale = Annotated[float, typer.Option("--scale", help="Metres in the mesh file's unit.")]
 _Up = Annotated[str | None, typer.Option("--up", help="The mesh file's axis that is up: y or z.")]

@@ -23,7 +23,7 @@ from eyas.lanes.folder import FOLDER_VARIABLE
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
 
-Hashes = dict[str, dict[str, str]]  # Of cases by name, of each by the name of what they are of
+Hashes = dict[str, dict[str, str]]  # Hashes by case, then by what is hashed
 
 
 def manifest_path() -> Path:

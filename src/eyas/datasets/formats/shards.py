@@ -16,7 +16,7 @@ from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["WebDataset"]
 
-_LARGEST = 1 << 28  # Of a file of one frame [bytes]
+_LARGEST = 1 << 28  # Largest file of one frame [bytes]
 _PLANES = ("masks", "classes", "depth", "flow")
 
 

@@ -27,7 +27,7 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 LOOK: Final = 0.032  # Time between two looks [s]
-_LOOKS: Final = 1100  # For which vehicles are followed
+_LOOKS: Final = 1100  # Looks for which vehicles are followed
 _LEAST: Final = 300  # Looks of a vehicle that is followed at all
 _JUMP: Final = 2.0  # Way of a vehicle from look to look with which it begins elsewhere anew [m]
 _ERRORS: Final = 0.1, 0.35  # Range of the standard deviation of places of vehicles [m]
@@ -37,7 +37,7 @@ _SEEN, _GOING, _HIDDEN, _COMING = range(4)  # Phases, which follow each other
 _TOLD: Final = np.array((0.5, 0.9, 0.5, 0.9))
 """Standard deviation that the network says in each phase, times `TrackerSettings.doubt` [m]."""
 
-_BELIEF: Final = np.array((1.0, 0.8, 0.0, 0.8))  # Of each phase
+_BELIEF: Final = np.array((1.0, 0.8, 0.0, 0.8))  # Belief in each phase
 _LATE: Final = 0.35  # Most by which a half hidden vehicle is told late or early [s]
 _CHOSEN: Final = 0.15  # Share of the looks that are kept; of the last ones before it is hidden, all
 

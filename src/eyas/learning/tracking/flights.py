@@ -25,15 +25,15 @@ MAPS = ("citystreet", "downtown", "village", "lake", "desert", "farmland")
 
 WEATHERS = ("day", "night", "foggy", "snow")
 _TURN = (MAPS[0], MAPS[1], MAPS[2], MAPS[3], MAPS[0], MAPS[1], MAPS[2], MAPS[4], MAPS[5])
-_FLIGHTS = 8  # For each weather of a batch
-_WORLDS = 4  # For each batch of traffic without flights
+_FLIGHTS = 8  # Flights for each weather of a batch
+_WORLDS = 4  # Worlds for each batch of traffic without flights
 _STEPS = 5_000  # Length of a flight [2 ms]
 _WALKERS = tuple(name for name in TargetName if name is not TargetName.SUMO_VEHICLE)
 _WALKING = 0.2  # Share of the flights with a target other than a vehicle
 _ALIKE = 0.15  # Share of the batches in which all vehicles look like the target
 _HIDING = 0.5  # Share of a pupil's batches on maps with covers in which drivers hide
 _COVERED = "citystreet", "village"  # Maps for which traffic with such drivers comes with Eyas
-_LATENCIES = ("0", "0", "40", "80")  # Of a pupil [ms]
+_LATENCIES = ("0", "0", "40", "80")  # Latencies of a pupil [ms]
 _SEEDS = 2**40  # Range of the seeds of episodes, which tests draw below 100,000,000
 
 _TRAFFIC: tuple[dict[str, Any], ...] = (

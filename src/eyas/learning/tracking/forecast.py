@@ -29,7 +29,7 @@ class Forecast(nn.Module):
         self.second = nn.Linear(_WIDTH, _WIDTH)
         self.last = nn.Linear(_WIDTH, 3 * len(HORIZONS))
         self.mean: Tensor
-        self.spread: Tensor  # Of each number of the pasts, shape (PAST,)
+        self.spread: Tensor  # Standard deviation of each number of `past`, (PAST,)
         self.register_buffer("mean", torch.zeros(PAST))
         self.register_buffer("spread", torch.ones(PAST))
         unit = torch.tensor(HORIZONS, dtype=torch.float32)

@@ -18,10 +18,11 @@ _ENOUGH: Final = 0.35  # Share of a vehicle that must be visible for it to count
 _WIDE: Final = 0.7  # Standard deviation of a peak [cells]
 
 _JITTER: Final = 0.5
-"""Of the cell in which a vehicle's looks are taught, which is not always the peak [cells]."""
+"""Standard deviation of the cell in which a vehicle's looks are taught, which is not always the
+peak [cells]."""
 
 _WEIGHTS: Final = (1.0, 0.5, 0.5, 0.5, 0.5)
-"""Of the peaks, places, headings, colours and bodies in the loss."""
+"""Weights of peaks, places, headings, colours and bodies in the loss."""
 
 _LIGHT, _TINT, _NOISE = 0.2, 0.04, 3.0
 """Largest changes of a picture's light and of each colour's, and noise [levels]."""

@@ -35,11 +35,10 @@ PLACES: Final = tuple(
 """Where pictures are taken: where the protocol's recordings ship, in all weathers."""
 
 SCENES: Final = 1024  # Pictures of a block
-_TOGETHER: Final = 32  # That are drawn together
+_TOGETHER: Final = 32  # Batch size when drawing
 _SEEDS: Final = 2**40  # Range of the seeds, which tests draw below 100,000,000
-_TRIED: Final = 4
-_NEAR: Final = 14.0
-"""Of so many vehicles the camera looks at the one with the most others around it [m]."""
+_TRIED: Final = 4  # Vehicles of which the camera looks at the one with the most others around it
+_NEAR: Final = 14.0  # Radius in which others are counted [m]
 
 _ASIDE: Final = 11.0  # Farthest from a vehicle that the camera looks [m]
 _HIGHER, _FLATTER = 2.0, 0.03  # Largest change of height [m] and pitch [rad]

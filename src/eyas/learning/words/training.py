@@ -26,7 +26,7 @@ __all__ = ["LISTENER", "train"]
 LISTENER: Final = TrackerSettings(height=44.2, gain=0.3)
 """45 m above the road, and about 0.8 m less above the middles of vehicles."""
 
-_PICTURES: Final = 32  # In a step of learning
+_PICTURES: Final = 32  # Batch size of a step of learning
 _WARM_UP: Final = 200  # Steps in which the rate of learning rises, at most a quarter of all
 
 Say = Callable[[str], None]

@@ -40,7 +40,9 @@ Floats = NDArray[np.float64]
 
 OUTPUTS: Final = ("vehicles", "places", "headings", "colours", "bodies")
 STRIDE: Final = 4  # Side of a cell [pixels]
-NAMES: Final = tuple(COLOUR_NAMES)  # Of colours
+NAMES: Final = tuple(
+    COLOUR_NAMES
+)  # Names of colours; index into `colours`, order: shipped networks
 
 BODIES: Final = (
     BodyWord.SEDAN,
@@ -53,7 +55,7 @@ BODIES: Final = (
     BodyWord.MOTORCYCLE,
     BodyWord.BICYCLE,
 )
-"""Own words of all that drives on roads."""
+"""Words of all that drives on roads; index into `bodies` (order: shipped networks have it)."""
 
 _LEAST: Final = -1.4  # Least logarithm of the odds of a vehicle: a fifth
 
@@ -67,7 +69,7 @@ class Detections(NamedTuple):
 
     belief: Floats  # Probability that it is one, shape (D,)
     place: Floats  # Column and row [pixels], shape (D, 2)
-    heading: Floats  # As the output, shape (D, 4)
+    heading: Floats  # Output `headings`, shape (D, 4)
     colour: Floats  # Logarithms of probabilities of `NAMES`, shape (D, 22)
     body: Floats  # Logarithms of probabilities of `BODIES`, shape (D, 9)
 

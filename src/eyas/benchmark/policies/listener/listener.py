@@ -28,8 +28,8 @@ __all__ = ["Listener"]
 
 Floats = NDArray[np.float64]
 
-_WATCHED: Final = 0.3  # How long it looks before it chooses [s]
-_WATCHED_MOVING: Final = 1.1  # The same where it is told what its target does [s]
+_WATCHED: Final = 0.3  # Time of looking before the choice [s]
+_WATCHED_MOVING: Final = 1.1  # Time of looking where motion is named [s]
 _ROOF: Final = 0.8  # Height of a vehicle's middle above the road [m]
 
 

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
+__all__ = ["OUTPUTS", "STRIDE", "Detector", "TargetDetection", "TargetPrior"]
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ _NEAR = 2  # Cells around the best one that are the same target
 _LEAST = np.finfo(np.float64).tiny  # Belief that is as good as none
 
 
-class Clue(NamedTuple):
+class TargetPrior(NamedTuple):
     """What is known of N targets before a picture is seen."""
 
     expected: Floats  # Column and row [pixels], shape (N, 2)
@@ -45,7 +45,7 @@ class Clue(NamedTuple):
     past: NDArray[np.float32]  # How each has moved of late, shape (N, 21)
 
 
-class Found(NamedTuple):
+class TargetDetection(NamedTuple):
     """What N pictures show."""
 
     place: Floats
@@ -82,7 +82,7 @@ class Detector:
         """Return whether such a network says where targets will be that are not seen."""
         return "past" in {each.name for each in session.get_inputs()}
 
-    def find(self, pictures: NDArray[np.uint8], clue: Clue) -> Found:
+    def find(self, pictures: NDArray[np.uint8], clue: TargetPrior) -> TargetDetection:
         """Find targets."""
         feed = {
             "image": pictures,
@@ -104,7 +104,7 @@ class Detector:
         # Of a target far out of view all shares may be 0; what is found then is not believed.
         around /= np.maximum(belief, _LEAST)[:, None]
         place, spread = _moments(around, places.astype(np.float64))
-        return Found(place, spread, belief, keys[np.arange(len(best)), best], ahead)
+        return TargetDetection(place, spread, belief, keys[np.arange(len(best)), best], ahead)
 
 
 def _moments(shares: Floats, places: Floats) -> tuple[Floats, Floats]:

@@ -16,7 +16,7 @@ __all__ = ["MotionFilter"]
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_PLACE, _VELOCITY, _ACCELERATION = range(3)  # Of a state
+_PLACE, _VELOCITY, _ACCELERATION = range(3)  # Rows of a state
 _TOGETHER = 0.7  # Correlation of place and velocity on a course: who is ahead of it is fast
 
 
@@ -33,7 +33,7 @@ class MotionFilter:
 
     def __init__(self, count: int, widest: float) -> None:
         self._state = np.zeros((count, 3, 2))
-        self._variance = np.zeros((count, 3, 3))  # Of each axis
+        self._variance = np.zeros((count, 3, 3))  # Covariance of either axis, shape (N, 3, 3)
         self.acceleration, self.lasting = np.ones(count), np.ones(count)
         self._widest = widest
 

@@ -12,7 +12,7 @@ __all__ = ["Steering", "turned"]
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_CONTROL_STEP = 0.008  # Of all protocols [s]
+_CONTROL_STEP = 0.008  # Control step of all protocols [s]
 
 
 class Steering:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.tracker.course import Course
-from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
+from eyas.benchmark.policies.tracker.detector import Detector, TargetDetection, TargetPrior
 from eyas.benchmark.policies.tracker.ground import Ground
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.motion import MotionFilter
@@ -47,7 +47,7 @@ _LEAST_RENEWAL = 0.001
 _SURE_PIXELS = 8.0
 """Largest standard deviation of the expected place at which that memory is renewed [pixels]."""
 
-_FIRST_SPREAD = 0.5  # Of the place that the first box tells [m]
+_FIRST_SPREAD = 0.5  # Standard deviation of the place of the first box [m]
 
 
 class Tracker:
@@ -89,7 +89,7 @@ class Tracker:
         self.motion, self.course = MotionFilter(count, self.settings.widest), Course(count)
         self.boxes = start.boxes().astype(np.float64)
         self.expected, self.spread = np.zeros((count, 2)), np.ones(count)
-        """What the network was told last, see `Clue`."""
+        """What the network was told last, see `TargetPrior`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
         self.left = np.zeros((count, 2))
@@ -173,7 +173,7 @@ class Tracker:
         self.motion.stop(rows[far], self.settings.speed)
         self.course.leave(rows[far])
 
-    def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
+    def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> TargetPrior:
         """Return what the network is told about targets, see `look`."""
         expected = self.ground.pixels(turned(self.motion.place[rows] - place, -yaw))
         spread = np.sqrt(
@@ -181,7 +181,7 @@ class Tracker:
         )
         known = self._renewed[rows] > 0
         spread *= self.ground.pixels_per_metre
-        return Clue(expected, spread, self._key[rows], known, self.course.past[rows])
+        return TargetPrior(expected, spread, self._key[rows], known, self.course.past[rows])
 
     def _show(self, rows: Rows, place: Floats, yaw: Floats) -> None:
         """Begin with the first boxes: where the targets are, and what can move how."""
@@ -196,7 +196,7 @@ class Tracker:
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
         self.left[rows] = where
 
-    def _remember(self, rows: Rows, found: Found, sure: Mask) -> None:
+    def _remember(self, rows: Rows, found: TargetDetection, sure: Mask) -> None:
         """Renew the memory of how targets look, by those that are surely seen."""
         sure = sure & (found.belief > self.settings.remembered)
         rows = rows[sure]

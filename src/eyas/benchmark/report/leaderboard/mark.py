@@ -32,13 +32,13 @@ class Mark(Config):
     """What was flown again, with equal results."""
 
     build: str
-    """Of the Eyas that has flown it."""
+    """Build of Eyas that has flown it again."""
     seed: int
-    """Which episodes were chosen."""
+    """Seed of the choice of episodes."""
     flown: tuple[str, ...]
-    """Their names."""
+    """Names of the episodes that were flown again."""
     episodes: int
-    """How many the evaluation has."""
+    """Number of the evaluation's episodes."""
     content: str
     """Hash of plan and records, see `content_hash`."""
     signature: str = ""

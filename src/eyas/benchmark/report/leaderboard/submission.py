@@ -61,7 +61,7 @@ class ModelCard(Config):
     trained_on: Line | None = None
     """The maps, recordings or films of training."""
     license: Line | None = None
-    """Of the weights, for example `MIT`."""
+    """Licence of the weights, for example `MIT`."""
     remarks: Annotated[str, Field(max_length=2000)] | None = None
 
 

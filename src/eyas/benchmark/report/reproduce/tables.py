@@ -28,7 +28,7 @@ THREE_SETS = (1_000_000, 11_000_000, 21_000_000)
 """First seeds of three sets of episodes: one lucky set is then seen as one."""
 
 FLOWN_SETS = (1_000_000, 2_000_000, 3_000_000)
-"""Those of the tracker's other figures, see docs/following-one-target.md."""
+"""Protocols of the tracker's other figures, see docs/following-one-target.md."""
 
 
 class Row(NamedTuple):
