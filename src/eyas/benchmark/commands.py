@@ -184,11 +184,7 @@ _FREE = (["start", "velocity"], ["extras"])
 
 
 def _changes(said: list[str]) -> dict[str, Any]:
-    """Return changes from `env.key=value`, and of other rooms.
-
-    Raises:
-        ConfigError: One is of another form, or changes what the protocol fixes.
-    """
+    """Return changes from `env.key=value`, and of other rooms."""
     from eyas.engine.settings.file import parsed_override
 
     changes: dict[str, Any] = {}

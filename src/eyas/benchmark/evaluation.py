@@ -97,11 +97,7 @@ def run(
 
 
 def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[EpisodeRecord]:
-    """Return the records that the folder has; write the stamp into an empty one.
-
-    Raises:
-        OutputError: It holds another evaluation, or one that may not be continued.
-    """
+    """Return the records that the folder has; write the stamp into an empty one."""
     path = out / STAMP
     if overwrite:
         _delete(out)

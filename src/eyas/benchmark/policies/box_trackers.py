@@ -40,11 +40,7 @@ class BoxTracker(Protocol):
 
 
 class _OpenCv:
-    """A tracker of OpenCV.
-
-    Args:
-        make: Returns a fresh one.
-    """
+    """A tracker of OpenCV, which `make` returns."""
 
     def __init__(self, make: Callable[[], Any]) -> None:
         self._tracker = make()
@@ -75,12 +71,7 @@ class _Stay:
 
 
 def _opencv(name: str) -> Callable[[], BoxTracker]:
-    """Return what makes a tracker of OpenCV.
-
-    Raises:
-        MissingExtraError: OpenCV is not installed.
-        DataFileError: The networks of NanoTrack are not there.
-    """
+    """Return what makes a tracker of OpenCV."""
     try:
         import cv2 as module
     except ImportError as error:

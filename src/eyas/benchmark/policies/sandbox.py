@@ -90,11 +90,7 @@ def _exactly(stream: IO[bytes], size: int) -> bytes:
 
 
 class _Child:
-    """The process of a policy.
-
-    Raises:
-        ConfigError: The policy cannot be loaded.
-    """
+    """The process of a policy."""
 
     def __init__(self, said: str, changes: Mapping[str, Any], *, sampled: bool) -> None:
         paths = [path for path in sys.path if path]

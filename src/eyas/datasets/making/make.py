@@ -166,12 +166,7 @@ def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
 
 
 def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
-    """Return the file by which a data set is known that is to be continued; None: there is none.
-
-    Raises:
-        OutputError: As `open_folder`.
-        DataFileError: As `open_folder`.
-    """
+    """Return the file by which a data set is known that is to be continued; None: there is none."""
     with refusals(root):
         names = {inside.name for inside in root.iterdir()} - {LOCK}
     names = {name for name in names if not name.endswith(PART_SUFFIX)}

@@ -111,11 +111,7 @@ def _episodes(recording: Recording, split: str | None) -> Sequence[RecordedEpiso
 
 
 def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None:
-    """Prepare the folder.
-
-    Raises:
-        OutputError: It is not empty, or of something else.
-    """
+    """Prepare the folder."""
     asked = {
         **asdict(scoring),
         "folder": scoring.folder.resolve().name,

@@ -118,11 +118,7 @@ def _line(progress: TrainingProgress, training: WordsTraining) -> str:
 
 
 def _refuse_unlike(config: EyasConfig) -> None:
-    """Refuse settings that would change nothing.
-
-    Raises:
-        ConfigError: There is one.
-    """
+    """Refuse settings that would change nothing."""
     wanted = load_settings(preset_file("eyas-words"))
     for name in sorted(EyasConfig.model_fields.keys() - {"mode", "seed", "train"}):
         if getattr(config, name) != getattr(wanted, name):

@@ -98,12 +98,7 @@ def verify(
 
 
 def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
-    """Return the mark of an entry whose episodes are equal when they are flown again.
-
-    Raises:
-        _DifferenceError: They are not.
-        EyasError: They cannot be flown.
-    """
+    """Return the mark of an entry whose episodes are equal when they are flown again."""
     content = content_hash(folder)  # before anything is read of it
     made, entry, records = complete_run(folder)
     plan = _flyable(folder, made, entry, trust=trust)
@@ -124,12 +119,7 @@ def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
 
 
 def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> EvaluationPlan:
-    """Return the plan of an entry, with its policy where this machine has it.
-
-    Raises:
-        _DifferenceError: The policy sees or does something else than is told.
-        EyasError: It cannot be flown here, or it would run code.
-    """
+    """Return the plan of an entry, with its policy where this machine has it."""
     plan = made.plan
     if plan.latency == "measured":
         raise _UnverifiableError("flown with --latency measured, which does not repeat")
@@ -187,11 +177,7 @@ def _places(plan: EvaluationPlan) -> Iterator[Place]:
 
 
 def _refuse_others(parts: list[list[EpisodeSpec]], records: list[EpisodeRecord]) -> None:
-    """Refuse records that are not those of the plan's episodes, batch by batch.
-
-    Raises:
-        _DifferenceError: Some are missing, or stand elsewhere.
-    """
+    """Refuse records that are not those of the plan's episodes, batch by batch."""
     planned = {episode.name: episode for part in parts for episode in part}
     for record in records:
         if record.name not in planned:
@@ -210,11 +196,7 @@ def _refuse_others(parts: list[list[EpisodeSpec]], records: list[EpisodeRecord])
 
 
 def _compare(line: bytes, told: EpisodeRecord, again: EpisodeRecord) -> None:
-    """Refuse a record that is not that of the flight.
-
-    Raises:
-        _DifferenceError: With the first field that differs.
-    """
+    """Refuse a record that is not that of the flight."""
     for name in EpisodeRecord.model_fields:
         old, new = getattr(told, name), getattr(again, name)
         if old != new and name != "traceback":  # which tells paths of the machine
