@@ -43,7 +43,7 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
 
 
 def _refuse_spread(config: EyasConfig, *, ray: bool) -> None:
-    """Refuse to spread what learns without rollouts: it does so on this processor, in this process."""
+    """Refuse to spread what learns without rollouts: one process on this processor does."""
     method, device = TrainConfig.of(config).method, TrainConfig.of(config).device
     if ray:
         raise ConfigError(f"--ray: not allowed with {SETTING} '{method}': one process learns")

@@ -67,7 +67,7 @@ def _recorded(
 
 
 def _archive_of(part: Part, build: str) -> bytes:
-    """Return a recorded part as an archive, made by the one core that Ray has given this process."""
+    """Return a recorded part as an archive, made by the one core of this process."""
     limit_threads(1)
     here = this_build().id
     if here != build:
