@@ -4,6 +4,7 @@ car's shape that is nearest to the middle.
 """
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -270,11 +271,5 @@ def _misdoing(doing: Doing, way: Floats) -> float:
     return 5.0 if wrong else 0.0
 
 
-def attribute_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that knows what it is told."""
-    return AttributeServo(changes, listens=True)
-
-
-def salient_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that takes a colourful car near the middle."""
-    return AttributeServo(changes, listens=False)
+attribute_servo = partial(AttributeServo, listens=True)
+salient_servo = partial(AttributeServo, listens=False)

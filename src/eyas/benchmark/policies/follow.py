@@ -6,7 +6,7 @@ from typing import Any
 from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
-__all__ = ["Follow", "follow"]
+__all__ = ["Follow"]
 
 
 class Follow:
@@ -28,8 +28,3 @@ class Follow:
         state = sight.snapshot()
         places, velocities = state.targets.centre[:, :2], state.targets.velocity[:, :2]
         return Decision(flown_over(state, places, velocities, self.env))
-
-
-def follow(changes: Mapping[str, Any]) -> Follow:
-    """Return the oracle."""
-    return Follow(changes)

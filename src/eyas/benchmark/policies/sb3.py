@@ -12,7 +12,7 @@ from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.envs.trained_with import ELSEWHERE, trained_with
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 
-__all__ = ["Sb3Policy", "load_sb3"]
+__all__ = ["Sb3Policy"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -110,11 +110,6 @@ def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
             "%s: was trained with %s; flown with those of the protocol, unless --set changes them",
             *(path, ", ".join(others)),
         )
-
-
-def load_sb3(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> Sb3Policy:
-    """Return the policy in a file, see `Sb3Policy`."""
-    return Sb3Policy(path, changes, sampled=sampled)
 
 
 def _loaded(path: Path) -> Any:  # noqa: ANN401  # a model of any class

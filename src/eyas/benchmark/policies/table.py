@@ -27,15 +27,15 @@ __all__ = [
 _ROOM = "eyas.benchmark.policies"
 
 _BUILT_IN = {
-    "random": f"{_ROOM}.simple:random",
-    "hover": f"{_ROOM}.simple:hover",
-    "follow": f"{_ROOM}.follow:follow",
+    "random": f"{_ROOM}.simple:Random",
+    "hover": f"{_ROOM}.simple:Hover",
+    "follow": f"{_ROOM}.follow:Follow",
     "sighted": f"{_ROOM}.road_search:sighted",
     "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
-    "servo": f"{_ROOM}.servo:servo",
-    "gimbal-servo": f"{_ROOM}.servo:gimbal_servo",
+    "servo": f"{_ROOM}.servo:Servo",
+    "gimbal-servo": f"{_ROOM}.servo:GimbalServo",
     "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
     "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
@@ -50,7 +50,7 @@ POLICIES: Registry[Callable[..., Any]] = Registry(
     _BUILT_IN,
     group="eyas.policies",
 )
-"""Built in are functions that take changes of `env` and return a policy; what installed packages
+"""Built in are classes and functions that take changes of `env`; what installed packages
 add is what `package.module:name` may be, see `load_callable`."""
 
 ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
@@ -59,12 +59,12 @@ velocities."""
 
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",
-    ".zip": f"{_ROOM}.sb3:load_sb3",
-    ".pt": f"{_ROOM}.torch_file:load_torch",
-    ".pth": f"{_ROOM}.torch_file:load_torch",
-    ".pt2": f"{_ROOM}.torch_file:load_torch",
+    ".zip": f"{_ROOM}.sb3:Sb3Policy",
+    ".pt": f"{_ROOM}.torch_file:TorchPolicy",
+    ".pth": f"{_ROOM}.torch_file:TorchPolicy",
+    ".pt2": f"{_ROOM}.torch_file:TorchPolicy",
 }
-"""Functions that take a path and changes of `env` and return a policy, by the file's ending."""
+"""What takes a path and changes of `env` and returns a policy, by the file's ending."""
 
 
 _LARGEST = 1 << 22

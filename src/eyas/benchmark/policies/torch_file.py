@@ -11,7 +11,7 @@ from eyas.benchmark.policies.action_choice import Chooser
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 
-__all__ = ["TorchPolicy", "load_torch"]
+__all__ = ["TorchPolicy"]
 
 _EXPORTED = ".pt2"
 
@@ -68,11 +68,6 @@ class TorchPolicy:
         except Exception as error:  # unpickling can raise anything
             line = " ".join(str(error).split())[:200]
             raise DataFileError(f"{path}: not a PyTorch policy: {line}") from error
-
-
-def load_torch(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> TorchPolicy:
-    """Return the policy in a file, see `TorchPolicy`."""
-    return TorchPolicy(path, changes, sampled=sampled)
 
 
 def _torch() -> Any:  # noqa: ANN401  # a module
