@@ -208,6 +208,9 @@ def _tell_failures(records: list[EpisodeRecord]) -> None:
         first = failed[0]
         _LOG.warning(
             "the policy failed in %d of %d episodes, first in %s: %s%s",
-            *(len(failed), len(records), first.name, first.error),
+            len(failed),
+            len(records),
+            first.name,
+            first.error,
             "" if first.traceback is None else f"\n{first.traceback.rstrip()}",
         )

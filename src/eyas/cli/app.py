@@ -50,9 +50,9 @@ app = typer.Typer(
 COMMANDS: Registry[Any] = Registry("command", object, group="eyas.commands")
 """Functions and groups of functions (`typer.Typer`) by the names of their commands."""
 
-_FIRST = (
-    *("demo", "video", "export", "track", "train", "run", "serve", "evaluate", "compare"),
-    *("leaderboard", "reproduce", "policies", "dataset", "targets", "maps", "traffic"),
+_FIRST = tuple(
+    "demo video export track train run serve evaluate compare leaderboard reproduce policies "
+    "dataset targets maps traffic".split()
 )
 """The order of the commands in the help; all others follow."""
 

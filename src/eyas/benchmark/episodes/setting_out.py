@@ -83,7 +83,7 @@ def at_rest_and_at_speed(
     for name in protocol.variants:
         fits = partial(setting_out, at_rest=name == AT_REST)
         own = first_fitting(
-            *(places, plain, count, first_seed), fits=fits, wanted=words[name], tried=_TRIED
+            places, plain, count, first_seed, fits=fits, wanted=words[name], tried=_TRIED
         )
         found += [episode._replace(variant=name) for episode in own]
     return found

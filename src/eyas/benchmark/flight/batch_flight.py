@@ -130,7 +130,11 @@ class BatchFlight:
         batch = self._batch
         heard = None if self._radio is None else self._radio.heard()
         sight = PolicyInput(
-            *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
+            observation=batch.observations,
+            deciding=deciding,
+            snapshot=batch.snapshot,
+            visible=batch.visible,
+            covered=batch.covered,
             heard=heard,
             clock=step * self._protocol.period,
         )

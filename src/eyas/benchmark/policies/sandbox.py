@@ -38,8 +38,14 @@ Read = TypeVar("Read")
 _PLAIN = "biuf"  # Kinds of numbers that arrays of a message may hold
 
 _WRONG = (
-    *(ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError),
-    *(MemoryError, SyntaxError),  # numpy compiles the names of some types
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    MemoryError,  # this and SyntaxError: numpy compiles the names of some types
+    RecursionError,
+    SyntaxError,
+    TypeError,
+    ValueError,
 )
 """What reading raises where a message is of another form."""
 

@@ -85,7 +85,10 @@ class _Answers:
             self._latest[name][deciding] = new
         alone = head["act"] == [""]
         sight = PolicyInput(
-            *(self._latest[""] if alone else self._latest, deciding, _unknown, _unknown),
+            observation=self._latest[""] if alone else self._latest,
+            deciding=deciding,
+            snapshot=_unknown,
+            visible=_unknown,
             covered=np.zeros(len(deciding), np.bool_),
             heard=heard,
         )

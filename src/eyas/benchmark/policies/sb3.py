@@ -108,7 +108,8 @@ def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
     if others:
         _LOG.warning(
             "%s: was trained with %s; flown with those of the protocol, unless --set changes them",
-            *(path, ", ".join(others)),
+            path,
+            ", ".join(others),
         )
 
 

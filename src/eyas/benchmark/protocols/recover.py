@@ -24,9 +24,9 @@ RECOVER_CAMERA = Protocol(
     "90 s: the camera is covered twice, for 2, 5, 10 or 15 s",
     {"traffic": {"demand": "keep_alive"}, "done": _LENGTH},
     episodes=3,
-    columns=(
-        *("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s"),
-        *("recovery_time", "followed_wrong", "nt2f", "crashed"),
+    columns=tuple(
+        "recovered recovered_2s recovered_5s recovered_10s recovered_15s recovery_time "
+        "followed_wrong nt2f crashed".split()
     ),
     rank="recovered",
     choose=with_losses,

@@ -108,7 +108,10 @@ def _difference(
         return None
     change, clusters = np.array(second) - np.array(first), clusters_in(records)
     return Difference(
-        *("", "", "", len(records)),
+        group="",
+        name="",
+        figure="",
+        n=len(records),
         first=float(np.mean(first)),
         second=float(np.mean(second)),
         mean=float(change.mean()),

@@ -14,8 +14,16 @@ from eyas.engine.world.maps import MAPS
 __all__ = ["Case", "cases"]
 
 _QUICK = {
-    *("citystreet", "citystreet day", "citystreet snow", "village", "village night"),
-    *("citystreet night, 4 samples", "preset noisy", "preset lively", "flown drone", "lidar"),
+    "citystreet",
+    "citystreet day",
+    "citystreet snow",
+    "village",
+    "village night",
+    "citystreet night, 4 samples",
+    "preset noisy",
+    "preset lively",
+    "flown drone",
+    "lidar",
 }
 
 _EVERYWHERE = ("day", "foggy", "night", "snow")

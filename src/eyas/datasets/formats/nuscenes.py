@@ -47,17 +47,15 @@ CATEGORIES = {
     ObjectClass.TRAIN: "train",
 }
 VISIBILITIES = {"1": "0-40", "2": "40-60", "3": "60-80", "4": "80-100"}
-ATTRIBUTES = (
-    *("vehicle.moving", "vehicle.stopped", "vehicle.parked"),
-    *("pedestrian.moving", "pedestrian.standing"),
+ATTRIBUTES = tuple(
+    "vehicle.moving vehicle.stopped vehicle.parked pedestrian.moving pedestrian.standing".split()
 )
 
 MOVES = 0.2  # Speed from which something moves [m/s]
 CHANNEL, MAP = "CAM_FRONT", "maps/blank.png"
 
-PER_EPISODE = (
-    *("log", "scene", "sample", "sample_data", "ego_pose", "calibrated_sensor", "instance"),
-    "sample_annotation",
+PER_EPISODE = tuple(
+    "log scene sample sample_data ego_pose calibrated_sensor instance sample_annotation".split()
 )
 """Tables with rows of each episode."""
 

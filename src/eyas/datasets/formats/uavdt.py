@@ -84,8 +84,12 @@ def _attributes(episode: RecordedEpisode) -> list[int]:
     altitude = sorted(_altitude(label) for label in labels)[len(labels) // 2]
     view = _view(labels)
     facts = [
-        *(not night and not fog, night, fog),
-        *(altitude <= LOW, LOW < altitude < HIGH, altitude >= HIGH),
+        not night and not fog,
+        night,
+        fog,
+        altitude <= LOW,
+        LOW < altitude < HIGH,
+        altitude >= HIGH,
         *(view == name for name in ("front", "side", "bird")),
         len(labels) >= LONG_TERM,
     ]

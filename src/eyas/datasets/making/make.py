@@ -134,7 +134,8 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
             return False
         _LOG.warning(
             "%s: not as it was made (%d such files), so what is of it is made again",
-            *(damaged[0], len(damaged)),
+            damaged[0],
+            len(damaged),
         )
     if found != MAKING_FILE:
         write_plan(root, plan)
