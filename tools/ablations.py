@@ -32,7 +32,8 @@ from eyas.benchmark.statistics.comparison import differences
 from eyas.benchmark.statistics.table_rows import rows_of
 from eyas.engine.core.config import updated
 from eyas.engine.core.identity.build import this_build
-from eyas.engine.settings.file import load_settings, preset_file
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import flights, lessons, training
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle

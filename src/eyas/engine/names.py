@@ -46,6 +46,6 @@ def list_targets() -> tuple[str, ...]:
 
 def list_presets() -> tuple[str, ...]:
     """Return the names of the settings that Eyas brings along."""
-    from eyas.engine.settings.file import PRESETS
+    from eyas.engine.settings.preset import PRESETS
 
     return tuple(PRESETS)

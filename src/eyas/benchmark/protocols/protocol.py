@@ -14,7 +14,8 @@ from eyas.engine.core.clock import PHYSICS_STEP, physics_steps
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
-from eyas.engine.settings.file import load_settings, preset_file
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.traffic.config import Demand
 

@@ -4,26 +4,22 @@ import json
 import logging
 import re
 from collections.abc import Iterator, Sequence
-from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
 from eyas.engine.core.config import group_of, updated, validated
-from eyas.engine.core.doors import brought
-from eyas.engine.core.errors import ConfigError, DataFileError, UnknownNameError
+from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import dialect, named_path, spoken
 from eyas.engine.settings.trust import refuse_code
 
 __all__ = [
-    "PRESETS",
     "SCHEMA_KEY",
     "load_settings",
     "parsed_override",
-    "preset_file",
     "read_settings",
     "save_settings",
 ]
@@ -224,23 +220,3 @@ def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN4
             values[key] = {}
         values = values[key]
     values[keys[-1]] = value
-
-
-PRESETS = {
-    **{name: f"{__package__}:presets/{name}.json" for name in ("easy", "flown", "lively", "noisy")},
-    **brought("eyas.presets"),
-}
-"""Files of all presets, `package:path`; docs/configuration.md says what each is for. The engine's
-own are worlds that are easier or harder than the default; in one, a flight controller flies."""
-
-
-def preset_file(name: str) -> Path:
-    """Return the file of a preset.
-
-    Raises:
-        UnknownNameError: There is no such preset.
-    """
-    if name not in PRESETS:
-        raise UnknownNameError("preset", name, tuple(PRESETS))
-    package, _, path = PRESETS[name].partition(":")
-    return Path(str(files(package))) / path

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.settings.file import PRESETS
+from eyas.engine.settings.preset import PRESETS
 
 __all__ = [
     "POLICIES",
@@ -141,7 +141,7 @@ def chosen_file(config: Path | None, preset: str | None) -> Path | None:
     """
     if preset is None:
         return config
-    from eyas.engine.settings.file import preset_file
+    from eyas.engine.settings.preset import preset_file
 
     if config is not None:
         raise ConfigError(

@@ -24,7 +24,8 @@ from eyas.engine.core.files import write_atomic
 from eyas.engine.core.identity.build import Build, this_build
 from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.file import load_settings, preset_file
+from eyas.engine.settings.file import load_settings
+from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, readable
 from eyas.learning.config import TrackerTraining, TrainConfig
 from eyas.learning.tracking.driving import Drives, driven

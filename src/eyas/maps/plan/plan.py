@@ -336,7 +336,7 @@ class Heap:
 
     form: Literal["heap"] = "heap"
     area: Outline
-    """Height of its top, z [m]."""
+    """Outline of its top [m]."""
     z: float
     """Height of its top [m]."""
     cover: Cover
