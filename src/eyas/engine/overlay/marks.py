@@ -142,7 +142,7 @@ def _skin(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.flo
 _plane_at, _axis_depth = interpreted(plane_at), interpreted(axis_depth)
 _view_centre, _rotated = interpreted(view_centre), interpreted(rotate)
 
-VIEW_COLOUR = (0.25, 0.8, 1.0)
+VIEW_COLOUR = (0.25, 0.8, 1.0)  # sRGB, as all colours here
 LABEL_COLOUR = (1.0, 1.0, 1.0)
 REWARD_COLOURS = ((0.95, 0.26, 0.2), (1.0, 0.78, 0.12), (0.35, 0.9, 0.3))
 """Colours for a reward of 0, 0.5 and 1."""

@@ -20,7 +20,7 @@ DEPTH = 22.0  # Distance of the ground that is assumed where only a picture is k
 _HALF_WIDTH = DEPTH * exact.tan(0.5 * _FIELD_OF_VIEW)
 """Half the width of the ground that is then in the picture [m]."""
 
-_FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6
+_FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6  # Numbers of DAT's actions
 
 
 def towards(offset: Floats, env: EnvConfig, period: float = PERIOD) -> NDArray[np.int64]:

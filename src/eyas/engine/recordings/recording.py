@@ -47,7 +47,7 @@ __all__ = [
 
 DATASET_FILE = "dataset.json"  # Contents of a data set, see `eyas.datasets.plan`
 
-SPLITS = ("train", "val", "test")
+SPLITS = ("train", "val", "test")  # Folders of a data set, in the order of its episodes
 
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of what moves; this less the value, of what is parked."""

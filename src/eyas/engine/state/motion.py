@@ -46,7 +46,7 @@ class Lamp(IntFlag):
     RIGHT = 4  # The same on the right
 
 
-_DARK: Final = np.zeros((0, 0), np.uint8)
+_DARK: Final = np.zeros((0, 0), np.uint8)  # Lamps of actors that have none
 
 
 class Motion(NamedTuple):

@@ -35,7 +35,7 @@ _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people r
 
 _CODE_OF_KERNELS = "lanes/shipped/"  # computes what the sources say, or is not used
 
-_LIBRARIES = ("onnxruntime", "torch")
+_LIBRARIES = ("onnxruntime", "torch")  # Their versions change what networks compute
 
 
 class Build(Config):
