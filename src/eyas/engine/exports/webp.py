@@ -20,7 +20,6 @@ from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Summary, Wri
 __all__ = ["WebpEpisode", "WebpWriter"]
 
 MOVIE = "episode.webp"
-
 _QUALITY, _EFFORT = 75, 0
 """A picture of 320 x 240 pixels takes 1.8 ms and 15 kB, and is nearer to the true one than in our
 MP4 (1.7 ms, 5.6 kB). The default effort, 4, makes it 12 kB in 6.3 ms."""

@@ -28,13 +28,9 @@ WORLD = frozenset(
 """Houses, and rooms of the engine, that make what happens in an episode and what is seen of it."""
 
 _ROOT = Path(__file__).parents[3]
-
 _ENGINE = "engine"
-
 _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
-
 _CODE_OF_KERNELS = "lanes/shipped/"  # computes what the sources say, or is not used
-
 _LIBRARIES = ("onnxruntime", "torch")  # Their versions change what networks compute
 
 

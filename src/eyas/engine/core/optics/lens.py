@@ -42,7 +42,6 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 BROWN, FISHEYE = range(2)  # Values of `Lens.model`
-
 _WIDEST = (11.43, 1.5707)
 """Farthest that the models look: tangent of 85 degrees, and an angle just below a quarter turn."""
 

@@ -34,9 +34,7 @@ __all__ = [
 ]
 
 POLE_HEIGHT = 6.6  # Height of the top of a pole above the road [m]
-
 POLE_RADIUS = 0.13  # Radius at the foot [m]
-
 _ARM = 5.6  # Length of the arm over the road [m]
 _ARM_HEIGHT = 6.1  # Height of the arm [m]
 _HEADS = (2.6, 5.3)  # Distances of the heads along the arm [m]
