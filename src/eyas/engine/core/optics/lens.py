@@ -50,7 +50,7 @@ _LEAST_SLOPE = 0.05
 polynomials turn back."""
 
 _STEPS, _HALVINGS = 2048, 40
-"""Angles that are tried for the limit, then halvings between two of them."""
+"""Angles that are tried for the limit, then times that an interval is halved."""
 
 
 class Lens(NamedTuple):
