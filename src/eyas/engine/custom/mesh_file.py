@@ -194,7 +194,7 @@ def _parts(trimesh: ModuleType, path: Path, content: bytes) -> Iterator[Triangle
         io.BytesIO(content),
         file_type=path.suffix.lower()[1:],
         resolver=Beside(str(path)),
-        # As it is: cleaned up, it would have lost the corners that are not numbers.
+        # Not cleaned up: it would have lost the corners that are not numbers.
         process=False,
     )
     for part in scene.dump():

@@ -1,5 +1,5 @@
-"""What stands out from a car's body: bumpers with dark lower lips at both ends, mirrors, plates,
-the third brake lamp, rails, walls of the arches.
+"""Parts that stand out from a car's body: bumpers with dark lower lips at both ends, mirrors,
+plates, the third brake lamp, rails, walls of the arches.
 """
 
 import numpy as np
