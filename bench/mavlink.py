@@ -19,7 +19,7 @@ from eyas.engine.sim.worlds import together
 from eyas.robotics.mavlink.dialect import dialect
 from eyas.robotics.mavlink.endpoint import Endpoint
 from eyas.robotics.mavlink.fleet import Fleet
-from eyas.robotics.serve_mavlink import AS_FLOWN
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 common = dialect()
 

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from eyas.benchmark.api import evaluate as evaluate
     from eyas.benchmark.api import list_policies as list_policies
     from eyas.benchmark.api import list_protocols as list_protocols
-    from eyas.benchmark.box_trackers import BoxTracker as BoxTracker
-    from eyas.benchmark.protocols import protocol_named as protocol_named
-    from eyas.dat.legacy_observation import LegacyObservation as LegacyObservation
+    from eyas.benchmark.policies.box_trackers import BoxTracker as BoxTracker
+    from eyas.benchmark.protocols.table import protocol_named as protocol_named
+    from eyas.dat.observation import LegacyObservation as LegacyObservation
     from eyas.datasets.api import make_dataset as make_dataset
     from eyas.datasets.api import track as track
     from eyas.engine.api import export as export
@@ -84,6 +84,7 @@ if TYPE_CHECKING:
     from eyas.engine.sensors.sensor import Sensor as Sensor
     from eyas.engine.settings.config import EyasConfig as EyasConfig
     from eyas.engine.settings.file import load_settings as load_settings
+    from eyas.engine.settings.section import Section as Section
     from eyas.engine.sim.build import build_simulation as build_simulation
     from eyas.engine.sim.config import SimConfig as SimConfig
     from eyas.engine.sim.flights.path import FlightScene as FlightScene
@@ -144,9 +145,9 @@ same build, settings and seed are the same to the bit."""
 
 _PLACES = {
     "benchmark.api": "evaluate list_policies list_protocols",
-    "benchmark.box_trackers": "BoxTracker",
-    "benchmark.protocols": "protocol_named",
-    "dat.legacy_observation": "LegacyObservation",
+    "benchmark.policies.box_trackers": "BoxTracker",
+    "benchmark.protocols.table": "protocol_named",
+    "dat.observation": "LegacyObservation",
     "datasets.api": "make_dataset track",
     "engine.api": "export make make_config make_vec record",
     "engine.core.clock": "PHYSICS_STEP",
@@ -178,6 +179,7 @@ _PLACES = {
     "engine.sensors.sensor": "Sensor",
     "engine.settings.config": "EyasConfig",
     "engine.settings.file": "load_settings",
+    "engine.settings.section": "Section",
     "engine.sim.build": "build_simulation",
     "engine.sim.config": "SimConfig",
     "engine.sim.flights.path": "FlightScene FlightSketch",
@@ -225,14 +227,9 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
 
         return this_build().id
     if name == "__version__":
-        from importlib.metadata import PackageNotFoundError, version
+        from eyas.engine.core.installed import installed_version
 
-        try:
-            found = version("eyas")
-        except PackageNotFoundError:
-            found = "0"
-        globals()[name] = found
-        return found
+        return installed_version()
     if name in _MODULE_OF:
         from importlib import import_module
         from importlib.util import find_spec

@@ -12,7 +12,7 @@ import eyas
 from eyas import __version__, build_id
 from eyas.cli.app import app
 from eyas.cli.main import main
-from eyas.dat.settings.adapter import save_legacy, to_legacy
+from eyas.dat.settings.adapter import save_original, to_original
 from eyas.dat.wire.exchange import SETTINGS_FILE
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import PRESETS
@@ -147,7 +147,7 @@ def test_show_prints_the_settings_in_either_notation(monkeypatch, capsys):
     code, out, _ = run(monkeypatch, capsys, "config", "show", "--set", "video.fps=9")
     assert (code, EyasConfig(**json.loads(out))) == (0, config)
     _, out, _ = run(monkeypatch, capsys, "config", "show", "--legacy", "--set", "video.fps=9")
-    assert json.loads(out) == to_legacy(config)
+    assert json.loads(out) == to_original(config)
 
 
 @pytest.mark.parametrize("name", PRESETS)
@@ -163,7 +163,7 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     legacy, native, again = (
         tmp_path / name for name in ("legacy.json", "native.json", "again.json")
     )
-    legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
+    legacy.write_text(json.dumps(to_original(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
     video = {"fps": 9, "jpeg_quality": 100, "flight": "exact"}
     traffic = {"signals": "amber", "lamps": "dark"}
@@ -286,7 +286,7 @@ def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch,
         served.append(config.model_copy(update={"mode": "train", "original": None, "seed": 0}))
         file = root / SETTINGS_FILE
         file.parent.mkdir(parents=True, exist_ok=True)
-        save_legacy(config, file)
+        save_original(config, file)
 
     monkeypatch.setattr("eyas.dat.serve.run.run", run_server)
     for _ in range(2):  # the second reads the file of the first

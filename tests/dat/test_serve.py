@@ -4,8 +4,7 @@ import logging
 import pytest
 
 from eyas.dat.serve import run as modes_serve
-from eyas.dat.serve.agreement import tell_disagreements
-from eyas.dat.serve.run import run
+from eyas.dat.serve.run import run, tell_disagreements
 from eyas.dat.wire.exchange import SETTINGS_FILE
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.settings.config import EyasConfig

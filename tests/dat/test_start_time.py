@@ -3,7 +3,7 @@
 import pytest
 
 from eyas.dat.serve.run import _crew
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 from eyas.engine.core.config import updated
 from eyas.engine.video import run as video
 
@@ -13,7 +13,7 @@ SHORT |= {"writers": ["jpeg", "labels"]}
 
 
 def test_a_channel_is_four_steps(tmp_path):
-    original = updated(from_legacy({}), {**OURS, "video": SHORT})
+    original = updated(from_original({}), {**OURS, "video": SHORT})
     native = original.model_copy(update={"original": None})
     later = updated(native, {"start": {"warm_up_steps": 28}})
     found = {}
@@ -27,7 +27,7 @@ def test_a_channel_is_four_steps(tmp_path):
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_an_agent_is_six_steps(count):
-    group = _crew(updated(from_legacy({}), OURS), count)
+    group = _crew(updated(from_original({}), OURS), count)
     group.sim.reset()
     assert group.sim.snapshot.episodes.tick.tolist() == [20 + 6 * count] * count
     group.close()

@@ -3,7 +3,7 @@
 import pytest
 
 from eyas.demo.frame import FACTORS, IN_FLIGHT, CodingChoice
-from eyas.demo.pace import FRAME, PictureSize
+from eyas.demo.session import FRAME, PictureSize
 
 SIZES = (45e3, 15e3, 6e3, 3e3)
 """Of a picture at each level [bytes]."""

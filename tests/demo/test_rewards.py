@@ -6,7 +6,7 @@ import urllib.request
 
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
@@ -31,7 +31,7 @@ def test_the_settings_can_be_saved_for_the_original(viewer, served):
     while viewer.told.get("reward", {}).get("view_range") != 0.55:
         viewer.frame()
     with urllib.request.urlopen(served.address + "env_config.json") as answer:
-        saved = from_legacy(json.load(answer))
+        saved = from_original(json.load(answer))
     assert (saved.reward.view_range, saved.reward.distance_range) == (0.55, 9.0)
 
 

@@ -29,7 +29,7 @@ from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture
 from eyas.robotics.mavlink.equipment import equipped
-from eyas.robotics.serve_mavlink import AS_FLOWN
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 from .values import ABSURD, HUGE_WHOLE, NOT_FINITE, json_contents, mutated
 
@@ -260,7 +260,7 @@ def feed_wire(simulation, tmp_path, caplog):
 
 
 def feed_ros(simulation, tmp_path, caplog):
-    from eyas.robotics.serve_ros import HEARD, Bridge
+    from eyas.robotics.serving.ros import HEARD, Bridge
 
     class Bus:
         """Hears what is put into `next`; a bus that needs no network."""
@@ -363,7 +363,7 @@ def asyncio_run(loop, task):
 
 
 def feed_policy(simulation, tmp_path, caplog):
-    from eyas.benchmark.policies.apart import _decision, receive, send
+    from eyas.benchmark.policies.sandbox import _decision, receive, send
 
     chance, whole = random.Random(7), io.BytesIO()
     send(whole, {"failed": {}}, [np.zeros((2, 3)), np.zeros(2)])
@@ -391,7 +391,7 @@ FEEDERS = {
     ("robotics/ros/dds.py", "take"): feed_ros,
     ("demo/server.py", "async for"): feed_demo,
     ("demo/server.py", "process_request"): feed_demo,
-    ("benchmark/policies/apart.py", "read"): feed_policy,
+    ("benchmark/policies/sandbox.py", "read"): feed_policy,
     ("cli/bench/measurement.py", "read"): None,  # counters of this machine's own system
 }
 

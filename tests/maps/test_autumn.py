@@ -5,7 +5,7 @@ import pytest
 
 from eyas.engine.state.mesh import Surface
 from eyas.engine.world.weather import Season
-from eyas.maps.plants.autumn import COLOURS, in_autumn
+from eyas.maps.plants.foliage import COLOURS, in_autumn
 from eyas.maps.plants.forest import SPECIES, stand_levels
 from eyas.maps.plants.shrubs import DECIDUOUS, PLANTS
 from eyas.maps.plants.trees import street_tree_levels

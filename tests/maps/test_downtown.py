@@ -15,6 +15,7 @@ from eyas.engine.world.maps.recipe import TRAFFIC_FILE
 from eyas.engine.world.roads.areas import road_area
 from eyas.maps.downtown import DOWNTOWN
 from eyas.maps.downtown.layout import lay_out
+from eyas.maps.downtown.scenery import scenery_of
 from eyas.maps.roads.markings import road_paint
 from eyas.maps.roads.painting import MARGIN_HEIGHT
 from eyas.maps.roads.wear import WEAR_HEIGHTS
@@ -44,6 +45,11 @@ def asphalt(streets):
 @pytest.fixture(scope="session")
 def plan(streets):
     return lay_out(streets, 0)
+
+
+@pytest.fixture(scope="session")
+def scenery(plan, streets):
+    return scenery_of(streets, plan, 0)
 
 
 @pytest.fixture(scope="session")
@@ -131,8 +137,9 @@ def test_seeds_differ_and_repeat():
 
 
 @pytest.mark.slow
-def test_planning_again_gives_the_same_city(plan, streets, city):
+def test_planning_again_gives_the_same_city(plan, scenery, streets, city):
     again = lay_out(streets, 0)
+    again_scenery = scenery_of(streets, again, 0)
     for parts, others in zip(plan.buildings, again.buildings, strict=True):
         for part, other in zip(parts, others, strict=True):
             assert part.footprint.tobytes() == other.footprint.tobytes()
@@ -141,8 +148,8 @@ def test_planning_again_gives_the_same_city(plan, streets, city):
                 other.facade,
                 other.tint,
             )
-    assert again.park.trees.tobytes() == plan.park.trees.tobytes()
-    assert again.kerbs.cars.tobytes() == plan.kerbs.cars.tobytes()
+    assert again_scenery.park.trees.tobytes() == scenery.park.trees.tobytes()
+    assert again_scenery.kerbs.cars.tobytes() == scenery.kerbs.cars.tobytes()
     first = plan.buildings[0][0].footprint
     assert np.array_equal(city.colliders.prism_points[: len(first)], first)
 
@@ -164,14 +171,14 @@ def count(scene, kind):
     return int((scene.object_class == kind).sum())
 
 
-def test_as_much_stands_in_it_as_in_the_original(city, plan):
+def test_as_much_stands_in_it_as_in_the_original(city, scenery):
     assert count(city, ObjectClass.BUILDING) == pytest.approx(470, rel=0.05)
     plants = city.object_class[city.fixtures.object_id] == ObjectClass.TREE
     tall = city.fixtures.pose[plants, 2, 2] > 3.0  # others are shrubs
     assert tall.sum() == pytest.approx(243 + 32 + 59, rel=0.05)
     assert len(city.lamps.position) == pytest.approx(48, rel=0.1)
     assert count(city, ObjectClass.WATER) == 6
-    assert max(part.area for part in shapely.get_parts(plan.park.water)) == pytest.approx(
+    assert max(part.area for part in shapely.get_parts(scenery.park.water)) == pytest.approx(
         15_325, rel=0.01
     )
     assert city.size == (2000.0, 1500.0)
@@ -224,9 +231,9 @@ def test_lanes_are_free_of_everything_solid(city, streets, asphalt):
         assert len(poles.query(strip, predicate="intersects")) == 0
 
 
-def test_parked_cars_stand_beside_the_road(plan, asphalt):
-    assert len(plan.kerbs.cars) > 150
-    for x, y, _ in plan.kerbs.cars:
+def test_parked_cars_stand_beside_the_road(scenery, asphalt):
+    assert len(scenery.kerbs.cars) > 150
+    for x, y, _ in scenery.kerbs.cars:
         assert asphalt.distance(shapely.Point(x, y)) > 0.85
 
 
@@ -259,8 +266,8 @@ def test_corners_hide_cars_from_a_drone_that_looks_ahead(city, recording):
     assert 0.02 < lost.mean() < 0.4
 
 
-def test_slim_and_great_trees_hang_over_lanes(plan, asphalt):
-    kerbs = plan.kerbs
+def test_slim_and_great_trees_hang_over_lanes(scenery, asphalt):
+    kerbs = scenery.kerbs
     assert len(kerbs.great_trees) == pytest.approx(32, abs=3)
     assert len(kerbs.slim_trees) == pytest.approx(59, abs=4)
     great = shapely.distance(asphalt, shapely.points(kerbs.great_trees))

@@ -14,6 +14,7 @@ from eyas.engine.world.maps.recipe import TRAFFIC_FILE
 from eyas.engine.world.roads.areas import road_area
 from eyas.maps.downtown import DOWNTOWN
 from eyas.maps.downtown.layout import lay_out
+from eyas.maps.downtown.scenery import scenery_of
 
 TRUCK = 4.5
 """Height of the highest vehicle [m]."""
@@ -24,6 +25,11 @@ LOWEST_DRONE = 13.0
 @pytest.fixture(scope="module")
 def plan():
     return lay_out(DOWNTOWN.shipped_network(), 0)
+
+
+@pytest.fixture(scope="module")
+def scenery(plan):
+    return scenery_of(DOWNTOWN.shipped_network(), plan, 0)
 
 
 @pytest.fixture(scope="module")
@@ -47,9 +53,9 @@ def solids():
     return np.array(shapes)[made], all_of_them.prism_bottom[made], all_of_them.prism_top[made]
 
 
-def test_each_skyway_leads_over_a_road_from_one_front_to_another(plan, asphalt, fronts):
-    assert len(plan.skyways) > 40
-    for skyway in plan.skyways:
+def test_each_skyway_leads_over_a_road_from_one_front_to_another(scenery, asphalt, fronts):
+    assert len(scenery.skyways) > 40
+    for skyway in scenery.skyways:
         shape = shapely.Polygon(skyway.outline())
         assert shape.intersection(asphalt).area > 0.3 * shape.area
         assert shape.intersection(fronts).area < 0.05
@@ -57,34 +63,34 @@ def test_each_skyway_leads_over_a_road_from_one_front_to_another(plan, asphalt, 
             assert fronts.distance(shapely.Point(end)) < 0.05
 
 
-def test_both_buildings_of_a_skyway_are_higher_than_it(plan):
+def test_both_buildings_of_a_skyway_are_higher_than_it(plan, scenery):
     shapes = [shapely.Polygon(corners) for corners in plan.footprints]
-    for skyway in plan.skyways:
+    for skyway in scenery.skyways:
         for end in (skyway.start, skyway.end):
             number = int(np.argmin(shapely.distance(shapes, shapely.Point(end))))
             lowest = plan.buildings[number][0]
             assert lowest.bottom + lowest.height >= skyway.top
 
 
-def test_no_skyway_meets_a_tree_or_the_railway(plan):
-    trunks = shapely.points(np.concatenate([plan.kerbs.great_trees, plan.kerbs.slim_trees]))
-    for skyway in plan.skyways:
+def test_no_skyway_meets_a_tree_or_the_railway(plan, scenery):
+    trunks = shapely.points(np.concatenate([scenery.kerbs.great_trees, scenery.kerbs.slim_trees]))
+    for skyway in scenery.skyways:
         shape = shapely.Polygon(skyway.outline())
         assert shapely.distance(trunks, shape).min() > 4.0
         assert not shape.intersects(plan.viaduct.ground)
 
 
-def test_the_railway_crosses_each_street_and_no_building(plan, fronts):
+def test_the_railway_crosses_each_street_and_no_building(plan, scenery, fronts):
     assert len(plan.viaduct.over) == 9
     assert not plan.viaduct.ground.buffer(-0.01).intersects(fronts)
-    assert not plan.viaduct.ground.intersects(plan.park.ground)
+    assert not plan.viaduct.ground.intersects(scenery.park.ground)
 
 
-def test_columns_stand_off_the_road_and_behind_parked_cars(plan, asphalt):
-    wheels = shapely.union(asphalt, plan.kerbs.bays)
+def test_columns_stand_off_the_road_and_behind_parked_cars(plan, scenery, asphalt):
+    wheels = shapely.union(asphalt, scenery.kerbs.bays)
     feet = shapely.points(plan.viaduct.feet)
     assert shapely.distance(wheels, feet).min() > 0.6
-    trees = shapely.points(plan.kerbs.slim_trees)
+    trees = shapely.points(scenery.kerbs.slim_trees)
     assert min(shapely.distance(trees, foot).min() for foot in feet) > 4.0
 
 
@@ -118,12 +124,13 @@ def test_it_hides_cars_from_the_drone_above_them(solids):
 def test_other_cities_hold_together_too(seed):
     network = load_network("downtown", seed)
     plan = lay_out(network, seed)
+    scenery = scenery_of(network, plan, seed)
     fronts = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
     assert fronts.is_valid
     assert not plan.viaduct.ground.buffer(-0.01).intersects(fronts)
-    assert not plan.viaduct.ground.intersects(plan.park.ground)
-    wheels = shapely.union(road_area(network), plan.kerbs.bays)
+    assert not plan.viaduct.ground.intersects(scenery.park.ground)
+    wheels = shapely.union(road_area(network), scenery.kerbs.bays)
     assert shapely.distance(wheels, shapely.points(plan.viaduct.feet)).min() > 0.6
-    assert len(plan.skyways) > 40
-    shapes = [shapely.Polygon(skyway.outline()) for skyway in plan.skyways]
+    assert len(scenery.skyways) > 40
+    shapes = [shapely.Polygon(skyway.outline()) for skyway in scenery.skyways]
     assert shapely.area(shapely.intersection(shapes, fronts)).max() < 0.05

@@ -11,7 +11,7 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.roads.areas import road_area
 from eyas.engine.world.weather import Season
 from eyas.maps.farmland import FARMLAND
-from eyas.maps.farmland.fields import CROPS, SIDE, VERGE, lay_out
+from eyas.maps.farmland.layout import CROPS, SIDE, VERGE, lay_out
 from eyas.maps.farmland.roads import ROAD_WIDTH, road_graph
 
 SEEDS = range(5)

@@ -18,7 +18,7 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.maps.citystreet import CITYSTREET
 from eyas.maps.gallery import run as gallery
-from eyas.maps.gallery.page import Shown, page
+from eyas.maps.gallery.page import PageEntry, page
 from eyas.maps.gallery.places import (
     all_cars,
     before_spans,
@@ -260,7 +260,7 @@ def test_maps_that_lack_a_named_weather_are_left_out_unless_they_are_named(monke
 
 
 def test_names_on_the_page_cannot_break_it(views):
-    odd = Shown('<b>"x"', "day", views[:1], [np.zeros((1, 1, 3), np.uint8)])
+    odd = PageEntry('<b>"x"', "day", views[:1], [np.zeros((1, 1, 3), np.uint8)])
     assert "<b>" not in page([odd], gallery.SHEET)
 
 

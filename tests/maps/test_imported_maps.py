@@ -36,13 +36,15 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.network_file import load_network, save_network
+from eyas.maps.commands import info, show
 from eyas.maps.files import MAP_FILE, MAP_FILES, ROADS_FILE, origin_of
+from eyas.maps.formats import layers
+from eyas.maps.formats.gltf.world import write_gltf
 from eyas.maps.osm import houses, importing, land, streets
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.reader import read_osm
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.plan.build import build_scene
-from eyas.maps.programs import gltf, info, plan_files, show
 
 pytestmark = pytest.mark.sumo
 NAME = "test-town"
@@ -276,7 +278,7 @@ def test_a_picture_from_above_shows_buildings_in_their_place(scene, tmp_path):
 
 def test_a_gltf_file_is_read_back_with_the_stated_number_of_triangles(tmp_path, scene):
     path = tmp_path / "town.glb"
-    stated = gltf.run(NAME, 0, path, 9)
+    stated = write_gltf(NAME, 0, path, 9)
     data = path.read_bytes()
     magic, version, size = struct.unpack_from("<4sII", data)
     assert (magic, version, size) == (b"glTF", 2, len(data))
@@ -298,7 +300,7 @@ def test_a_gltf_file_is_read_back_with_the_stated_number_of_triangles(tmp_path, 
 
 
 def test_plans_are_in_degrees_and_rasters_hold_heights(tmp_path, scene, source):
-    plan_files.write_layers(NAME, 0, tmp_path, 1.0)
+    layers.write_layers(NAME, 0, tmp_path, 1.0)
     roads, houses = (json.loads((tmp_path / f"{n}.geojson").read_text())
                      for n in ("roads", "buildings"))  # fmt: skip
     assert roads["attribution"] == NOTICE

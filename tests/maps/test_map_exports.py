@@ -16,12 +16,12 @@ from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.mesh.assembly import transformed
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.state.scene import Fixtures, Lamps, ObjectClass, Scene
-from eyas.maps.exports.gltf.file import GltfFile
-from eyas.maps.exports.gltf.world import add_lamps, add_world
-from eyas.maps.exports.welding import welded
+from eyas.maps.formats import layers, usd
+from eyas.maps.formats.gltf.file import GltfFile
+from eyas.maps.formats.gltf.world import add_lamps, add_world
+from eyas.maps.formats.meshes import welded
+from eyas.maps.formats.registry import MapExport, export
 from eyas.maps.plants.wild import WILD
-from eyas.maps.programs import plan_files, usd
-from eyas.maps.programs.export import ExportOptions, export
 
 NODE = """
 require("gltf-validator").validateBytes(new Uint8Array(require("fs").readFileSync(process.argv[1])))
@@ -163,14 +163,14 @@ def test_the_validator_has_nothing_to_remark(written):
 
 def test_an_unknown_format_is_told_with_the_nearest():
     with pytest.raises(UnknownNameError, match=r"^--format: 'glft' .* did you mean 'gltf'\?"):
-        list(export("glft", None, ExportOptions("citystreet")))
+        list(export("glft", None, MapExport("citystreet")))
 
 
 @pytest.fixture(scope="module")
 def roads(tmp_path_factory):
     """Citystreet's roads as OpenDRIVE."""
     path = tmp_path_factory.mktemp("roads") / "roads.xodr"
-    assert list(export("opendrive", path, ExportOptions("citystreet"))) == [str(path)]
+    assert list(export("opendrive", path, MapExport("citystreet"))) == [str(path)]
     return path
 
 
@@ -189,7 +189,7 @@ def test_roads_and_traffic_lights_are_in_opendrive(roads, tmp_path):
     assert len(list(root.iter("signal"))) > 50
     assert len(list(root.iter("junction"))) > 10
     again = tmp_path / "again.xodr"
-    list(export("opendrive", again, ExportOptions("citystreet")))
+    list(export("opendrive", again, MapExport("citystreet")))
     assert again.read_bytes() == roads.read_bytes()
     assert b"2026" not in again.read_bytes()[:1000]
 
@@ -218,7 +218,7 @@ def test_asams_checker_finds_no_issue(roads, tmp_path):
 def test_sumo_drives_what_is_written(tmp_path):
     from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
 
-    lines = list(export("sumo", tmp_path, ExportOptions("citystreet")))
+    lines = list(export("sumo", tmp_path, MapExport("citystreet")))
     assert lines == [
         str(tmp_path / f"citystreet.{kind}") for kind in ("net.xml", "rou.xml", "sumocfg")
     ]
@@ -260,7 +260,7 @@ def stage(scene, monkeypatch, tmp_path):
     for path in paths:
         path.parent.mkdir()
         line = f"{path}: 12 triangles"
-        assert list(export("usd", path, ExportOptions("citystreet"))) == [line]
+        assert list(export("usd", path, MapExport("citystreet"))) == [line]
     assert paths[0].read_bytes() == paths[1].read_bytes()
     return Usd.Stage.Open(str(paths[0]))
 
@@ -348,7 +348,7 @@ def test_faces_in_usd_front_the_side_to_which_their_normals_point(plant):
 
 def test_other_endings_than_those_of_stages_are_refused(tmp_path):
     with pytest.raises(ConfigError, match=r"^--out: 'a\.glb' is not allowed: .*\.usdc"):
-        list(export("usd", tmp_path / "a.glb", ExportOptions("citystreet")))
+        list(export("usd", tmp_path / "a.glb", MapExport("citystreet")))
 
 
 def test_few_cells_are_filled_as_many_are(monkeypatch, scene):
@@ -366,9 +366,9 @@ def test_few_cells_are_filled_as_many_are(monkeypatch, scene):
     owner = rng.integers(0, 4, 200).astype(np.int32)
     messy = replace(scene, static=heap, static_object=owner, size=(14.0, 14.0))
     ways = []
-    for few in (0, plan_files._FEW, 10**6):
-        monkeypatch.setattr(plan_files, "_FEW", few)
-        ways.append(plan_files.rasters_of(messy, 0.5))
+    for few in (0, layers._FEW, 10**6):
+        monkeypatch.setattr(layers, "_FEW", few)
+        ways.append(layers.rasters_of(messy, 0.5))
     for occupancy, height in ways[1:]:
         assert (occupancy == ways[0][0]).all()
         assert (height == ways[0][1]).all()

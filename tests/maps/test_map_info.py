@@ -8,7 +8,7 @@ import pytest
 from eyas.cli.main import main
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.world.maps import MAPS
-from eyas.maps.programs.info import describe, figures_of
+from eyas.maps.commands.info import describe, figures_of
 
 
 @pytest.mark.slow

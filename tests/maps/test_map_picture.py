@@ -7,7 +7,7 @@ from PIL import Image
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.state.terrain import reliefs
-from eyas.maps.programs import show
+from eyas.maps.commands import show
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,10 @@ from eyas.maps.roads.overpass import (
     deck_area,
     deck_prisms,
     path,
+    pillar_mesh,
+    pillars,
     sides_mesh,
 )
-from eyas.maps.roads.pillars import pillar_mesh, pillars
 
 FLOOR = -0.1
 

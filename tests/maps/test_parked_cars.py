@@ -7,9 +7,9 @@ import pytest
 
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.vehicles.models import VEHICLES
-from eyas.maps.cars.types import TYPES
 from eyas.maps.street.parked_cars import (
     KINDS,
+    TYPES,
     VARIANTS,
     parked_car,
     parked_taxi,

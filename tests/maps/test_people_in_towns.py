@@ -27,8 +27,8 @@ from eyas.engine.traffic.net_file import SumoNet
 from eyas.engine.traffic.signals import Aspect, walk_plan
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
+from eyas.maps.commands import info
 from eyas.maps.osm import importing
-from eyas.maps.programs import info
 
 pytestmark = [pytest.mark.sumo, pytest.mark.slow]  # what its tests share takes long to make
 NAME = "test-walks"

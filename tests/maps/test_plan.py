@@ -21,7 +21,7 @@ from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import Season
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.land.mounds import Mound
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import relief_of
 from eyas.maps.osm.features import House, Survey
 from eyas.maps.plan import build, plan
 from eyas.maps.plan.build import build_scene

@@ -18,9 +18,9 @@ from eyas.engine.sim.scenes import load_network, load_scene
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import Season
+from eyas.maps.commands.plan import write_plan_of
 from eyas.maps.plan.file import problems, read_plan
 from eyas.maps.plan.plan import Buildings, GroundCover, Paved, Roadway
-from eyas.maps.programs.plan_files import write_plan_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "own_map.plan.json"
 

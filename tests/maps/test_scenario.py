@@ -12,7 +12,7 @@ import pytest
 
 from eyas.engine.exports.writer import Summary
 from eyas.engine.sim.scenes import load_network
-from eyas.maps.exports.scenario import ScenarioWriter
+from eyas.maps.formats.openscenario import ScenarioWriter
 
 FRAMES = 5
 

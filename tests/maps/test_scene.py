@@ -18,10 +18,8 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
-from eyas.maps.exports.gltf import flight
-from eyas.maps.exports.gltf.boxes import box_mesh
-from eyas.maps.exports.gltf.flight import SceneWriter
-from eyas.maps.exports.gltf.movers import mover_mesh, pose_of
+from eyas.maps.formats.gltf import flight
+from eyas.maps.formats.gltf.flight import SceneWriter, box_mesh, mover_mesh, pose_of
 
 
 @pytest.fixture

@@ -10,9 +10,9 @@ from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import Season
 from eyas.maps.plan.build import build_scene
-from eyas.maps.simpleway.plan import paved
+from eyas.maps.simpleway.layout import paved
 from eyas.maps.simpleway.roads import ROADS, road_graph, road_lines
-from eyas.maps.simpleway.skins import SKINS
+from eyas.maps.simpleway.scenery import SKINS
 
 NAMES = [name for name in MAPS.built_in if name.startswith("simpleway-")]
 

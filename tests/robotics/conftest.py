@@ -16,7 +16,7 @@ from eyas.engine.sim.serving import Loop
 from eyas.engine.sim.worlds import together
 from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.mavlink.fleet import Fleet
-from eyas.robotics.serve_mavlink import AS_FLOWN
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 SMALL = {"camera": {"width": 96, "height": 54}, "start": {"velocity": "rest"}}
 GCS, OTHER = (255, 190), (254, 190)

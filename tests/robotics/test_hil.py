@@ -26,8 +26,8 @@ from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.mavlink.hil.ardupilot import ArduPilot, servos_of
 from eyas.robotics.mavlink.hil.drone import DrivenDrone
 from eyas.robotics.mavlink.hil.px4 import Px4
-from eyas.robotics.mavlink.hil.sockets import bound, listening
-from eyas.robotics.serve_mavlink import AS_FLOWN
+from eyas.robotics.serving.hil import bound, listening
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 

@@ -14,18 +14,23 @@ import typer
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import (
-    POLICIES,
     SEVERAL,
     ConfigFile,
     MapName,
+    Out,
     Overrides,
+    Overwrite,
     Preset,
+    Quiet,
+    Resume,
     Seed,
     Trust,
     UntilIdle,
     Weather,
+    by_policy,
     chosen_file,
     gathered,
+    to_write,
 )
 from eyas.engine.terminal.stderr import say
 
@@ -35,8 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["run", "serve", "video"]
 
 
-def video(  # noqa: PLR0913  # one parameter for each option
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
+def video(
+    out: Out = Path("runs/video"),
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -44,13 +49,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     trust: Trust = False,
-    policy: Annotated[
-        str | None,
-        typer.Option(
-            "--policy",
-            help=f"Let a policy fly: {POLICIES}, a file, or package.module:name.",
-        ),
-    ] = None,
+    policy: Annotated[str | None, by_policy("Let a policy fly: ")] = None,
     camera: Annotated[
         str | None,
         typer.Option(
@@ -59,13 +58,9 @@ def video(  # noqa: PLR0913  # one parameter for each option
             "hover-and-pan, search, exact, random, or package.module:Class; policy: as --policy.",
         ),
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue an interrupted recording.")
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="First delete a recording that is in the folder.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
 ) -> None:
     """Record labelled pictures and videos of drones that film their targets."""
     from eyas.engine.settings.config import Mode
@@ -97,7 +92,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)
 
 
-def serve(  # noqa: PLR0913  # one parameter for each option
+def serve(
     root: Annotated[
         Path | None,
         typer.Option(
@@ -162,7 +157,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
         return
     if root is None:
         from eyas.engine.settings.file import load_settings
-        from eyas.robotics.serve_mavlink import AS_FLOWN
+        from eyas.robotics.serving.mavlink import AS_FLOWN
 
         file = chosen_file(config, preset)
         _fly(load_settings(file, overrides, base=AS_FLOWN, trust=trust), mavlink, px4, ardupilot)
@@ -179,7 +174,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if preset is None:
-        from eyas.dat.settings.of_a_run import of_a_run
+        from eyas.dat.settings.runs import of_a_run
 
         settings = of_a_run(settings)
         load = partial(_again, load, settings.seed)
@@ -194,7 +189,7 @@ def serve(  # noqa: PLR0913  # one parameter for each option
 
 def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     """Return the settings of a server as they are now, for the same run."""
-    from eyas.dat.settings.of_a_run import of_a_run
+    from eyas.dat.settings.runs import of_a_run
 
     return of_a_run(load(), seed)
 
@@ -203,9 +198,7 @@ def run(
     config: Annotated[
         Path, typer.Option("--config", help="JSON file, native or the original's env_config.json.")
     ],
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder to write to, of a recording or training.")
-    ] = None,
+    out: Annotated[Path | None, to_write("Folder to write to, of a recording or training.")] = None,
     root: Annotated[
         Path | None,
         typer.Option(
@@ -228,7 +221,7 @@ def run(
     In mode train, an env_config.json serves the benchmark's clients (eyas serve), and native
     settings teach a network (eyas train).
     """
-    from eyas.dat.serve.source import quietly
+    from eyas.dat.serve.run import quietly
     from eyas.dat.wire.exchange import SETTINGS_FILE
     from eyas.engine.settings.config import Mode
     from eyas.engine.settings.file import load_settings
@@ -268,7 +261,7 @@ def _announce(command: str) -> None:
 def _tell_ros(domain: int, file: Path | None, overrides: list[str], *, trust: bool) -> None:
     """Fly a drone for nodes of ROS 2, until Ctrl-C."""
     from eyas.engine.settings.file import load_settings
-    from eyas.robotics.serve_ros import AS_FLOWN, run
+    from eyas.robotics.serving.ros import AS_FLOWN, run
 
     run(load_settings(file, overrides, base=AS_FLOWN, trust=trust), domain)
 
@@ -278,10 +271,10 @@ def _fly(
 ) -> None:
     """Fly vehicles that speak MAVLink, or let an autopilot fly one, until Ctrl-C."""
     if addresses:
-        from eyas.robotics.serve_mavlink import run
+        from eyas.robotics.serving.mavlink import run
 
         run(settings, addresses)
         return
-    from eyas.robotics import serve_hil as hil
+    from eyas.robotics.serving import hil
 
     hil.run(settings, px4=px4, ardupilot=ardupilot)

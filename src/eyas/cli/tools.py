@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from eyas.engine.terminal.options import (
-    SEVERAL,
     AsJson,
     ConfigFile,
     MapName,
+    OnlyMaps,
+    OnlyWeathers,
     Overrides,
     Preset,
     chosen_file,
     gathered,
+    to_write,
 )
 from eyas.engine.terminal.stderr import say
 
@@ -26,9 +28,7 @@ __all__ = ["bench", "cache_app", "config_app", "doctor", "verify"]
 
 
 def bench(
-    out: Annotated[
-        Path | None, typer.Option("--out", help="JSON file to write the figures to, as well.")
-    ] = None,
+    out: Annotated[Path | None, to_write("JSON file to write the figures to, as well.")] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Measure for a tenth of the time.")
     ] = False,
@@ -54,9 +54,7 @@ def bench(
     bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera, device=device)
 
 
-def doctor(
-    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+def doctor(json_: AsJson = False) -> None:
     """Tell what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
     from eyas.cli.doctor import run
 
@@ -68,7 +66,7 @@ def verify(
         bool, typer.Option("--quick", help="Look at a tenth of the cases only.")
     ] = False,
     map_: MapName = None,
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON, with all hashes.")] = False,
+    json_: AsJson = False,
 ) -> None:
     """Check that this machine computes the promised bytes: pictures, labels, rewards, people.
 
@@ -119,14 +117,14 @@ def convert_config(
     set_: Overrides = None,
 ) -> None:
     """Convert settings between the native and the DAT benchmark's notation."""
-    from eyas.dat.settings.adapter import is_legacy
+    from eyas.dat.settings.adapter import is_original
     from eyas.engine.core.errors import OutputError
     from eyas.engine.core.files import write_atomic
     from eyas.engine.settings.file import load_settings, read_settings
 
     if target.exists():
         raise OutputError(f"{target}: already exists; settings files are never overwritten")
-    legacy = not is_legacy(read_settings(source))
+    legacy = not is_original(read_settings(source))
     text = _text(load_settings(source, gathered(set_), trust=True), legacy=legacy)
     write_atomic(target, f"{text}\n".encode())
 
@@ -140,10 +138,10 @@ def print_schema() -> None:
 
 
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
-    from eyas.dat.settings.adapter import to_legacy
+    from eyas.dat.settings.adapter import to_original
 
     if legacy:
-        return json.dumps(to_legacy(settings), indent=4)
+        return json.dumps(to_original(settings), indent=4)
     return settings.model_dump_json(indent=2)
 
 
@@ -174,14 +172,8 @@ def clear_cache(
 
 @cache_app.command("warm")
 def warm_cache(
-    map_name: Annotated[
-        list[str] | None,
-        typer.Option("--map", help=f"Only this map; {SEVERAL}."),
-    ] = None,
-    weather: Annotated[
-        list[str] | None,
-        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
-    ] = None,
+    map_name: OnlyMaps = None,
+    weather: OnlyWeathers = None,
 ) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""
     from eyas.cli.cache import run_warm

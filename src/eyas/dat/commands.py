@@ -13,8 +13,7 @@ __all__ = ["webots_shim"]
 
 def webots_shim(
     install: Annotated[
-        Path,
-        typer.Option("--install", help="Folder to write the program into, to be put in PATH."),
+        Path, typer.Option("--install", help="Folder to write the program into, to be put in PATH.")
     ],
     root: Annotated[
         Path | None,

@@ -54,7 +54,6 @@ def read_proto(path: Path, mesh: Callable[[Path], Part]) -> tuple[list[Part], st
     Other PROTOs are read where they are files: named by `EXTERNPROTO`, or beside the file.
 
     Args:
-        path: The file.
         mesh: Reads a mesh file, of a `Mesh` or `CadShape` node.
 
     Raises:
@@ -80,7 +79,6 @@ class _Place:
     """Where a node stands: the file it is in, and the frame of its parent.
 
     Args:
-        path: The file.
         externs: Addresses of the PROTOs that it names.
         turn: Axes of the frame as columns, perhaps scaled.
         origin: Origin of the frame [m].

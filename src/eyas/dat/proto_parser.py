@@ -46,7 +46,6 @@ class _Reader:
     """Reads one file.
 
     Args:
-        text: Its content.
         given: Values of the PROTO's fields that are not their defaults.
     """
 
@@ -171,7 +170,6 @@ def parsed(text: str, given: Mapping[str, object] = MappingProxyType({})) -> Pro
     """Return what the text of a PROTO tells.
 
     Args:
-        text: The content of its file.
         given: Values of its fields that are not their defaults.
 
     Raises:

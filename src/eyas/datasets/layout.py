@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
 from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.statistics import PartFacts
@@ -14,6 +13,7 @@ from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.exports.checksums import SEALED
 from eyas.engine.recordings.recording import DATASET_FILE
 
@@ -31,7 +31,7 @@ class Plan(Config):
     eyas: str
     """Version of Eyas."""
     build_id: str
-    """Of Eyas, too."""
+    """Build of Eyas."""
     source: str
     """The recipe that ships, or `recipe.json`, which the data set then holds."""
     recipe: Recipe
@@ -47,13 +47,10 @@ class Plan(Config):
         """Return the plan of a recipe with this Eyas.
 
         Args:
-            recipe: The recipe.
-            named: Its name or its file, as the user has said it.
-            sample: Whether only a hundredth is made.
             shard: Number of the shard, from 1, and of all shards; None: all of it.
         """
         return cls(
-            eyas=__version__,
+            eyas=installed_version(),
             build_id=this_build().id,
             source=named if named in SHIPPED else RECIPE_FILE,
             recipe=recipe,
@@ -113,12 +110,6 @@ def write_plan(
     root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] = (), sealed: str = ""
 ) -> None:
     """Write the plan of a data set: that in the making, or with parts `dataset.json`.
-
-    Args:
-        root: Folder of the data set.
-        plan: The plan.
-        parts: The parts that are complete.
-        sealed: SHA-256 of the checksums of the other files.
 
     Raises:
         OutputError: It cannot be written.

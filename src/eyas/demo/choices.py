@@ -54,7 +54,6 @@ def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
 
     Args:
         before: The plan, for what was not chosen.
-        said: The choices.
 
     Raises:
         ConfigError: A setting does not fit to the others, or a map or weather does not exist.
@@ -138,9 +137,6 @@ class Builder:
     Attributes:
         plan: What is being built, or was last; choices that follow start from it.
         flown: What was built last.
-
-    Args:
-        plan: The world that there is.
     """
 
     def __init__(self, plan: WorldChoice) -> None:

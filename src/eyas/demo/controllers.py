@@ -18,7 +18,7 @@ from eyas.engine.policies.sight import subjects, visible_shares
 
 __all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
 
-SEED = 7  # Of the episode that is flown, so that results of different days can be compared
+SEED = 7  # Seed of the episode that is flown, so that results of different days compare
 SECONDS = 60
 READY = 3.0  # Seconds before each flight in which everything stands still
 
@@ -152,7 +152,7 @@ class BoxController:
     GAIN, FASTEST = 1.5, 12.0
     """Speed for each metre [1/s]; largest speed [m/s], the original's."""
     PATIENCE = 0.5
-    """How long a box holds [s]."""
+    """Longest time that a box holds [s]."""
     STEPS = 4
 
     def __init__(self, flight: DemoFlight) -> None:

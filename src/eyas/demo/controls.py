@@ -28,7 +28,7 @@ class Control(StrEnum):
     CAMERA_CENTRE = "camera_centre"
 
 
-Held = Mapping[Control, float]  # How far each control is held, 0 to 1; those not named are not
+Held = Mapping[Control, float]  # Deflection of each control, 0 to 1; 0 if not named
 
 SPEED = 20.0  # Forward and sideways [m/s]
 CLIMB = 0.01  # [m per physics step of 2 ms], 5 m/s

@@ -8,15 +8,8 @@ from typing import Any, Protocol
 
 from eyas.demo.frame import DemoFrame
 from eyas.demo.messages import Message, WorldMessage
-from eyas.demo.orders import (
-    carry_out,
-    change_sides,
-    end_recording,
-    enter_new_world,
-    world_now,
-)
-from eyas.demo.pace import FRAME
-from eyas.demo.session import Session
+from eyas.demo.orders import carry_out, change_sides, end_recording, enter_new_world, world_now
+from eyas.demo.session import FRAME, Session
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.faults import FaultLog
 

@@ -32,7 +32,7 @@ WANTED = 25.0
 """Frames that should get through in a second. If fewer do, the line is to blame if it takes longer
 for each than the time between them."""
 EASY = 0.024  # A line that takes less time for a frame may have room for larger pictures [s]
-PERIOD = 2.0  # From one decision to the next [s]
+PERIOD = 2.0  # Time from one decision to the next [s]
 PATIENCE = 5  # Easy periods after which larger pictures are tried; it doubles each time
 HELP = 1.3  # If smaller pictures do not shorten the time by this factor, no smaller ones will
 PAUSE = 60.0  # After that, for how long smaller pictures are not tried [s]
@@ -116,7 +116,6 @@ class Stream:
 
     Args:
         height: Of the pictures, an even number [pixels].
-        width: The same.
         factor: x264's constant rate factor; greater is smaller and blurrier.
 
     Raises:
@@ -150,7 +149,7 @@ class Stream:
         return b"".join(bytes(packet) for packet in self._coder.encode(picture))
 
 
-QUALITY = 82  # Of JPEG: 640 x 360 pixels take about 45 kB
+QUALITY = 82  # JPEG quality: 640 x 360 pixels take about 45 kB
 
 
 class DemoFrame:
@@ -189,9 +188,7 @@ def packed(frame: DemoFrame, kind: str, picture: bytes) -> bytes:
     The length has 4 bytes, little-endian.
 
     Args:
-        frame: The frame.
         kind: What the picture is, see `Viewer.coded`.
-        picture: Its bytes.
     """
     text = frame.state[:-1] + f',"picture":"{kind}"}}'.encode()
     return struct.pack("<I", len(text)) + text + picture

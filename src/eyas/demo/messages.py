@@ -33,7 +33,7 @@ __all__ = [
     "parsed",
 ]
 
-LONGEST = 4096  # Of a message [bytes]
+LONGEST = 4096  # Largest message [bytes]
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Side = Annotated[int, Field(ge=16, le=16384)]
@@ -61,7 +61,7 @@ class KeysMessage(Message):
     held: dict[Control, Share]
     sequence: Annotated[int, Field(ge=0)]
     time: float
-    """Of the page's clock, at the last change [ms]; it comes back with each frame."""
+    """Time of the last change by the page's clock [ms]; it comes back with each frame."""
 
 
 class AckMessage(Message):

@@ -62,7 +62,6 @@ def session_of(config: EyasConfig, policy: str | None = None) -> Session:
     """Return what is flown in a demo.
 
     Args:
-        config: The settings.
         policy: A policy that may fly, beside those that come with Eyas.
 
     Raises:
@@ -76,7 +75,6 @@ def listen(host: str, port: int) -> socket.socket:
     """Return a socket that listens, before a world is built for nothing.
 
     Args:
-        host: The address to bind.
         port: The port; 0: any that is free.
 
     Raises:
@@ -104,7 +102,6 @@ def run_browser(
 
     Args:
         session: What is flown.
-        host: The address that is bound.
         listening: Its socket, see `listen`.
         browser: Whether to open a browser, where there is one.
         say: Prints the line with the address.

@@ -19,7 +19,7 @@ CHASE = (9.0, 4.0)  # Distance of the camera behind the drone, and above it [m]
 ABOVE = 60.0  # Height above the drone of the camera that looks down [m]
 OUTSIDE_FIELD = 1.0  # Horizontal field of view of cameras outside [rad]
 NEAR = 0.2  # What is nearer to the camera is cut off marks [m]
-CLOSE = 0.03  # How far from a click an actor may be, as a share of the picture's width
+CLOSE = 0.03  # Largest distance of an actor from a click, as a share of the width
 
 
 ROUND = np.linspace(0.0, 2.0 * math.pi, 12, endpoint=False)
@@ -37,7 +37,7 @@ _BODY = (
     *(_disc(x, y, (0.2, 0.2), 0.06) for x in (-0.3, 0.3) for y in (-0.3, 0.3)),
 )
 """Outlines of the drone [m], a little larger than it is, to be visible from far."""
-FROM_ABOVE = 2.5  # How much larger still it is from above
+FROM_ABOVE = 2.5  # Factor on that in the view from above
 
 
 class Screen:

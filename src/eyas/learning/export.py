@@ -10,9 +10,9 @@ import onnx
 from onnx import TensorProto, helper, numpy_helper
 from torch import Tensor, nn
 
-from eyas import __version__
 from eyas.benchmark.policies.tracker.metadata import METADATA
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.installed import installed_version
 from eyas.engine.settings.env import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
@@ -73,11 +73,6 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     at the start; `memory`, float (N, hidden), if it has one, 0 at the start. Outputs: `logits`,
     float (N, 7), and `next_memory`. The metadata `eyas` has the settings of actions and
     observations as JSON.
-
-    Args:
-        network: The network.
-        env: What it sees and chooses from.
-        path: The file.
     """
     graph, shape = Graph(), network.shape
     picture = ["n", shape.channels, shape.height, shape.width]
@@ -100,20 +95,13 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
 def write_model(
     body: onnx.GraphProto, env: EnvConfig, path: Path, further: Mapping[str, Any] | None = None
 ) -> None:
-    """Write what a network computes as an ONNX file.
-
-    Args:
-        body: What it computes.
-        env: What the policy sees and chooses from.
-        path: The file.
-        further: More metadata, anything that JSON can hold.
-    """
+    """Write what a network computes as an ONNX file."""
     model = helper.make_model(
         body,
         opset_imports=[helper.make_opsetid("", _OPSET)],
         ir_version=8,
         producer_name="eyas",
-        producer_version=__version__,
+        producer_version=installed_version(),
     )
     said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
     metadata = {METADATA: said, **(further or {})}

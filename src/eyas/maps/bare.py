@@ -10,7 +10,7 @@ from eyas.engine.state.lighting import Horizon
 from eyas.engine.state.mesh import Material
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.roads.areas import road_area
-from eyas.maps.land.plain import blob, rectangle
+from eyas.maps.land.ground import blob, rectangle
 from eyas.maps.plan.plan import Chance, Far, Flat, GroundCover, MapPlan, Paint, Roadway
 
 __all__ = ["make_plan"]
@@ -32,11 +32,7 @@ def make_plan(
     """Return roads on plain ground.
 
     Args:
-        name: Name of the map.
-        network: The roads.
-        seed: Seed of the map, >= 0.
         floor: Extent of the floor [m].
-        cover: Material of the ground.
         horizon: Hills beyond the map.
         centre: The line between the two directions of a road.
     """

@@ -26,17 +26,14 @@ HOUSE = House(
             "simpleway-city": "eyas.maps.simpleway:CITY",
         },
         "eyas.writers": {
-            "scene": "eyas.maps.exports.gltf.flight:SceneWriter",
-            "openscenario": "eyas.maps.exports.scenario:ScenarioWriter",
+            "scene": "eyas.maps.formats.gltf.flight:SceneWriter",
+            "openscenario": "eyas.maps.formats.openscenario:ScenarioWriter",
         },
-        "eyas.planner": {
-            "plans": "eyas.maps.plan.planner:PLANNER",
-        },
-        "eyas.map_files": {
-            "files": "eyas.maps.files:MAP_FILES",
-        },
+        "eyas.planner": {"plans": "eyas.maps.plan.build:PLANNER"},
+        "eyas.textures": {"painted": "eyas.maps.textures.shipped:build_textures"},
+        "eyas.map_files": {"files": "eyas.maps.files:MAP_FILES"},
         "eyas.commands": {
-            "maps": "eyas.maps.commands:app",
+            "maps": "eyas.maps.commands.app:app",
             "traffic": "eyas.maps.traffic.commands:app",
         },
     },

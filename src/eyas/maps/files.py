@@ -53,13 +53,13 @@ _LARGEST_ROADS = 256 << 20
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where an imported map lies, and what it was made of."""
+    """Position of an imported map on earth, and the files that it was made of."""
 
     name: str
     title: str
     source: str  # Name of the file that it was made of
-    longitude: float  # Of the middle of the map, in degrees
-    latitude: float  # Of the middle of the map, in degrees
+    longitude: float  # Longitude of the middle of the map [degrees]
+    latitude: float  # Latitude of the middle of the map [degrees]
     size: tuple[float, float]  # Extent of the floor [m]
     format: str = FORMAT
     checksums: dict[str, str] = field(default_factory=dict)
@@ -179,10 +179,7 @@ def _roads(
 
 
 def _plan(
-    path: Path,
-    network: "RoadNetwork",
-    seed: int,
-    sums: Mapping[str, str] = MappingProxyType({}),
+    path: Path, network: "RoadNetwork", seed: int, sums: Mapping[str, str] = MappingProxyType({})
 ) -> "MapPlan":
     """Return a plan in a file; the seed decides anew what it leaves open."""
     from dataclasses import replace

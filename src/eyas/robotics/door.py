@@ -7,15 +7,11 @@ __all__ = ["HOUSE"]
 HOUSE = House(
     results=True,
     brings={
-        "eyas.settings": {
-            "mavlink": "eyas.robotics.mavlink.config:MavlinkConfig",
-        },
+        "eyas.settings": {"mavlink": "eyas.robotics.mavlink.config:MavlinkConfig"},
         "eyas.writers": {
             "rosbag": "eyas.robotics.ros.bag:RosbagWriter",
             "rosbag-mcap": "eyas.robotics.ros.bag:RosbagMcapWriter",
         },
-        "eyas.commands": {
-            "drone": "eyas.robotics.commands:app",
-        },
+        "eyas.commands": {"drone": "eyas.robotics.commands:app"},
     },
 )

@@ -6,14 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eyas.dat.settings.adapter import (
-    from_legacy,
-    is_legacy,
-    save_legacy,
-    to_legacy,
-    with_legacy,
+    from_original,
+    is_original,
+    save_original,
+    to_original,
+    with_original,
 )
 from eyas.dat.settings.keys import ENTRIES
-from eyas.dat.settings.layout import legacy_defaults, nested
+from eyas.dat.settings.layout import nested, original_defaults
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
@@ -40,15 +40,15 @@ def flat(values):
 
 @pytest.mark.parametrize("name", FILES)
 def test_the_originals_files_load(name):
-    config = from_legacy(read(name))
-    assert from_legacy(to_legacy(config)) == config
+    config = from_original(read(name))
+    assert from_original(to_original(config)) == config
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_files_say_the_same_after_a_round_trip_but_for_keys_without_effect(name):
-    said, written = flat(read(name)), flat(to_legacy(from_legacy(read(name))))
+    said, written = flat(read(name)), flat(to_original(from_original(read(name))))
     for entry in ENTRIES:
-        active = entry.write(_fields(from_legacy(read(name)), entry))
+        active = entry.write(_fields(from_original(read(name)), entry))
         for key in active.keys() & said.keys():
             assert written[key] == said[key], key
 
@@ -67,7 +67,7 @@ def _fields(config, entry):
 
 def test_the_table_has_every_key_once():
     keys = [key for entry in ENTRIES for key in entry.keys]
-    assert sorted(keys) == sorted(flat(legacy_defaults()))
+    assert sorted(keys) == sorted(flat(original_defaults()))
 
 
 def test_every_setting_is_reached_by_at_most_one_entry():
@@ -77,12 +77,12 @@ def test_every_setting_is_reached_by_at_most_one_entry():
 
 def test_missing_groups_and_keys_have_the_manuals_values():
     example = read("manual_example")
-    assert from_legacy({}) == from_legacy(example)
-    assert from_legacy({"Out_Video": {"fps": 50.0}}) == from_legacy(example)
+    assert from_original({}) == from_original(example)
+    assert from_original({"Out_Video": {"fps": 50.0}}) == from_original(example)
 
 
 def test_the_recommended_set_reads_as_meant():
-    config = from_legacy(read("recommended"))
+    config = from_original(read("recommended"))
     assert config.mode == "train"
     assert config.start.pitch == Uniform(uniform=(0.6, 1.38))
     assert config.start.height == Uniform(uniform=(13.0, 22.0))
@@ -100,37 +100,37 @@ def test_the_recommended_set_reads_as_meant():
 def test_the_originals_file_means_its_traffic(values):
     base = EyasConfig()
     assert base.traffic.demand == "keep_alive"
-    assert from_legacy(values, base).traffic.demand == "respawn"
+    assert from_original(values, base).traffic.demand == "respawn"
 
 
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
 def test_the_originals_file_means_its_quality_of_pictures(values):
     assert EyasConfig().video.jpeg_quality == 95
-    assert from_legacy(values).video.jpeg_quality == 100
+    assert from_original(values).video.jpeg_quality == 100
 
 
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
 def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
     assert (EyasConfig().start.velocity, EyasConfig().extras) == ("target", None)
     assert EyasConfig().tracker.flight == "mended"
-    config = from_legacy(values)
+    config = from_original(values)
     assert (config.start.velocity, config.extras) == ("rest", ())
     assert (config.tracker.flight, config.tracker.off_centre) == ("original", True)
     assert not EyasConfig().tracker.off_centre
     assert (config.traffic.signals, config.traffic.lamps) == ("amber", "dark")
-    config = from_legacy(values, EyasConfig())
+    config = from_original(values, EyasConfig())
     assert (config.start.velocity, config.extras) == ("target", None)
 
 
 def test_traffic_that_lasts_is_a_key_of_ours_in_its_file():
-    written = to_legacy(EyasConfig())
+    written = to_original(EyasConfig())
     assert written["Sumo_Params"]["keep_alive"] is True
-    assert from_legacy(written).traffic.demand == "keep_alive"
-    assert to_legacy(from_legacy({}))["Sumo_Params"]["keep_alive"] is False
+    assert from_original(written).traffic.demand == "keep_alive"
+    assert to_original(from_original({}))["Sumo_Params"]["keep_alive"] is False
     with pytest.raises(
         ConfigError, match=r"^Sumo_Params.keep_alive: 1 is not allowed: true or fal"
     ):
-        from_legacy({"Sumo_Params": {"keep_alive": 1}})
+        from_original({"Sumo_Params": {"keep_alive": 1}})
 
 
 @pytest.mark.parametrize(
@@ -145,16 +145,16 @@ def test_traffic_that_lasts_is_a_key_of_ours_in_its_file():
     ],
 )
 def test_a_key_about_groups_means_that_groups_come(keys):
-    assert with_legacy(EyasConfig(), {"Sumo_Params": keys}).traffic.demand == "respawn"
+    assert with_original(EyasConfig(), {"Sumo_Params": keys}).traffic.demand == "respawn"
     kept = {"Sumo_Params": keys | {"keep_alive": True}}
-    assert with_legacy(EyasConfig(), kept).traffic.demand == "keep_alive"
+    assert with_original(EyasConfig(), kept).traffic.demand == "keep_alive"
     others = {"Sumo_Params": {"max_sumo_car": 30, "fixed_seed": True, "rou_update": True}}
-    assert with_legacy(EyasConfig(), others).traffic.demand == "keep_alive"
+    assert with_original(EyasConfig(), others).traffic.demand == "keep_alive"
 
 
 def test_what_the_original_cannot_say_is_kept_from_the_base():
     base = EyasConfig(seed=5, camera={"width": 640}, world={"seed": 3})
-    config = from_legacy(read("shipped"), base)
+    config = from_original(read("shipped"), base)
     assert (config.seed, config.camera.width, config.world.seed) == (5, 640, 3)
 
 
@@ -219,10 +219,10 @@ configs = st.fixed_dictionaries(
 def test_native_to_legacy_and_back_loses_nothing(config):
     flight = config.video.flight or "exact"  # the original knows no camera path
     config = updated(config, {"video": {"flight": flight}})
-    written = json.loads(json.dumps(to_legacy(config)))
-    assert from_legacy(written, config).model_copy(update={"original": None}) == config
-    again = from_legacy(written)
-    assert from_legacy(to_legacy(again)) == again
+    written = json.loads(json.dumps(to_original(config)))
+    assert from_original(written, config).model_copy(update={"original": None}) == config
+    again = from_original(written)
+    assert from_original(to_original(again)) == again
     assert again.start == config.start.model_copy(update={"velocity": "rest"})
     assert again.light == config.light
     assert (again.world.map, again.world.weather) == (config.world.map, config.world.weather)
@@ -241,16 +241,16 @@ def test_native_to_legacy_and_back_loses_nothing(config):
 def test_what_cannot_be_said_is_one_line(values, path, tmp_path, caplog):
     config = EyasConfig(**values)
     with pytest.raises(ConfigError, match=rf"^{path}: .* cannot be expressed in env_config.json$"):
-        to_legacy(config)
-    assert not save_legacy(config, tmp_path / "env_config.json")
+        to_original(config)
+    assert not save_original(config, tmp_path / "env_config.json")
     assert not list(tmp_path.iterdir())
     assert path in caplog.text
 
 
 def test_saved_files_load_back(tmp_path):
-    config = from_legacy(read("recommended"))
-    assert save_legacy(config, tmp_path / "env_config.json")
-    assert from_legacy(json.loads((tmp_path / "env_config.json").read_text())) == config
+    config = from_original(read("recommended"))
+    assert save_original(config, tmp_path / "env_config.json")
+    assert from_original(json.loads((tmp_path / "env_config.json").read_text())) == config
 
 
 @pytest.mark.parametrize(
@@ -293,7 +293,7 @@ def test_saved_files_load_back(tmp_path):
 )
 def test_a_wrong_key_or_value_is_told_in_the_originals_words(values, line):
     with pytest.raises(ConfigError) as caught:
-        from_legacy(values)
+        from_original(values)
     assert str(caught.value).startswith(line)
 
 
@@ -345,25 +345,25 @@ def test_a_wrong_key_or_value_is_told_in_the_originals_words(values, line):
 )
 def test_the_key_to_blame_is_found_among_several(group, keys, path):
     with pytest.raises(ConfigError) as caught:
-        from_legacy({group: keys})
+        from_original({group: keys})
     assert str(caught.value).startswith(f"{group}.{path}")
     assert "\n" not in str(caught.value)
 
 
 def test_keys_without_effect_may_be_out_of_range_and_are_kept():
-    config = from_legacy({"Drone_Random_Config": {"height_fixed": -1}})
+    config = from_original({"Drone_Random_Config": {"height_fixed": -1}})
     assert config.original == {"Drone_Random_Config.height_fixed": -1}
-    assert config.model_copy(update={"original": {}}) == from_legacy({})
+    assert config.model_copy(update={"original": {}}) == from_original({})
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_what_is_written_back_loses_nothing(name, tmp_path):
-    config = from_legacy(read(name))
-    assert save_legacy(config, tmp_path / "env_config.json")
+    config = from_original(read(name))
+    assert save_original(config, tmp_path / "env_config.json")
     save_settings(config, tmp_path / "config.json")
     native = load_settings(tmp_path / "config.json")
     assert native == config
-    for written in (json.loads((tmp_path / "env_config.json").read_text()), to_legacy(native)):
+    for written in (json.loads((tmp_path / "env_config.json").read_text()), to_original(native)):
         said, again = flat(read(name)), flat(written)
         assert {key: again[key] for key in said} == said
 
@@ -386,28 +386,28 @@ drawn = [
 )
 def test_whatever_the_switches_nothing_is_lost(flags, numbers):
     said = flat(read("shipped")) | flags | numbers
-    config = from_legacy(nested(said))
+    config = from_original(nested(said))
     again = EyasConfig.model_validate_json(config.model_dump_json())
     assert again == config
-    assert {key: value for key, value in flat(to_legacy(again)).items() if key in said} == said
+    assert {key: value for key, value in flat(to_original(again)).items() if key in said} == said
 
 
 def test_a_switch_turned_on_later_finds_its_values():
     group = {"direction_random": False, "direction_random_max": 3.14, "direction_random_min": -3.14}
-    written = to_legacy(from_legacy({"Drone_Random_Config": group}))
+    written = to_original(from_original({"Drone_Random_Config": group}))
     written["Drone_Random_Config"]["direction_random"] = True
-    assert from_legacy(written).start.direction == Uniform(uniform=(-3.14, 3.14))
+    assert from_original(written).start.direction == Uniform(uniform=(-3.14, 3.14))
 
 
 def test_a_kept_value_never_overrides_a_setting():
     group = {"height_random": True, "height_random_max": 22, "height_fixed": 17}
-    config = from_legacy({"Drone_Random_Config": group, "World_Path": "/home/me/lake-day.wbt"})
+    config = from_original({"Drone_Random_Config": group, "World_Path": "/home/me/lake-day.wbt"})
     changed = updated(config, {"start": {"height": 9.0}, "world": {"weather": "night"}})
-    written = to_legacy(changed)
+    written = to_original(changed)
     assert written["Drone_Random_Config"]["height_fixed"] == 9.0
     assert written["World_Path"] == "worlds/lake-night.wbt"
-    assert from_legacy(written).start.height == 9.0
-    assert to_legacy(config)["World_Path"] == "/home/me/lake-day.wbt"
+    assert from_original(written).start.height == 9.0
+    assert to_original(config)["World_Path"] == "/home/me/lake-day.wbt"
 
 
 @pytest.mark.parametrize(
@@ -430,7 +430,7 @@ def test_kept_values_are_checked(original, line, tmp_path):
 
 @pytest.mark.parametrize(("frequency", "steps"), [(125.0, 4), (62.5, 8), (250, 2), (150.0, 3)])
 def test_a_rate_may_have_a_fraction_as_in_the_original(frequency, steps):
-    config = from_legacy({"Control_Frequence": frequency})
+    config = from_original({"Control_Frequence": frequency})
     assert physics_steps(config.control.frequency) == steps
 
 
@@ -448,32 +448,32 @@ def test_a_rate_may_have_a_fraction_as_in_the_original(frequency, steps):
     ],
 )
 def test_a_pitch_that_the_gimbal_cannot_reach_is_limited_and_told(group, pitch, key, caplog):
-    assert from_legacy({"Drone_Random_Config": group}).start.pitch == pitch
+    assert from_original({"Drone_Random_Config": group}).start.pitch == pitch
     (record,) = caplog.records
     assert record.getMessage().startswith(f"Drone_Random_Config.view_pitch_{key}")
 
 
 def test_a_pitch_that_can_start_keeps_its_value(caplog):
     group = {"view_pitch_fixed": 0.3, "view_pitch_random_min": -1}
-    assert from_legacy({"Drone_Random_Config": group}).start.pitch == 0.3
+    assert from_original({"Drone_Random_Config": group}).start.pitch == 0.3
     assert not caplog.records
 
 
 def test_an_unknown_target_is_told_with_the_nearest():
     with pytest.raises(UnknownNameError, match=r"^Tracking_Object: .* did you mean 'Pedestrian'"):
-        from_legacy({"Tracking_Object": "Pedestrain"})
+        from_original({"Tracking_Object": "Pedestrain"})
 
 
 def test_fixed_luminosity_is_added_and_drawn_luminosity_replaces():
-    fixed = from_legacy({"Env_Params": {"bgl_incremental": 0.5}}).light
-    drawn = from_legacy({"Env_Params": {"background_luminosity_random": True}}).light
+    fixed = from_original({"Env_Params": {"bgl_incremental": 0.5}}).light
+    drawn = from_original({"Env_Params": {"background_luminosity_random": True}}).light
     assert (fixed.background, fixed.background_replaces) == (0.5, False)
     assert (drawn.background, drawn.background_replaces) == (Uniform(uniform=(0.0, 1.0)), True)
 
 
 def test_random_fog_is_drawn_between_both_limits():
     keys = {"foggy_use_default": False, "foggy_visibility_range_random": True}
-    assert from_legacy({"Env_Params": keys}).light.visibility == Uniform(uniform=(300.0, 1000.0))
+    assert from_original({"Env_Params": keys}).light.visibility == Uniform(uniform=(300.0, 1000.0))
 
 
 @pytest.mark.parametrize(
@@ -486,26 +486,26 @@ def test_random_fog_is_drawn_between_both_limits():
     ],
 )
 def test_the_path_of_a_world_gives_map_and_weather(path, place):
-    world = from_legacy({"World_Path": path}).world
+    world = from_original({"World_Path": path}).world
     assert (world.map, world.weather) == place
 
 
 def test_the_path_of_an_unknown_world_is_told_and_not_used(caplog):
-    assert from_legacy({"World_Path": "la2.wbt"}).world == EyasConfig().world
+    assert from_original({"World_Path": "la2.wbt"}).world == EyasConfig().world
     assert "la2.wbt" in caplog.text
 
 
 def test_a_change_of_one_key_leaves_what_the_original_cannot_say():
     config = EyasConfig(start={"pitch": {"choice": [1.0, 1.2]}})
-    assert with_legacy(config, {"Out_Video": {"fps": 9}}) == EyasConfig(
+    assert with_original(config, {"Out_Video": {"fps": 9}}) == EyasConfig(
         start=config.start, video={"fps": 9}
     )
-    drawn = with_legacy(config, {"Drone_Random_Config": {"view_pitch_random": True}})
+    drawn = with_original(config, {"Drone_Random_Config": {"view_pitch_random": True}})
     assert drawn.start.pitch == Uniform(uniform=(0.7, 1.57))
 
 
 def test_notation_is_told_by_capitals():
-    assert is_legacy({"Verbose": True})
-    assert is_legacy({"Vrebose": True})
-    assert not is_legacy({"verbose": True, "Video": {}})
-    assert not is_legacy({})
+    assert is_original({"Verbose": True})
+    assert is_original({"Vrebose": True})
+    assert not is_original({"verbose": True, "Video": {}})
+    assert not is_original({})

@@ -2,14 +2,14 @@
 
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy
-from eyas.dat.settings.of_a_run import of_a_run
+from eyas.dat.settings.adapter import from_original
+from eyas.dat.settings.runs import of_a_run
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
 
 
 def original(*, fixed=False, update=False):
-    return from_legacy({"Sumo_Params": {"fixed_seed": fixed, "rou_update": update}})
+    return from_original({"Sumo_Params": {"fixed_seed": fixed, "rou_update": update}})
 
 
 def test_each_run_has_a_seed_of_its_own_which_repeats_it(caplog):
@@ -31,7 +31,7 @@ def test_routes_are_updated_where_the_file_says_so():
 
 
 def test_without_sumo_a_run_begins_somewhere_in_the_recording_that_ships(monkeypatch):
-    monkeypatch.setattr("eyas.dat.settings.of_a_run._sumo", lambda: False)
+    monkeypatch.setattr("eyas.dat.settings.runs._sumo", lambda: False)
     begin = original(update=True)
     first, second = of_a_run(begin, 5), of_a_run(begin, 6)
     assert first.start.warm_up_steps != second.start.warm_up_steps

@@ -4,7 +4,7 @@ import logging
 
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy, with_legacy
+from eyas.dat.settings.adapter import from_original, with_original
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.settings.config import EyasConfig
@@ -21,22 +21,22 @@ def test_older_keys_and_values_are_read_with_a_line_each(caplog):
         "Reward_Config": {"distance_range": 6.5},
         "Sumo_Params": {"car_type": "passenger"},
     }
-    assert from_legacy(older) == from_legacy(newer)
+    assert from_original(older) == from_original(newer)
     lines = [record.getMessage() for record in caplog.records]
     for key in ("Sumo_Random_Mode", "Reward_Config.reward_range", "Sumo_Params.car_type"):
         assert sum(line.startswith(f"{key}: ") for line in lines) == 1
-    assert with_legacy(EyasConfig(), older).reward.distance_range == 6.5
+    assert with_original(EyasConfig(), older).reward.distance_range == 6.5
 
 
 def test_a_present_key_wins_over_its_older_name():
     both = {"Reward_Config": {"reward_range": 3, "distance_range": 5}}
-    assert from_legacy(both).reward.distance_range == 5
+    assert from_original(both).reward.distance_range == 5
 
 
 def test_all_unknown_keys_are_in_one_message():
     wrong = {"Out_Video": {"fsp": 1, "fps": 2}, "Sumo_Prams": {}, "Done_Range": {"qqqq": 1}}
     with pytest.raises(ConfigError) as caught:
-        from_legacy(wrong)
+        from_original(wrong)
     line = str(caught.value)
     assert line.startswith("Sumo_Prams: unknown key; did you mean 'Sumo_Params'?; known: ")
     assert line.endswith("; also unknown: Done_Range.qqqq, Out_Video.fsp (did you mean 'fps'?)")
@@ -59,9 +59,9 @@ def test_limits_in_the_wrong_order_are_said(group, name, caplog):
     switch = "background_luminosity_random" if name == "bgl" else f"{name}_random"
     joint = "" if name.startswith("obj") else "_random"
     values = {f"{name}{joint}_min": 1.25, f"{name}{joint}_max": 0.75}
-    from_legacy({group: {**values, switch: False}})
+    from_original({group: {**values, switch: False}})
     assert not caplog.records
-    from_legacy({group: {**values, switch: True}})
+    from_original({group: {**values, switch: True}})
     (record,) = caplog.records
     assert record.getMessage().startswith(f"{group}.{name}{joint}_min: 1.25 is above {group}.")
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from eyas.maps.programs.export import ExportOptions, export
+from eyas.maps.formats.registry import MapExport, export
 
 from .grammar import Reader
 
@@ -14,7 +14,7 @@ WORLD = f"{MAP}-dusk.wbt"
 def project(tmp_path_factory):
     """The folder of the project."""
     root = tmp_path_factory.mktemp("webots")
-    lines = list(export("webots", root, ExportOptions(MAP, weather="dusk")))
+    lines = list(export("webots", root, MapExport(MAP, weather="dusk")))
     folder = root / "Webots_Simulation" / "traffic_project"
     assert lines[0] == str(folder / "worlds" / WORLD)
     return folder

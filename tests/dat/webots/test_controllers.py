@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.dat.settings.layout import legacy_defaults
+from eyas.dat.settings.layout import original_defaults
 from eyas.dat.webots.controllers import global_receiver
 from eyas.dat.webots.controllers.drone import Drone
 from eyas.dat.webots.controllers.ground import ground_of, settings_of
@@ -61,7 +61,7 @@ def test_rewards_are_the_original_s():
         rows = list(csv.DictReader(file))
     for row in rows:
         value = {key: float(text) for key, text in row.items()}
-        settings = dict(legacy_defaults(), Tracking_Object="Pedestrian")
+        settings = dict(original_defaults(), Tracking_Object="Pedestrian")
         for mode, kind, column in (
             ("continuous", "view", "continuous"),
             ("discrete", "view", "discrete"),
@@ -85,7 +85,7 @@ def test_a_flight_is_that_of_eyas():
     sim = build_simulation(SimConfig(world={"map": "simpleway-grass"}), together(1))
     sim.reset()
     basic, reward = (rows[0] for rows in sim.packets())
-    settings = dict(legacy_defaults())
+    settings = dict(original_defaults())
     tracker = Tracker(settings, CAMERA, FLOOR, random.Random(1))
     target = target_of(sim)
     tracker.begin(target)

@@ -22,7 +22,7 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.targets.catalogue import MODELS, model_index
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import CLEAR_DAY, FOG
-from eyas.maps.exports.scene_parts import parts_of
+from eyas.maps.formats.meshes import parts_of
 
 from .conftest import MAP, WORLD
 from .grammar import Reader

@@ -31,20 +31,14 @@ import eyas
 ROOT = Path(eyas.__file__).parent
 
 ELSEWHERE = (
-    "cli/",
-    "dat/webots/controllers/",
-    "demo/",
-    "learning/",
-    "maps/gallery/",
-    "maps/programs/",
-    "maps/traffic/about.py",
-    "robotics/fitting/",
+    *("benchmark/plots", "cli/", "dat/webots/", "demo/", "learning/", "maps/gallery/"),
+    *("maps/programs/", "maps/traffic/", "robotics/fitting/", "robotics/serv"),
 )
 """They show, measure or learn; what they record is made by the rooms below them."""
 
 ALLOWED = {
     "lanes/exact.py": "takes their place",
-    "benchmark/policies/choice.py": "chances of actions from scores of networks, which BLAS made",
+    "benchmark/policies/action_choice.py": "actions' shares from networks' scores, which BLAS made",
     "benchmark/policies/tracker/detector.py: np.exp": "the same of places",
     "engine/core/bounds.py: np.vdot": "whether numbers are looked at one by one; none changes",
     "engine/sim/stepper.py: np.vdot": "the same",

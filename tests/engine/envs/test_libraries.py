@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.dat.legacy_observation import LegacyObservation, scrambled
+from eyas.dat.observation import LegacyObservation, scrambled
 from eyas.engine.core.errors import EyasError
 from eyas.engine.envs.lerobot import make_lerobot_env
 from eyas.engine.envs.tracking_env import TrackingEnv

@@ -12,8 +12,8 @@ from eyas.engine.render.kernels.light.ambient import BOUNCED
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.state.terrain import Terrain, ground_at
 from eyas.engine.world.build.materials import material
-from eyas.maps.land.facets import relief, surface_of, terrain_of
 from eyas.maps.land.mounds import Mound
+from eyas.maps.land.relief import relief, surface_of, terrain_of
 
 from ...kit.small_city import (
     DAY,

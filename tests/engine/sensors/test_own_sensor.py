@@ -22,7 +22,7 @@ from eyas.engine.settings.schema import config_schema
 from eyas.engine.task.packets import BASIC_FIELDS
 from eyas.robotics.mavlink.equipment import FIELD, PRESSURE, equipped, part_of
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 PATH = "own_sensor:MAGNETOMETER"
 MAGNET = 0.25
 FURTHER = [{"sensor": PATH, "settings": {"magnet": MAGNET}}, "barometer"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from eyas.dat.settings.keys import ENTRIES
-from eyas.dat.settings.layout import legacy_defaults
+from eyas.dat.settings.layout import original_defaults
 from eyas.engine.core.config import group_of
 from eyas.engine.settings.config import EyasConfig
 
@@ -33,5 +33,5 @@ def test_the_page_has_every_key_of_the_original(entry):
     ours = ", ".join(f"`{path}`" for path in entry.paths)
     for key in entry.keys:
         group, _, name = key.rpartition(".")
-        default = legacy_defaults()[group][name] if group else legacy_defaults()[name]
+        default = original_defaults()[group][name] if group else original_defaults()[name]
         assert f"| `{key}` | `{json.dumps(default)}` | {ours} |" in DOC

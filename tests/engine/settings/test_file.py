@@ -3,7 +3,7 @@ import re
 
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.variation import Mirrored, Uniform
@@ -37,7 +37,7 @@ def test_saved_settings_load_back_equal_and_are_left_alone(tmp_path):
 def test_both_notations_are_told_apart(tmp_path):
     assert load_settings(write(tmp_path, '{"video": {"fps": 9}}')).video.fps == 9.0
     legacy = load_settings(write(tmp_path, '{"Out_Video": {"fps": 9}}'))
-    assert legacy == from_legacy({"Out_Video": {"fps": 9}})
+    assert legacy == from_original({"Out_Video": {"fps": 9}})
 
 
 def test_no_file_and_no_keys_give_the_defaults(tmp_path):

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.dat.settings.adapter import is_legacy
+from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.dat.settings.adapter import is_original
 from eyas.dat.settings.layout import flat
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.envs.choice import settings_of_kinds, steps_per_action
@@ -35,7 +35,7 @@ def test_every_file_is_a_preset():
 @pytest.mark.parametrize("name", ["dat-train", "dat-eval"])
 def test_those_of_the_original_are_files_that_it_loads(name):
     values = json.loads(preset_file(name).read_text())
-    assert is_legacy(values)
+    assert is_original(values)
     shipped = Path(__file__).parents[2] / "kit" / "original_settings.json"
     assert flat(values).keys() == flat(json.loads(shipped.read_text())).keys()
 

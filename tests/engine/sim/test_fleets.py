@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import together
@@ -78,7 +78,7 @@ def test_a_fixed_colour_is_seen_in_the_picture():
     """`fixed_color` and `normalize_color` of the original: every car is that colour."""
 
     def seen(values: dict[str, object]) -> np.ndarray:
-        traffic = from_legacy({"Sumo_Params": {"keep_alive": True, **values}}).traffic
+        traffic = from_original({"Sumo_Params": {"keep_alive": True, **values}}).traffic
         config = SimConfig(start=StartConfig(pitch=1.5, height=16.0), traffic=traffic)
         simulation = build_simulation(config, together(4))
         simulation.reset()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.envs.tracking_env import TrackingEnv
 from eyas.engine.sim.build import build_simulation
@@ -134,7 +134,7 @@ def test_in_a_shared_world_all_see_one_light():
 
 def test_env_params_of_the_original_work_and_are_told_in_info():
     values = {"background_luminosity_random": True, "bgl_random_min": 0.2, "bgl_random_max": 0.3}
-    env = TrackingEnv(from_legacy({"Env_Params": values}))
+    env = TrackingEnv(from_original({"Env_Params": values}))
     _, info = env.reset(seed=1)
     assert 0.2 <= info["light"][0] <= 0.3
     assert info["light"][1] == 1.0

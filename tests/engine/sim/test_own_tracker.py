@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.dat.settings.adapter import to_legacy
+from eyas.dat.settings.adapter import to_original
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.build import build_simulation
@@ -103,4 +103,4 @@ def test_one_that_flies_to_nowhere_is_told_in_one_line(config, monkeypatch, tmp_
 
 def test_the_original_s_file_cannot_name_it():
     with pytest.raises(ConfigError, match=r"^tracker\.kind: 'a\.b:C' cannot be expressed in env_"):
-        to_legacy(EyasConfig(tracker={"kind": "a.b:C"}))
+        to_original(EyasConfig(tracker={"kind": "a.b:C"}))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from eyas.dat.settings.adapter import from_legacy
+from eyas.dat.settings.adapter import from_original
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
@@ -288,7 +288,7 @@ def test_what_the_original_says_of_groups_and_routes_is_driven(grid: RoadGraph):
     }
 
     def driven(**changes: object) -> Recording:
-        config = from_legacy({"Sumo_Params": keys | changes}).traffic
+        config = from_original({"Sumo_Params": keys | changes}).traffic
         assert config.seed is not None
         return record("grid", 0, grid, config, 60.0, config.seed)
 

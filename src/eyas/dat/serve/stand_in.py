@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path, PureWindowsPath
 
-from eyas.dat.settings.world_path import WorldPath
+from eyas.dat.settings.entries import WorldPath
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import refusals, write_atomic

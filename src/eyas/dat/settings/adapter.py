@@ -8,10 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from eyas.dat.settings.entries import LegacyEntry, Optional, Values
+from eyas.dat.settings.entries import Optional, OriginalEntry, Values
 from eyas.dat.settings.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
-from eyas.dat.settings.layout import Nested, check_kinds, every_key, flat, nested
-from eyas.dat.settings.older import renewed
+from eyas.dat.settings.layout import Nested, check_kinds, every_key, flat, nested, renewed
 from eyas.dat.settings.own_target import CUSTOM
 from eyas.engine.core.config import Problem, updated
 from eyas.engine.core.errors import ConfigError
@@ -25,12 +24,12 @@ from eyas.engine.traffic.config import Lamps, Signals
 __all__ = [
     "LIKE_THE_ORIGINAL",
     "check_original",
-    "from_legacy",
-    "is_legacy",
-    "legacy_key_of",
-    "save_legacy",
-    "to_legacy",
-    "with_legacy",
+    "from_original",
+    "is_original",
+    "original_key_of",
+    "save_original",
+    "to_original",
+    "with_original",
 ]
 
 _LOG = logging.getLogger("eyas")
@@ -49,13 +48,13 @@ LIKE_THE_ORIGINAL = updated(
 """Our defaults, but for what its file cannot express and the original does in another way."""
 
 
-def is_legacy(values: Nested) -> bool:
+def is_original(values: Nested) -> bool:
     """Return whether settings are the original's, whose keys begin with a capital letter."""
     keys = [key for key in values if key != CUSTOM]
     return 2 * sum(key[:1].isupper() for key in keys) > len(keys)
 
 
-def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
+def from_original(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
     """Return the settings of an `env_config.json`.
 
     Args:
@@ -72,16 +71,15 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
     return _with(config, every_key() | flat(renewed(values)), ENTRIES)
 
 
-def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
+def with_original(config: EyasConfig, changes: Nested) -> EyasConfig:
     """Return settings with some of the original's keys changed.
 
     Args:
-        config: The settings.
         changes: The keys that change; keys that had no effect so far, but have one now, have their
             values of `config.original`, or else the manual's defaults.
 
     Raises:
-        ConfigError: As from `from_legacy`.
+        ConfigError: As from `from_original`.
     """
     said = flat(renewed(changes))
     if not GROUP_KEYS.isdisjoint(said):
@@ -96,7 +94,7 @@ def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
     return _with(config, values | said, touched)
 
 
-def to_legacy(config: EyasConfig) -> dict[str, Any]:
+def to_original(config: EyasConfig) -> dict[str, Any]:
     """Return settings as an `env_config.json` with all groups and keys.
 
     A key that changes no setting has its value of `config.original`, or else the manual's default.
@@ -125,14 +123,14 @@ def check_original(config: EyasConfig) -> None:
         check_kinds(entry, {**every, **_kept(config)}, idle=idle)
 
 
-def save_legacy(config: EyasConfig, path: Path) -> bool:
+def save_original(config: EyasConfig, path: Path) -> bool:
     """Write an `env_config.json` if it can express the settings; return whether it is written.
 
     Raises:
         OutputError: The file cannot be written.
     """
     try:
-        text = json.dumps(to_legacy(config), indent=4)
+        text = json.dumps(to_original(config), indent=4)
     except ConfigError as error:
         _LOG.warning("%s: not written: %s", path, error)
         return False
@@ -140,7 +138,7 @@ def save_legacy(config: EyasConfig, path: Path) -> bool:
     return True
 
 
-def legacy_key_of(path: str) -> str:
+def original_key_of(path: str) -> str:
     """Return the original's key for a field of ours, for messages; empty if there is none."""
     entry = next((entry for entry in ENTRIES if path in entry.paths), None)
     if entry is None:
@@ -148,7 +146,7 @@ def legacy_key_of(path: str) -> str:
     return entry.key if isinstance(entry, Optional) else entry.keys[0]
 
 
-def _with(config: EyasConfig, values: Values, entries: Iterable[LegacyEntry]) -> EyasConfig:
+def _with(config: EyasConfig, values: Values, entries: Iterable[OriginalEntry]) -> EyasConfig:
     """Return settings in which the fields of these entries have these values of their keys."""
     changes: dict[str, object] = {}
     for entry in entries:
@@ -174,7 +172,7 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[LegacyEntry]) ->
     return updated(new, {"original": original})
 
 
-def _is_idle(entry: LegacyEntry, target: object) -> bool:
+def _is_idle(entry: OriginalEntry, target: object) -> bool:
     """Return whether an entry has no effect for a target, whatever its values."""
     vehicle = target == TargetName.SUMO_VEHICLE
     return vehicle and all(path.startswith("objects.") for path in entry.paths)
@@ -186,7 +184,7 @@ def _kept(config: EyasConfig) -> Values:
     return {key: list(value) if isinstance(value, tuple) else value for key, value in kept.items()}
 
 
-def _told(entry: LegacyEntry, config: EyasConfig) -> Values:
+def _told(entry: OriginalEntry, config: EyasConfig) -> Values:
     """Return the keys of an entry that have an effect; none if they cannot express the settings."""
     try:
         return entry.write(_fields(config, entry))
@@ -194,7 +192,7 @@ def _told(entry: LegacyEntry, config: EyasConfig) -> Values:
         return {}
 
 
-def _written(entry: LegacyEntry, config: EyasConfig) -> Values:
+def _written(entry: OriginalEntry, config: EyasConfig) -> Values:
     """Return all keys of an entry, as they were in the original's file where that means the same.
 
     Raises:
@@ -235,7 +233,7 @@ def _is_refused(path: str, value: object) -> bool:
     return False
 
 
-def _fields(config: EyasConfig, entry: LegacyEntry) -> Values:
+def _fields(config: EyasConfig, entry: OriginalEntry) -> Values:
     fields = {}
     for path in entry.paths:
         value: object = config

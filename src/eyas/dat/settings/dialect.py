@@ -5,16 +5,15 @@ from typing import Any
 
 from eyas.dat.settings.adapter import (
     check_original,
-    from_legacy,
-    is_legacy,
-    legacy_key_of,
-    save_legacy,
-    to_legacy,
-    with_legacy,
+    from_original,
+    is_original,
+    original_key_of,
+    save_original,
+    to_original,
+    with_original,
 )
-from eyas.dat.settings.of_a_run import of_a_run
 from eyas.dat.settings.own_target import CUSTOM, own_target_folders, with_own_target
-from eyas.dat.settings.start_time import CHANNEL_STEPS, started_later
+from eyas.dat.settings.runs import CHANNEL_STEPS, of_a_run, started_later
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.settings.config import EyasConfig
@@ -31,7 +30,7 @@ class _Dat:
     file = "env_config.json"
 
     def is_spoken(self, values: Nested) -> bool:
-        return is_legacy(dict(values))
+        return is_original(dict(values))
 
     def read(self, values: Nested, path: Path) -> EyasConfig:
         if _CLIENT_KEY in values:
@@ -41,23 +40,23 @@ class _Dat:
                 "are env.speeds here)"
             )
         keys, own = with_own_target(dict(values), own_target_folders(path))
-        return _with_custom(from_legacy(keys), own)
+        return _with_custom(from_original(keys), own)
 
     def changed(self, config: EyasConfig, changes: Nested, path: Path | None) -> EyasConfig:
         keys, own = with_own_target(dict(changes), own_target_folders(path))
-        return _with_custom(with_legacy(config, keys), own)
+        return _with_custom(with_original(config, keys), own)
 
     def check(self, config: EyasConfig) -> None:
         check_original(config)
 
     def key_of(self, path: str) -> str:
-        return legacy_key_of(path)
+        return original_key_of(path)
 
     def save(self, config: EyasConfig, path: Path) -> bool:
-        return save_legacy(config, path)
+        return save_original(config, path)
 
     def content_of(self, config: EyasConfig) -> dict[str, Any]:
-        return to_legacy(config)
+        return to_original(config)
 
     def of_a_run(self, config: EyasConfig, seed: int | None = None) -> EyasConfig:
         return of_a_run(config, seed)

@@ -10,17 +10,19 @@ from typing_extensions import override
 from eyas.engine.core.config import Config, Problem, shown
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.variation import Mirrored, Uniform
+from eyas.engine.world.config import world_of
 
 __all__ = [
     "Guess",
-    "LegacyEntry",
     "Optional",
+    "OriginalEntry",
     "Pitch",
     "Same",
     "Span",
     "Switch",
     "Values",
     "Varied",
+    "WorldPath",
 ]
 
 Values = Mapping[str, object]  # Values by dotted path: by the original's keys, or by ours
@@ -36,7 +38,7 @@ class Guess:
     allowed: str | None = None  # Allowed values of the key; None: those of our field
 
 
-class LegacyEntry(ABC):
+class OriginalEntry(ABC):
     """Keys of the original, and our fields with the same meaning."""
 
     __slots__ = ()
@@ -72,7 +74,7 @@ class LegacyEntry(ABC):
         yield from ()
 
 
-class _OneField(LegacyEntry):
+class _OneField(OriginalEntry):
     """Keys that mean one field."""
 
     __slots__ = ()
@@ -184,7 +186,7 @@ class Span(_OneField):
 
 
 @dataclass(frozen=True, slots=True)
-class Varied(LegacyEntry):
+class Varied(OriginalEntry):
     """The four to six keys that define whether and how one value is sampled."""
 
     random: str  # Switch: sampled between `least` and `most`; else it is `fixed`
@@ -322,3 +324,54 @@ class Switch(_OneKey):
     @override
     def write(self, fields: Values) -> Values:
         return {self.key: fields[self.path] == self.on}
+
+
+_SIMPLE = "simpleway"  # First part of the names of the simple maps
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPath(OriginalEntry):
+    """The path of a world file, see `world_of`."""
+
+    key: str
+    map: str
+    weather: str
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return (self.key,)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return self.map, self.weather
+
+    @override
+    def read(self, values: Values) -> Values:
+        path = values[self.key]
+        if path is None:
+            return {}
+        if not isinstance(path, str):
+            raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
+        found = world_of(path)
+        return {} if found is None else dict(zip((self.map, self.weather), found, strict=True))
+
+    @override
+    def remarks(self, values: Values) -> Iterator[str]:
+        path = values[self.key]
+        if path is not None and not self.read(values):
+            yield f"{self.key}: {shown(path)} contains no map and weather, so it is ignored"
+
+    @override
+    def write(self, fields: Values) -> Values:
+        name, weather = fields[self.map], fields[self.weather]
+        joint = "_" if str(name).startswith(f"{_SIMPLE}-") else "-"
+        said = {self.key: f"worlds/{name}{joint}{weather}.wbt"}
+        if self.read(said) != {self.map: name, self.weather: weather}:
+            raise ConfigError(f"{self.map}: {shown(name)} cannot be expressed in env_config.json")
+        return said
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)

@@ -1,7 +1,15 @@
 """Every key of an `env_config.json`, and our setting for it."""
 
-from eyas.dat.settings.entries import LegacyEntry, Optional, Pitch, Same, Span, Switch, Varied
-from eyas.dat.settings.world_path import WorldPath
+from eyas.dat.settings.entries import (
+    Optional,
+    OriginalEntry,
+    Pitch,
+    Same,
+    Span,
+    Switch,
+    Varied,
+    WorldPath,
+)
 from eyas.engine.traffic.config import Demand
 
 __all__ = ["ENTRIES", "GROUP_KEYS", "KEEP_ALIVE"]
@@ -155,5 +163,5 @@ _LIGHT = (
     ),
 )
 
-ENTRIES: tuple[LegacyEntry, ...] = (*_BASIC, *_TASK, *_SUMO, *_OBJECTS, *_VIDEO, *_START, *_LIGHT)
+ENTRIES: tuple[OriginalEntry, ...] = (*_BASIC, *_TASK, *_SUMO, *_OBJECTS, *_VIDEO, *_START, *_LIGHT)
 """Every key is in exactly one entry."""

@@ -1,23 +1,73 @@
-"""The groups and keys of an `env_config.json`, by dotted path."""
+"""The groups and keys of an `env_config.json`, by dotted path, also those of older versions."""
 
 import json
+import logging
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from eyas.dat.settings.entries import LegacyEntry, Values
+from eyas.dat.settings.entries import OriginalEntry, Values
 from eyas.engine.core.config import Problem, unknown_keys
 
-__all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
+__all__ = ["Nested", "check_kinds", "every_key", "flat", "nested", "original_defaults", "renewed"]
 
 Nested = Mapping[str, Any]  # The content of a JSON object
+
+_LOG = logging.getLogger("eyas")
+
+_RENAMED = {
+    ("Reward_Config", "reward_range"): (
+        "distance_range",
+        "that version had the reward_type 'distance' only, which is 'view' unless it is given",
+    )
+}
+"""Keys in groups, their names in the present version, and a remark."""
+
+_REMOVED = {"Sumo_Random_Mode": "routes are drawn as by its mode 2, the recommended one"}
+"""Keys of the top level that the present version does without."""
+
+_VALUES = {("Sumo_Params", "car_type", "private"): "passenger"}
+"""Values of keys in groups, and their names in the present version."""
+
+
+def renewed(values: Nested) -> dict[str, Any]:
+    """Return the content of an `env_config.json` in the words of the present version.
+
+    A line in the log names each key and value that is of an older one.
+    """
+    new = {
+        key: dict(value) if isinstance(value, Mapping) else value for key, value in values.items()
+    }
+    for key in _REMOVED.keys() & new.keys():
+        del new[key]
+        _LOG.warning("%s: a key of older versions, left out: %s", key, _REMOVED[key])
+    for (group, old), (name, remark) in _RENAMED.items():
+        if (inner := _group(new, group)) is None or old not in inner:
+            continue
+        value = inner.pop(old)
+        if name in inner:
+            _LOG.warning("%s.%s: left out beside %s, its present name", group, old, name)
+            continue
+        inner[name] = value
+        _LOG.warning("%s.%s: the older name of %s, read as such; %s", group, old, name, remark)
+    for (group, key, old), name in _VALUES.items():
+        if (inner := _group(new, group)) is not None and inner.get(key) == old:
+            inner[key] = name
+            _LOG.warning("%s.%s: '%s' is the older name of '%s'", group, key, old, name)
+    return new
+
+
+def _group(values: Nested, name: str) -> dict[str, Any] | None:
+    group = values.get(name)
+    return group if isinstance(group, dict) else None
+
 
 _COUNTS = "_Steps"  # End of the keys of numbers of steps, which may be written as 1500.0 too.
 
 
 @cache
-def legacy_defaults() -> Nested:
+def original_defaults() -> Nested:
     """Return the values that keys have if a file does not contain them."""
     values: dict[str, Any] = json.loads(
         files("eyas.dat.settings").joinpath("defaults.json").read_text()
@@ -27,7 +77,7 @@ def legacy_defaults() -> Nested:
 
 def every_key() -> dict[str, object]:
     """Return the values of all keys if a file contains none of them."""
-    return flat(legacy_defaults())
+    return flat(original_defaults())
 
 
 def flat(values: Nested) -> dict[str, object]:
@@ -36,7 +86,7 @@ def flat(values: Nested) -> dict[str, object]:
     Raises:
         ConfigError: Keys that the original does not have, or a value that should be a group.
     """
-    defaults = legacy_defaults()
+    defaults = original_defaults()
     if unknown := unknown_keys(_unknown(values)):
         raise unknown.error()
     by_path: dict[str, object] = {}
@@ -53,7 +103,7 @@ def flat(values: Nested) -> dict[str, object]:
 
 def _unknown(values: Nested) -> list[Problem]:
     """Return a problem for each key that the original does not have."""
-    defaults = legacy_defaults()
+    defaults = original_defaults()
     unknown: list[tuple[tuple[str, ...], Nested]] = [
         ((key,), defaults) for key in values if key not in defaults
     ]
@@ -76,7 +126,7 @@ def nested(by_path: Values) -> dict[str, Any]:
     return groups
 
 
-def check_kinds(entry: LegacyEntry, values: Values, *, idle: bool = False) -> None:
+def check_kinds(entry: OriginalEntry, values: Values, *, idle: bool = False) -> None:
     """Refuse switches and numbers of a wrong type.
 
     A key for one field is checked by that field, unless the entry has no effect (`idle`).

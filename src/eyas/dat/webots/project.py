@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image
 
-from eyas.dat.settings.layout import legacy_defaults
-from eyas.dat.settings.world_path import WorldPath
+from eyas.dat.settings.entries import WorldPath
+from eyas.dat.settings.layout import original_defaults
 from eyas.dat.webots.protos import (
     DRONE,
     INTERFACE,
@@ -23,15 +23,15 @@ from eyas.dat.webots.protos import (
 from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Node, Value, world
 from eyas.dat.webots.world import scene_nodes, sky_nodes
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.files import refusals, write_atomic
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.scenes import load_scene, load_textures
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
-from eyas.maps.programs.export import ExportOptions, MapFormat
-from eyas.maps.programs.roads import sumo_files_of
+from eyas.maps.formats.registry import MapExport, MapFormat
+from eyas.maps.formats.roads import sumo_files_of
 
 __all__ = ["WEBOTS", "Condition", "run"]
 
@@ -57,10 +57,7 @@ def run(name: str, seed: int, folder: Path, detail: int, condition: Condition) -
     """Write a project; another weather of a map, or another map, may be written beside it.
 
     Args:
-        name: Name of the map.
-        seed: Seed of the map.
         folder: What holds `Webots_Simulation`; made if it does not exist.
-        detail: Level of detail of trees and furniture; 0 is the finest.
         condition: Weather and hour.
 
     Returns:
@@ -128,10 +125,7 @@ def _robots(name: str) -> list[Node]:
         "supervisor": True,
     }
     roads: dict[str, Value] = {"networkFiles": f"{name}_net", "maxVehicles": 40}
-    return [
-        Node("Robot", receiver, "GLOBAL_RECEIVER"),
-        Node(INTERFACE, roads, "SUMO_INTERFACE"),
-    ]
+    return [Node("Robot", receiver, "GLOBAL_RECEIVER"), Node(INTERFACE, roads, "SUMO_INTERFACE")]
 
 
 def _ground(scene: Scene) -> dict[str, bytes]:
@@ -158,13 +152,13 @@ def _controllers() -> dict[str, bytes]:
 
 def _settings(name: str, weather: str) -> dict[str, bytes]:
     """Return `env_config.json`, and the copy that controllers take what it leaves out from."""
-    given = {**legacy_defaults(), "Simulation_Mode": "train"}
+    given = {**original_defaults(), "Simulation_Mode": "train"}
     given["World_Path"] = _world_of(name, weather)
     text = json.dumps(given, indent=2).encode() + b"\n"
     return {f"config/{file}.json": text for file in ("env_config", "env_config_backup")}
 
 
-def _written(path: Path, options: ExportOptions) -> Iterator[str]:
+def _written(path: Path, options: MapExport) -> Iterator[str]:
     condition = Condition(options.weather, options.hour)
     yield from map(str, run(options.name, options.seed, path, options.detail, condition))
 

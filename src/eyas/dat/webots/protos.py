@@ -97,10 +97,7 @@ def interface_proto() -> str:
         ("SFInt32", "seed", 1),
         ("SFString", "networkFiles", ""),
     ]
-    body = Node(
-        "Robot",
-        {"name": Is("name"), "controller": "sumo_supervisor", "supervisor": True},
-    )
+    body = Node("Robot", {"name": Is("name"), "controller": "sumo_supervisor", "supervisor": True})
     return proto(INTERFACE, "Drives the vehicles by SUMO", fields, body)
 
 

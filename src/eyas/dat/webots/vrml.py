@@ -78,8 +78,6 @@ def world(protos: Sequence[str], importable: Sequence[str], nodes: Sequence[Node
 
     Args:
         protos: Paths of the PROTO files of its nodes, relative to it.
-        importable: The same of nodes that controllers add.
-        nodes: Its nodes.
     """
     heads = [f'EXTERNPROTO "{path}"' for path in protos]
     heads += [f'IMPORTABLE EXTERNPROTO "{path}"' for path in importable]
@@ -94,7 +92,6 @@ def proto(name: str, comment: str, interface: Sequence[tuple[str, str, Value]], 
         comment: What it is.
         interface: Type, name and default of each field. One that no node of the body takes is told
             to be `unconnectedField`, as only controllers read it.
-        body: Its node.
     """
     text = _told(body, 1)
     lines = [HEADER.rstrip(), f"# {comment}", "", f"PROTO {name} ["]

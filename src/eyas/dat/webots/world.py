@@ -13,12 +13,11 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import Lamps, ObjectClass, Scene
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact
-from eyas.maps.exports.scene_parts import Part, copies_of, parts_of, prototypes_of
-from eyas.maps.programs.prisms import prism
+from eyas.maps.formats.meshes import Part, copies_of, parts_of, prism, prototypes_of
 
 __all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
 
-BASIC_STEP = 2  # Of physics, as in the original [ms]
+BASIC_STEP = 2  # Step of the physics, as in the original [ms]
 
 _SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colour 1
 
@@ -94,9 +93,7 @@ def scene_nodes(scene: Scene, shapes: Shapes, detail: int, *, shining: bool) -> 
     and the like, and one for each class of repeated things.
 
     Args:
-        scene: The map.
         shapes: Makes the shapes of the file.
-        detail: Level of detail of trees and furniture; 0 is the finest.
         shining: Whether street lamps shine.
     """
     solid = _Solids(scene)

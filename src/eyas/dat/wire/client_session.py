@@ -43,7 +43,6 @@ class ClientSession:
         waiting: Time since which the client owes the next thing [s, monotonic].
 
     Args:
-        names: The files.
         heard: Called with each line that the client sends.
     """
 

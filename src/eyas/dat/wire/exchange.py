@@ -50,7 +50,7 @@ _SIMULATOR = Path("Webots_Simulation", "traffic_project")
 SETTINGS_FILE = _SIMULATOR / "config" / "env_config.json"
 """The settings of the original's simulator, below its root; its clients read them too."""
 
-_COARSE = 0.02  # How far times of files lie behind the clock at most, some ticks of the kernel [s]
+_COARSE = 0.02  # Largest lag of file times behind the clock, some ticks of the kernel [s]
 
 _START = "start.txt"
 _OURS = re.compile(
@@ -74,7 +74,6 @@ class Names:
         picture: The answer's picture.
 
     Args:
-        folder: The folder of the files.
         tracker: Name of the tracker.
     """
 

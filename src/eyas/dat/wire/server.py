@@ -53,7 +53,6 @@ class Server(Face):
     """The original's protocol; each change of the number of clients begins a new world.
 
     Args:
-        exchange: The folder.
         ask: Returns what to serve, whenever agents announce themselves; the same object as long as
             nothing has changed.
         place: Returns the address and the port on which to listen, which may change.
@@ -184,7 +183,6 @@ class Server(Face):
         """Make a world for agents that have announced themselves.
 
         Args:
-            count: Their number.
             begun: Those of them whose first reset has been taken already.
         """
         self._count = count

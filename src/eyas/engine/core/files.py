@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from eyas.engine.core.errors import DataFileError, OutputError
-from eyas.lanes.folder import open_at_once
+from eyas.lanes.trusted import open_at_once
 
 __all__ = [
     "PART_SUFFIX",

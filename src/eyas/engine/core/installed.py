@@ -2,14 +2,24 @@
 
 import json
 import shlex
-from importlib.metadata import PackageNotFoundError, distribution
+from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-__all__ = ["install_command"]
+__all__ = ["install_command", "installed_version"]
 
 _CLONE = Path(__file__).parents[4]
+
+
+@cache
+def installed_version() -> str:
+    """Return the version of this Eyas; "0" in a folder that is not installed."""
+    try:
+        return version("eyas")
+    except PackageNotFoundError:
+        return "0"
 
 
 def install_command(extra: str) -> str:

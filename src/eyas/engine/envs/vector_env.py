@@ -10,8 +10,8 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 from numpy.typing import NDArray
 
-from eyas.engine.core.doors import first_brought
-from eyas.engine.core.errors import ConfigError, EyasError
+from eyas.engine.core.doors import brought, brought_object, installed
+from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
 from eyas.engine.core.rng import checked_seed
 from eyas.engine.envs.batch import Outcome, Truth
 from eyas.engine.envs.choice import EnvChoices, Source, checked_options, chosen_settings, first_seed
@@ -82,9 +82,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if device is None:
             self._here = MixedBatch(self.config, num_envs, measures=measures)
         else:
-            elsewhere = first_brought("eyas.devices")
+            kind = device.partition(":")[0] if isinstance(device, str) else "host"
+            elsewhere = brought_object("eyas.devices", kind)
             if elsewhere is None:
-                raise ConfigError(f"device: '{device}': no house here computes on devices")
+                known = (*brought("eyas.devices"), *installed("eyas.devices"))
+                raise UnknownNameError("device", kind, known)
             self._there = elsewhere(self.config, num_envs, device, measures=measures)
         self.num_envs = num_envs
         self.render_mode = render_mode

@@ -171,7 +171,7 @@ def evt2(events: NDArray[np.void], size: tuple[int, int], frames: int) -> bytes:
     before them, each time that they change, come the upper 28 bits of the time.
 
     Args:
-        events: In the order of time, see `eyas.engine.sensors.camera.esim.EVENT`.
+        events: In the order of time, see `eyas.engine.camera.esim.EVENT`.
         size: Width and height [pixels].
         frames: Number of frames of the episode; ours, as a comment.
     """

@@ -250,7 +250,7 @@ class Frame:
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
     events: NDArray[np.void] | None = None
     """Events of the event camera since the last frame, in the order of time, of dtype
-    `eyas.engine.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants
+    `eyas.engine.camera.esim.EVENT`; times count from the reset. None if no writer wants
     it."""
     traffic: ActorView | None = None
     """All actors of the tracker's world, seen or not, at the instant that the picture shows; None

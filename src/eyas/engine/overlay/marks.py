@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.frames import rotate
 from eyas.engine.mesh.panels import cells, closed, fan, halves
 from eyas.engine.overlay.items import GroundArea, Label, Overlay, Solid, ThinLine
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Plane, Terrain, plane_at
 from eyas.engine.task.ground import ground_corners, on_plane

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
 from eyas.engine.core.config import shown
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK, folder_lock
 from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.own_code import left_out
 from eyas.engine.exports.checksums import (
     CHECKSUMS,
@@ -208,7 +208,7 @@ def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[s
         "least_side": options.least_side,
         "least_visible": options.least_visible,
         "ignore_parked": options.ignore_parked,
-        "eyas": __version__,
+        "eyas": installed_version(),
         "build_id": this_build().id,
     }
 

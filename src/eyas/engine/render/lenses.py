@@ -13,8 +13,6 @@ from eyas.engine.render.kernels.lens.table import Survey, fill_tables, look_arou
 from eyas.lanes import exact
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["NO_TABLES", "LensBank"]
-
 Floats = NDArray[np.float64]
 
 DENSITY = 1.0

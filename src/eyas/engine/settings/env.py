@@ -5,8 +5,8 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.engine.core.config import Config
-from eyas.engine.sensors.config import ColourLayout, Colours
 
 __all__ = [
     "ActionKind",

@@ -9,8 +9,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, bounds, within
 
-__all__ = ["Flight", "TrackerConfig", "TrackerKind", "WindConfig"]
-
 
 class TrackerKind(StrEnum):
     """Kinds of trackers."""

@@ -7,8 +7,6 @@ from pydantic import Field, model_validator
 
 from eyas.engine.core.config import Config
 
-__all__ = ["Demand", "Drivers", "Lamps", "Mix", "Signals", "Source", "TrafficConfig", "VehicleType"]
-
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
 Most = Annotated[float, Field(gt=0, le=1e9)]

@@ -8,13 +8,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK
 from eyas.engine.core.identity.build import Build, this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.optics.lens import NO_LENS, Lens, camera_matrix
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING
 from eyas.engine.exports.registry import WRITERS, chosen_writers
@@ -160,7 +160,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     files = joined(writer.files for writer in folder.writers)
     build = this_build()
     origin = {
-        **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
+        **{"eyas": installed_version(), "build_id": build.id, "build": build.model_dump()},
         "files": asdict(files),
         "seed": config.seed,
     }

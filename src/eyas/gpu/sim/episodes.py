@@ -19,8 +19,6 @@ from eyas.engine.trackers.tracker import Tracker
 from eyas.gpu.sim.flight import START
 from eyas.gpu.sim.records import arrays_of
 
-__all__ = ["HostEpisodes"]
-
 Chosen = NDArray[np.int64]
 
 

@@ -2,10 +2,10 @@
 
 from eyas.lanes import exact
 
-__all__ = ["Apart"]
+__all__ = ["SpacedPoints"]
 
 
-class Apart:
+class SpacedPoints:
     """Points that keep a distance; a new one is compared only with those in the squares around it.
 
     Args:

@@ -24,7 +24,7 @@ __all__ = ["ROOF", "SIDE", "Cottage", "cottage_levels", "outline_at"]
 SIDE = 20.0  # Length of the walls [m]
 
 ROOF = 3.6  # Height of the roof above the eaves [m]
-_EAVES = 0.9  # From the wall to the edge of the roof [m]
+_EAVES = 0.9  # Distance from the wall to the edge of the roof [m]
 
 Points = NDArray[np.float64]
 

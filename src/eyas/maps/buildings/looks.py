@@ -10,6 +10,7 @@ __all__ = ["roof_cover", "wall_tint"]
 Tint = tuple[float, float, float]
 
 # Factors on the facade's own colour, sRGB: from washed out to sooty, warm to cold.
+# order: bytes of plans depend on it, which draw an index of it
 _WALLS: tuple[Tint, ...] = (
     (1.0, 1.0, 1.0),
     (1.0, 0.96, 0.88),
@@ -56,7 +57,6 @@ def roof_cover(top: float, rng: np.random.Generator, *, pyramid: bool) -> Materi
 
     Args:
         top: z of the roof [m].
-        rng: Random numbers of the buildings.
         pyramid: Whether the roof slopes.
     """
     age = float(rng.uniform(_FADED, 1.0))

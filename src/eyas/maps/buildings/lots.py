@@ -98,7 +98,6 @@ def footprint_in(lot: Lot, rng: np.random.Generator, *, plain: bool = False) -> 
 
     Args:
         lot: Lot of the building.
-        rng: Random numbers of the buildings.
         plain: Whether it must be a rectangle, as below a tower.
     """
     kind = "box" if plain or lot.area < 350 else str(rng.choice(_KINDS, p=_ODDS))
@@ -117,14 +116,7 @@ def footprint_in(lot: Lot, rng: np.random.Generator, *, plain: bool = False) -> 
 
 _KINDS = ("box", "angle", "court", "notched", "comb", "octagon")
 _ODDS = (0.46, 0.22, 0.12, 0.10, 0.06, 0.04)
-_FILL = {
-    "box": 1.0,
-    "angle": 0.66,
-    "court": 0.70,
-    "notched": 0.93,
-    "comb": 0.78,
-    "octagon": 0.83,
-}
+_FILL = {"box": 1.0, "angle": 0.66, "court": 0.70, "notched": 0.93, "comb": 0.78, "octagon": 0.83}
 
 
 def _free_box(lot: Lot, rng: np.random.Generator) -> tuple[float, float, float, float]:

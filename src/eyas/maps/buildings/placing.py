@@ -36,7 +36,6 @@ def place_buildings(
     Args:
         blocks: Ground between streets, bounded by the kerbs, world frame [m].
         count: Number of buildings, towers included; a few fewer are placed if there is no room.
-        rng: Random numbers of the buildings.
         keep_free: Area where nothing may stand.
     """
     towers = round(TOWER_SHARE * count)

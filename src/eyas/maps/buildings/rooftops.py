@@ -40,12 +40,9 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
     """Furnish a flat roof; its equipment is part of the building.
 
     Args:
-        builder: The builder to add to.
         outline: Corners of the roof [m], shape (K, 2).
         top: z of the roof [m].
-        owner: Object of the building.
         keep_free: Area where a tower stands on the roof [m].
-        rng: Random numbers of the building.
     """
     units = {kind: builder.prototype(f"roof {kind}", make) for kind, make in UNITS.items()}
     shape = shapely.Polygon(outline)

@@ -33,8 +33,6 @@ def storeys(
 
     Args:
         side: Square root of the footprints' areas [m], shape (B,).
-        base: Index of the building that each one stands on, or -1, shape (B,).
-        rng: Random numbers of the buildings.
     """
     is_tower = base >= 0
     carries = np.isin(np.arange(len(side)), base[is_tower])

@@ -29,7 +29,7 @@ from eyas.maps.land import ground, outskirts
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants import trees
 from eyas.maps.roads import overpass
-from eyas.maps.roads.pillars import Pillar, pillars
+from eyas.maps.roads.overpass import Pillar, pillars
 from eyas.maps.street.car_parks import CarPark, place_car_parks, place_rectangle
 
 __all__ = ["EXTENT", "FLOOR", "CityLayout", "lay_out"]
@@ -41,7 +41,7 @@ EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))  # The
 _BUILDINGS = 83
 _TREES = 63
 _TREE_SPACING = (15.0, 21.5)
-_BEYOND_KERB = 4.4  # From the kerb to the trunks [m]
+_BEYOND_KERB = 4.4  # Distance from the kerb to the trunks [m]
 _TREE_STRIP = 10.0  # Strip without buildings beside a row of trees, from the kerb [m]
 _CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
 _POOL = (30.0, 18.8)
@@ -86,12 +86,7 @@ class CityLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> CityLayout:
-    """Return the plan of a city.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a city."""
     roads = road_area(network)
     closed, _ = blocks(sharp := corridors(network), EXTENT)
     middle = _overpass_path(seed)

@@ -11,6 +11,8 @@ from eyas.lanes import exact
 
 __all__ = ["NAME", "road_graph"]
 
+# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "citystreet"
 
 _ROTATION = math.radians(40.0)
@@ -30,9 +32,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: nine blocks, six crossings, four T junctions, the rest corners and bends.
 
     Seed 0 is the canonical city; other seeds change distances, rotation and outline.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "citystreet roads")
     columns, rows, rotation, kept = np.array(_COLUMNS), np.array(_ROWS), _ROTATION, 0

@@ -1,16 +1,114 @@
 """The desert: dunes close to the road, and sand drifts that hide its surface."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from eyas.engine.state.lighting import Lighting
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.maps.desert.air import desert_weather
+from eyas.engine.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DUST,
+    FOG,
+    OVERCAST,
+    RAIN,
+    WINTER_DAY,
+    Weather,
+)
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
     from eyas.maps.plan.plan import MapPlan
 
-__all__ = ["DESERT", "DESERT_BARE"]
+__all__ = ["DESERT", "DESERT_BARE", "desert_weather"]
+
+# The original's sky is pale yellow to white, its sun the same as everywhere.
+_DAY = replace(
+    CLEAR_DAY,
+    sun_colour=(1.06, 0.97, 0.80),
+    zenith_colour=(0.66, 0.61, 0.42),
+    horizon_colour=(1.0, 0.88, 0.56),
+    # Sand reflects more light upwards than grass.
+    ambient_up=(0.36, 0.35, 0.30),
+    ambient_down=(0.26, 0.22, 0.14),
+    fog_colour=(0.84, 0.76, 0.56),
+    fog_density=1.0 / 5000.0,
+    clouds=0.0,
+)
+
+# Dust in the air: the original's visibility range, and its sun still casts shadows.
+_FOG = replace(
+    _DAY,
+    sun_colour=(0.50, 0.45, 0.36),
+    zenith_colour=(0.78, 0.75, 0.66),
+    horizon_colour=(0.94, 0.89, 0.76),
+    ambient_up=(0.50, 0.48, 0.43),
+    ambient_down=(0.27, 0.24, 0.18),
+    fog_colour=(0.88, 0.84, 0.73),
+    fog_density=1.0 / 400.0,
+    foggy=True,
+    clouds=0.0,
+)
+
+# The ground stays sand, so that snow is a matter of the scene; the sky is clearer and colder.
+_WINTER = replace(
+    _DAY,
+    sun_colour=(1.00, 0.95, 0.84),
+    zenith_colour=(0.46, 0.54, 0.58),
+    horizon_colour=(0.86, 0.84, 0.72),
+    ambient_up=(0.34, 0.36, 0.36),
+    fog_colour=(0.78, 0.76, 0.66),
+    flakes=0.25,
+)
+
+# A low warm moon over chocolate brown, and the last red light of the day at the horizon.
+_NIGHT = replace(
+    CLEAR_NIGHT,
+    sun_direction=(0.55, 0.66, 0.51),
+    sun_colour=(0.075, 0.056, 0.038),
+    zenith_colour=(0.0030, 0.0032, 0.0060),
+    horizon_colour=(0.085, 0.030, 0.012),
+    ambient_up=(0.040, 0.030, 0.024),
+    ambient_down=(0.022, 0.015, 0.009),
+    fog_colour=(0.040, 0.018, 0.010),
+    clouds=0.0,
+)
+
+_SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
+
+
+_SKY = ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
+_CLOSED = {weather.name for weather in (RAIN, OVERCAST, DUST)}
+"""Weathers whose sky no sun shines through."""
+
+
+def desert_weather(weather: Weather) -> Weather:
+    """Return how a weather is in the desert."""
+    if weather.name in _CLOSED:
+        return weather.each(_sandy)
+    return weather.each(lambda light: _SKIES.get(light) or _dusty(light))
+
+
+def _dusty(light: Lighting) -> Lighting:
+    """Return any other light, half of whose sky is dust; the ground stays sand."""
+    sky = _DAY if light.luminosity == 1.0 else _NIGHT
+    half: dict[str, Any] = {
+        name: tuple(
+            0.5 * (own + dust)
+            for own, dust in zip(getattr(light, name), getattr(sky, name), strict=True)
+        )
+        for name in _SKY
+    }
+    return replace(light, snow=0.0, **half)
+
+
+def _sandy(light: Lighting) -> Lighting:
+    """Return light under a closed sky, as warm as the sand that it is reflected by."""
+    tinted: dict[str, Any] = {}
+    for name in _SKY:
+        red, green, blue = getattr(light, name)
+        tinted[name] = (1.06 * red, green, 0.86 * blue)
+    return replace(light, snow=0.0, **tinted)
 
 
 def _roads(seed: int) -> "RoadGraph":

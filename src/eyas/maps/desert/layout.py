@@ -23,7 +23,7 @@ FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
 HALF = 710.0  # Half the side of the square that the dunes fill [m]
 
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # That square
+EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # Extent of the dunes [m]
 
 _INSIDE, _INSIDE_RADII = 26, (57.0, 84.0, 147.0)
 _RING, _RING_RADII = 24, (111.0, 153.0, 192.0)
@@ -51,8 +51,8 @@ Points = NDArray[np.float64]
 class Drift:
     """Sand that the wind has blown over a road, in plan view."""
 
-    area: shapely.Polygon  # Where sand hides the road [m]
-    fringe: shapely.Polygon  # Where it lies thinly, the area included [m]
+    area: shapely.Polygon  # Area where sand hides the road [m]
+    fringe: shapely.Polygon  # Area with at least thin sand, `area` included [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +73,7 @@ class DesertLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> DesertLayout:
-    """Return the plan of a desert.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a desert."""
     roads = road_area(network)
     closed, _ = blocks(roads, EXTENT)
     ways = [way for way in streets(network) if way.start < way.end]

@@ -15,8 +15,8 @@ from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.street.signals import signal_places, signals_along
 from eyas.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.maps.desert.roads import NAME
-from eyas.maps.desert.scatter import scattered_over, wheel_tracks
-from eyas.maps.land.rising import relief_of
+from eyas.maps.desert.scenery import scattered_over, wheel_tracks
+from eyas.maps.land.relief import relief_of
 from eyas.maps.plan.library import STREET_KINDS, houses, wild_kinds
 from eyas.maps.plan.plan import (
     Chance,
@@ -32,12 +32,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.street.lamps import lamps_along
 
-__all__ = [
-    "DRIFT_HEIGHT",
-    "DUNES",
-    "SAND",
-    "make_plan",
-]
+__all__ = ["DRIFT_HEIGHT", "DUNES", "SAND", "make_plan"]
 
 SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
@@ -46,7 +41,7 @@ _DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)  # Asphalt under a thin lay
 
 _SNOW = replace(SAND, surface=Surface.DESERT_SNOW)  # Dunes under snow
 
-_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)  # Where wheels have left the road
+_TRACK = replace(SAND, surface=Surface.DESERT_TRACK)  # Ruts of wheels that have left the road
 
 _HOUSES = (
     (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),
@@ -67,12 +62,7 @@ _SNOWED = 22  # Number of dunes under snow in winter, as in the original
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the desert; in winter, nearly every second dune is white.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the desert; in winter, nearly every second dune is white."""
     desert = lay_out(network, seed)
     dunes = Hills(
         mounds=tuple(desert.dunes),

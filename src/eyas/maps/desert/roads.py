@@ -14,6 +14,8 @@ from eyas.lanes import exact
 
 __all__ = ["CORNER", "NAME", "road_graph"]
 
+# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "desert"
 
 CORNER = 50.0  # Radius of the rounded corners [m]
@@ -40,9 +42,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: four T junctions on the outer road, and a crossing in the middle.
 
     Seed 0 is the canonical desert; other seeds have other proportions, and some are mirrored.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "desert roads")
     half, crossing, mirror = 0.5 * np.array(_SIZE), _CROSSING, 1.0

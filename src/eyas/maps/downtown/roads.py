@@ -12,6 +12,8 @@ from eyas.lanes import exact
 
 __all__ = ["NAME", "Cell", "Grid", "grid", "road_graph"]
 
+# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "downtown"
 
 _ROTATION = math.radians(-29.0)
@@ -83,11 +85,7 @@ def grid(seed: int) -> Grid:
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads around all blocks.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads around all blocks."""
     plan = grid(seed)
     links: dict[tuple[Cell, Cell], int] = {}
     for cell in plan.blocks:

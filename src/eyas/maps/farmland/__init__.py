@@ -45,7 +45,9 @@ def _weather(weather: Weather) -> Weather:
 
 def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
     from eyas.maps.bare import make_plan
-    from eyas.maps.farmland.plan import FLOOR, MOUNTAINS, SOIL
+    from eyas.maps.farmland.layout import FLOOR
+    from eyas.maps.farmland.plan import MOUNTAINS
+    from eyas.maps.farmland.scenery import SOIL
 
     return make_plan("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
 

@@ -8,6 +8,8 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 
 __all__ = ["NAME", "ROAD_WIDTH", "road_graph"]
 
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "farmland"
 
 ROAD_WIDTH = 16.0  # Four lanes [m]
@@ -21,9 +23,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: 16 nodes, 24 straight links, two lanes in each direction.
 
     Seed 0 is the canonical farmland; other seeds change distances.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     columns, rows = np.array(_COLUMNS), np.array(_ROWS)
     if seed:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from eyas import __version__
+from eyas.engine.core.installed import installed_version
 from eyas.maps.gallery.still import Viewpoint
 
-__all__ = ["MARK", "Shown", "contact_sheet", "page", "png"]
+__all__ = ["MARK", "PageEntry", "contact_sheet", "page", "png"]
 
 MARK = '<meta name="generator" content="eyas maps gallery">'
 """Text by which the page of a gallery is recognised."""
@@ -41,7 +41,7 @@ figcaption strong { display: block; font-size: 1rem; font-weight: 600; color: #e
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class PageEntry:
     """A map in a weather, and its pictures."""
 
     map_name: str
@@ -55,11 +55,10 @@ class Shown:
         return f"{self.map_name}-{self.weather}"
 
 
-def page(shown: Sequence[Shown], sheet: str) -> str:
+def page(shown: Sequence[PageEntry], sheet: str) -> str:
     """Return the page, which needs only the pictures beside it.
 
     Args:
-        shown: Every map and weather.
         sheet: Name of the file of the contact sheet.
     """
     what = " &middot; ".join(f'<a href="#{_id(one)}">{_heading(one)}</a>' for one in shown)
@@ -75,7 +74,7 @@ def page(shown: Sequence[Shown], sheet: str) -> str:
 </head>
 <body>
 <h1>Gallery of the maps</h1>
-<p>Drawn by Eyas {escape(__version__)} from fixed viewpoints.
+<p>Drawn by Eyas {escape(installed_version())} from fixed viewpoints.
 <a href="{escape(sheet)}">All of them in one picture</a></p>
 <p>{what}</p>
 {sections}
@@ -84,7 +83,7 @@ def page(shown: Sequence[Shown], sheet: str) -> str:
 """
 
 
-def _section(one: Shown) -> str:
+def _section(one: PageEntry) -> str:
     figures = "\n".join(
         _figure(one, view, picture) for view, picture in zip(one.views, one.pictures, strict=True)
     )
@@ -94,7 +93,7 @@ def _section(one: Shown) -> str:
     )
 
 
-def _figure(one: Shown, view: Viewpoint, picture: NDArray[np.uint8]) -> str:
+def _figure(one: PageEntry, view: Viewpoint, picture: NDArray[np.uint8]) -> str:
     height, width = picture.shape[:2]
     source = escape(f"{one.folder}/{view.name}.png")
     alt = escape(f"{one.map_name}, {one.weather}. {view.title}. {view.caption}")
@@ -107,15 +106,15 @@ def _figure(one: Shown, view: Viewpoint, picture: NDArray[np.uint8]) -> str:
     )
 
 
-def _id(one: Shown) -> str:
+def _id(one: PageEntry) -> str:
     return escape(one.folder)
 
 
-def _heading(one: Shown) -> str:
+def _heading(one: PageEntry) -> str:
     return escape(f"{one.map_name}, {one.weather}")
 
 
-def contact_sheet(shown: Sequence[Shown]) -> NDArray[np.uint8]:
+def contact_sheet(shown: Sequence[PageEntry]) -> NDArray[np.uint8]:
     """Return small versions of all pictures, with names under them, sRGB, shape (H, W, 3)."""
     rows = sum(-(-len(one.views) // _COLUMNS) for one in shown)
     wide, high = _THUMBNAIL[0] + _MARGIN, _THUMBNAIL[1] + _LABEL

@@ -15,9 +15,18 @@ from eyas.engine.sim.assets import load_assets
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
-from eyas.maps.gallery.distant import along, horizon, overview
-from eyas.maps.gallery.page import MARK, Shown, contact_sheet, page, png
-from eyas.maps.gallery.places import POSES, STOPS, all_cars, beside_most, on_open_roads, stop
+from eyas.maps.gallery.page import MARK, PageEntry, contact_sheet, page, png
+from eyas.maps.gallery.places import (
+    POSES,
+    STOPS,
+    all_cars,
+    along,
+    beside_most,
+    horizon,
+    on_open_roads,
+    overview,
+    stop,
+)
 from eyas.maps.gallery.still import StillScene, Viewpoint
 
 __all__ = ["INDEX", "SHEET", "choose_viewpoints", "conditions", "run"]
@@ -29,7 +38,6 @@ def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> lis
     """Return the viewpoints of a map, without those for which it has no suitable place.
 
     Args:
-        still: The world.
         sun: Direction to the sun; distant views have it behind the camera, so that walls are lit.
     """
     cars = all_cars(still)
@@ -114,14 +122,14 @@ def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[t
     return list(dict.fromkeys(pairs))
 
 
-def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
+def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> PageEntry:
     """Draw a map in a weather into the folder."""
     task = progress.add_task(f"{map_name}, {weather}", total=None)
     world = WorldConfig(map=map_name, weather=weather)
     still = StillScene(load_assets(world, TrafficConfig(), 1))
     recipe = MAPS.get(map_name)
     views = choose_viewpoints(still, recipe.light(weather).sun_direction)
-    shown = Shown(recipe.name, weather, views, [still.rgb(view) for view in views])
+    shown = PageEntry(recipe.name, weather, views, [still.rgb(view) for view in views])
     folder = out / shown.folder
     with refusals(folder):
         folder.mkdir(exist_ok=True)

@@ -14,7 +14,7 @@ from eyas.engine.world.build.millimetres import rounded, unit
 from eyas.engine.world.roads.areas import blocks, road_area, streets
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.lake.roads import COLUMNS, ROWS, Lattice, lattice
-from eyas.maps.land.plain import blob
+from eyas.maps.land.ground import blob
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants.forest import SPECIES
 from eyas.maps.street.car_parks import CarPark, place_car_parks
@@ -60,12 +60,7 @@ class LakeLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> LakeLayout:
-    """Return the plan.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan."""
     roads, grid, rng = road_area(network), lattice(seed), stream(seed, "lake blocks")
     cells = _cells(grid)
     pairs = [cell for cell in cells if cell not in (grid.double, _beside(grid.double))]

@@ -17,7 +17,7 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_out
 from eyas.maps.lake.roads import NAME
-from eyas.maps.lake.shores import boats, shore_life, water_in
+from eyas.maps.lake.scenery import boats, shore_life, water_in
 from eyas.maps.land import ground
 from eyas.maps.plan.library import CAR_KINDS, STREET_KINDS, plant_kinds, wild_kinds
 from eyas.maps.plan.plan import (
@@ -58,7 +58,7 @@ _SHRUBS, _BESIDE = (16.0, 0.004), 7.0
 """Least distance between two shrubs [m], and number of attempts on a square metre; their least
 distance from a road [m]."""
 _SHORE_SHRUBS, _BANK = (3.5, 0.03), 1.4
-"""The same of those along shores, which stand closer; their least distance from a basin [m]."""
+"""Least distance and attempts of shrubs along shores; their least distance from a basin [m]."""
 _NEAR = 90.0  # Reach of the ground that is cut into small squares beside a road [m]
 _LAMPS = 48
 _ZEBRAS_EVERY = 4  # One stop line in so many has a crossing
@@ -67,12 +67,7 @@ _OCCUPIED = 0.45
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the lake district.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the lake district."""
     district = lay_out(network, seed)
     rng = stream(seed, "lake forests")
     forests = [stand for strip in district.strips for stand in _stands(strip, rng)]

@@ -12,6 +12,8 @@ from eyas.lanes import exact
 
 __all__ = ["COLUMNS", "NAME", "ROWS", "Lattice", "lattice", "road_graph"]
 
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "lake"
 
 COLUMNS, ROWS = 11, 3  # Blocks of the grid, from west to east and from south to north
@@ -33,8 +35,8 @@ Kind = tuple[int, float]
 class Lattice:
     """The streets of the grid."""
 
-    x: NDArray[np.float64]  # Of those that run north, from the west, shape (COLUMNS + 1,) [m]
-    y: NDArray[np.float64]  # Of those that run east, from the south, shape (ROWS + 1,) [m]
+    x: NDArray[np.float64]  # Roads that run north, from the west, shape (COLUMNS + 1,) [m]
+    y: NDArray[np.float64]  # Roads that run east, from the south, shape (ROWS + 1,) [m]
     double: tuple[int, int]  # Column and row of the western half of the block that is twice as wide
 
 
@@ -85,11 +87,7 @@ def _winding(
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads, all of them two-way and none of them a dead end.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads, all of them two-way and none of them a dead end."""
     draft, grid = _Draft(), lattice(seed)
     _add_grid(draft, grid)
     _add_north(draft, grid, stream(seed, "lake roads"))

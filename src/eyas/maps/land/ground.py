@@ -1,25 +1,39 @@
-"""Flat ground: lawn, asphalt, pavements. Each is cut out of the others, so nothing overlaps."""
+"""Level ground: lawn, asphalt, pavements, wide plains, and ground that changes along an edge.
+
+Each is cut out of the others, so nothing overlaps.
+"""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
-from eyas.engine.world.build.materials import material
-from eyas.engine.world.build.millimetres import rounded
+from eyas.engine.mesh.flat import flat_polygons
+from eyas.engine.state.mesh import Material, Mesh
+from eyas.engine.world.build.materials import TEXTURES, material
+from eyas.engine.world.build.millimetres import rounded, snapped
+from eyas.engine.world.roads.areas import polygons_of, split_on_grid
 from eyas.lanes import exact
+from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.plan.plan import Flat
 
 __all__ = [
     "PAVEMENT_WIDTH",
     "asphalt",
+    "blob",
+    "edged",
+    "far_plain",
     "lawn",
     "pavement_area",
+    "plain",
+    "rectangle",
     "verge_area",
     "yards",
 ]
 
-PAVEMENT_WIDTH = 2.6  # From the kerb to the lawn [m]
+PAVEMENT_WIDTH = 2.6  # Distance from the kerb to the lawn [m]
 
 _VERGE = 1.5  # Width of the pavement along the outer side of the outer streets [m]
 
@@ -72,7 +86,6 @@ def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generat
     Args:
         areas: Paving of each building [m].
         turn: Direction of the streets [rad].
-        rng: Random numbers for the choice of the paving.
     """
     kinds = rng.choice(len(_YARDS), len(areas)).tolist()
     return [
@@ -93,7 +106,6 @@ def lawn(
     Args:
         extent: The floor [m].
         covered: Area that is not lawn [m].
-        rng: Random numbers of the lawn.
         mown: Area mown in swaths [m].
         turn: Direction of the swaths [rad].
     """
@@ -128,3 +140,96 @@ def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[sh
     dry, lush = map(shapely.union_all, inner)
     dry_edge, lush_edge = map(shapely.union_all, outer)
     return [dry_edge, dry, lush_edge, lush]
+
+
+_NEAR_CELL, _WIDE_CELL = 128.0, 1280.0  # Sides of the squares near roads and elsewhere [m]
+_FAR, _FAR_CELL = 28_000.0, 1750.0
+"""Extent of the ground beyond the floor, and the side of its squares [m]."""
+_BELOW = 0.05
+"""Depth of that ground below the floor, so that rounding never makes it show through [m]."""
+_CORNERS = 24
+
+
+def plain(
+    area: shapely.Geometry, near: shapely.Geometry, cover: Material, z: float = FLOOR_HEIGHT
+) -> Mesh:
+    """Return level ground.
+
+    Args:
+        area: The ground [m].
+        near: Where it is cut into small squares, so that those out of sight are skipped [m].
+        z: Its height [m].
+    """
+    pieces = []
+    # First into large squares: cutting small ones out of everything at once takes far longer.
+    for piece in split_on_grid(area, _WIDE_CELL):
+        pieces += split_on_grid(shapely.intersection(piece, near), _NEAR_CELL)
+        pieces += polygons_of(shapely.difference(piece, near))
+    return flat_polygons(pieces, z, cover, TEXTURES[cover.texture])
+
+
+def far_plain(floor: tuple[float, float], cover: Material) -> Mesh:
+    """Return the ground beyond a floor, up to the horizon.
+
+    Args:
+        floor: Extent of the floor [m].
+    """
+    ring = shapely.difference(rectangle(_FAR, _FAR), rectangle(*floor))
+    pieces = split_on_grid(ring, _FAR_CELL)
+    return flat_polygons(pieces, FLOOR_HEIGHT - _BELOW, cover, TEXTURES[cover.texture])
+
+
+def blob(middle: NDArray[np.float64], radius: float, rng: np.random.Generator) -> shapely.Polygon:
+    """Return a round shape with an uneven outline, such as a lake.
+
+    Args:
+        middle: Its middle, shape (2,) [m].
+        radius: Its mean radius [m].
+    """
+    angle = np.linspace(0.0, 2 * np.pi, _CORNERS, endpoint=False)
+    phase, swing = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.05, 0.16, (3, 1))
+    waves = 1.0 + (swing * exact.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+    ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=1)
+    return shapely.Polygon(rounded(middle + radius * waves[:, None] * ring))
+
+
+def rectangle(width: float, height: float) -> shapely.Polygon:
+    """Return a rectangle about the origin [m]."""
+    return shapely.box(-width / 2, -height / 2, width / 2, height / 2)
+
+
+_CELL = 64.0  # Side of the squares into which it is cut [m]
+_RINGS = (0.0, 1.2, 3.0, 6.0, 10.0)
+_INSETS = (0.0, 0.35)
+"""Distances where it is cut too, so that u is right between them [m]: from what it lies beside,
+and from its own edge."""
+
+
+def edged(
+    area: shapely.Geometry, beside: shapely.Geometry | None, cover: Material, z: float
+) -> Mesh:
+    """Return level ground of a material whose u is a distance.
+
+    Args:
+        area: The ground [m].
+        beside: From what the distance is measured; None: from the edge of the area inwards.
+        z: Its height [m].
+    """
+    if beside is None:
+        edge, rings = shapely.boundary(area), [shapely.buffer(area, -inset) for inset in _INSETS]
+        rings = [*rings, shapely.Polygon()]
+    else:
+        edge = beside
+        rings = [
+            shapely.difference(area, shapely.buffer(beside, away)) if away else area
+            for away in _RINGS
+        ]
+    pieces = []
+    for outer, inner in pairwise(rings):
+        for piece in split_on_grid(snapped(shapely.difference(outer, inner)), _CELL):
+            pieces += polygons_of(piece)
+    mesh = flat_polygons(pieces, z, cover, 1.0)
+    shapely.prepare(edge)
+    away = shapely.distance(shapely.points(mesh.positions[:, :2].astype(np.float64)), edge)
+    mesh.uvs[:, 0], mesh.uvs[:, 1] = np.round(away, 3), 0.0
+    return mesh

@@ -87,9 +87,7 @@ def sizes(
     """Return radii, the largest first, spread between limits about a median [m].
 
     Args:
-        count: Number of radii.
         radius: Smallest, median and largest [m].
-        rng: Random numbers of the mounds.
     """
     share = (np.arange(count) + rng.uniform(0.2, 0.8, count)) / count
     return rounded(np.interp(share, (0.0, 0.5, 1.0), radius))[::-1]
@@ -109,7 +107,6 @@ def place_inside(
         radii: Radii, the largest first [m].
         steepness: Least and largest height, as a share of the radius.
         room: Area that the mounds must keep to [m].
-        rng: Random numbers of the mounds.
     """
     edge = shapely.boundary(room)
     shapely.prepare(room)
@@ -146,7 +143,6 @@ def place_ring(
         gaps: Least and largest distance of a foot from the area [m].
         steepness: Least and largest height, as a share of the radius.
         inside: The area [m].
-        rng: Random numbers of the mounds.
     """
     ring = shapely.get_exterior_ring(shapely.convex_hull(inside))
     middle = shapely.get_coordinates(ring.centroid)[0]

@@ -25,8 +25,6 @@ def blob(
         middle: Its middle [m], shape (2,).
         half: Half its length and width [m].
         turn: Direction of its length, counter-clockwise from east [rad].
-        rng: Random numbers of the outline.
-        corners: Number of its corners.
     """
     angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
@@ -47,7 +45,6 @@ def wavy(shape: shapely.Polygon, depth: float, rng: np.random.Generator) -> shap
     Args:
         shape: The shape, with a smooth outline [m].
         depth: Largest distance from the old outline [m].
-        rng: Random numbers of the outline.
     """
     ring = shapely.get_coordinates(shapely.segmentize(shapely.get_exterior_ring(shape), 5.0))[:-1]
     along = np.linspace(0.0, 2 * np.pi, len(ring), endpoint=False)

@@ -52,7 +52,6 @@ def fields(
     Args:
         size: Extent of the floor [m].
         floor: z of the floor [m].
-        rng: Random numbers of the fields.
         crops: What grows on them, and the share of each; the shares add up to 1.
     """
     half = np.array([*(-np.array(_LINES[::-1])), -150.0, 150.0, *_LINES])
@@ -125,7 +124,6 @@ def city_land(
 
     Args:
         size: Extent of the floor [m].
-        rng: Random numbers of the patches.
         covers: What covers them.
         shares: The share of each; they add up to 1.
     """

@@ -34,7 +34,6 @@ def stone_levels(rng: np.random.Generator, look: int) -> Levels:
     """Return a scatter of stones, the finest level of detail first; the last one is empty.
 
     Args:
-        rng: Random numbers of the stones.
         look: Kind of rock.
     """
     share = rng.uniform(0.0, 1.0, _COUNT)
@@ -61,7 +60,6 @@ def boulder_levels(rng: np.random.Generator, look: int) -> Levels:
     """Return a boulder with a few stones at its foot, the finest level of detail first.
 
     Args:
-        rng: Random numbers of the boulder.
         look: Kind of rock.
     """
     cover, radius = _LOOKS[look % len(_LOOKS)], 0.62 * BOULDER

@@ -5,9 +5,9 @@ from typing import Literal
 import shapely
 
 from eyas.engine.world.roads.areas import polygons_of
-from eyas.maps.osm.data import Tags
 from eyas.maps.osm.features import House, Roof
 from eyas.maps.osm.measures import Odd, colour, length, number
+from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import Shapes
 
 __all__ = ["houses_of"]

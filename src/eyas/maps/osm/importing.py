@@ -14,10 +14,11 @@ scene of it, as of any other plan.
 import gzip
 import json
 import re
+import shlex
 import shutil
 import time
 from collections import Counter
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,19 +48,60 @@ from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.engine.world.roads.network_file import save_network
 from eyas.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.maps.osm.data import Bounds, OsmData
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
-from eyas.maps.osm.network import osm_network
-from eyas.maps.osm.reader import covered, read_osm
+from eyas.maps.osm.reader import Bounds, OsmData, covered, read_osm
 from eyas.maps.osm.rings import Shapes
-from eyas.maps.osm.streets import street_file
+from eyas.maps.osm.streets import osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
-from eyas.maps.programs.import_report import Report
 
-__all__ = ["ATTRIBUTION", "run"]
+__all__ = ["ATTRIBUTION", "Report", "run"]
+
+
+@dataclass(slots=True)
+class Report:
+    """What an import has found and guessed."""
+
+    name: str
+    folder: Path
+    registered: bool  # Whether it is known by its name; otherwise by its folder
+    size: tuple[float, float] = (0.0, 0.0)  # Extent of the floor [m]
+    lanes: int = 0
+    signals: int = 0  # Programs of traffic lights
+    buildings: int = 0
+    trees: int = 0
+    guessed: Counter[str] = field(default_factory=Counter)
+    """Number of things without a tag, by what had to be guessed."""
+    odd: Counter[str] = field(default_factory=Counter)
+    """Number of values that made no sense, by tag."""
+    broken: Counter[str] = field(default_factory=Counter)
+    """Number of outlines that were mended or left out, by what was wrong."""
+    traffic: str = ""  # What was recorded, or why nothing was
+    seconds: float = 0.0
+
+    @property
+    def known_as(self) -> str:
+        """What commands and settings call the map."""
+        return self.name if self.registered else str(self.folder)
+
+    def lines(self) -> list[str]:
+        """Return the report for people."""
+        width, height = self.size
+        made = [
+            f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
+            f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
+            f"in {self.seconds:.0f} s",
+            f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
+        ]
+        for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
+                              ("mended or left out", self.broken)):  # fmt: skip
+            if counted:
+                parts = ", ".join(f"{count} {what}" for what, count in sorted(counted.items()))
+                made.append(f"{word}: {parts}")
+        return [*made, self.traffic, "© OpenStreetMap contributors"]
+
 
 ATTRIBUTION = """\
 © OpenStreetMap contributors
@@ -138,7 +180,7 @@ def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
 
 
 class _Place(NamedTuple):
-    """Where on earth the map lies."""
+    """Position of the map on earth."""
 
     source: str  # name of the file, for messages
     limits: Bounds  # [degrees]

@@ -5,9 +5,9 @@ import shapely
 
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.roads.areas import polygons_of
-from eyas.maps.osm.data import Tags
 from eyas.maps.osm.features import Area, Survey
 from eyas.maps.osm.measures import Odd, length
+from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import is_street
 
@@ -53,7 +53,7 @@ _PATHS = {"footway": 2.0, "path": 1.6, "pedestrian": 4.0, "cycleway": 2.2, "step
 _STREAMS = {"river": 18.0, "canal": 12.0, "stream": 2.5, "ditch": 1.2, "drain": 1.2}
 """Width of flowing water whose banks are not drawn [m]."""
 _TRACKS = ("rail", "light_rail", "tram", "narrow_gauge", "subway")
-_BALLAST = 1.9  # From the middle of a track to the edge of its ballast [m]
+_BALLAST = 1.9  # Distance from the middle of a track to the edge of its ballast [m]
 _APART = (8.0, 12.0)  # Distances between the trees of a row [m]
 
 
@@ -61,10 +61,8 @@ def add_land(features: Survey, shapes: Shapes, odd: Odd, rng: np.random.Generato
     """Add ground, trees, lamps, crossings and railways.
 
     Args:
-        features: To add to.
         shapes: Polygons and lines of the file.
         odd: Told of tags whose values make no sense.
-        rng: Random numbers for distances between the trees of rows.
     """
     for tags, shape in shapes.areas(lambda tags: bool(_kind(tags))):
         features.areas.append(Area(_kind(tags), shape))

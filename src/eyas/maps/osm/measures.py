@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Callable
 
-from eyas.maps.osm.data import Tags
+from eyas.maps.osm.reader import Tags
 
 __all__ = ["Odd", "colour", "length", "number"]
 
@@ -21,7 +21,6 @@ def length(tags: Tags, key: str, limits: tuple[float, float], odd: Odd) -> float
     """Return the length that a tag tells, in metres.
 
     Args:
-        tags: The tags.
         key: The one to read; absent, odd or outside of the limits: None.
         limits: Least and largest believable value [m].
         odd: Told of a value that is not believed.

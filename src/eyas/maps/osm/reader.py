@@ -1,14 +1,99 @@
-"""Reading of OpenStreetMap files: `.osm`, `.osm.gz` and `.osm.pbf`, told apart by their content."""
+"""OpenStreetMap files: `.osm`, `.osm.gz` and `.osm.pbf`, told apart by their content."""
 
 import gzip
 import zlib
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
-from eyas.engine.core.errors import ConfigError, DataFileError
-from eyas.maps.osm.data import Bounds, OsmData, Relation, Tags, Way
+from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
 
-__all__ = ["covered", "read_osm"]
+__all__ = ["Bounds", "OsmData", "Relation", "Tags", "Way", "covered", "read_osm", "read_pbf"]
+
+Tags = dict[str, str]
+Bounds = tuple[float, float, float, float]  # West, south, east and north, in degrees
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A line of nodes; an area if it is closed and its tags say so."""
+
+    id: int
+    nodes: tuple[int, ...]
+    tags: Tags
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """A group of ways, for example the outlines of an area with holes."""
+
+    id: int
+    members: tuple[tuple[str, int, str], ...]
+    """Kind (`node`, `way`, `relation`), id and role of each member."""
+    tags: Tags
+
+
+@dataclass(slots=True)
+class OsmData:
+    """Everything that an OpenStreetMap file tells and a map can use."""
+
+    places: dict[int, tuple[float, float]] = field(default_factory=dict)
+    """Longitude and latitude of each node, in degrees."""
+    nodes: dict[int, Tags] = field(default_factory=dict)  # Tags of the nodes that have some
+    ways: dict[int, Way] = field(default_factory=dict)
+    relations: list[Relation] = field(default_factory=list)
+    bounds: Bounds | None = None  # The area that the file says it covers
+
+
+_KINDS = {"n": "node", "w": "way", "r": "relation"}
+
+
+def read_pbf(path: Path) -> OsmData:
+    """Return the content of a file in OpenStreetMap's binary format.
+
+    Raises:
+        DataFileError: The file is damaged.
+        MissingExtraError: pyosmium is not installed.
+    """
+    try:
+        import osmium
+    except ImportError:
+        raise MissingExtraError(
+            f"{path.name}, a .pbf file,",
+            "osm",
+            "(or turn it into .osm with other tools, which needs nothing)",
+        ) from None
+    data = OsmData()
+    try:
+        file = osmium.FileProcessor(str(path))
+        box = file.header.box()
+        if box.valid():
+            low, high = box.bottom_left, box.top_right
+            data.bounds = (low.lon, low.lat, high.lon, high.lat)
+        for thing in file:
+            _take_pbf(thing, data)
+    except (RuntimeError, OSError, ValueError) as error:
+        raise DataFileError(f"{path}: not a complete OpenStreetMap file: {error}") from error
+    return data
+
+
+def _take_pbf(one: Any, data: OsmData) -> None:  # noqa: ANN401  # pyosmium need not be there
+    """Add a node, way or relation of pyosmium to the data."""
+    tags = {tag.k: tag.v for tag in one.tags}
+    number = int(one.id)
+    kind = one.type_str()
+    if kind == "n" and one.location.valid():
+        data.places[number] = (one.location.lon, one.location.lat)
+        if tags:
+            data.nodes[number] = tags
+    elif kind == "w":
+        line = tuple(int(node.ref) for node in one.nodes)
+        data.ways[number] = Way(number, line, tags)
+    elif kind == "r":
+        members = tuple((_KINDS[m.type], int(m.ref), str(m.role)) for m in one.members)
+        data.relations.append(Relation(number, members, tags))
+
 
 _LARGEST = 400 << 20
 """Largest file, packed and unpacked [bytes]; one of a dense square kilometre has about 6 MB."""
@@ -35,7 +120,7 @@ def read_osm(path: Path) -> OsmData:
             "with `osmium extract --bbox WEST,SOUTH,EAST,NORTH`"
         )
     if b"OSMHeader" in start:
-        from eyas.maps.osm.pbf import read_pbf  # pyosmium, which is optional
+        from eyas.maps.osm.reader import read_pbf  # pyosmium, which is optional
 
         data = read_pbf(path)
     elif start.startswith(b"\x1f\x8b") or start.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):

@@ -8,7 +8,7 @@ import shapely
 from eyas.engine.world.build.millimetres import snapped
 from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
-from eyas.maps.osm.data import OsmData, Relation, Tags, Way
+from eyas.maps.osm.reader import OsmData, Relation, Tags, Way
 
 __all__ = ["Shapes"]
 
@@ -19,7 +19,6 @@ class Shapes:
     """Polygons and lines of a file, in metres.
 
     Args:
-        data: The content of the file.
         projection: From degrees to metres.
         extent: The area of the map; everything is cut to it [m].
         broken: Called with a word for each area that has no valid outline.

@@ -24,18 +24,20 @@ from eyas.engine.world.weather import Season
 from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.buildings import facades, parts, rooftops
-from eyas.maps.land import edges, outskirts, plain
-from eyas.maps.land.facets import surface_of, terrain_of
+from eyas.maps.land import ground, outskirts
 from eyas.maps.land.ground import asphalt
-from eyas.maps.land.rising import kinds_of, relief_of, snow_over
+from eyas.maps.land.relief import kinds_of, relief_of, snow_over, surface_of, terrain_of
 from eyas.maps.plan import plan as p
-from eyas.maps.roads import markings, overpass, painting, pillars, tunnels
+from eyas.maps.plan.file import plan_of, text_of
+from eyas.maps.plan.plan import MapPlan
+from eyas.maps.roads import markings, overpass, painting, tunnels
 from eyas.maps.roads.wear import road_wear, worn_lanes
 from eyas.maps.things import fronts, railway, skyways
 from eyas.maps.things.fields import field_mesh
 from eyas.maps.things.kinds import SOLIDS, THINGS
+from eyas.maps.towns.completed import completed
 
-__all__ = ["build_scene"]
+__all__ = ["PLANNER", "build_scene"]
 
 _NEAR = 80.0  # Reach of the ground that is cut into small squares beside streets [m]
 _SLOPE = 1.4  # Width of the slope around a heap [m]
@@ -249,9 +251,9 @@ def _flat(work: _Work, piece: p.Flat) -> Mesh:
     cover = work.look(piece)
     tile = TEXTURES[cover.texture]
     if cover.surface > Surface.DESERT:
-        top = edges.edged(piece.area, piece.beside, cover, piece.z)
+        top = ground.edged(piece.area, piece.beside, cover, piece.z)
     elif piece.cells == "wide":
-        top = plain.plain(piece.area, work.near, cover, piece.z)
+        top = ground.plain(piece.area, work.near, cover, piece.z)
     elif piece.cells == "whole":
         top = flat_polygons([piece.area], piece.z, cover, tile, piece.turn)
     else:
@@ -288,7 +290,7 @@ def _far(work: _Work, piece: p.Far) -> Mesh:
     winter = piece.winter if work.season is Season.WINTER else ()
     covers = winter or piece.covers
     if piece.rule == "plain" or piece.chance is None:
-        return plain.far_plain(beyond, covers[0])
+        return ground.far_plain(beyond, covers[0])
     rng = piece.chance.generator(work.plan.seed)
     if piece.rule == "city":
         return outskirts.city_land(beyond, rng, covers, piece.shares)
@@ -297,7 +299,7 @@ def _far(work: _Work, piece: p.Far) -> Mesh:
 
 def _deck(work: _Work, layer: p.Deck) -> None:
     builder, floor = work.builder, FLOOR_HEIGHT
-    legs = [pillars.pillar_mesh(leg, floor) for leg in layer.legs]
+    legs = [overpass.pillar_mesh(leg, floor) for leg in layer.legs]
     parts = (layer.middle, layer.descent)
     sides = [overpass.sides_mesh(part, floor) for part in parts]
     owner = builder.add(ObjectClass.STRUCTURE, *sides, *legs)
@@ -305,11 +307,11 @@ def _deck(work: _Work, layer: p.Deck) -> None:
     for outline, bottom, top in overpass.deck_prisms(layer.middle, floor):
         builder.add_prism(outline, bottom, top, owner)
     for pillar in layer.pillars:
-        owner = builder.add(ObjectClass.STRUCTURE, pillars.pillar_mesh(pillar, floor))
+        owner = builder.add(ObjectClass.STRUCTURE, overpass.pillar_mesh(pillar, floor))
         base = shapely.get_coordinates(pillar.base)[:-1]
-        builder.add_prism(base, floor, floor + pillars.BASE_HEIGHT, owner)
+        builder.add_prism(base, floor, floor + overpass.BASE_HEIGHT, owner)
         for column in pillar.columns:
-            builder.add_cylinder(column, pillars.COLUMN_RADIUS, floor, pillar.top, owner)
+            builder.add_cylinder(column, overpass.COLUMN_RADIUS, floor, pillar.top, owner)
 
 
 def _tunnels(work: _Work, layer: p.Tunnels) -> None:
@@ -364,3 +366,19 @@ _MAKERS: dict[type, Callable[[_Work, Any], None]] = {
     p.Skyways: _skyways,
     p.Railway: lambda work, layer: railway.add_railway(work.builder, layer.line),
 }
+
+
+class _Planner:
+    """See `eyas.engine.world.maps.planner.Planner`."""
+
+    def complete(self, plan: MapPlan, network: RoadNetwork) -> MapPlan:
+        return completed(plan, network)
+
+    def text_of(self, plan: MapPlan) -> str:
+        return text_of(plan)
+
+    def build(self, text: bytes, network: RoadNetwork, season: Season) -> Scene:
+        return build_scene(plan_of(text), network, season)
+
+
+PLANNER = _Planner()

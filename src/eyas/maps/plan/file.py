@@ -83,7 +83,6 @@ def problems(
     """Return what is wrong with a plan in a file, a line each; none if it is a plan.
 
     Args:
-        path: The file.
         opened: Yields what is wrong with the files that a plan names, which lie in a folder.
 
     Raises:

@@ -38,7 +38,6 @@ def wild_kinds(*makes: str, shapes: int = 2, looks: Sequence[int] = ()) -> tuple
 
     Args:
         makes: What they are, rows of `eyas.maps.things.kinds.THINGS`.
-        shapes: Number of shapes of each.
         looks: Looks of each, in place of one look in that many shapes.
     """
     return tuple(
@@ -54,7 +53,6 @@ def houses(
     """Return detached houses: their kinds, and their places.
 
     Args:
-        cottages: The houses.
         looks: Walls and roof of each look.
     """
     kinds, placed = {}, []

@@ -43,8 +43,8 @@ from eyas.maps.build.values import (
 )
 from eyas.maps.land.mounds import Mound
 from eyas.maps.osm.features import Survey
+from eyas.maps.roads.overpass import Pillar
 from eyas.maps.roads.painting import Stripe
-from eyas.maps.roads.pillars import Pillar
 from eyas.maps.roads.tunnels import Tunnel
 from eyas.maps.things.railway import Viaduct
 from eyas.maps.things.skyways import Skyway
@@ -166,7 +166,7 @@ class BuildingPart:
     bottom: float = FLOOR_HEIGHT
     """z of its foot [m]."""
     height: Annotated[float, Ge(0.0)]
-    """From the foot to the eaves [m]."""
+    """Distance from the foot to the eaves [m]."""
     facade: Facade
     """Its walls."""
     tint: Colour = (1.0, 1.0, 1.0)
@@ -278,7 +278,7 @@ class Roadway:
     """Light asphalt of parking bays along the streets [m]."""
     paint: Paint = field(default_factory=Paint)
     wear: Chance
-    """Of tracks, patches, seals and lids."""
+    """Random numbers of tracks, patches, seals and lids."""
     apart: Positive = 1.0
     """Factor on the distances between these."""
     worn_from: Annotated[float, Ge(0.0)] = 0.0
@@ -336,7 +336,7 @@ class Heap:
 
     form: Literal["heap"] = "heap"
     area: Outline
-    """Its top [m]."""
+    """Height of its top, z [m]."""
     z: float
     """Height of its top [m]."""
     cover: Cover
@@ -369,11 +369,11 @@ class Far:
     winter: tuple[Cover, ...] = ()
     """What covers it in winter; none: the same."""
     shares: tuple[Share, ...] = (1.0,)
-    """How much of it each covers."""
+    """Share of the ground that each covers."""
     beyond: tuple[Positive, Positive] | None = None
     """Extent of the ground around which it lies [m]; None: that of the floor."""
     chance: Chance | None = None
-    """Of the choice of the covers."""
+    """Random numbers of the choice of the covers."""
 
 
 Piece = Annotated[
@@ -420,7 +420,7 @@ class Tunnels:
     outside: Cover
     inside: Cover
     chance: Chance
-    """Of the lumps of the mounds."""
+    """Random numbers of the lumps of the mounds."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -439,11 +439,11 @@ class Hills:
     rough: Annotated[float, Ge(0.0)] = 0.0
     """Most by which a corner lies above or below the smooth shape, as a share of its height."""
     chance: Chance = _CORNERS
-    """Of the corners."""
+    """Random numbers of the corners."""
     covers: Annotated[tuple[Cover, ...], Len(1)] = (_LAWN,)
     """Covers from the foot up; under snow: ground, and ground with snow."""
     shades: Chance | None = None
-    """Of the choice of covers by height; None: all is of the first, with snow on it in winter."""
+    """Random numbers of the covers by height; None: the first everywhere, with snow in winter."""
     white: tuple[Natural, ...] = ()
     """Mounds on which snow lies in winter, indices."""
     smooth: bool = False
@@ -497,7 +497,7 @@ class LampLight:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Walkways:
-    """Where people walk, besides along the asphalt."""
+    """Lines on which people walk, besides along the asphalt."""
 
     lines: tuple[Annotated[NDArray[np.float64], Rows(2, 2)], ...] = ()
     """Crossings, each from kerb to kerb [m]."""
@@ -540,9 +540,9 @@ class MapPlan:
     lamps: LampLight = field(default_factory=LampLight)
     horizon: Horizon = field(default_factory=Horizon)
     near: Area | None = None
-    """Where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
+    """Area where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
     walkways: Walkways | None = None
-    """Where people cross streets; None: at zebra crossings."""
+    """Lines on which people cross streets; None: at zebra crossings."""
     survey: Survey | None = None
     """What is known of the land, from which `completed` makes the rest of the map; None: the plan
     is complete."""
@@ -552,7 +552,6 @@ def things(placed: Sequence[Placed], kinds: Sequence[str] = (), solid: str = "")
     """Return the layer of things at their places.
 
     Args:
-        placed: The things.
         kinds: Names of kinds that come first, whether any is placed or not.
         solid: See `Things.solid`.
     """

@@ -38,10 +38,10 @@ class Species:
     name: str
     shape: str  # `round`, `cone` or `palm`
     heights: tuple[float, float]  # Least and largest height [m]
-    width: float  # Of the crown, as a share of the height
+    width: float  # Width of the crown, as a share of the height
     leaves: Tint  # Colour of the sunlit leaves, sRGB
     bark: Tint = (0.80, 0.76, 0.70)
-    autumn: Tint | None = None  # The same in autumn; None: it is evergreen
+    autumn: Tint | None = None  # Tint in autumn; None: evergreen
 
     def look(self, season: Season) -> Tint:
         """Return the colour of its leaves in a season."""
@@ -50,6 +50,7 @@ class Species:
         return (self.autumn or self.leaves) if season is Season.AUTUMN else self.leaves
 
 
+# order: bytes of plans depend on it, whose strips hold an index of it
 SPECIES = (
     Species("crab apple", "round", (3.0, 6.5), 0.72, (1.0, 0.62, 0.76), autumn=(0.74, 0.34, 0.20)),
     Species("hackberry", "round", (4.0, 9.0), 0.58, (0.74, 0.92, 0.32), autumn=(0.94, 0.78, 0.26)),
@@ -73,7 +74,6 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, season: Sea
 
     Args:
         kinds: Kinds of its trees.
-        rng: Random numbers of the forest.
         season: Of their leaves; frost covers them in winter.
     """
     shapes = [_unit_levels(kinds[k % len(kinds)], rng, season) for k in range(_SHAPES)]

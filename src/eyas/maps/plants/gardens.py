@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.world.build.millimetres import length, rounded, unit
 from eyas.engine.world.build.placed import Placed
 from eyas.lanes import exact
-from eyas.maps.build.apart import Apart
+from eyas.maps.build.apart import SpacedPoints
 from eyas.maps.plants.shrubs import PIECE
 
 __all__ = [
@@ -33,6 +33,7 @@ _PLANTED = 0.45  # Share of the walls with plants along them
 _CLIPPED = 0.4  # Share of those walls with a hedge instead of shrubs
 _ROOM = 0.9  # Radius of the space that a plant needs [m]
 
+# order: bytes of plans depend on it, which draw an index of it
 BORDERS = ("border", "low border", "tall border")  # Kinds of borders of shrubs
 
 Points = NDArray[np.float64]
@@ -99,7 +100,6 @@ def borders(
         footprints: Corners of buildings, counter-clockwise [m].
         room: Lawn on which plants may stand [m].
         floor: z of the lawn [m].
-        rng: Random numbers of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
     shapely.prepare(free)
@@ -128,7 +128,6 @@ def row(
         line: Both ends [m], shape (2, 2).
         room: Area in which pieces must lie [m].
         floor: z of the lawn [m].
-        rng: Random numbers of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(exact.atan2(along[1], along[0]))
@@ -153,13 +152,11 @@ def scattered(
     Args:
         room: The shape [m].
         apart: Least distance between two points [m].
-        density: Number of attempts on each square metre.
-        rng: Random numbers of the points.
 
     Returns:
         Shape (K, 2) [m].
     """
-    chosen = Apart(apart)
+    chosen = SpacedPoints(apart)
     for part in shapely.get_parts(room):
         if part.is_empty:
             continue
@@ -185,7 +182,6 @@ def sown(
         kinds: Kinds; one is chosen for each place.
         sizes: Least and largest scale.
         z: Height of their feet [m], one or shape (K,).
-        rng: Random numbers of the plants.
     """
     spots, feet = rounded(spots), rounded(np.broadcast_to(np.asarray(z, np.float64), len(spots)))
     which = rng.integers(len(kinds), size=len(spots)).tolist()
@@ -209,7 +205,6 @@ def clustered(
         spread: Standard deviation about the centres [m].
         count: Least and largest number in a group.
         room: Area within which the points must lie [m].
-        rng: Random numbers of the points.
     """
     groups = [c + exact.normal(rng, 0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
@@ -230,7 +225,6 @@ def small_trees(
         heights: Least and largest height [m].
         floor: z of the ground [m].
         kinds: Kinds; one is chosen for each tree.
-        rng: Random numbers of the gardens.
     """
     made = []
     for x, y in places.tolist():

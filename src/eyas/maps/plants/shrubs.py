@@ -98,4 +98,4 @@ PLANTS: dict[str, Callable[[np.random.Generator], Levels]] = {
 }
 """Makers of borders of shrubs along walls, hedges, beds in car parks."""
 
-DECIDUOUS = ("border", "low border", "tall border")  # Those whose leaves turn in autumn
+DECIDUOUS = ("border", "low border", "tall border")  # Shrubs whose leaves turn in autumn

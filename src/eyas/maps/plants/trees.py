@@ -1,4 +1,4 @@
-"""Street trees, wide and bushy so that their crowns hide cars; and rows of them."""
+"""Street trees, wide and bushy so that their crowns hide cars; rows of them; evergreen cones."""
 
 import numpy as np
 import shapely
@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 
 from eyas.engine.mesh.assembly import concatenate
 from eyas.engine.mesh.solids import tube
-from eyas.engine.state.mesh import Mesh
+from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.materials import material
 from eyas.lanes import exact
 from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["VARIANTS", "place_along", "street_tree_levels"]
+__all__ = ["CONES", "VARIANTS", "cone_tree_levels", "place_along", "street_tree_levels"]
 
 VARIANTS = 4  # Number of shapes; variants k and k + 4 differ only by chance
 
@@ -39,10 +39,6 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
 
     The levels have about 2,700, 530, 130 and 30 triangles; the last is for crowns of a few pixels.
     Multiply by 15 to 27 for metres.
-
-    Args:
-        rng: Random numbers of the trees.
-        variant: Index of the shape and the green.
     """
     kind = variant % VARIANTS
     crown = _crown(_WIDTHS[kind] / 2, rng)
@@ -124,7 +120,6 @@ def place_along(
     Args:
         line: Line of the row [m].
         spacing: Least and largest distance from one tree to the next [m].
-        rng: Random numbers of the trees.
         keep_free: Area without trunks; trees there are left out.
     """
     gaps = rng.uniform(*spacing, int(line.length / spacing[0]) + 2)
@@ -133,3 +128,73 @@ def place_along(
     points = shapely.line_interpolate_point(line, along)
     free = ~shapely.intersects(keep_free, points)
     return np.asarray(shapely.get_coordinates(points[free]), np.float64).reshape(-1, 2)
+
+
+CONES = 3  # Number of shapes
+
+
+_CONE_GREENS = (
+    ((0.36, 0.47, 0.40), (0.50, 0.64, 0.51), (0.66, 0.83, 0.62), (0.82, 0.98, 0.70)),
+    ((0.38, 0.51, 0.35), (0.54, 0.69, 0.46), (0.72, 0.89, 0.55), (0.88, 1.0, 0.64)),
+    ((0.33, 0.45, 0.42), (0.45, 0.61, 0.53), (0.58, 0.76, 0.64), (0.76, 0.93, 0.74)),
+)
+_CONE_CORE = (0.34, 0.42, 0.34)
+_HALF_WIDTH = (0.46, 0.40, 0.43)
+"""Half the width of the crown, as a share of the height: in the original, 0.5."""
+_LOW = 0.10  # Height of the lowest branches
+_RINGS = 6
+
+
+def cone_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]:
+    """Return a tree of height 1 that stands on the origin, the finest level of detail first.
+
+    The levels have about 1,700, 480 and 40 triangles.
+    """
+    kind = variant % CONES
+    half, greens = _HALF_WIDTH[kind], _CONE_GREENS[kind]
+    crown = _cone_crown(half, rng)
+    fine = concatenate(
+        [
+            _cone_trunk(7),
+            _cone(half, 12, 0.80, _CONE_CORE),
+            leaf_cards(crown, 400, (0.11, 0.19), greens, rng, bent=True),
+        ]
+    )
+    middle = concatenate(
+        [
+            _cone_trunk(5),
+            _cone(half, 9, 0.84, _CONE_CORE),
+            leaf_cards(crown, 190, (0.17, 0.27), greens, rng, bent=False),
+        ]
+    )
+    coarse = concatenate([_cone_trunk(3), _cone(half, 7, 1.0, greens[2])])
+    return fine, middle, coarse
+
+
+def _cone_crown(half: float, rng: np.random.Generator) -> Crown:
+    """Return balls in rings that become smaller towards the top."""
+    centres, radii = [np.array([[0.0, 0.0, 0.94]])], [np.array([0.045])]
+    for ring in range(_RINGS):
+        share = ring / (_RINGS - 1)
+        reach, height = half * (1.0 - share), _LOW + 0.10 + 0.72 * share
+        size = 0.055 + 0.42 * reach
+        count = max(1, round(2 * np.pi * max(reach - size, 0.0) / size))
+        angle = rng.uniform(0, 2 * np.pi) + np.arange(count) * 2 * np.pi / count
+        out = max(reach - size, 0.0) * rng.uniform(0.9, 1.06, count)
+        z = height + rng.uniform(-0.025, 0.025, count)
+        centres.append(np.column_stack([out * exact.cos(angle), out * exact.sin(angle), z]))
+        radii.append(np.full(count, size))
+    return Crown(np.concatenate(centres), np.concatenate(radii), np.array([0.0, 0.0, 0.4]))
+
+
+def _cone(half: float, sides: int, size: float, tint: tuple[float, float, float]) -> Mesh:
+    """Return the dark inside of a crown."""
+    stuff = Material("foliage", tint, Surface.CROWN)
+    path = np.array([[0, 0, _LOW], [0, 0, _LOW + 0.08], [0, 0, 0.5], [0, 0, 0.5 + 0.48 * size]])
+    wide = [0.45 * half * size, half * size, 0.55 * half * size, 0.005]
+    return tube(path, wide, sides, stuff, 0.5)
+
+
+def _cone_trunk(sides: int) -> Mesh:
+    path = np.array([[0, 0, -0.02], [0, 0, 0.04], [0, 0, 0.3]])
+    return tube(path, [0.032, 0.024, 0.02], sides, material("bark"), 0.1)

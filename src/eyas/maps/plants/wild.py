@@ -39,13 +39,11 @@ def _blades(
     They are no `Surface.FOLIAGE`, whose holes and shadows cost more than such small plants show.
 
     Args:
-        count: Number of blades.
         spread: Radius of the circle in which they stand.
         long: Length along x to which it is drawn out.
         heights: Least and largest height.
         width: Of a blade at its foot.
         tints: Colours, sRGB.
-        rng: Random numbers of the plant.
     """
     away, angle = np.sqrt(rng.uniform(0.0, 1.0, count)), rng.uniform(0.0, 2 * np.pi, count)
     out = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(count)])
@@ -86,11 +84,7 @@ def _tufts(tints: Sequence[Tint], rng: np.random.Generator) -> Levels:
             made.append(tuft)
         return concatenate(made)
 
-    return (
-        each(34, 0.34, (0.16, 0.50), 0.045),
-        each(11, 0.31, (0.18, 0.46), 0.14),
-        Mesh.none(),
-    )
+    return (each(34, 0.34, (0.16, 0.50), 0.045), each(11, 0.31, (0.18, 0.46), 0.14), Mesh.none())
 
 
 def _reeds(rng: np.random.Generator) -> Levels:

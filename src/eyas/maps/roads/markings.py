@@ -20,13 +20,13 @@ __all__ = ["crossings_of", "frame_of", "paint_of", "placed", "road_paint"]
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18  # Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]
 _CENTRE_LINE = 0.2
-_DOUBLE = 0.18  # From the middle of the road to each of two yellow lines [m]
+_DOUBLE = 0.18  # Distance from the middle of the road to each of two yellow lines [m]
 _EDGE_LINE = 0.2
-_EDGE = 0.3  # From the kerb to the edge line [m]
+_EDGE = 0.3  # Distance from the kerb to the edge line [m]
 _STOP_LINE = 0.4  # Width of a stop line [m]
 _ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
 """From the stop line to a crossing, and its extent along the road, as in the original [m]."""
-_WALKED = 3.0  # From the stop line to the line on which people cross [m]
+_WALKED = 3.0  # Distance from the stop line to the line on which people cross [m]
 _BAR = 0.55  # Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]
 
 Line = NDArray[np.float64]
@@ -36,7 +36,6 @@ def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool =
     """Return the paint of all roads.
 
     Args:
-        network: The roads.
         centre: The line between the two directions, `white` or `double yellow`.
         crossings: Whether there are zebra crossings where three or more roads meet.
     """

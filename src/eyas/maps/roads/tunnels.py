@@ -17,7 +17,7 @@ from eyas.maps.build.values import Place, Positive, Unit
 __all__ = ["HALF_WIDTH", "Tunnel", "tunnel_mesh", "tunnel_prisms"]
 
 HALF_WIDTH = 19.0
-"""From the middle of the road to the foot of the mound [m]."""
+"""Distance from the middle of the road to the foot of the mound [m]."""
 
 _TOP = 9.6
 """Mean height of the mound [m]."""
@@ -40,7 +40,7 @@ class Tunnel:
     """A tunnel in plan view."""
 
     place: Place
-    """Its middle on the middle of the road [m], shape (2,)."""
+    """Middle of the tunnel, on the middle of the road [m], shape (2,)."""
     along: Unit
     """Direction of the road, a unit vector, shape (2,)."""
     length: Positive
@@ -74,11 +74,8 @@ def tunnel_mesh(
     """Return the mound over the road and the rock inside of it.
 
     Args:
-        tunnel: The tunnel.
         floor: z of the ground [m].
-        outside: Material of the mound.
         inside: Material of the opening and of both fronts.
-        rng: Random numbers of the lumps.
     """
     at = np.linspace(-0.5, 0.5, _SECTIONS) * tunnel.length
     lumps = _lumps(rng)

@@ -58,8 +58,6 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator, apart: float = 1.0
     """Return the wear of all lanes, the upper layers first.
 
     Args:
-        network: The roads.
-        rng: Random numbers of the map, for the positions of patches, seals and lids.
         apart: Factor on the distances between these; larger for very long roads.
     """
     tracks, seals, patches, lids, oil = [], [], [], [], []
@@ -141,7 +139,6 @@ def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
     Args:
         lane: Middle of the lane [m].
         start: Start of the strip in the texture [repeats].
-        paved: Material of the lane.
     """
     middle = shapely.get_coordinates(shapely.segmentize(lane, GRID))
     along = np.gradient(middle, axis=0)

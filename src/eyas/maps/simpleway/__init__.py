@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
 from eyas.engine.world.weather import Weather, in_fog
-from eyas.maps.desert.air import desert_weather
+from eyas.maps.desert import desert_weather
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -67,11 +67,7 @@ def _skinned(
 
 GRASS = _skinned("grass", "Straight roads on a lawn", partial(_weather, visibility=500.0))
 CLINKER = _skinned(
-    "clinker",
-    "Straight roads on a grey plain",
-    _purple_by_night,
-    seasons=False,
-    without=("snow",),
+    "clinker", "Straight roads on a grey plain", _purple_by_night, seasons=False, without=("snow",)
 )
 DESERT = _skinned("desert", "Straight roads under bars of sand", desert_weather)
 FARM = _skinned("farm", "Straight roads between coloured strips")

@@ -9,27 +9,14 @@ from eyas.engine.core.rng import stream
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import ObjectClass
-from eyas.engine.world.roads.areas import corridors, streets
-from eyas.engine.world.roads.curves import rounded_kerbs
-from eyas.maps.land.plain import blob, rectangle
-from eyas.maps.plan.plan import (
-    Chance,
-    Far,
-    Flat,
-    GroundCover,
-    Layer,
-    MapPlan,
-    Paint,
-    Roadway,
-)
-from eyas.maps.roads.painting import Stripe
-from eyas.maps.simpleway.drifts import sand_bars
-from eyas.maps.simpleway.roads import is_loop, road_lines
-from eyas.maps.simpleway.skins import SKINS, Skin
+from eyas.maps.land.ground import blob, rectangle
+from eyas.maps.plan.plan import Chance, Far, Flat, GroundCover, Layer, MapPlan, Paint, Roadway
+from eyas.maps.simpleway.layout import FLOOR, loop_lines, paved, sand_bars
+from eyas.maps.simpleway.roads import road_lines
+from eyas.maps.simpleway.scenery import SKINS, Skin
 
-__all__ = ["FLOOR", "make_plan", "paved"]
+__all__ = ["make_plan"]
 
-FLOOR = (7000.0, 5000.0)  # Extent of the floor, as in the original [m]
 _BANK = 2.5  # Bare ground between a road and a strip, at least [m]
 _BAR_HEIGHT = 0.03  # z of the bars of sand [m]
 _SPOTS = 320
@@ -43,14 +30,12 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
 
     Args:
         skin_name: One of `SKINS`.
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
     """
     skin, roads = SKINS[skin_name], paved(network)
     layers: list[Layer] = [
         Roadway(
             area=roads,
-            paint=Paint(crossings=0, lines=tuple(_loop_lines(network))),
+            paint=Paint(crossings=0, lines=tuple(loop_lines(network))),
             wear=Chance(stream="simpleway road wear"),
             apart=5.0,
         )
@@ -83,20 +68,6 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
     return MapPlan(
         name="simpleway", seed=seed, size=FLOOR, layers=tuple(layers), horizon=skin.horizon
     )
-
-
-def paved(network: RoadNetwork) -> shapely.Geometry:
-    """Return the asphalt [m]."""
-    return rounded_kerbs(corridors(network), [])
-
-
-def _loop_lines(network: RoadNetwork) -> list[Stripe]:
-    """Return lines along the inner edges of loops: `road_paint` draws them on one half only."""
-    return [
-        Stripe(middle=street.left, width=0.2)
-        for edge, street in zip(network.edges, streets(network), strict=True)
-        if is_loop(edge)
-    ]
 
 
 def _spotted(area: shapely.Geometry, skin: Skin, snow: Material | None, seed: int) -> list[Flat]:

@@ -10,6 +10,8 @@ from eyas.lanes import exact
 
 __all__ = ["NAME", "ROADS", "ROAD_WIDTH", "is_loop", "road_graph", "road_lines"]
 
+# `network.npz` here names the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "simpleway"
 
 ROADS = 16
@@ -38,11 +40,7 @@ def road_lines(seed: int) -> Points:
 
 
 def road_graph(seed: int) -> RoadGraph:
-    """Return the roads, which never meet: at each end a loop leads back.
-
-    Args:
-        seed: Seed of the map, >= 0.
-    """
+    """Return the roads, which never meet: at each end a loop leads back."""
     nodes: list[RoadNode] = []
     edges: list[RoadEdge] = []
     for index, (south, north) in enumerate(road_lines(seed)):

@@ -12,7 +12,7 @@ from eyas.lanes import exact
 from eyas.maps.buildings.lots import frame_angle, turned
 from eyas.maps.land.ground import PAVEMENT_WIDTH
 
-__all__ = ["CarPark", "place_car_parks", "place_rectangle"]
+__all__ = ["CarPark", "bays_in", "place_car_parks", "place_rectangle"]
 
 _MODULE = 17.0  # Depth of two rows of bays and the aisle between them [m]
 _BAY_LENGTH, _BAY_WIDTH = 5.2, 2.6
@@ -44,7 +44,6 @@ def place_car_parks(
     Args:
         blocks: Ground between kerbs [m].
         sizes: Length along the street and depth of each; those that fit nowhere are left out [m].
-        rng: Random numbers of the car parks.
         keep_free: Area where none may be.
     """
     order = [blocks[int(index)] for index in rng.permutation(len(blocks))]
@@ -70,7 +69,6 @@ def place_rectangle(
     Args:
         block: Ground between kerbs [m].
         size: Lengths along the side and away from it [m].
-        rng: Random numbers for the choice of the position.
         keep_free: Area that it may not touch.
 
     Returns:
@@ -144,3 +142,47 @@ def _bays(rectangle: shapely.Polygon) -> list[shapely.Polygon]:
                 for x in first + _BAY_WIDTH * np.arange(count + 1)
             ]
     return lines
+
+
+_ROW_MODULE = 16.4  # Depth of two rows of bays and the aisle between them [m]
+_ROW_BAY_LENGTH, _ROW_BAY_WIDTH = 5.1, 2.6
+_EDGE = 0.4  # Distance from the edge of the car park to the bays [m]
+_PAINT = 0.12  # Width of a line between bays [m]
+
+Bays = NDArray[np.float64]
+
+
+def bays_in(area: shapely.Geometry) -> tuple[Bays, list[shapely.Polygon]]:
+    """Return bays that lie within a car park, and the paint between them.
+
+    Args:
+        area: The car park in plan view [m].
+
+    Returns:
+        Centre of each bay [m] and heading of a car in it [rad], shape (K, 3); lines [m].
+    """
+    if area.is_empty:
+        return np.zeros((0, 3)), []
+    hull = shapely.convex_hull(area)
+    angle = frame_angle(hull) if hull.geom_type == "Polygon" else 0.0
+    room = shapely.buffer(turned(area, -angle), -_EDGE, join_style="mitre")
+    if room.is_empty:
+        return np.zeros((0, 3)), []
+    west, south, east, north = room.bounds
+    columns = west + _ROW_BAY_WIDTH * np.arange(int((east - west) // _ROW_BAY_WIDTH))
+    modules = south + _ROW_MODULE * np.arange(int((north - south) // _ROW_MODULE) + 1)
+    rows = np.concatenate([modules, modules + _ROW_MODULE - _ROW_BAY_LENGTH - _EDGE])
+    x, y = (axis.ravel() for axis in np.meshgrid(columns, np.sort(rows), indexing="ij"))
+    boxes = shapely.box(x, y, x + _ROW_BAY_WIDTH, y + _ROW_BAY_LENGTH)
+    inside = shapely.contains_properly(room, boxes)
+    x, y = x[inside], y[inside]
+    sides = np.unique(
+        np.round(np.concatenate([np.c_[x, y], np.c_[x + _ROW_BAY_WIDTH, y]]), 2), axis=0
+    )
+    paint = shapely.box(sides[:, 0] - _PAINT / 2, sides[:, 1], sides[:, 0] + _PAINT / 2,
+                        sides[:, 1] + _ROW_BAY_LENGTH)  # fmt: skip
+    middles = np.stack([x + _ROW_BAY_WIDTH / 2, y + _ROW_BAY_LENGTH / 2], axis=1)
+    cosine, sine = exact.cos(angle), exact.sin(angle)
+    places = rounded(exact.product(middles, np.array([[cosine, sine], [-sine, cosine]])))
+    heading = np.full((len(places), 1), angle + np.pi / 2)
+    return np.concatenate([places, heading], axis=1), [turned(line, angle) for line in paint]

@@ -68,7 +68,6 @@ def _scraps(
 
     Args:
         which: Number of the patch: each lies otherwise.
-        tints: Their colours.
         sizes: Shortest and longest side [m].
         count: How many.
     """
@@ -273,6 +272,7 @@ def _letter_box() -> Levels:
     return (concatenate([post, _part((0.26, 0.42, 0.26), (0.0, 0.05, 1.13), _STEEL)]),)
 
 
+# order: bytes of plans depend on it, whose library lists these names in turn
 CLUTTER: dict[str, Callable[[], Levels]] = {
     **{f"litter {k}": partial(_scraps, k, _PAPER, (0.06, 0.24), 9) for k in range(3)},
     **{f"fallen leaves {k}": partial(_scraps, 3 + k, _FALLEN, (0.07, 0.2), 24) for k in range(2)},

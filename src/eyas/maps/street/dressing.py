@@ -24,7 +24,7 @@ __all__ = ["CITY_KERBS", "SHOP_FRONTS", "VILLAGE_KERBS", "Ground", "along_kerbs"
 _CLEAR: Final = 0.3  # Room between two things [m]
 
 _FROM_WALL: Final = 0.75
-"""From a wall to the middle of what stands before it, besides half its depth [m]."""
+"""Distance from a wall to the middle of what stands before it, besides half its depth [m]."""
 
 _FROM_CORNER: Final = 2.0  # Least distance from the corner of a house [m]
 
@@ -32,7 +32,7 @@ Points = NDArray[np.float64]
 
 
 class Ground(NamedTuple):
-    """Where things may stand."""
+    """Area on which things may stand, and its height."""
 
     area: shapely.Geometry  # In plan view [m]
     height: float  # z [m]
@@ -118,10 +118,8 @@ def along_kerbs(
     """Return things along the kerbs of all streets.
 
     Args:
-        network: The roads.
         grounds: Where things may stand, by the names in the rules; prepared.
         rules: What stands there, the largest first.
-        rng: Random numbers of the clutter.
         apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []
@@ -152,7 +150,6 @@ def at_fronts(
         footprints: Corners of the houses, counter-clockwise [m].
         ground: Where things may stand; prepared.
         rules: What stands there, the largest first.
-        rng: Random numbers of the clutter.
         apart: Factor on the distances between things of a rule.
     """
     standing, made = _Standing(), []

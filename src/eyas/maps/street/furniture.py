@@ -1,21 +1,26 @@
-"""Small things: benches, bins, hydrants, shelters, post boxes, tubs, a fountain, bales of hay.
-
-Origins are on the ground; the side towards the road faces along y. Lengths are in metres.
-"""
+"""Street furniture: small things such as benches and shelters, and where they stand."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
+import shapely
+from numpy.typing import NDArray
 
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.mesh.solids import box, cylinder, sphere
 from eyas.engine.state.mesh import Material, Mesh, Surface
+from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.build.materials import material
+from eyas.engine.world.build.millimetres import unit
+from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.build.scene_builder import Levels
+from eyas.engine.world.roads.areas import streets
+from eyas.lanes import exact
 
-__all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels"]
+__all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels", "furniture_along"]
 
-BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Of a bale of hay [m]
+BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Size of a bale of hay [m]
 
 _HAY = material("crops_tan", (0.98, 0.9, 0.66))
 _JET = material("plain", (0.93, 0.95, 0.97))
@@ -99,6 +104,7 @@ def _tub(sides: int, subdivisions: int) -> Mesh:
     return concatenate([tub, transformed(ball, pose)])
 
 
+# order: bytes of plans depend on it, whose library lists these names in turn
 FURNITURE: dict[str, Callable[[], Levels]] = {
     "bench": lambda: (_bench(), _part((1.8, 0.5, 0.45), (0, 0, 0.22), _WOOD)),
     "bin": lambda: (_bin(10), _bin(4)),
@@ -140,3 +146,75 @@ def _lying(sides: int) -> Mesh:
         [[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, BALE_RADIUS]]
     )
     return transformed(drum, onto_side)
+
+
+_CLEAR = 0.5  # Room around each thing [m]
+
+
+@dataclass(frozen=True, slots=True)
+class _Rule:
+    """Spacing of one kind of furniture along a kerb."""
+
+    beyond_kerb: float  # Distance from the kerb to its centre [m]
+    every: float  # Mean distance to the next [m]
+    room: float  # Radius of the space that it needs [m]
+    from_end: float  # Least distance to the end of the street [m]
+
+
+# order: bytes of plans depend on it, since all rules draw from one stream in turn
+_RULES = {
+    "shelter": _Rule(1.75, 190.0, 2.4, 24.0),
+    "bench": _Rule(2.05, 42.0, 1.1, 9.0),
+    "tub": _Rule(2.0, 60.0, 0.8, 9.0),
+    "post_box": _Rule(0.75, 170.0, 0.5, 8.0),
+    "bin": _Rule(0.65, 55.0, 0.4, 6.0),
+    "hydrant": _Rule(0.6, 85.0, 0.4, 6.0),
+}
+"""The kinds of furniture, the largest first, because small ones find room more easily."""
+
+
+def furniture_along(
+    network: RoadNetwork,
+    pavement: shapely.Geometry,
+    keep_free: shapely.Geometry,
+    height: float,
+    rng: np.random.Generator,
+) -> list[Placed]:
+    """Return what furnishes the pavements beside kerbs.
+
+    Args:
+        pavement: Area where furniture may stand [m].
+        keep_free: Area where something else stands, people walk or cars drive [m].
+        height: z of the pavement [m].
+    """
+    room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
+    shapely.prepare(room)
+    taken, made = np.zeros((0, 3)), []
+    for kind, rule in _RULES.items():
+        for place, turn in _places(network, rule, rng):
+            apart = np.linalg.norm(taken[:, :2] - place, axis=1) - taken[:, 2]
+            # Legs may reach over the back edge of the pavement, on to the lawn.
+            if apart.min(initial=np.inf) > rule.room and shapely.contains_xy(room, *place):
+                taken = np.concatenate([taken, [[*place, rule.room + _CLEAR]]])
+                made.append(Placed(kind, float(place[0]), float(place[1]), height, turn))
+    return made
+
+
+def _places(
+    network: RoadNetwork, rule: _Rule, rng: np.random.Generator
+) -> list[tuple[NDArray[np.float64], float]]:
+    """Return positions beside all kerbs [m], and angles that make y face the road [rad]."""
+    made = []
+    for street in streets(network):
+        kerb = shapely.LineString(street.right)
+        low, high = rule.from_end, kerb.length - rule.from_end
+        count = rng.poisson(max(high - low, 0.0) / rule.every)
+        for along in np.sort(rng.uniform(low, max(high, low), count)):
+            here, there = (
+                shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.1)
+            )
+            onwards = unit(there - here)
+            leftwards = np.array([-onwards[1], onwards[0]])
+            turn = float(exact.atan2(leftwards[1], leftwards[0]) - np.pi / 2)
+            made.append((here - rule.beyond_kerb * leftwards, turn))
+    return made

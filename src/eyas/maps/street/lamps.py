@@ -14,7 +14,7 @@ from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.roads.areas import streets
 from eyas.lanes import exact
-from eyas.maps.build.apart import Apart
+from eyas.maps.build.apart import SpacedPoints
 
 __all__ = [
     "BEYOND_KERB",
@@ -30,7 +30,7 @@ POLE_HEIGHT = 7.35  # Height of the poles, as in the original [m]
 
 POLE_RADIUS = 0.12  # Radius at the foot [m]
 
-BEYOND_KERB = 2.0  # From the kerb to the poles; the median of the original [m]
+BEYOND_KERB = 2.0  # Distance from the kerb to the poles; the median of the original [m]
 
 LIGHT = (3.1, 0.0, 7.2)
 """Position of the light relative to the foot of its pole, as in the original [m]."""
@@ -54,10 +54,8 @@ def lamps_along(
     """Return street lamps on both sides of the roads, their arms over the road.
 
     Args:
-        network: The roads.
         count: Number of lamps, if there is room.
         keep_free: Area where no pole may stand.
-        rng: Random numbers of the lamps.
     """
     feet, turns = _candidates(network)
     blocked = shapely.buffer(keep_free, _CLEAR)
@@ -66,7 +64,7 @@ def lamps_along(
     order = rng.permutation(np.flatnonzero(free))
     chosen: list[int] = []
     for least in _APART:
-        near = Apart(least)
+        near = SpacedPoints(least)
         for index in chosen:
             near.add(*feet[index].tolist())
         for index in order.tolist():

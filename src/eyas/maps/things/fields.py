@@ -14,9 +14,9 @@ from eyas.maps.plan.plan import Field
 
 __all__ = ["field_mesh"]
 
-_TRAMLINES = 20.0  # From one pair of wheel tracks in a crop to the next [m]
+_TRAMLINES = 20.0  # Distance from one pair of wheel tracks in a crop to the next [m]
 _TRACK, _GAUGE = 0.45, 1.8  # Width of a wheel track, and from its middle to that of the other [m]
-_HEADLAND = 5.0  # From the edge of a field to the ends of its tracks [m]
+_HEADLAND = 5.0  # Distance from the edge of a field to the ends of its tracks [m]
 _ABOVE = 0.02  # Height of the tracks above the crop, so that they never flicker [m]
 
 

@@ -60,11 +60,7 @@ def add_fronts(
     """Hang awnings and fire escapes on the walls of a building that face a street.
 
     Args:
-        builder: The builder to add to.
-        building: The lowest part of a building.
-        owner: Its object.
         pavement: Pavements, prepared [m].
-        rng: Random numbers of the building.
     """
     if building.facade not in _SHOPS:
         return
@@ -140,11 +136,8 @@ def add_water_tank(
     """Add a tank to the roof of an old building; return the rest of the free roof.
 
     Args:
-        builder: The builder to add to.
         building: The building or the part of it under the roof.
-        owner: Its object.
         free: Roof on which nothing stands yet [m].
-        rng: Random numbers of the building.
     """
     top = building.bottom + building.height
     fits = building.facade in _ON and _TOPS[0] < top < _TOPS[1] and building.roof == "flat"

@@ -18,8 +18,8 @@ from eyas.maps.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.maps.buildings import cottages
 from eyas.maps.buildings.skyline import FLOOR
 from eyas.maps.land import stones
-from eyas.maps.plants import cones, forest, trees
-from eyas.maps.plants.autumn import in_autumn
+from eyas.maps.plants import forest, trees
+from eyas.maps.plants.foliage import in_autumn
 from eyas.maps.plants.shrubs import DECIDUOUS, PLANTS
 from eyas.maps.plants.wild import WILD
 from eyas.maps.street import clutter, furniture, gantries, lamps, parked_cars
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from eyas.maps.plan.plan import ThingKind
 
 __all__ = ["SOLIDS", "THINGS", "Thing"]
-
 
 Solid = Callable[[SceneBuilder, "ThingKind", Placed, int], None]
 """Adds what is solid of a copy of a kind: its pose, and its object."""
@@ -170,7 +169,7 @@ _LIGHT = (lamps.LIGHT[0], lamps.LIGHT[2])
 THINGS: Mapping[str, Thing] = {
     "street tree": Thing(levels=_street_tree, kind=_TREE, solid="trunk", trees=1),
     "cone tree": Thing(
-        levels=lambda kind, rng, season: cones.cone_tree_levels(rng, kind.variant),
+        levels=lambda kind, rng, season: trees.cone_tree_levels(rng, kind.variant),
         kind=_TREE,
         solid="cone trunk",
         trees=1,
@@ -201,8 +200,7 @@ THINGS: Mapping[str, Thing] = {
     },
     **{
         name: Thing(
-            levels=_always(make),
-            kind=ObjectClass.BICYCLE if name == "bicycle rack" else _STRUCTURE,
+            levels=_always(make), kind=ObjectClass.BICYCLE if name == "bicycle rack" else _STRUCTURE
         )
         for name, make in clutter.CLUTTER.items()
     },

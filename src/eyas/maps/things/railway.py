@@ -35,7 +35,7 @@ COLUMNS = (-3.6, 3.6)
 """Places of the columns across the line [m]."""
 
 BESIDE = 9.0
-"""From its middle to the walls beside it [m]."""
+"""Distance from its middle to the walls beside it [m]."""
 
 _PLATFORM = (3.45, 7.6)
 """Inner and outer edge of the platforms, from the middle of the line [m]."""
@@ -79,7 +79,7 @@ _IRON = material("plain", (0.42, 0.37, 0.34))
 _PLANK = material("concrete", (0.66, 0.64, 0.60))
 
 _PITCH = 15.2
-"""From one car of a train to the next [m]."""
+"""Distance from one car of a train to the next [m]."""
 
 _CAR = (14.6, 2.7, 3.3)
 """Length, width and height of a car [m]."""

@@ -48,7 +48,7 @@ class Skyway:
     start: Place
     """Middle of its end at a front [m], shape (2,)."""
     end: Place
-    """The same at the front across the street."""
+    """Middle of its end at the front across the street [m], shape (2,)."""
     width: Positive
     """Width [m]."""
     floors: Annotated[int, Ge(1), Le(2)]

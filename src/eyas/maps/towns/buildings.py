@@ -83,12 +83,7 @@ def is_small(house: House) -> bool:
 
 
 def building_of(house: House, seed: int) -> Building:
-    """Return a building with all that is known and guessed, the same whatever else is on the map.
-
-    Args:
-        house: The building.
-        seed: Seed of the map.
-    """
+    """Return a building with all that is known and guessed, whatever else is on the map."""
     corners = np.rint(1000.0 * shapely.get_coordinates(house.shape)).astype("<i8")
     chance = zlib.crc32(corners.tobytes(), seed)
     rng = np.random.Generator(np.random.PCG64(chance))

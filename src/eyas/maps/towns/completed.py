@@ -16,11 +16,11 @@ from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.roads.areas import polygons_of, road_area, streets
 from eyas.engine.world.street import signals
 from eyas.lanes import exact
-from eyas.maps.build.apart import Apart
+from eyas.maps.build.apart import SpacedPoints
 from eyas.maps.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.maps.buildings.parts import rings
 from eyas.maps.land import ground, outskirts
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import relief_of
 from eyas.maps.osm.features import Survey
 from eyas.maps.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.maps.plan.plan import (
@@ -42,14 +42,13 @@ from eyas.maps.plan.plan import (
     things,
 )
 from eyas.maps.plants import gardens, trees
-from eyas.maps.street.bays import bays_in
-from eyas.maps.street.furnishing import furniture_along
-from eyas.maps.street.furniture import FURNITURE
+from eyas.maps.street.car_parks import bays_in
+from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.lamps import BEYOND_KERB, POLE_RADIUS, lit_by
 from eyas.maps.street.parked_cars import CARS
 from eyas.maps.towns.buildings import building_of
 from eyas.maps.towns.crossings import kept_free, town_paint
-from eyas.maps.towns.layout import Given, Town, lay_out
+from eyas.maps.towns.layout import Occupied, Town, lay_out
 
 __all__ = ["completed"]
 
@@ -58,6 +57,7 @@ _WATER = Material("water", (0.16, 0.38, 0.50), Surface.WATER)
 _WATER_DEPTH = 0.15  # Depth of water below the road [m]
 _BELOW_BANK = 0.4  # How far water reaches below its banks, so that no gap is seen [m]
 
+# order: bytes of plans depend on it, since all kinds of ground draw from one stream in turn
 _COVERS: dict[str, tuple[ObjectClass, tuple[Material, ...]]] = {
     "plaza": (ObjectClass.PAVEMENT, (material("paving", (0.98, 0.96, 0.92)),)),
     "path": (ObjectClass.PAVEMENT, (material("concrete", (0.97, 0.93, 0.85)),)),
@@ -91,7 +91,7 @@ _RAIL = Material(tint=(0.36, 0.33, 0.31))
 _GAUGE = 0.72  # Half the distance between the rails of a track [m]
 _RAIL_HEIGHT = 0.12
 _BESIDE_ROAD, _BESIDE_WALL = 6.0, 4.0
-"""From streets with their pavements, and from walls, to the feet of hills [m]."""
+"""Distance from streets with their pavements, and from walls, to the feet of hills [m]."""
 _WORN_FROM = 30.0  # Shorter lanes have no wear [m]
 _USUAL = (6.5, 12.5)  # Heights of trees of which the map tells none [m]
 _TRUNK = 1.0  # Room around a trunk [m]
@@ -108,7 +108,7 @@ _KNOWN = 1 / 900.0  # Ground with more trees of the map than this on a square me
 _OCCUPIED = 0.6  # Share of the bays with a car
 _WIDE = 3.5  # Width of pavements from which things may stand anywhere on them [m]
 _AT_KERB = 1.3  # On narrower ones they stand nearer to the kerb [m]
-_EVERY = 62.0  # From one lamp to the next along a kerb [m]
+_EVERY = 62.0  # Distance from one lamp to the next along a kerb [m]
 _APART = 24.0  # Least distance between two lamps [m]
 _FROM_END = 8.0  # Least distance of lamps from the end of a street [m]
 
@@ -130,7 +130,7 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
         return plan
     level = _level(network, known)
     layers = [_levelled(one, level) if isinstance(one, Hills) else one for one in plan.layers]
-    town = lay_out(network, known, plan.size, _given(layers, seed))
+    town = lay_out(network, known, plan.size, _occupied(layers, seed))
     buildings = [building_of(house, seed) for house in town.houses]
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     buildings.sort(key=lambda one: -_outside(one.parts[0]))
@@ -186,7 +186,7 @@ def _levelled(hills: Hills, level: shapely.Geometry) -> Hills:
     return replace(hills, flat=shapely.union_all([level, hills.flat or shapely.Polygon()]))
 
 
-def _given(layers: Sequence[Layer], seed: int) -> Given:
+def _occupied(layers: Sequence[Layer], seed: int) -> Occupied:
     """Return what the layers of a plan have already put somewhere."""
     built, covered = [], []
     for layer in layers:
@@ -203,7 +203,7 @@ def _given(layers: Sequence[Layer], seed: int) -> Given:
             built.append(rising)
             covered.append(rising)
     covered = [shapely.make_valid(area) for area in covered]
-    return Given(shapely.union_all(built), shapely.union_all(covered))
+    return Occupied(shapely.union_all(built), shapely.union_all(covered))
 
 
 def _outside(shell: BuildingPart) -> float:
@@ -221,10 +221,7 @@ def _ground(
     parking = ground.asphalt(town.ground["parking"], light=True)
     made: list[Layer] = [
         Roadway(
-            area=town.roads,
-            paint=paint,
-            wear=Chance(stream="town road wear"),
-            worn_from=_WORN_FROM,
+            area=town.roads, paint=paint, wear=Chance(stream="town road wear"), worn_from=_WORN_FROM
         ),
         Paved(area=town.pavement, beside=town.roads),
         GroundCover(kind=ObjectClass.ROAD, pieces=(parking,)),
@@ -299,12 +296,10 @@ def _usual_lamps(
     """Return places beside all kerbs, those of both sides in turn [m].
 
     Args:
-        network: The streets.
         taken: Where no pole may stand [m].
-        rng: Random numbers of the lamps.
     """
     shapely.prepare(taken)
-    kept = Apart(_APART)
+    kept = SpacedPoints(_APART)
     for street in streets(network):
         kerb = shapely.LineString(street.right)
         beside = shapely.offset_curve(kerb, -BEYOND_KERB)
@@ -324,7 +319,6 @@ def _lamps(
     """Return street lamps, their arms towards the nearest lane, where nothing else stands.
 
     Args:
-        network: The streets.
         places: Feet of the lamps [m].
         taken: Where no pole may stand [m].
     """

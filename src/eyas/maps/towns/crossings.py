@@ -22,18 +22,18 @@ _ACROSS = 20.0  # Farthest kerb from where a street is crossed [m]
 _ROUND = 6.0
 """Kerbs are at most so much farther apart, at each end, than SUMO's crossings are long [m]."""
 _OFF = 8.0  # Farthest lane from a mapped crossing: it may lie within a junction [m]
-_FROM_END = 2.2  # From the middle of a crossing to the end of its street, at least [m]
+_FROM_END = 2.2  # Distance from the middle of a crossing to the end of its street, at least [m]
 _ISLAND = 8.0  # Widest ground between two carriageways that are crossed as one [m]
-_BESIDE = 1.0  # From a kerb to the middle of its pavement [m]
+_BESIDE = 1.0  # Distance from a kerb to the middle of its pavement [m]
 _SAME = 7.0  # Crossings in one direction that are nearer to each other are one [m]
 _ALIKE = 0.8  # Least cosine between two crossings in one direction
 
 _SHORTEST = 9.0  # Shorter streets have no lines [m]
 _SLOWEST = 7.0  # On slower streets nothing is painted: drives and yards [m/s]
 _LINE, _DASH = 0.16, (3.0, 6.0)
-_EDGE = 0.28  # From the kerb to the edge line [m]
+_EDGE = 0.28  # Distance from the kerb to the edge line [m]
 _STOP_LINE = 0.4
-_STOP_BACK = 0.6  # From the end of a lane back to the stop line [m]
+_STOP_BACK = 0.6  # Distance from the end of a lane back to the stop line [m]
 _BAR = 0.5
 
 Line = NDArray[np.float64]
@@ -43,7 +43,7 @@ Line = NDArray[np.float64]
 class Crosswalk:
     """A crossing."""
 
-    line: Line  # From kerb to kerb [m], shape (2, 2)
+    line: Line  # Distance from kerb to kerb [m], shape (2, 2)
     light: str = ""  # Name of its light in the network; empty: it has none
 
 
@@ -53,7 +53,6 @@ def crosswalks_of(
     """Return all crossings, and the islands in their course [m].
 
     Args:
-        network: The streets.
         roads: Their asphalt [m].
         walked: Sidewalks and the corners between them [m].
         features: The crossings that are mapped, and those at traffic lights.
@@ -157,10 +156,7 @@ def town_paint(
     by itself.
 
     Args:
-        network: The streets.
         roads: Their asphalt [m].
-        crosswalks: Their crossings.
-        signalled: The streets that end at signals.
     """
     every = streets(network)
     ways = {(street.start, street.end) for street in every}

@@ -16,11 +16,11 @@ from eyas.maps.osm.features import AREA_KINDS, House, Survey
 from eyas.maps.towns.buildings import is_small
 from eyas.maps.towns.crossings import Crosswalk, crosswalks_of
 
-__all__ = ["Given", "Town", "lay_out"]
+__all__ = ["Occupied", "Town", "lay_out"]
 
 _CLEARANCE = 4.6  # What begins higher than this may stand over a street [m]
 
-_FROM_ROAD = 0.35  # From the asphalt to walls [m]
+_FROM_ROAD = 0.35  # Distance from the asphalt to walls [m]
 _LEFT = 0.35
 """Share of a footprint that must be left beside the streets; otherwise the building is left out."""
 _APRON = 0.8  # Width of the paving at the foot of houses [m]
@@ -38,10 +38,10 @@ _NEEDLE = 0.02  # Slivers narrower than twice this do not count as asphalt [m]
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class Occupied:
     """What layers of a plan have already put somewhere."""
 
-    built: shapely.Geometry  # Where buildings stand on the ground [m]
+    built: shapely.Geometry  # Footprints of the buildings [m]
     covered: shapely.Geometry  # Ground that has its cover [m]
 
 
@@ -59,19 +59,15 @@ class Town:
     lawn: shapely.Geometry  # Everything else [m]
     houses: list[House]  # All buildings, without what would stand on streets
     gardens: list[shapely.Polygon]  # Footprints of houses with gardens [m]
-    built: shapely.Geometry  # Where buildings stand on the ground [m]
+    built: shapely.Geometry  # Footprints of the buildings [m]
 
 
 def lay_out(
-    network: RoadNetwork,
-    features: Survey,
-    size: tuple[float, float],
-    given: Given,
+    network: RoadNetwork, features: Survey, size: tuple[float, float], given: Occupied
 ) -> Town:
     """Return which ground of a town is what.
 
     Args:
-        network: The streets.
         features: What the map tells besides.
         size: Extent of the floor [m].
         given: What is there already.
@@ -177,7 +173,6 @@ def _yards(
     """Return the paving between and around buildings, where no other ground is.
 
     Args:
-        houses: All buildings.
         kerbs: Streets with their pavements [m].
         free: Ground that nothing covers [m].
     """

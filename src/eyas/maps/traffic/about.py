@@ -14,7 +14,7 @@ from eyas.engine.traffic.recording import Recording
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.traffic.smoothing import Tracks, runs, smooth
 
-__all__ = ["About", "Vehicles", "about", "lines_of"]
+__all__ = ["ClassFigures", "TrafficFacts", "about", "lines_of"]
 
 _STANDING = 0.1  # Vehicles slower than this stand [m/s]
 
@@ -22,18 +22,18 @@ _LASTING = 60.0  # Tracks of this length can be followed for a long episode [s]
 
 
 @dataclass(frozen=True, slots=True)
-class Vehicles:
+class ClassFigures:
     """Figures of some vehicles; those of a recording in which none of them is are 0."""
 
-    most: int  # That are there at once at most
-    mean: float  # That are there on average
+    most: int  # Largest number that are there at once
+    mean: float  # Mean number that are there
     mean_speed: float  # [m/s]
     top_speed: float  # [m/s]
     standing: float  # Share of their time in which they stand
 
 
 @dataclass(frozen=True, slots=True)
-class About:
+class TrafficFacts:
     """What there is to say about a recording."""
 
     map: str
@@ -45,14 +45,14 @@ class About:
     duration: float  # [s]
     rate: float  # Samples per second [Hz]
     warm_up: float  # Time before the recording, which is left out [s]
-    vehicles: dict[str, Vehicles]  # By class; of several classes also `all`
+    vehicles: dict[str, ClassFigures]  # Figures by class; of several classes also `all`
     tracks: int
-    lasting_tracks: int  # Those of a minute or longer
-    whole_tracks: int  # Those as long as the recording
+    lasting_tracks: int  # Number of tracks of a minute or longer
+    whole_tracks: int  # Number of tracks as long as the recording
     median_track: float  # Median length of a track [s]
 
 
-def about(path: Path) -> About:
+def about(path: Path) -> TrafficFacts:
     """Return what there is to say about a recording.
 
     Raises:
@@ -65,7 +65,7 @@ def about(path: Path) -> About:
         for present in recording.present.T
         for first, last in runs(present)
     ]
-    return About(
+    return TrafficFacts(
         map=origin.map_name,
         map_seed=origin.map_seed,
         roads=origin.graph_hash,
@@ -83,7 +83,7 @@ def about(path: Path) -> About:
     )
 
 
-def lines_of(said: About) -> list[str]:
+def lines_of(said: TrafficFacts) -> list[str]:
     """Return what `eyas traffic info` prints."""
     others = {name: value for name, value in said.traffic.items() if name != "demand"}
     settings = (f"{name}={json.dumps(value)}" for name, value in others.items())
@@ -107,7 +107,7 @@ def _settings(config: TrafficConfig) -> dict[str, Any]:
     return {"demand": config.demand.value, **changed}
 
 
-def _vehicles(recording: Recording) -> dict[str, Vehicles]:
+def _vehicles(recording: Recording) -> dict[str, ClassFigures]:
     tracks = smooth(recording)
     found = {}
     for name, actors in Counter(recording.vehicle_types).items():
@@ -119,12 +119,12 @@ def _vehicles(recording: Recording) -> dict[str, Vehicles]:
     return found
 
 
-def _figures(tracks: Tracks, chosen: NDArray[np.bool_], actors: int) -> Vehicles:
+def _figures(tracks: Tracks, chosen: NDArray[np.bool_], actors: int) -> ClassFigures:
     present = tracks.present[:, chosen]
     if not present.any():
-        return Vehicles(actors, 0.0, 0.0, 0.0, 0.0)
+        return ClassFigures(actors, 0.0, 0.0, 0.0, 0.0)
     speed = np.hypot(*np.moveaxis(tracks.velocity[:, chosen], -1, 0))[present]
-    return Vehicles(
+    return ClassFigures(
         most=actors,
         mean=float(present.sum(axis=1).mean()),
         mean_speed=float(speed.mean()),
@@ -133,7 +133,7 @@ def _figures(tracks: Tracks, chosen: NDArray[np.bool_], actors: int) -> Vehicles
     )
 
 
-def _line(figures: Vehicles) -> str:
+def _line(figures: ClassFigures) -> str:
     if not figures.mean:
         return f"{figures.most} at most, none in the recording"
     return (

@@ -1,4 +1,4 @@
-"""Plan of the village: the position of everything in it."""
+"""Layout of the village: the position of everything in it."""
 
 import math
 from collections.abc import Sequence
@@ -10,24 +10,167 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.rng import stream
 from eyas.engine.state.roads import RoadNetwork
-from eyas.engine.world.build.millimetres import snapped
+from eyas.engine.world.build.millimetres import length, rounded, snapped, unit
 from eyas.engine.world.roads.areas import Street, blocks, road_area, streets
-from eyas.maps.buildings.cottages import Cottage
+from eyas.lanes import exact
+from eyas.maps.buildings.cottages import SIDE, Cottage
 from eyas.maps.buildings.lots import largest
 from eyas.maps.land.mounds import Mound, place_inside, place_ring, sizes
 from eyas.maps.land.outlines import wavy
 from eyas.maps.plants import trees
 from eyas.maps.roads.tunnels import Tunnel
-from eyas.maps.village.places import cottages_along, gantries_along, tunnels_along
 from eyas.maps.village.roads import road_graph
 
 __all__ = ["EXTENT", "FLOOR", "HALF", "VillageLayout", "lay_out"]
+
+_TUNNEL = 40.0  # Length of a tunnel [m]
+_PAIRS, _SINGLE = 2, 6
+"""Number of roads with two tunnels one after the other, and of those with one."""
+_BETWEEN = 5.0  # Distance of the two tunnels of a pair [m]
+_FROM_BEND = 13.0  # Least distance from a tunnel to the end of its road [m]
+
+_CLUSTERS = (8, 6, 4, 3, 3)  # Houses in each cluster
+_SETBACKS = (4.2, 8.0)  # Least and largest distance from the kerb to a house [m]
+_EVERY = 29.0  # Distance from one house to the next [m]
+_APART = 6.5  # Least distance of two houses [m]
+
+_GANTRIES = 7
+
+Points = NDArray[np.float64]
+
+
+def tunnels_along(
+    ways: Sequence[Street], roads: shapely.Geometry, rng: np.random.Generator
+) -> list[Tunnel]:
+    """Return ten tunnels on straight roads, two pairs of which nearly touch."""
+    one_way = [way for way in ways if way.start < way.end]
+    order = [one_way[int(index)] for index in rng.permutation(len(one_way))]
+    # A pair needs more room, so it chooses first.
+    order.sort(key=lambda way: length(way.left[-1] - way.left[0]) < 140.0)
+    made: list[Tunnel] = []
+    pairs, single = _PAIRS, _SINGLE
+    for way in order:
+        start, end = way.left[0], way.left[-1]
+        whole, along = length(end - start), unit(end - start)
+        count = 2 if pairs else 1
+        reach = count * _TUNNEL + (count - 1) * _BETWEEN
+        spare = whole - reach - 2 * _FROM_BEND
+        if spare < 0 or not (pairs or single):
+            continue
+        first = _FROM_BEND + rng.uniform(0.2, 0.8) * spare + _TUNNEL / 2
+        steps = first + (_TUNNEL + _BETWEEN) * np.arange(count)
+        some = [Tunnel(rounded(start + step * along), along, _TUNNEL) for step in steps]
+        if all(_is_free(tunnel, made, roads) for tunnel in some):
+            made += some
+            pairs, single = (pairs - 1, single) if count == 2 else (pairs, single - 1)
+    return made
+
+
+def _is_free(tunnel: Tunnel, others: Sequence[Tunnel], roads: shapely.Geometry) -> bool:
+    """Return whether no road passes the solid sides of a tunnel, and no other one is near."""
+    solid = shapely.difference(tunnel.area, shapely.buffer(tunnel.passage, -1.0))
+    near = [shapely.distance(tunnel.area, other.area) < 90.0 for other in others]
+    return not shapely.intersects(solid, roads) and not any(near)
+
+
+def cottages_along(
+    ways: Sequence[Street],
+    inside: shapely.Geometry,
+    keep_free: shapely.Geometry,
+    rng: np.random.Generator,
+) -> list[Cottage]:
+    """Return houses in clusters on both sides of roads.
+
+    Args:
+        inside: Area in which they stand [m].
+        keep_free: Area where none may stand [m].
+    """
+    sites = _sites(ways, rng)
+    shapely.prepare(inside)
+    free = shapely.buffer(keep_free, 3.9)
+    shapely.prepare(free)
+    shapes = [shapely.Polygon(site.outline) for site in sites]
+    fits = [shapely.contains(inside, s) and not shapely.intersects(free, s) for s in shapes]
+    chosen: list[int] = []
+    centres = np.array([site.place for site in sites])
+    for wanted in _CLUSTERS:
+        for start in rng.permutation(np.flatnonzero(fits)):
+            # A cluster keeps away from the others.
+            away = np.linalg.norm(centres[chosen] - centres[start], axis=1)
+            if away.min(initial=np.inf) < 130.0:
+                continue
+            cluster = _cluster(int(start), wanted, shapes, fits, centres)
+            if len(cluster) == wanted:
+                chosen += cluster
+                break
+    return [sites[index] for index in chosen]
+
+
+def _cluster(
+    start: int,
+    wanted: int,
+    shapes: Sequence[shapely.Polygon],
+    fits: Sequence[bool],
+    centres: Points,
+) -> list[int]:
+    """Return the sites nearest to one that have room beside each other."""
+    made: list[int] = []
+    away = np.round(np.linalg.norm(centres - centres[start], axis=1), 3)
+    for index in np.argsort(away, kind="stable").tolist():
+        apart = [shapely.distance(shapes[index], shapes[other]) for other in made]
+        if len(made) < wanted and away[index] < 95.0 and fits[index]:
+            if min(apart, default=math.inf) > _APART:
+                made.append(index)
+    return made
+
+
+def _sites(ways: Sequence[Street], rng: np.random.Generator) -> list[Cottage]:
+    """Return places beside all roads, each house with its front to the road."""
+    made = []
+    for way in ways:
+        kerb = shapely.LineString(way.right)
+        for along in np.arange(rng.uniform(12.0, 24.0), kerb.length - 12.0, _EVERY / 2):
+            here, there = (
+                shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.5)
+            )
+            onwards = unit(there - here)
+            right = np.array([onwards[1], -onwards[0]])
+            setback = rng.uniform(*_SETBACKS) + SIDE / 2
+            place = rounded(here + setback * right)
+            # The front, at y, faces the road.
+            turn = exact.atan2(-right[1], -right[0]) - math.pi / 2 + rng.uniform(-0.07, 0.07)
+            storeys = int(rng.choice((2, 3, 4), p=(0.15, 0.7, 0.15)))
+            made.append(Cottage(place, round(turn, 4), storeys, int(rng.integers(3))))
+    return made
+
+
+def gantries_along(
+    ways: Sequence[Street], covered: shapely.Geometry, trunks: Points, rng: np.random.Generator
+) -> list[tuple[Points, float]]:
+    """Return where gantries stand: the middle of the road [m] and its direction [rad]."""
+    thin = shapely.union_all(shapely.points(trunks))
+    taken = shapely.union(shapely.buffer(covered, 8.0), shapely.buffer(thin, 7.0))
+    made: list[tuple[Points, float]] = []
+    for index in rng.permutation(len(ways)):
+        way = ways[int(index)]
+        line = shapely.LineString(way.left)
+        if line.length < 50.0 or len(made) == _GANTRIES:
+            continue
+        at = line.length - rng.uniform(20.0, 34.0)
+        place = rounded(shapely.get_coordinates(line.interpolate(at))[0])
+        along = unit(way.left[-1] - way.left[0])
+        apart = [length(place - other) for other, _ in made]
+        clear = not shapely.intersects(taken, shapely.buffer(shapely.Point(place), 9.0))
+        if clear and min(apart, default=math.inf) > 70.0:
+            made.append((place, round(exact.atan2(along[1], along[0]), 4)))
+    return made
+
 
 FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
 HALF = 730.0  # Half the side of the square that the hills fill [m]
 
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # That square
+EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)  # Extent of the hills [m]
 
 _INSIDE, _INSIDE_RADII = 15, (60.0, 86.0, 134.0)
 _RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
@@ -40,9 +183,7 @@ _LAKESIDE = "o14"  # Node of the outer road beside the lake's block
 _LAKE = 41_979.0  # Area of the lake, as in the original [m^2]
 _LAKE_SHARE = 0.64  # Most that the lake takes of its block
 _TREES, _TREE_SPACING = 41, (11.0, 17.0)
-_BEYOND_KERB = 5.0  # From the kerb to the trunks [m]
-
-Points = NDArray[np.float64]
+_BEYOND_KERB = 5.0  # Distance from the kerb to the trunks [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +212,7 @@ class VillageLayout:
 
 
 def lay_out(network: RoadNetwork, seed: int) -> VillageLayout:
-    """Return the plan of a village.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of a village."""
     roads = road_area(network)
     closed, _ = blocks(roads, EXTENT)
     ways = streets(network)

@@ -17,8 +17,7 @@ from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.street.signals import signal_places, signals_along
 from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
-from eyas.maps.land.facets import Relief, heights_of
-from eyas.maps.land.rising import relief_of
+from eyas.maps.land.relief import Relief, heights_of, relief_of
 from eyas.maps.plan.library import CLUTTER_KINDS, STREET_KINDS, houses, plant_kinds, wild_kinds
 from eyas.maps.plan.plan import (
     Chance,
@@ -36,14 +35,13 @@ from eyas.maps.plan.plan import (
     things,
 )
 from eyas.maps.plants import gardens
-from eyas.maps.plants.cones import VARIANTS
+from eyas.maps.plants.trees import CONES
 from eyas.maps.street import gantries
 from eyas.maps.street.dressing import VILLAGE_KERBS, Ground, along_kerbs
 from eyas.maps.street.lamps import lamps_along
 from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
-from eyas.maps.village.paths import grown, trodden
 from eyas.maps.village.roads import NAME
-from eyas.maps.village.yards import yard_things
+from eyas.maps.village.scenery import grown, trodden, yard_things
 
 __all__ = ["GRASS", "VALLEY", "make_plan"]
 
@@ -76,26 +74,18 @@ _WOODS, _WOOD_TREES, _WOOD_RADIUS = 40, (5, 14), 24.0
 """Number of groups of trees on the hills, of trees in each, and radius of a group [m]."""
 _BESIDE_WOODS, _FARTHEST_WOODS = 30.0, 240.0
 """Least and largest distance of these trees from a road [m]."""
-_ROOTS = 0.5  # How deep a tree stands in a slope [m]
+_ROOTS = 0.5  # Depth of a trunk's foot in a slope [m]
 _BUSHES = (26.0, 0.004)
 """Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)
 _WOOD_HEIGHTS = (5.0, 11.0)
 _SHORE_WIDTH = 5.0
-_WILD = (
-    *wild_kinds("green tuft", "dry tuft"),
-    *wild_kinds("stones", "boulder", looks=(2, 3)),
-)
-_CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
+_WILD = (*wild_kinds("green tuft", "dry tuft"), *wild_kinds("stones", "boulder", looks=(2, 3)))
+_CONES = tuple(f"cone tree {k}" for k in range(CONES))
 
 
 def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return the plan of the village.
-
-    Args:
-        network: Made of `road_graph(seed)`.
-        seed: Seed of the map, >= 0.
-    """
+    """Return the plan of the village."""
     valley = lay_out(network, seed)
     hills = _hills(valley)
     relief = relief_of(hills, seed)
@@ -106,10 +96,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     ground, paths = _ground(valley, rising, seed)
     closed = [*paths, _paving(valley), shapely.buffer(valley.lake, 3.0), valley.walls]
     wild = grown(
-        valley,
-        relief,
-        shapely.union_all([*closed, valley.covered]),
-        stream(seed, "village grass"),
+        valley, relief, shapely.union_all([*closed, valley.covered]), stream(seed, "village grass")
     )
     woods = _woods(valley, relief, stream(seed, "village woods"))
     signs = _signs(valley, stream(seed, "village signs"))

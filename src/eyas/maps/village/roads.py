@@ -9,6 +9,8 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 
 __all__ = ["NAME", "road_graph"]
 
+# `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
+# `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "village"
 
 _NODES: dict[str, tuple[float, float]] = {
@@ -59,9 +61,6 @@ def road_graph(seed: int) -> RoadGraph:
     """Return the roads: eight T junctions, the rest bends.
 
     Seed 0 is the canonical village; other seeds move its nodes, and some mirror it.
-
-    Args:
-        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "village roads")
     points = np.array(list(_NODES.values()))

@@ -21,7 +21,7 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.trackers.airframe import ORIGINAL
 from eyas.robotics.fitting.log import FlightLog
 
-__all__ = ["Estimate", "Fit", "fit"]
+__all__ = ["Fit", "FittedConstant", "fit"]
 
 Floats = NDArray[np.float64]
 
@@ -43,11 +43,11 @@ _DOWN = (
 _GRAVITY = ORIGINAL.gravity
 _DENSITY = ORIGINAL.air_density
 
-_AHEAD = 1.0  # How far ahead velocities are predicted, if half of what is held out is as long [s]
+_AHEAD = 1.0  # Horizon of predicted velocities; shorter if half of the held-out part is [s]
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class FittedConstant:
     """A number with its interval of confidence of 95 %, by a jackknife over parts of the flight."""
 
     value: float
@@ -59,26 +59,26 @@ class Estimate:
         """Whether the flight tells more than the order of its size."""
         return self.low > 0.0 and self.high - self.low < self.value
 
-    def times(self, factor: float) -> "Estimate":
+    def times(self, factor: float) -> "FittedConstant":
         """Return a multiple of it."""
-        return Estimate(factor * self.value, factor * self.low, factor * self.high)
+        return FittedConstant(factor * self.value, factor * self.low, factor * self.high)
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
     """What a flight tells of its drone."""
 
-    thrust: Estimate
+    thrust: FittedConstant
     """Thrust of a rotor over its squared rate and over the mass [m, if rates are in rad/s]."""
-    drag: Estimate  # Drag coefficient times area over the mass [m^2/kg]
-    lag: Estimate  # Time constant of the rotors [s]
+    drag: FittedConstant  # Drag coefficient times area over the mass [m^2/kg]
+    lag: FittedConstant  # Time constant of the rotors [s]
     hover: float  # Rate of the rotors in hover, in the unit of the log
     seconds: float  # Length of the flight [s]
     rate: float  # Rows per second
     error: float
     """Root of the mean squared error of the specific force in what was held out [m/s^2]."""
-    spread: float  # The same if it were always its mean in what was fitted [m/s^2]
-    ahead: float  # How far ahead velocities are predicted there [s]
+    spread: float  # Error of always predicting the mean of what was fitted [m/s^2]
+    ahead: float  # Horizon of the predicted velocities [s]
     speed_error: float  # Root of the mean squared error of those velocities [m/s]
 
 
@@ -103,7 +103,7 @@ def fit(log: FlightLog) -> Fit:
     spread = left_out - left_out.mean(axis=0)
     widths = _QUANTILE * np.sqrt((_BLOCKS - 1) / _BLOCKS * (spread * spread).sum(axis=0))
     delay, thrusts, drags, _ = (
-        Estimate(float(value), float(value - width), float(value + width))
+        FittedConstant(float(value), float(value - width), float(value + width))
         for value, width in zip(best, widths, strict=True)
     )
     told = data.predicted(best)
@@ -113,7 +113,7 @@ def fit(log: FlightLog) -> Fit:
     return Fit(
         thrust=thrusts,
         drag=drags,
-        lag=Estimate(delay.value, max(0.0, delay.low), delay.high),
+        lag=FittedConstant(delay.value, max(0.0, delay.low), delay.high),
         hover=float(np.sqrt(_GRAVITY / (4.0 * thrusts.value))),
         seconds=seconds,
         rate=(len(log.time) - 1) / seconds,

@@ -26,7 +26,7 @@ _LONGEST = 86_400.0  # Longest flight [s]
 
 _LEAST_ROWS = 200  # Fewer say nothing about a lag
 
-_UNIT = 1e-2  # By how much the length of a quaternion may differ from 1
+_UNIT = 1e-2  # Largest deviation of a quaternion's length from 1
 
 
 class FlightLog(NamedTuple):

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from eyas.robotics.fitting.fit import Estimate, Fit
+from eyas.robotics.fitting.fit import Fit, FittedConstant
 
 __all__ = ["lines", "record"]
 
@@ -11,7 +11,6 @@ def lines(fit: Fit, mass: float | None, thrust_constant: float | None) -> Iterat
     """Yield lines that tell a fit.
 
     Args:
-        fit: The fit.
         mass: Of the drone, where it is known [kg].
         thrust_constant: Thrust of a rotor over its squared rate, where it is known.
     """
@@ -50,12 +49,12 @@ def record(fit: Fit, mass: float | None, thrust_constant: float | None) -> dict[
 
 def _absolute(
     fit: Fit, mass: float | None, thrust_constant: float | None
-) -> Iterator[tuple[str, Estimate, str]]:
+) -> Iterator[tuple[str, FittedConstant, str]]:
     """Yield what follows where the mass, or what gives it, is known."""
     drag = fit.drag
     if thrust_constant is not None:
         low, high = thrust_constant / fit.thrust.high, thrust_constant / fit.thrust.low
-        weighed = Estimate(thrust_constant / fit.thrust.value, low, high)
+        weighed = FittedConstant(thrust_constant / fit.thrust.value, low, high)
         yield "mass", weighed, "kg"
         mass = weighed.value
     elif mass is not None:
@@ -64,11 +63,11 @@ def _absolute(
         yield "drag area", drag.times(mass), "m^2"
 
 
-def _told(estimate: Estimate) -> list[float]:
+def _told(estimate: FittedConstant) -> list[float]:
     return [estimate.value, estimate.low, estimate.high]
 
 
-def _row(name: str, estimate: Estimate, unit: str) -> str:
+def _row(name: str, estimate: FittedConstant, unit: str) -> str:
     doubt = "" if estimate.told else "; this flight hardly tells"
     span = f"{estimate.low:.4g} to {estimate.high:.4g}"
     return f"{name:28} {estimate.value:.4g} {unit} ({span}{doubt})"

@@ -6,13 +6,46 @@ from typing import Any
 
 from eyas.robotics.mavlink.component import Command, Component, Result
 from eyas.robotics.mavlink.frames import Vector, compass, on_earth, swapped, usable
-from eyas.robotics.mavlink.missions import refuse_missions
 from eyas.robotics.mavlink.modes import Landed, Mode
 from eyas.robotics.mavlink.pilot import Pilot
 from eyas.robotics.mavlink.readings import Instant
 from eyas.robotics.mavlink.setpoints import Goal
 
-__all__ = ["COMPONENT", "Autopilot"]
+__all__ = ["COMPONENT", "Autopilot", "refuse_missions"]
+
+_ACCEPTED, _UNSUPPORTED, _BAD_NUMBER = 0, 3, 13
+_ALL = 255
+
+
+def refuse_missions(component: Component) -> None:
+    """Let a component answer MAVLink's mission protocol."""
+
+    def to(message: Any) -> dict[str, int]:  # noqa: ANN401  # pymavlink's
+        return {
+            "target_system": message.get_srcSystem(),
+            "target_component": message.get_srcComponent(),
+            "mission_type": min(getattr(message, "mission_type", 0), _ALL),
+        }
+
+    def answer(kind: int) -> Any:  # noqa: ANN401  # a function of a message
+        return lambda message: component.send("mission_ack", type=kind, **to(message))
+
+    def tell_count(message: Any) -> None:  # noqa: ANN401  # pymavlink's
+        component.send("mission_count", count=0, **to(message))
+
+    component.heard.update(
+        {
+            "MISSION_REQUEST_LIST": tell_count,
+            "MISSION_CLEAR_ALL": answer(_ACCEPTED),
+            "MISSION_COUNT": answer(_UNSUPPORTED),
+            "MISSION_WRITE_PARTIAL_LIST": answer(_UNSUPPORTED),
+            **{
+                kind: answer(_BAD_NUMBER)
+                for kind in ("MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_SET_CURRENT")
+            },
+        }
+    )
+
 
 COMPONENT = 1  # Component id of the autopilot
 
@@ -28,8 +61,6 @@ class Autopilot:
     """Lets others fly a vehicle.
 
     Args:
-        component: Its component.
-        pilot: Its pilot.
         now: Returns the present instant.
     """
 

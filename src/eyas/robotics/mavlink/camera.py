@@ -8,10 +8,10 @@ from eyas.lanes import exact
 from eyas.robotics.mavlink.component import Command, Component, Fields, Result
 from eyas.robotics.mavlink.gimbal import DEVICE
 from eyas.robotics.mavlink.readings import Instant
-from eyas.robotics.mavlink.targets import Seen
+from eyas.robotics.mavlink.targets import Sighting
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
-__all__ = ["COMPONENT", "Camera", "Lens", "Subject"]
+__all__ = ["COMPONENT", "Camera", "Lens", "LockedSubject"]
 
 COMPONENT = 100  # Component id of the camera
 
@@ -30,10 +30,10 @@ class Lens(NamedTuple):
     height: int  # [pixels]
     field_of_view: float  # Horizontal [rad]
     rate: float  # Pictures per second [Hz]
-    port: int  # To which they are sent; 0: they are not
+    port: int  # UDP port for video; 0 disables it
 
 
-class Subject(NamedTuple):
+class LockedSubject(NamedTuple):
     """What is tracked, world frame."""
 
     position: tuple[float, float, float]  # [m]
@@ -48,8 +48,6 @@ class Camera:
         zoom: By how much its field of view is narrowed, from 1.
 
     Args:
-        component: Its component.
-        lens: Its picture.
         now: Returns the present instant.
         choose: Makes what is in a box of the picture (left, top, right, bottom, as shares of the
             sides) the target; returns whether there is anything.
@@ -62,7 +60,7 @@ class Camera:
         lens: Lens,
         now: Callable[[], Instant],
         choose: Callable[[tuple[float, float, float, float]], bool],
-        subject: Callable[[], Subject],
+        subject: Callable[[], LockedSubject],
     ) -> None:
         self.tracks, self.zoom = False, 1.0
         self._component, self._lens, self._now = component, lens, now
@@ -103,9 +101,9 @@ class Camera:
             }
         )
 
-    _seen: Seen | None
+    _seen: Sighting | None
 
-    def see(self, seen: Seen | None) -> None:
+    def see(self, seen: Sighting | None) -> None:
         """Take where the target is in the newest picture."""
         self._seen = seen
 
@@ -234,7 +232,7 @@ class Camera:
         }
 
     def _image_status(self) -> Fields:
-        """Where the target is in the picture; an error while nothing of it can be seen."""
+        """Position of the target in the picture; an error while nothing of it can be seen."""
         seen, state = self._seen, _IDLE
         if self.tracks:
             state = _ERROR if seen is None else _ACTIVE
@@ -247,7 +245,7 @@ class Camera:
         }
 
     def _geo_status(self) -> Iterable[Fields]:
-        """Where the target is on the earth, also while nothing of it can be seen."""
+        """Position of the target on the earth, also while nothing of it can be seen."""
         if not self.tracks:
             return
         at, subject = self._now(), self._subject()

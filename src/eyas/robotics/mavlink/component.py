@@ -54,7 +54,6 @@ class Component:
 
     Args:
         system: As above.
-        component: Its component id.
         out: Takes packets.
     """
 
@@ -87,7 +86,7 @@ class Component:
         self._due[message] = 0.0
 
     def begin_stream(self, message: str, rate: float) -> None:
-        """The same, if nobody has asked for another rate; until `end_stream`."""
+        """Begin a stream until `end_stream`, unless somebody has asked for another rate."""
         if message not in self._intervals:
             self.stream(message, rate)
 

@@ -5,10 +5,21 @@ from typing import Annotated
 from pydantic import Field
 
 from eyas.engine.core.allowed import TextForm
+from eyas.engine.core.config import Config
 from eyas.engine.settings.section import Section
-from eyas.robotics.mavlink.hil.config import HilConfig
 
-__all__ = ["MavlinkConfig"]
+__all__ = ["HilConfig", "MavlinkConfig"]
+
+
+class HilConfig(Config):
+    """Settings of `eyas serve --px4` and `--ardupilot`; also used: `mavlink.latitude`,
+    `longitude`, `altitude`, `video`, `picture_rate` and `video_quality`.
+    """
+
+    thrust_to_weight: Annotated[float, Field(gt=1.0, le=20.0)] = 2.0
+    """Thrust of all rotors at full output over the drone's weight."""
+    speed: Annotated[float, Field(ge=0.0, le=100.0)] = 1.0
+    """Most simulated seconds in a second; 0: as many as autopilot and machine can."""
 
 
 class MavlinkConfig(Section):
@@ -21,11 +32,11 @@ class MavlinkConfig(Section):
     first_system: Annotated[int, Field(ge=1, le=190)] = 1
     """System id of the first vehicle; those of the others follow."""
     latitude: Annotated[float, Field(ge=-80, le=80)] = 47.397742
-    """Of the origin of the world [degrees]."""
+    """Latitude of the origin of the world [degrees]."""
     longitude: Annotated[float, Field(ge=-180, le=180)] = 8.545594
-    """[degrees]"""
+    """Longitude of the origin of the world [degrees]."""
     altitude: Annotated[float, Field(ge=-500, le=9000)] = 488.0
-    """Of the origin of the world above mean sea level [m]."""
+    """Height of the origin of the world above mean sea level [m]."""
     lockstep: bool = False
     """Whether time stands still until each vehicle in offboard mode has got another set point."""
     video: Annotated[str, Field(pattern=r"^(\S+:\d{1,5})?$"), TextForm("HOST:PORT, or empty")] = ""

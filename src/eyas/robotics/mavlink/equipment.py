@@ -38,7 +38,6 @@ def equipped(config: Settings, mavlink: MavlinkConfig, *, noisy: bool = False) -
     """Return settings with a compass and a barometer, unless there are others of their kind.
 
     Args:
-        config: The settings.
         mavlink: Says how high the origin of the world is.
         noisy: Whether no sensor may be exact: those without noise get that of small ones, since PX4
             takes a sensor for broken whose readings stay the same.

@@ -32,7 +32,7 @@ _DATAGRAM = 1200  # Packets are gathered up to this size [bytes]
 _TOGETHER = 4
 """Most pictures that are drawn at once: of 20 vehicles, 320x240 pixels, one takes 6.4 ms so, 9.0 ms
 alone."""
-_PATIENCE = 10.0  # How long time stands still for a vehicle without a set point [s]
+_PATIENCE = 10.0  # Longest time that stands still for a vehicle without a set point [s]
 
 
 class Fleet(Face):
@@ -46,7 +46,6 @@ class Fleet(Face):
 
     Args:
         simulation: Trackers in one world, not yet reset.
-        config: Its settings.
         endpoints: Where messages go and come from.
 
     Raises:
@@ -123,7 +122,7 @@ class Fleet(Face):
 
     @property
     def speed(self) -> float:
-        """That of the clock; in lock-step, as fast as set points come."""
+        """Factor on the clock's speed; 0: lock-step, as fast as set points come."""
         return 0.0 if self._config.lockstep and self._offboard else 1.0
 
     def receive(self, wait: float) -> Iterable[tuple[str, Any]]:

@@ -109,7 +109,7 @@ def on_earth(latitude: float, longitude: float, altitude: float) -> bool:
 
 
 class Geodesy(NamedTuple):
-    """Where the origin of the world is on the earth."""
+    """Position of the world's origin on the earth."""
 
     latitude: float  # [degrees]
     longitude: float  # [degrees]

@@ -34,7 +34,6 @@ class Gimbal:
         device: The component of the gimbal itself.
 
     Args:
-        manager: The autopilot.
         device: As above.
         now: Returns the present instant.
         pitch: As above, at the beginning.
@@ -220,10 +219,7 @@ class Gimbal:
         yaw = north if self._locked else at.turned_from_heading(north)
         return {
             **{"target_system": 0, "target_component": 0, "time_boot_ms": at.milliseconds},
-            **{
-                "flags": self._flags(),
-                "q": of_angles(roll, pitch, yaw),
-            },
+            **{"flags": self._flags(), "q": of_angles(roll, pitch, yaw)},
             **{f"angular_velocity_{axis}": math.nan for axis in "xyz"},
             **{"failure_flags": 0, "delta_yaw": at.angles[2], "delta_yaw_velocity": math.nan},
         }

@@ -24,14 +24,14 @@ class Body(NamedTuple):
     """What a pilot knows of its vehicle, world frame."""
 
     position: Vector  # [m]
-    commanded: Vector  # Where the commands so far should have brought it [m]
+    commanded: Vector  # Position that the commands so far should have reached [m]
     yaw: float  # [rad]
     commanded_yaw: float  # [rad]
     ground: float  # z of the ground below [m]
 
     @property
     def height(self) -> float:
-        """Of the feet over the ground [m]."""
+        """Height of the feet over the ground [m]."""
         return self.position[2] - FEET - self.ground
 
 

@@ -1,4 +1,4 @@
-"""Where vehicles stand before they take off: on free ground beside the road."""
+"""Places of vehicles before they take off: on free ground beside the road."""
 
 import math
 
@@ -15,9 +15,9 @@ from eyas.robotics.mavlink.pilot import FEET
 __all__ = ["standing_places"]
 
 _FREE = 2.0  # Radius without things [m]
-_ROAD = 5.0  # From the middle of the nearest lane [m]
-_APART = 4.0  # From each other [m]
-_REACH = 120.0  # How far from the first target places are looked for [m]
+_ROAD = 5.0  # Distance from the middle of the nearest lane [m]
+_APART = 4.0  # Least distance between two vehicles [m]
+_REACH = 120.0  # Largest distance of a place from the first target [m]
 _RING = 4.0  # Between rings of places, and between the places of one [m]
 
 

@@ -93,8 +93,6 @@ class Instant:
         origin: Origin of the vehicle's local frame, world frame [m].
 
     Args:
-        readings: The readings of all vehicles.
-        vehicle: Its number.
         origin: As above.
         seconds: As above.
     """
@@ -138,7 +136,7 @@ class Instant:
 
     @cached_property
     def attitude(self) -> Quaternion:
-        """The same as a quaternion."""
+        """Attitude as a quaternion."""
         return of_body(self._trackers.orientation[self._vehicle])
 
     @cached_property

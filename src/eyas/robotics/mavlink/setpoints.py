@@ -1,4 +1,4 @@
-"""Where to fly or how fast, and the velocity that this asks for. Eyas' frames."""
+"""Set points of position or velocity, and the velocity that they ask for, in Eyas' frames."""
 
 import math
 from typing import NamedTuple, Protocol
@@ -14,7 +14,7 @@ _FASTEST_TURN = math.radians(90.0)  # [rad/s]
 
 
 class Place(Protocol):
-    """Where a vehicle is, as its commands say."""
+    """Commanded place of a vehicle."""
 
     @property
     def commanded(self) -> Vector:
@@ -26,7 +26,7 @@ class Place(Protocol):
 
     @property
     def yaw(self) -> float:
-        """That of the body [rad]."""
+        """Heading of the body [rad]."""
 
 
 class Limits(NamedTuple):

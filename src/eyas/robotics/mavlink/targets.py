@@ -9,27 +9,23 @@ from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 
-__all__ = ["Seen", "Sights"]
+__all__ = ["Sighting", "Sights"]
 
-_REACH = 0.03  # How far from a point the thing that is meant may be, as a share of the width
+_REACH = 0.03  # Largest distance of a clicked point from its object, as a share of the width
 
 
-class Seen(NamedTuple):
+class Sighting(NamedTuple):
     """The target in a picture; shares of its sides, from the left and the top."""
 
     left: float
     top: float
     right: float
     bottom: float
-    share: float  # Of its pixels, those that are visible
+    share: float  # Share of the object's pixels that are visible
 
 
 class Sights:
-    """Looks through the cameras of a simulation's trackers.
-
-    Args:
-        simulation: The trackers are in it.
-    """
+    """Looks through the cameras of a simulation's trackers."""
 
     def __init__(self, simulation: Simulation) -> None:
         camera = simulation.config.camera
@@ -38,7 +34,7 @@ class Sights:
         self._measured = Picture.create(1, *self._size, rgb=False, class_id=True, subject=True)
         self._objects = Picture.create(1, *self._size, rgb=False, object_id=True)
 
-    def seen(self, vehicle: int) -> Seen | None:
+    def seen(self, vehicle: int) -> Sighting | None:
         """Return where the target of a vehicle is in its picture; None if no part is visible."""
         one = np.array([vehicle], np.int32)
         self._simulation.view.draw(one, self._measured, DrawStage.RASTERISING)
@@ -72,7 +68,7 @@ class Sights:
         return int(found[int(count.argmax())])
 
 
-def seen_in(picture: Picture, view: int) -> Seen | None:
+def seen_in(picture: Picture, view: int) -> Sighting | None:
     """Return where the subject of a view is in its picture; None if no part of it is visible."""
     assert picture.subject_visible_box is not None
     assert picture.subject_pixels is not None
@@ -82,7 +78,7 @@ def seen_in(picture: Picture, view: int) -> Seen | None:
     height, width = _size_of(picture)
     left, top, right, bottom = picture.subject_visible_box[view].tolist()
     box = left / width, top / height, right / width, bottom / height
-    return Seen(*box, visible / max(whole, 1))
+    return Sighting(*box, visible / max(whole, 1))
 
 
 def _size_of(picture: Picture) -> tuple[int, int]:

@@ -45,7 +45,6 @@ class Telemetry:
 
     Args:
         component: The autopilot, whose messages these become.
-        pilot: Its pilot.
         now: Returns the present instant.
     """
 
@@ -136,7 +135,7 @@ class Telemetry:
         return {"vtol_state": 0, "landed_state": self._pilot.landed.value}
 
     def home_position(self) -> Fields:
-        """Where it took off."""
+        """Home position: the place of the take-off."""
         at, home = self._now(), self._pilot.home
         latitude, longitude, altitude = at.global_of(home)
         north, east = home[1] - at.origin[1], home[0] - at.origin[0]
@@ -169,7 +168,7 @@ class Telemetry:
         }
 
     def vfr_hud(self) -> Fields:
-        """For displays."""
+        """Speeds, heading and height for displays (VFR_HUD)."""
         at = self._now()
         north, east, down = at.velocity
         speed = math.sqrt(north * north + east * east)
@@ -210,13 +209,13 @@ class Telemetry:
         return {**place, "vx": vx, "vy": vy, "vz": vz}
 
     def attitude(self) -> Fields:
-        """As angles."""
+        """Attitude as angles."""
         at = self._now()
         angles = dict(zip(("roll", "pitch", "yaw"), at.angles, strict=True))
         return {"time_boot_ms": at.milliseconds, **angles, **_speeds(at)}
 
     def attitude_quaternion(self) -> Fields:
-        """As a quaternion."""
+        """Attitude as a quaternion."""
         at = self._now()
         turned = {f"q{k + 1}": part for k, part in enumerate(at.attitude)}
         return {"time_boot_ms": at.milliseconds, **turned, **_speeds(at)}
@@ -253,7 +252,7 @@ class Telemetry:
         }
 
     def scaled_imu(self) -> Fields:
-        """The same in whole thousandths."""
+        """Sensor readings in whole thousandths."""
         at = self._now()
         felt, turn = at.imu()
         found: Fields = {"time_boot_ms": at.milliseconds}

@@ -11,7 +11,7 @@ from eyas.robotics.mavlink.modes import Mode
 from eyas.robotics.mavlink.parameters import Parameters
 from eyas.robotics.mavlink.pilot import Pilot
 from eyas.robotics.mavlink.readings import Instant, Readings
-from eyas.robotics.mavlink.targets import Seen, Sights
+from eyas.robotics.mavlink.targets import Sighting, Sights
 from eyas.robotics.mavlink.telemetry import Telemetry
 
 __all__ = ["Vehicle"]
@@ -30,7 +30,6 @@ class Vehicle:
         camera: Its camera.
 
     Args:
-        number: Number of the tracker.
         system: As above.
         readings: What all vehicles know of themselves.
         sights: What their cameras see.
@@ -134,7 +133,7 @@ class Vehicle:
         for component in self._components.values():
             component.tell("heartbeat")
 
-    def see(self, seen: Seen | None) -> None:
+    def see(self, seen: Sighting | None) -> None:
         """Take where the target is in the newest picture."""
         self.camera.see(seen)
 
@@ -146,7 +145,7 @@ class Vehicle:
         self.camera.see(self._sights.seen(self._number))
         return True
 
-    def _subject(self) -> camera.Subject:
+    def _subject(self) -> camera.LockedSubject:
         targets, at = self._readings.simulation.snapshot.targets, self._number
         place, velocity = targets.centre[at].tolist(), targets.velocity[at].tolist()
-        return camera.Subject(tuple(place), tuple(velocity))
+        return camera.LockedSubject(tuple(place), tuple(velocity))

@@ -16,7 +16,7 @@ from eyas.engine.core.errors import ConfigError
 __all__ = ["RtpPacker", "Stream", "VideoSender"]
 
 _LONGEST = 1200  # Largest packet, well below what networks carry whole [bytes]
-_CLOCK = 90_000  # Of the time stamps [Hz]
+_CLOCK = 90_000  # Clock of the time stamps [Hz]
 _TYPE = 96  # Payload type, the first of those that are free
 _FRAGMENT = 28  # FU-A
 _ENCODER = "libx264"
@@ -67,7 +67,7 @@ def _fragments(part: bytes) -> list[bytes]:
 
 
 class Stream(NamedTuple):
-    """How pictures are sent."""
+    """Encoder and destination of pictures."""
 
     address: tuple[str, int]  # Host and port
     height: int  # [pixels]
@@ -83,7 +83,6 @@ class VideoSender:
 
     Args:
         stream: How.
-        source: Number of the sender.
 
     Raises:
         MissingExtraError: PyAV is not installed.

@@ -23,9 +23,6 @@ _DESCRIPTION = "metadata.yaml"
 class RosbagWriter(Writer):
     """`rosbag/rosbag_0.db3` and `rosbag/metadata.yaml`: a bag stored by SQLite.
 
-    Args:
-        run: The recording.
-
     Raises:
         MissingExtraError: The extra `ros` is not installed.
     """

@@ -14,10 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Bus"]
 
-_WORDS = {
-    **{"bool": bool, "string": str},
-    **{"octet": "uint8", "byte": "uint8", "char": "uint8"},
-}
+_WORDS = {**{"bool": bool, "string": str}, **{"octet": "uint8", "byte": "uint8", "char": "uint8"}}
 """Types of fields that have other names in Cyclone DDS."""
 _LATCHED = "/tf_static"
 _KEPT = 10  # Messages of a topic that are kept for slow listeners, as by ROS
@@ -28,7 +25,6 @@ class Bus:
 
     Args:
         domain: Number of the domain, as `ROS_DOMAIN_ID` is for nodes.
-        types: The types of messages.
         topics: Names and types of what is published.
 
     Raises:

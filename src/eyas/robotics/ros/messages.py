@@ -77,7 +77,7 @@ _QUANTITIES = {
 """Messages of further sensors by `Sensor.unit`."""
 
 NOWHERE = Projection(longitude=8.545594, latitude=47.397742)
-"""Where maps that lie nowhere have their middle: the usual home of PX4's simulators, in Zurich."""
+"""Origin of maps that lie nowhere: the usual home of PX4's simulators, in Zurich."""
 
 _POSITION, _FELT, _TURNING, _ATTITUDE = slice(0, 3), slice(6, 9), slice(9, 12), slice(12, 16)
 """Columns of `Frame.sensors`."""
@@ -112,7 +112,6 @@ class Messages:
 
     Args:
         types: The types of messages, see `message_types`.
-        run: The recording.
     """
 
     def __init__(self, types: "Typestore", run: Run) -> None:
@@ -222,9 +221,7 @@ class Messages:
         self, stamp: _Stamp, frames: tuple[str, str], pose: Pose, moves: tuple[Floats, Floats]
     ) -> Message:
         twist = self._make(
-            "geometry_msgs/msg/Twist",
-            linear=self._vector(moves[0]),
-            angular=self._vector(moves[1]),
+            "geometry_msgs/msg/Twist", linear=self._vector(moves[0]), angular=self._vector(moves[1])
         )
         return self._make(
             "nav_msgs/msg/Odometry",
@@ -401,9 +398,7 @@ class Messages:
             "vision_msgs/msg/ObjectHypothesisWithPose",
             hypothesis=self._make("vision_msgs/msg/ObjectHypothesis", class_id=name, score=1.0),
             pose=self._make(
-                "geometry_msgs/msg/PoseWithCovariance",
-                pose=self._pose(pose),
-                covariance=_EXACTLY,
+                "geometry_msgs/msg/PoseWithCovariance", pose=self._pose(pose), covariance=_EXACTLY
             ),
         )
 

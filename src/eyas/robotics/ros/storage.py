@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["McapStorage", "SqliteStorage", "Storage", "Topic", "described_bag"]
 
-_VERSION = 8  # Of the description: the newest that all releases from Humble on read
+_VERSION = 8  # Version of the description: the newest that all releases from Humble on read
 
 _LATCHED = (
     "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n"
@@ -45,7 +45,7 @@ CREATE TABLE messages(
 CREATE INDEX timestamp_idx ON messages (timestamp ASC);
 INSERT INTO schema(schema_version, ros_distro) VALUES (4, 'jazzy');
 """
-"""Those of rosbag2_storage_sqlite3, schema version 4."""
+"""Tables of rosbag2_storage_sqlite3, schema version 4."""
 
 
 @dataclass(slots=True)
@@ -57,7 +57,7 @@ class Topic:
     definition: str  # Text of this type and of all types in it
     digest: str  # Hash of the type (REP 2016)
     latched: bool = False  # Whether it is told once and kept for late listeners
-    times: list[int] = field(default_factory=list)  # Those of its messages [ns]
+    times: list[int] = field(default_factory=list)  # Times of its messages [ns]
 
     @property
     def quality(self) -> str:
@@ -70,7 +70,6 @@ class Storage(Protocol):
 
     Args:
         path: The file; it has another name until it is complete.
-        topics: All topics.
     """
 
     kind: str  # Name of this kind in descriptions of bags
@@ -195,7 +194,6 @@ def described_bag(file: str, kind: str, topics: Sequence[Topic], frames: int) ->
 
     Args:
         file: Name of the bag's file.
-        kind: Its kind of storage.
         topics: All topics, with the times of their messages.
         frames: Number of frames; ours, among the data that anyone may add.
     """

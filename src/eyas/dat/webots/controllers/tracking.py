@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 __all__ = ["STEP", "Camera", "LowPass", "Target", "Tracker", "line"]
 
-STEP = 0.002  # Of physics [s]
+STEP = 0.002  # Step of the physics [s]
 
 _GRAVITY = 9.81
 _YAW = (0.13, -0.00469654, -0.013)
@@ -34,7 +34,7 @@ class Camera(NamedTuple):
 class Target(NamedTuple):
     """What is followed, at an instant."""
 
-    position: Vector  # Of its node [m]
+    position: Vector  # Position of the node [m]
     yaw: float  # Counter-clockwise from east [rad]
     ground: float  # z of the ground below it [m]
     typename: str
@@ -75,7 +75,6 @@ class Tracker:
 
     Args:
         settings: `env_config.json`, whole.
-        camera: The camera.
         floor: z of the land [m].
         chance: Where random starts come from.
     """
@@ -133,7 +132,6 @@ class Tracker:
 
         Args:
             command: See `exchange.Request`.
-            before: The target a step ago.
             target: The target now; None: it is gone.
         """
         forward, left, turn = (

@@ -19,7 +19,7 @@ from eyas.engine.core.cache.entries import write_entry
 from eyas.engine.core.cache.flat import flatten, restore
 from eyas.engine.core.cache.folder import Kind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
-from eyas.lanes.folder import cache_folder, not_kept, touch
+from eyas.lanes.trusted import cache_folder, not_kept, touch
 
 __all__ = ["cached", "key_of"]
 

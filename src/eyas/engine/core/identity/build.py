@@ -30,7 +30,8 @@ WORLD = frozenset(
 _ROOT = Path(__file__).parents[3]
 _ENGINE = "engine"
 _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
-_CODE_OF_KERNELS = "lanes/shipped/"  # computes what the sources say, or is not used
+# It computes what the sources say, or is not used.
+_CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")
 _LIBRARIES = ("onnxruntime", "torch")  # Their versions change what networks compute
 
 

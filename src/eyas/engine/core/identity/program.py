@@ -37,8 +37,10 @@ _APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)
 """Modules that keep, refuse or find things, and decide no value; not followed."""
 
 _COMPILER = (language_hash.__module__.rpartition(".")[0],)
-_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64", "small_arrays"))
 """Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
+
+_COMPUTING = tuple(f"{_COMPILER[0]}.{name}" for name in ("exact", "pcg64"))
+"""Modules among them that compute values, and are followed as all others."""
 
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}
 """Libraries that compute, by the names under which they are imported; their versions count."""
@@ -135,10 +137,12 @@ def _targets(module: str, chain: str, package: str) -> tuple[Place, ...]:
     """Return the definitions that a name with attributes, `exact.length`, stands for; "": all."""
     if module.partition(".")[0] not in (_OWN, package):
         return ((module.partition(".")[0], ""),)
-    if _lies_in(module, _COMPILER) and not _lies_in(module, _COMPUTING):
-        return ((_OWN, _LANGUAGE),)
     first, _, rest = chain.partition(".")
     inner = f"{module}.{first}"
+    if _lies_in(inner, _COMPUTING) and not _lies_in(module, _COMPUTING):
+        return _targets(inner, rest, package)
+    if _lies_in(module, _COMPILER) and not _lies_in(module, _COMPUTING):
+        return ((_OWN, _LANGUAGE),)
     known = definitions_of(module)
     if _lies_in(module, _APART):
         return ()

@@ -17,8 +17,6 @@ from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.lanes import Held, compiled
 
-__all__ = ["Outlines"]
-
 Floats = NDArray[np.float64]
 
 
@@ -67,20 +65,13 @@ class Outlines:
 
     def of(
         self,
-        actors: ActorView,
-        wanted: NDArray[np.integer],
-        cameras: CameraState,
-        tracker: int,
-        lens: Lens | None = None,
+        actors: ActorView,  # The actors around the tracker
+        wanted: NDArray[np.integer],  # Which of them, shape (B,)
+        cameras: CameraState,  # The cameras of all trackers
+        tracker: int,  # Whose camera it is
+        lens: Lens | None = None,  # Its lens; None: a pinhole
     ) -> Floats:
         """Return the boxes around all vertices of some actors, in their poses at this moment.
-
-        Args:
-            actors: The actors around the tracker.
-            wanted: Which of them, shape (B,).
-            cameras: The cameras of all trackers.
-            tracker: Whose camera it is.
-            lens: Its lens; None: a pinhole.
 
         Returns:
             Left, top, right, bottom [pixels], not clipped to the picture. Vertices nearer to the

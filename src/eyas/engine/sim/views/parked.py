@@ -13,8 +13,6 @@ from eyas.engine.state.scene import LABELLED, LAST_PARKED, ObjectClass, Scene
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import Held, compiled, exact, kernel
 
-__all__ = ["ParkedObject", "ParkedObjects", "SeenParked"]
-
 Floats = NDArray[np.float64]
 
 _APART = 0.1
@@ -131,21 +129,14 @@ class ParkedObjects:
 
     def seen(
         self,
-        shown: NDArray[np.int32],
+        shown: NDArray[np.int32],  # Object of each pixel, shape (H, W)
+        # Distance of each pixel along the optical axis [m], shape (H, W)
         depth: NDArray[np.float32],
-        cameras: CameraState,
-        tracker: int,
-        lens: Lens | None = None,
+        cameras: CameraState,  # The cameras of all trackers
+        tracker: int,  # Whose picture it is
+        lens: Lens | None = None,  # Its lens; None: a pinhole
     ) -> list[SeenParked]:
-        """Return the objects of which a picture shows a pixel, in the order of their ids.
-
-        Args:
-            shown: Object of each pixel, shape (H, W).
-            depth: Distance of each pixel along the optical axis [m], shape (H, W).
-            cameras: The cameras of all trackers.
-            tracker: Whose picture it is.
-            lens: Its lens; None: a pinhole.
-        """
+        """Return the objects of which a picture shows a pixel, in the order of their ids."""
         if not self.objects:
             return []
         height, width = shown.shape

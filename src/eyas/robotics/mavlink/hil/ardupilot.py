@@ -32,7 +32,7 @@ class Servos(NamedTuple):
 
     rate: int  # Frames a second that it wants [Hz]
     frame: int  # Number of the frame; again from 0 when ArduPilot has started anew
-    outputs: tuple[float, ...]  # Of each channel: 0 at 1000 us or less, 1 at 2000 us
+    outputs: tuple[float, ...]  # Output of each channel: 0 at 1000 us or less, 1 at 2000 us
 
 
 def servos_of(packet: bytes) -> Servos | None:

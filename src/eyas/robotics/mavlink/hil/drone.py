@@ -27,7 +27,7 @@ MOTORS = (0, 2, 1, 3)
 ArduPilot's quadrotors of the form X have the same: 1 front right and 2 rear left turn
 counter-clockwise, 3 front left and 4 rear right clockwise; so do the original's rotors."""
 
-_PITCH = 0.5  # Of the camera, positive down [rad]
+_PITCH = 0.5  # Pitch of the camera, positive down [rad]
 _RESTING = 250  # Physics steps in which it comes to rest on its feet before time begins
 
 
@@ -41,7 +41,6 @@ class DrivenDrone:
 
     Args:
         simulation: One tracker, made with `driven_drone`, and `equipped`.
-        config: Its settings.
     """
 
     def __init__(self, simulation: Simulation, config: MavlinkConfig) -> None:
@@ -130,7 +129,7 @@ class Autopilot(Face):
 
     @property
     def speed(self) -> float:
-        """As the settings say."""
+        """Factor on the clock's speed, from the settings."""
         return self._speed
 
     def rewind(self) -> None:

@@ -29,7 +29,7 @@ _SLOW, _GPS = 5, 25
 _INERTIAL, _COMPASS, _BAROMETER = 0b111_111, 0b111_000_000, 0b1_1010_0000_0000
 """`fields_updated` as PX4 tells sensors apart (SimulatorMavlink.hpp, `SensorSource`)."""
 _STANDARD_GRAVITY = 9.80665
-_SETTLING = 0.1  # How long answers are on the way at most [s]
+_SETTLING = 0.1  # Longest delay of an answer [s]
 _SILENCE = 10.0  # After this time without an answer it is said that one is waited for [s]
 
 
@@ -54,7 +54,7 @@ class Px4(Autopilot):
 
     @property
     def speed(self) -> float:
-        """As the settings say; until PX4's outputs run, the clock's: it starts its parts by it."""
+        """Factor on the clock's speed; 1 until PX4 sends outputs: it starts by the clock."""
         return self._speed or (0.0 if self._lockstep else 1.0)
 
     def receive(self, wait: float) -> Iterable[tuple[str, Any]]:

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.optics.lens import Lens
 
-__all__ = ["DARK", "ELSEWHERE", "FACES", "LENS_TILE", "Glass", "LensTables"]
-
 FACES = 5  # Most pictures of a pinhole, its faces, that are drawn for one through a lens
 
 DARK = -1  # Face of a pixel to which no light comes

@@ -14,8 +14,6 @@ from eyas.engine.core.optics.lens import Lens, undistorted
 from eyas.engine.render.kernels.bundles import DARK, LENS_TILE, LensTables
 from eyas.lanes import compiled, kernel
 
-__all__ = ["Survey", "fill_tables", "look_around", "survey_faces"]
-
 Floats = NDArray[np.float64]
 
 _FAR = 1 << 30

@@ -1,0 +1,1 @@
+"""The commands of `eyas maps`: `app.py` has their options, the other files what they do."""

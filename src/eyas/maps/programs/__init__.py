@@ -1,1 +1,0 @@
-"""Importing, describing, drawing and exporting maps."""
