@@ -100,7 +100,7 @@ def test_it_records_frames_with_labels_and_reads_them(alone):
         ),
         (
             "eyas.make_vec('citystreet-day', 2, device='cuda').reset(seed=1)",
-            "ConfigError device: 'cuda': no house here computes on devices",
+            "UnknownNameError device: 'cuda' is not allowed; known: none",
         ),
         (
             "eyas.load_settings(None, ['Simulation_Mode=Video_Mode'])",

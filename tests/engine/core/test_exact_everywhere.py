@@ -32,7 +32,7 @@ ROOT = Path(eyas.__file__).parent
 
 ELSEWHERE = (
     *("benchmark/plots", "cli/", "dat/webots/", "demo/", "learning/", "maps/gallery/"),
-    *("maps/programs/", "maps/traffic/", "robotics/fitting/", "robotics/serv"),
+    *("maps/commands/", "maps/traffic/", "robotics/fitting/", "robotics/serv"),
 )
 """They show, measure or learn; what they record is made by the rooms below them."""
 

@@ -74,6 +74,7 @@ def test_who_stands_keeps_the_heading(tmp_path: Path):
         ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: '1,nan,0' is not allowed: 3 finite numbers"),
         ("t,x,y\n0,0,0\n1,0\n", "line 3: '1,0' is not allowed: 3 finite numbers"),
         ("t,x,y\n0,0,0\n2,0,0\n1,0,0\n", "point 3: t is 1 after 2: time must increase"),
+        ("t,x,y\n0,0,0\n1,0,0\n1,1,0\n", "point 3: t is 1 after 1: time must increase"),
     ],
 )
 def test_what_is_no_trajectory_is_told_in_one_line(tmp_path: Path, text: str, message: str):

@@ -73,6 +73,23 @@ def test_torchrl_refuses_the_mode_that_it_cannot_use():
         gym.GymWrapper(EyasVectorEnv(2, SHORT, observation=SMALL)).rollout(3)
 
 
+@pytest.mark.parametrize(("rewarded", "success"), [(4, False), (5, True)])
+def test_half_of_an_episode_in_view_is_a_success_to_lerobot(rewarded, success, monkeypatch):
+    env = make_lerobot_env(1, cfg=SHORT)
+    env.reset(seed=0)
+    step, left = EyasVectorEnv.step, [1.0] * rewarded + [0.0] * 20
+    monkeypatch.setattr(
+        EyasVectorEnv,
+        "step",
+        lambda self, actions: (lambda told: (told[0], np.array([left.pop(0)]), *told[2:]))(
+            step(self, actions)
+        ),
+    )
+    for _ in range(10):
+        *_, truncated, info = env.step(np.zeros((1, 4), np.float32))
+    assert (truncated.tolist(), info["is_success"].tolist()) == ([True], [success])
+
+
 def test_lerobot_finds_what_its_evaluation_asks_for():
     env = make_lerobot_env(3, cfg=SHORT)
     seen, _ = env.reset(seed=[1, 2, 3])

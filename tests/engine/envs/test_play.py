@@ -4,8 +4,9 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.engine.envs.play import hover_action
+from eyas.engine.envs.play import hover_action, keys_to_action
 from eyas.engine.envs.tracking_env import TrackingEnv
+from eyas.engine.settings.env import EnvConfig
 
 
 @pytest.fixture
@@ -45,3 +46,16 @@ def test_keys_fly_the_drone(pygame, actions):
     assert np.array_equal(told[0], hover_action(env.action_space))
     assert np.array_equal(told[-1], forward)
     assert TrackingEnv(actions=actions).action_space.contains(told[-1])
+
+
+def test_each_key_moves_as_its_place_on_the_keyboard_says():
+    keys = keys_to_action(EnvConfig(actions="shares"))
+    axes = {"w": 0, "a": 1, "r": 2, "q": 3}  # forward, left, up, counter-clockwise
+    against = {"s": 0, "d": 1, "f": 2, "e": 3}
+    for pressed, sign in ((axes, 1.0), (against, -1.0)):
+        for key, axis in pressed.items():
+            assert keys[key,].tolist() == (sign * np.eye(4)[axis]).tolist()
+    assert keys["w", "a"].tolist() == [1.0, 1.0, 0.0, 0.0]
+    assert ("w", "s") not in keys
+    numbered = keys_to_action(EnvConfig(actions="discrete"))
+    assert numbered == {("w",): 0, ("s",): 1, ("a",): 2, ("d",): 3, ("q",): 4, ("e",): 5}

@@ -187,3 +187,17 @@ def test_a_term_that_is_not_there_is_one_line():
     ) as caught:
         TrackingEnv({"reward": {"terms": {"nowhere:f": 1.0}}})
     assert "\n" not in str(caught.value)
+
+
+def test_an_action_that_outlasts_its_episode_is_rewarded_until_the_end():
+    ends = {"done": {"total_steps": 10, "grace_steps": 0, "no_reward_steps": 500}}
+    once, held = TrackingEnv(ends, action_repeat=1), TrackingEnv(ends, action_repeat=5)
+    once.reset(seed=3), held.reset(seed=3)
+    rewards, ended = [], False
+    while not ended:
+        _, reward, terminated, truncated, _ = once.step(6)
+        rewards.append(reward)
+        ended = terminated or truncated
+    _, reward, _, truncated, _ = held.step(6)
+    assert (len(rewards) < 5, truncated) == (True, True)
+    assert reward == pytest.approx(sum(rewards), rel=1e-12)

@@ -8,7 +8,7 @@ import numpy as np
 from eyas.engine.exports.registry import WRITERS
 from eyas.engine.exports.writer import Summary
 from eyas.engine.sensors.config import SensorsConfig
-from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
+from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT, ObjectClass
 
 
 def read(episode, name):
@@ -28,6 +28,14 @@ def test_colours_are_those_of_the_picture(run, episode, frame):
     rgb = np.random.default_rng(0).integers(0, 255, (48, 64, 3), np.uint8, endpoint=True)
     written("png", run, episode, frame(0, rgb=rgb))
     np.testing.assert_array_equal(read(episode, "000000.png")[..., ::-1], rgb)
+
+
+def test_masks_number_parked_objects_from_the_top(run, episode, frame):
+    shown, classes = np.full((48, 64), 12, np.int32), np.full((48, 64), ObjectClass.CAR, np.uint8)
+    shown[0], classes[1], shown[2] = SKY_OBJECT, ObjectClass.BUILDING, 1
+    written("masks", run, episode, frame(0, object_id=shown, class_id=classes))
+    masks = read(episode, "masks/000000.png")
+    assert [set(row.tolist()) for row in masks[:4]] == [{0}, {0}, {65534}, {65523}]
 
 
 def test_masks_number_moving_objects_from_1(run, episode, frame):

@@ -68,6 +68,15 @@ def test_arrays_of_pixels_agree_with_the_lossless_ones(folder):
         assert np.allclose(np.linalg.norm(normals, axis=-1), 1.0, atol=0.03)
 
 
+def test_masks_are_read_where_the_target_is_out_of_view(folder):
+    episode = eyas.load(folder)[0]
+    episode.labels[1] |= {"visible_fraction": 0.0, "target_visible_box": [0, 0, 0, 0]}
+    assert episode[1].masks().shape == (48, 64)
+    episode.labels[1]["visible_fraction"] = 0.5
+    with pytest.raises(DataFileError, match=r"shows nothing of .*, though its label does"):
+        episode[1].masks()
+
+
 def test_flow_is_of_pixels_and_the_last_frame_has_none(folder):
     episode = eyas.load(folder)[0]
     flow, known = episode[0].flow()

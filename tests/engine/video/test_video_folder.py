@@ -143,8 +143,10 @@ def test_resume_refuses_settings_that_cannot_be_read(tmp_path, text):
 
 
 BUILD = this_build()
-REPAINTED = BUILD.model_copy(update={"rooms": BUILD.rooms | {"render": "0", "wire": "0"}})
-LISTENING = BUILD.model_copy(update={"rooms": BUILD.rooms | {"wire": "0"}})
+REPAINTED = BUILD.model_copy(
+    update={"rooms": BUILD.rooms | {"engine/render": "0", "learning": "0"}}
+)
+LISTENING = BUILD.model_copy(update={"rooms": BUILD.rooms | {"learning": "0"}})
 
 
 @pytest.mark.parametrize("recorded", [REPAINTED, '{"eyas": "0.0.1"}', "{", "[]", None])
@@ -155,7 +157,11 @@ def test_resume_refuses_a_recording_of_another_build(tmp_path, recorded):
     else:
         told = {"eyas": __version__, "build": REPAINTED.model_dump()}
         (path / "version.json").write_text(json.dumps(told) if recorded is REPAINTED else recorded)
-    said = "differs from this one in render;" if recorded is REPAINTED else "of an unknown version"
+    said = (
+        "differs from this one in engine/render;"
+        if recorded is REPAINTED
+        else "of an unknown version"
+    )
     with pytest.raises(OutputError, match=rf"recorded by Eyas .*{said}") as caught:
         open_folder(path, OTHER, overwrite=False, resume=True)
     assert "\n" not in str(caught.value)

@@ -4,6 +4,7 @@ import json
 
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
+from eyas.engine.video import formats
 from eyas.engine.video.formats import with_writers
 from eyas.engine.video.run import run
 
@@ -30,3 +31,13 @@ def test_writers_that_were_chosen_stay():
     assert with_writers(config, quiet=True) is config
     off = EyasConfig()
     assert with_writers(off, quiet=True) == off
+
+
+def test_films_without_pyav_are_animated_webp_which_a_line_tells(monkeypatch, caplog):
+    monkeypatch.setattr(formats, "has_pyav", lambda: False)
+    with caplog.at_level("INFO", "eyas"):
+        chosen = with_writers(EyasConfig(), quiet=False)
+    assert chosen.video.writers == ("jpeg", "webp", "labels", "mark")
+    assert "films are animated WebP; for MP4: pip install" in caplog.text
+    scanned = EyasConfig.model_validate({"lidar": {"enabled": True}})
+    assert with_writers(scanned, quiet=True).video.writers[-2:] == ("mark", "lidar")

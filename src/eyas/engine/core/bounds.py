@@ -12,7 +12,6 @@ __all__ = ["FARTHEST", "LARGEST", "checked", "limited"]
 Floats = NDArray[np.float64]
 
 LARGEST = 1e4  # Largest number of a command, as of the speeds of environments' actions
-
 FARTHEST = 1e6  # Farthest place from the origin along each axis [m], as in recordings of traffic
 
 

@@ -27,12 +27,10 @@ __all__ = ["decoded_arrays", "decoded_json", "decoded_picture", "gunzipped", "np
            "read_json"]  # fmt: skip
 
 _MOST_ARRAYS = 64  # Largest number of arrays in a `.npz`.
-
 _LARGEST_NUMBER = 2.0**64
 """Largest size of a number in JSON: nothing that Eyas reads has a larger one."""
 
 _LONG = re.compile(rb"\d{19}|[eE]\+?0*(?:1[89]|[2-9]\d|[1-9]\d\d)")  # A number that may be larger
-
 _INVALID = re.compile(rb"NaN|Infinity|\\u[dD][89a-fA-F]")
 """Numbers that JSON does not have, and escapes of surrogates: a text with half of a pair cannot be
 written in UTF-8."""

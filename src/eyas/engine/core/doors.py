@@ -17,8 +17,18 @@ from typing import Any, Final, NamedTuple
 
 __all__ = ["STREET", "House", "brought", "brought_object", "first_brought", "houses", "installed"]
 
-STREET: Final = tuple(
-    "lanes engine maps gpu benchmark datasets learning robotics dat demo cli".split()
+STREET: Final = (
+    "lanes",
+    "engine",
+    "maps",
+    "gpu",
+    "benchmark",
+    "datasets",
+    "learning",
+    "robotics",
+    "dat",
+    "demo",
+    "cli",
 )
 """Houses in the order in which what they bring is listed: bytes of messages, of files of settings
 (their sections) and of lists of maps depend on it."""

@@ -19,7 +19,6 @@ __all__ = [
 
 
 _LONGEST = 1200  # Largest number of characters of a message
-
 _LONG = re.compile(r"""(?<!\w)(b?(['"]))((?:(?!\2(?!\w)).){201,})\2(?!\w)|\S{401,}""", re.DOTALL)
 """A quoted text, or anything without spaces, that is too long to be shown whole."""
 

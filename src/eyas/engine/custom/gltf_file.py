@@ -26,12 +26,10 @@ _READ = re.compile(
 
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
-_FLOAT = 5126
-
+_FLOAT = 5126  # Component type of glTF for float32
 _GLB = struct.Struct("<4sIIII")
 _CHUNK = struct.Struct("<II")
-_JSON = 0x4E4F534A
-
+_JSON = 0x4E4F534A  # Kind of a chunk: "JSON"
 _MODES = (4, 5)  # Modes of primitives that are read: triangles, and strips of them
 
 

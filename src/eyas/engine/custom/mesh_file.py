@@ -23,11 +23,8 @@ from eyas.lanes import exact
 __all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
 
 LARGEST = 200_000  # Largest number of triangles of a target
-
 _LARGEST_FILE = 512 << 20  # [bytes]
-
 _GLTF_ENDINGS = (".glb", ".gltf")
-
 _GLTF = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Our axes by those of glTF: z ahead, x left, y up."""
 
@@ -38,9 +35,7 @@ _FINE = 20_000
 """Number of triangles up to which textured parts are cut, so that they show their texture."""
 
 _LARGEST_TEXTURE = 8192  # Largest side of a texture [pixels]
-
 _EVEN = 0.01  # Mean deviation of the texture within triangles that is not worth a cut [sRGB 0 to 1]
-
 _PLAIN = (0.62, 0.62, 0.62)  # sRGB of what has no colour
 
 
@@ -199,7 +194,7 @@ def _parts(trimesh: ModuleType, path: Path, content: bytes) -> Iterator[Triangle
         io.BytesIO(content),
         file_type=path.suffix.lower()[1:],
         resolver=Beside(str(path)),
-        # As it is: cleaned up, it would have lost the corners that are not numbers.
+        # Not cleaned up: it would have lost the corners that are not numbers.
         process=False,
     )
     for part in scene.dump():

@@ -27,7 +27,6 @@ from eyas.lanes import exact
 __all__ = ["Places", "custom_motion"]
 
 _SPAN = 0.25  # Half the distance over which the slope of the ground is taken [m]
-
 _FEWEST = 5  # Least number of samples of a trajectory
 
 Floats = NDArray[np.float64]

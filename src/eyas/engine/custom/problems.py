@@ -24,19 +24,12 @@ __all__ = [
 ]
 
 _LARGE, _SMALL = 60.0, 0.05  # Lengths from which on a target is hardly one: a unit is suspected [m]
-
 LONGEST = 100.0  # Largest length of a target [m]
-
 _USUAL = 2.0  # Length of a usual target [m]
-
 _UNITS = {0.001: "millimetres", 0.01: "centimetres", 1000.0: "kilometres"}
-
 _GAP = 5.0  # Time between two points from which on a gap is told [s]
-
 _RARE = 60.0  # Time between most points from which on another unit is suspected [s]
-
 _STILL, _FEW = 0.2, 10  # Way of a trajectory of so many points from which on it moves [m]
-
 _TICK, _ROUGH = 0.1, 1.5
 """Steps in which accelerations are looked at [s], and what half of them seldom exceed [m/s^2]."""
 
@@ -48,9 +41,7 @@ _CALM, _SETTLED = 0.1, 1.2
 it is hardly one of errors: that of errors falls by 1.5, if they last, to 2.5."""
 
 _TRIED = 3000  # Number of points on which they are tried
-
 _HIGHEST = 10_000.0  # Largest height of a point, also below ground [m]
-
 _ALOFT = 3.0  # Distance from the ground that is told [m]
 
 

@@ -11,7 +11,6 @@ from eyas.lanes import exact
 __all__ = ["smoothed"]
 
 _SLOW = 0.5  # Speed below which a body may stand [m/s]
-
 _LONG = 4.0
 """Shortest stand, in times of the smoothing: within it, the spline forgets what was before."""
 

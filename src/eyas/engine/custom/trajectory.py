@@ -16,18 +16,13 @@ from eyas.lanes import exact
 __all__ = ["JUMP", "Trajectory", "read_trajectory"]
 
 COLUMNS = ("t", "x", "y", "z", "yaw")  # Names in the first line; z and yaw may be left out
-
 JUMP = 100.0  # Speed from which on two points are a jump [m/s]
-
 _LARGEST = 64 << 20  # Largest size of a file [bytes]
-
 _LIMITS = {"t": 1e19, "x": 1e9, "y": 1e9, "z": 1e9, "yaw": 1e6}
 """Largest numbers of the columns; times may count from 1970 in any unit."""
 
 _LONGEST = 86_400.0  # Longest trajectory: it is sampled as a whole [s]
-
 _STANDING = 0.2  # Speed below which a heading that is not told is that before [m/s]
-
 _SWING = 0.05
 """Share of the highest speed up to which a smoothed body may go back after a sudden stop: some
 weights of the spline are negative, in all exp(-pi) = 0.043 of the others."""

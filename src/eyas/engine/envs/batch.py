@@ -54,7 +54,6 @@ _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Types made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)  # Bound to the addresses of arrays, which stay
 _SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
-
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 """Types of parts for `eyas.engine.core.memento.remember` to leave out."""
 

@@ -22,7 +22,6 @@ Info = dict[str, Any]
 Mask = NDArray[np.bool_]
 
 _SENSORS = tuple(name for sensor in ORIGINAL for name in sensor.parts)
-
 _WHOLE = ("camera_width", "camera_height", "target_direction")
 """Parts of the reward packet that are whole numbers."""
 

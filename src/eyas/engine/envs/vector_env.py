@@ -139,7 +139,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if self._there is not None:
             return self._observations(out), masked({"seed": self._there.seeds}, chosen)
         info = masked(self._batch.info(), chosen)
-        # The same names as after a step: TorchRL stacks all information.
+        # Names are those after a step: TorchRL stacks all information.
         none = {name: np.zeros(self.num_envs) for name in self._batch.terms}
         info |= masked(by_term(none), np.zeros(self.num_envs, np.bool_))
         return self._observations(out), info

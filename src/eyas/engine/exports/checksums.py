@@ -18,8 +18,7 @@ SEALED = "contents"
 CHECKSUMS, GROWING = "checksums.sha256", ".checksums"
 """Names of the file, and of the one that grows during a recording, in the recording's folder."""
 
-_LARGEST = 1 << 30
-
+_LARGEST = 1 << 30  # Largest file of checksums: ten million files [bytes]
 _LINE = re.compile(r"([0-9a-f]{64})  (.+/.+)")
 
 

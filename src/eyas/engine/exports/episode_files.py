@@ -114,9 +114,9 @@ class SensorWriter(TableWriter):
 
 NAME = "events.raw"
 _FRAMES = b"% eyas_frames "
+"""Comment with the number of frames, by which an episode is known to be whole."""
 _MOST = 2048  # Columns and rows have eleven bits
-
-_TIME_HIGH = 8 << 28
+_TIME_HIGH = 8 << 28  # Kind of the words with the upper bits of the time
 
 
 class EventWriter(Writer):

@@ -40,7 +40,7 @@ __all__ = [
     "PngWriter",
 ]
 
-_MOST = np.iinfo(np.uint16).max
+_MOST = np.iinfo(np.uint16).max  # Largest value of a pixel of 16 bits
 _LABELLED = sorted(map(int, LABELLED))
 
 

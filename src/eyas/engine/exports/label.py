@@ -72,7 +72,6 @@ def _array(name: str, of: Mapping[str, Any], count: int) -> Type:
 
 
 _LARGEST = 1e12  # More than any honest number; its square is still finite in float32
-
 WHOLE = Type("whole number", {"type": "integer", "minimum": -1, "maximum": 2**31 - 1})
 NUMBER = Type("number", {"type": "number", "minimum": -_LARGEST, "maximum": _LARGEST})
 REWARD = Type("number, or null", {**NUMBER.schema, "type": ["number", "null"]})

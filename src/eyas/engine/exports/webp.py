@@ -20,14 +20,13 @@ from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Summary, Wri
 __all__ = ["WebpEpisode", "WebpWriter"]
 
 MOVIE = "episode.webp"
-
 _QUALITY, _EFFORT = 75, 0
 """A picture of 320 x 240 pixels takes 1.8 ms and 15 kB, and is nearer to the true one than in our
 MP4 (1.7 ms, 5.6 kB). The default effort, 4, makes it 12 kB in 6.3 ms."""
 
 _HEAD = struct.Struct("<4sI4s")
 _CHUNK = struct.Struct("<4sI")
-_ANIMATED, _UNBLENDED = 0x02, 0x02
+_ANIMATED, _UNBLENDED = 0x02, 0x02  # Flags of the chunks VP8X and ANMF (RFC 9649, 2.7)
 _LARGEST = 0xFFFF_FFF6  # Largest file [bytes]
 _LONGEST = 0xFF_FFFF  # Longest duration of one frame [ms]
 

@@ -9,7 +9,7 @@ __all__ = ["box_panels", "cells", "closed", "fan", "halves", "mirrored"]
 
 Points = NDArray[np.float64]
 
-_HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+_HALVES = np.array([[0, 1, 2], [0, 2, 3]])  # Corners of the two triangles of a quadrilateral
 
 
 def cells(grid: ArrayLike) -> Points:

@@ -258,7 +258,7 @@ Shape = Callable[[Shell, int], None]
 """Adds the panels of a part to a shell, in the part's own frame. The number is the detail: 2 from
 near, 1, or 0 from afar; a part may be empty from afar."""
 
-DETAILS = (2, 1, 0)
+DETAILS = (2, 1, 0)  # From near to afar, the order of levels of detail
 
 
 def levels_of(shape: Shape) -> tuple[Mesh, ...]:

@@ -22,7 +22,6 @@ RISE = 0.3
 """Tolerance in height within which a surface counts as ground [m]: roads and kerbs are higher."""
 
 WIDTH = 0.14  # Width of the line [m]
-
 THINNEST = 1.75  # Smallest width of the line, in strokes of the canvas
 
 Window = tuple[slice, slice]

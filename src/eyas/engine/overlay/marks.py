@@ -26,7 +26,6 @@ DRONE_SIZE = 0.5
 
 GEM_SIDES = 6
 GEM_RADIUS, GEM_GIRDLE = 0.42, 0.7  # Radius and height of its widest ring, as shares of its height
-
 GEM_COLOUR = (1.0, 0.27, 0.5)
 TABLE_COLOUR = (1.0, 0.5, 0.66)
 BODY_COLOUR = (0.93, 0.94, 0.96)
@@ -142,18 +141,16 @@ def _skin(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.flo
 _plane_at, _axis_depth = interpreted(plane_at), interpreted(axis_depth)
 _view_centre, _rotated = interpreted(view_centre), interpreted(rotate)
 
-VIEW_COLOUR = (0.25, 0.8, 1.0)
+VIEW_COLOUR = (0.25, 0.8, 1.0)  # sRGB, as all colours here
 LABEL_COLOUR = (1.0, 1.0, 1.0)
 REWARD_COLOURS = ((0.95, 0.26, 0.2), (1.0, 0.78, 0.12), (0.35, 0.9, 0.3))
 """Colours for a reward of 0, 0.5 and 1."""
 
 FARTHEST = 400.0  # Depth at which a view that extends above the horizon is cut off [m]
-
 GEM_HEIGHT, GEM_GAP, GEM_TURN = 1.3, 0.4, 1.5
 """Heights of the marker and of the gap below it [m]; turn rate of the marker [rad/s]."""
 
 UP = np.array([0.0, 0.0, 1.0])
-
 CIRCLE = 72  # Number of corners of the circle within which distances are rewarded
 
 

@@ -68,9 +68,7 @@ def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float3
 
 
 WIDTH = 1.5  # Width of a line, in strokes of the canvas
-
 OPACITY = 0.85  # Opacity of a line
-
 BENT_PIECES = 24  # Straight pieces of a line that is seen through a lens
 
 

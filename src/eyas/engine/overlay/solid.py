@@ -12,10 +12,8 @@ from eyas.lanes import exact
 __all__ = ["paint_solid"]
 
 SIDE = 4  # Number of samples along each side of a pixel
-
 OUTLINE = 1.25  # Width of the outline, which lies outside the body, in strokes of the canvas
-
-TOWARDS_LIGHT = np.array([0.36, 0.48, 0.8])
+TOWARDS_LIGHT = np.array([0.36, 0.48, 0.8])  # World frame, of length 1
 SHADE = 0.55  # Brightness of a face that is turned away from the light; a face towards it has 1
 
 

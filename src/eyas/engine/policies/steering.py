@@ -14,13 +14,11 @@ _FIELD_OF_VIEW, _ASPECT = 0.7854, 0.75
 """The camera of all protocols: horizontal [rad], and height of the picture over its width."""
 
 PERIOD = 0.008  # Length of a control step of all protocols [s]
-
 DEPTH = 22.0  # Distance of the ground that is assumed where only a picture is known [m]
-
 _HALF_WIDTH = DEPTH * exact.tan(0.5 * _FIELD_OF_VIEW)
 """Half the width of the ground that is then in the picture [m]."""
 
-_FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6
+_FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6  # Numbers of DAT's actions
 
 
 def towards(offset: Floats, env: EnvConfig, period: float = PERIOD) -> NDArray[np.int64]:

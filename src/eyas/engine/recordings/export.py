@@ -49,14 +49,11 @@ __all__ = [
 ]
 
 _LOG = logging.getLogger("eyas")
-
 EXPORTS = "exports"  # Folder of the exports in that of a recording or data set
-
 FINISHED, GROWING = "export.json", ".export.json"
 """Files with the identity of an export: when it is complete, and while it is in progress."""
 
 _ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # Names that are no part of a finished export
-
 DONE = ".done"  # Names of the episodes that are written completely, a line each
 
 Progress = Callable[[int], None]  # Gets the number of exported frames

@@ -46,14 +46,11 @@ __all__ = [
 ]
 
 DATASET_FILE = "dataset.json"  # Contents of a data set, see `eyas.datasets.plan`
-
-SPLITS = ("train", "val", "test")
-
+SPLITS = ("train", "val", "test")  # Folders of a data set, in the order of its episodes
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of what moves; this less the value, of what is parked."""
 
 _LARGEST = 1 << 28  # Largest file of one frame [bytes]
-
 OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
 """Files of an episode by their writers; other writers write a file for each frame."""
 

@@ -37,8 +37,8 @@ class VideoConfig(ActionSpeeds):
     """Whether the pictures show the overlay: the ground that the camera sees, the area in which the
     target is rewarded, and a marker over the target; labels stay the same."""
     flight: Annotated[str | None, NAMES_CODE] = None
-    """How the trackers fly. `exact`: they keep their place relative to the target, so that its box
-    never moves; `random`: seeded random actions; a camera path, which is planned around each
+    """Flight of the trackers. `exact`: they keep their place relative to the target, so that its
+    box never moves; `random`: seeded random actions; a camera path, which is planned around each
     target: `follow`, `orbit`, `fly-by`, `rise`, `zoom`, `hover-and-pan`, `search`, or your own as
     `my_package.module:Class`. None: `follow`, or `exact` where no camera path can be flown, with
     live traffic and trackers that are not drones."""

@@ -41,7 +41,7 @@ class PartLibrary:
     parts: tuple[tuple[Mesh, ...], ...]
     """Meshes of each part, the finest first, in the part's own frame."""
     lamps: tuple[bool, ...] = ()
-    """For each part, whether a moving thing with this as its largest part has head and tail lamps
+    """Mask of parts: True if a moving thing with this as its largest part has head and tail lamps
     that light the road; empty: none has. In a thing whose first part has lamps, one that has none
     is the body of its trailer."""
 
@@ -127,8 +127,8 @@ class Views:
     None: all are pinholes. Fields of view are then those of pinholes with the same focal
     lengths."""
     picture: NDArray[np.int32] | None = None
-    """Which of the P pictures each view draws into, those of one picture next to each other,
-    shape (V,); None: each into its own."""
+    """Index of the picture (of P) that each view draws into, those of one picture next to each
+    other, shape (V,); None: each into its own."""
     rows: NDArray[np.int32] | None = None
     """First row of its picture that each view draws, and the row after the last, shape (V, 2);
     None: all rows."""
@@ -191,7 +191,7 @@ class Picture:
     subject_visible_box: NDArray[np.int32] | None = None
     """Box like `subject_box` of the subject's visible pixels only, shape (V, 4)."""
     actor_visible_box: NDArray[np.int32] | None = None
-    """The same of all actors, shape (V, A, 4)."""
+    """Boxes like `actor_box`, of visible pixels only, shape (V, A, 4)."""
     radiance: NDArray[np.float32] | None = None
     """Linear radiance of red, green and blue, air included, before any exposure, in units of
     `eyas.engine.state.lighting.Lighting`, shape (V, 3, H, W). Where `rgb` is wanted too, it is
@@ -247,8 +247,8 @@ class Picture:
 
 
 class MovingParts(NamedTuple):
-    """Which rigid part of a moving thing each pixel of a picture shows, and where these I parts
-    are. A part has the same row in all pictures of an episode.
+    """Rigid parts of moving things: the one that each pixel of a picture shows, and where these I
+    parts are. A part has the same row in all pictures of an episode.
     """
 
     row: NDArray[np.int32]
@@ -261,7 +261,7 @@ class MovingParts(NamedTuple):
 
 
 class Renderer(Protocol):
-    """What simulations ask of a renderer. Another one may stand in the place of
+    """A renderer, as simulations need it. Another one may stand in the place of
     `eyas.engine.render`.
 
     A picture depends on nothing but its view: other views, their order and the number of threads

@@ -112,7 +112,7 @@ class LightState(NamedTuple):
     wind_x: NDArray[np.float32]
     """Velocity of the wind eastwards [m/s], shape (N,); used where `Lighting.windy` is 1."""
     wind_y: NDArray[np.float32]
-    """The same northwards."""
+    """Velocity of the wind northwards [m/s], shape (N,)."""
 
     @classmethod
     def create(cls, count: int) -> "LightState":

@@ -55,10 +55,10 @@ class Surface(IntEnum):
     """Sand with ripples, gravel and dry grass; of this and all that follow, the texture lies on the
     ground, whatever u and v."""
     DESERT_TRACK = 17
-    """The same, driven on; of this and all that follow, u is a distance [m], here from the edge of
+    """`DESERT`, driven on; of this and all that follow, u is a distance [m], here from the edge of
     the track."""
     DESERT_SNOW = 18
-    """The same with snow; u is 32 m more than the height over the line where snow begins."""
+    """`DESERT` with snow; u is 32 m more than the height over the line where snow begins."""
     DESERT_DRIFT = 19
     """Asphalt under sand that grows thinner; u is the distance from where it hides the road."""
     HILLSIDE_PATH = 20

@@ -43,10 +43,10 @@ class Lamp(IntFlag):
 
     BRAKE = 1  # Brake lamps
     LEFT = 2  # It is going to go left: its indicators on the left blink
-    RIGHT = 4  # The same on the right
+    RIGHT = 4  # It is going to go right: its indicators on the right blink
 
 
-_DARK: Final = np.zeros((0, 0), np.uint8)
+_DARK: Final = np.zeros((0, 0), np.uint8)  # Lamps of actors that have none
 
 
 class Motion(NamedTuple):

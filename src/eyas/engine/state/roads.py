@@ -87,7 +87,7 @@ class RoadNetwork:
     """Names of the junctions: the graph's nodes."""
 
 
-_WIDEST, _FASTEST, _MOST_LANES = 100.0, 200.0, 100
+_WIDEST, _FASTEST, _MOST_LANES = 100.0, 200.0, 100  # [m], [m/s]: larger ones are mistakes
 
 
 def network_problems(network: RoadNetwork) -> Iterator[str]:

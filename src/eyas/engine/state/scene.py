@@ -26,7 +26,6 @@ __all__ = [
 ]
 
 SKY_OBJECT = -1  # Object id of a pixel that shows the sky; kernels read it
-
 ACTOR_OBJECT = 1 << 16
 """Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are objects of the scene."""
 

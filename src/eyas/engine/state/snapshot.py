@@ -32,8 +32,8 @@ class TrackerState(NamedTuple):
     position: Floats
     """Centre of the body [m], shape (N, 3)."""
     velocity: Floats
-    """Of the body; of one that follows commands exactly, the difference of its last two positions
-    over 2 ms [m/s], shape (N, 3)."""
+    """Velocity of the body; of one that follows commands exactly, the difference of its last two
+    positions over 2 ms [m/s], shape (N, 3)."""
     acceleration: Floats
     """Difference of the last two velocities over 2 ms [m/s^2], shape (N, 3)."""
     orientation: Floats
@@ -96,7 +96,7 @@ class CameraState(NamedTuple):
     """Difference of the last two positions over 2 ms, world frame [m/s], shape (N, 3). Of trackers
     it is kept up where something needs it (`camera.shutter`, `camera.events`) and else 0."""
     angular_velocity: Floats = _UNKNOWN
-    """The same of `rotation`, world frame [rad/s], shape (N, 3)."""
+    """Difference of the last two rotations over 2 ms, world frame [rad/s], shape (N, 3)."""
 
     @classmethod
     def create(cls, count: int) -> "CameraState":

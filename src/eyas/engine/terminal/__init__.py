@@ -1,4 +1,4 @@
-"""What programs of a terminal share: options, progress, lines on stderr, signals that end them.
+"""Parts of programs of a terminal: options, progress, lines on stderr, signals that end them.
 
 May import: `settings` and all rooms below.
 Begin with `options.py`, then `interrupts.py`.

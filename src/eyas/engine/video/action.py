@@ -20,7 +20,7 @@ from eyas.engine.video.policy import PolicyPilot
 
 __all__ = ["Exact", "Mover", "RandomActions", "check_flight", "flight_of", "mover_of"]
 
-_EXACT, _RANDOM = "exact", "random"
+_EXACT, _RANDOM = "exact", "random"  # Values of `video.flight` beside camera paths
 
 
 class Mover(Protocol):

@@ -24,7 +24,6 @@ Floats = NDArray[np.float64]
 
 _STEP_TICKS = round(STEP / PHYSICS_STEP)
 _MORE = 4  # Control points before the first step and after the last one, which lead the spline
-
 _COURSE = 5  # The target's course is read once in so many control points: its recording has 10 Hz
 
 

@@ -30,7 +30,6 @@ from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE
 __all__ = ["VideoFolder", "check_folder", "open_folder", "recorded_seed"]
 
 SETTINGS = "config.json"
-
 ORIGIN = "version.json"
 """Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
 "build": {...}, "files": {...}, "seed": 0}`. The build, since another one may draw different
@@ -41,11 +40,8 @@ STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
 """Names of the logs in the folder of a recording, outside of the trackers' folders."""
 
 _NOT_PICTURED = ("learning",)  # Houses that have no part in a recording
-
 _OF_DIALECT = (found.file,) if (found := dialect()) else ()
-
 _OWN = (SETTINGS, *_OF_DIALECT, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
-
 _FIRST = frozenset((ORIGIN, ATTRIBUTION_FILE))
 """Files that are written before the settings: a folder that has no others was broken off there, and
 is begun anew when it is to be continued."""

@@ -23,7 +23,7 @@ from eyas.engine.trackers.gimbal_command import WIDTH
 
 __all__ = ["PolicyPilot"]
 
-_SEEDS = 2**62
+_SEEDS = 2**62  # Seeds of policies are below it
 
 
 class PolicyPilot:

@@ -239,7 +239,7 @@ class Recorder:
     drawn: int
     """Frames that were drawn."""
     reached: list[ReachedShares]
-    """How the frames of each tracker that were drawn show its target."""
+    """Shares of the drawn frames of each tracker, by the way they show its target."""
 
     def __init__(self, sim: Simulation, config: EyasConfig, folder: VideoFolder) -> None:
         count = config.video.channels

@@ -37,7 +37,6 @@ from eyas.engine.video.recorder import ReachedShares, Recorder, missed
 __all__ = ["run"]
 
 _LOG = logging.getLogger("eyas")
-
 _NEVER = 1e6  # A limit that no tracker reaches
 
 

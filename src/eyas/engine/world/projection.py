@@ -18,10 +18,9 @@ __all__ = ["Projection"]
 
 # The ellipsoid WGS 84: half axis [m], squared eccentricities.
 _A = 6378137.0
-_FLAT = 1 / 298.257223563
-_E2 = _FLAT * (2 - _FLAT)
-_EP2 = _E2 / (1 - _E2)
-
+_FLAT = 1 / 298.257223563  # Flattening of the ellipsoid WGS 84
+_E2 = _FLAT * (2 - _FLAT)  # Square of its first eccentricity
+_EP2 = _E2 / (1 - _E2)  # Square of its second eccentricity
 _RADIAN = math.pi / 180
 
 _Numbers = NDArray[np.float64]

@@ -88,7 +88,7 @@ class Weather:
 
 # Light and air. A map uses these, or variants made from them with `dataclasses.replace`.
 
-_STEEP = 1.0 / math.sqrt(0.55 * 0.55 + 0.6 * 0.6 + 1.0)
+_STEEP = 1.0 / math.sqrt(0.55 * 0.55 + 0.6 * 0.6 + 1.0)  # Scales the sun's direction to 1
 
 CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.

@@ -26,9 +26,7 @@ __all__ = ["cached", "key_of"]
 Thing = TypeVar("Thing")
 
 _LOG = logging.getLogger("eyas")
-
 _PLAIN = frozenset({bool, float, int, type(None)})  # Types whose `repr` tells all
-
 _LONG = 1.0  # Values that took longer than this to make are reported in the log [s]
 
 

@@ -24,10 +24,8 @@ from eyas.lanes.trusted import made_folder
 
 __all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 
-_DAY = 86_400.0
-
+_DAY = 86_400.0  # [s]
 _KERNELS_LAST = 30 * _DAY  # Time for which kernels are kept after their last use [s]
-
 _PARTS_LAST = _DAY
 """Longest time to write an entry [s]; an older part was left by a process that was killed."""
 

@@ -21,10 +21,8 @@ __all__ = [
 ]
 
 LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"  # Environment variable: largest size of the cache
-
-_DEFAULT_LIMIT = 2 << 30
-
-_UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
+_DEFAULT_LIMIT = 2 << 30  # 2 GiB: a few maps in several weathers [bytes]
+_UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}  # Powers of two
 
 
 class Kind(StrEnum):

@@ -1,4 +1,4 @@
-"""Codecs of pictures: PNG and deflate of our own, whose bytes are promised; JPEG; films by PyAV.
+"""Encoders of pictures: PNG and deflate of our own, whose bytes are promised; JPEG; PyAV for films.
 
 Begin with `png.py`.
 """

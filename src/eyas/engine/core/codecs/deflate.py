@@ -15,7 +15,7 @@ from eyas.lanes import Held, compiled, kernel
 __all__ = ["deflated"]
 
 _SYMBOLS = 286  # Bytes, the end (256), and lengths of runs from 257 on
-_END = 256
+_END = 256  # Symbol of the end of a block (RFC 1951, 3.2.5)
 _MOST_BITS = 15  # Length of the longest code that deflate allows
 _LONGEST, _SHORTEST = 258, 3  # Lengths of runs
 _WORD = 32  # Bits that are written at once

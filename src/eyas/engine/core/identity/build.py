@@ -21,22 +21,18 @@ from eyas.lanes.text_index import SUFFIX
 __all__ = ["WORLD", "Build", "houses_of_results", "rooms_of", "this_build"]
 
 WORLD = frozenset(
-    "lanes maps engine/behaviours engine/core engine/custom engine/mesh engine/render "
-    "engine/sensors engine/sim engine/state engine/targets engine/task engine/trackers "
-    "engine/traffic engine/world".split()
+    "lanes maps engine/behaviours engine/camera engine/core engine/custom engine/mesh "
+    "engine/render engine/sensors engine/sim engine/state engine/targets engine/task "
+    "engine/trackers engine/traffic engine/world".split()
 )
 """Houses, and rooms of the engine, that make what happens in an episode and what is seen of it."""
 
 _ROOT = Path(__file__).parents[3]
-
 _ENGINE = "engine"
-
 _SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
-
 # It computes what the sources say, or is not used.
 _CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")
-
-_LIBRARIES = ("onnxruntime", "torch")
+_LIBRARIES = ("onnxruntime", "torch")  # Their versions change what networks compute
 
 
 class Build(Config):

@@ -17,7 +17,7 @@ from eyas.lanes.text_index import TextIndex, digest_of
 
 __all__ = ["INDEX", "Definition", "read_definitions"]
 
-_PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")
+_PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")  # Texts that name code, `package.module:attribute`
 
 
 class Definition(NamedTuple):

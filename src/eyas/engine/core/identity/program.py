@@ -32,9 +32,7 @@ __all__ = [
 ]
 
 _OWN = __name__.partition(".")[0]  # The package, which is followed from everywhere
-
 _ROOM = __name__.rpartition(".")[0]
-
 _APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)
 """Modules that keep, refuse or find things, and decide no value; not followed."""
 

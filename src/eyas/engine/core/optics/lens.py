@@ -41,8 +41,7 @@ __all__ = [
 
 Floats = NDArray[np.float64]
 
-BROWN, FISHEYE = range(2)
-
+BROWN, FISHEYE = range(2)  # Values of `Lens.model`
 _WIDEST = (11.43, 1.5707)
 """Farthest that the models look: tangent of 85 degrees, and an angle just below a quarter turn."""
 
@@ -51,6 +50,7 @@ _LEAST_SLOPE = 0.05
 polynomials turn back."""
 
 _STEPS, _HALVINGS = 2048, 40
+"""Angles that are tried for the limit, then times that an interval is halved."""
 
 
 class Lens(NamedTuple):

@@ -40,7 +40,6 @@ __all__ = [
 ]
 
 _SIDE = 256  # Texels along a side of a texture
-
 BASE = 0.8  # Brightness of plain paint in the textures, linear: edges are brighter
 
 
@@ -73,12 +72,10 @@ BAND = Region(4, 176, 252, 196)
 REAR = Region(4, 202, 124, 253)
 """The rear end from the middle to its side, and from below to the height of the belt line."""
 FRONT = Region(132, 202, 252, 253)  # The front end, likewise
-
 WINDSCREEN = Region(4, 4, 252, 124)
 """A windscreen from right to left, as seen from outside ahead, and upwards; in the panes."""
 REAR_WINDOW = Region(4, 132, 252, 196)  # A rear window; in the panes
 SIDE_PANE = Region(4, 204, 252, 252)  # A side window; in the panes
-
 BOX_SIDE = Region(4, 4, 252, 92)
 """A side of a box on wheels from its rear end forward, and upwards; this and those that follow are
 in the texture `freight`."""
@@ -87,7 +84,6 @@ BOX_ROOF = Region(4, 98, 180, 150)
 BOX_DOORS = Region(4, 158, 124, 252)  # Doors of the box, from left to right, and upwards
 CAB_SIDE = Region(132, 158, 252, 252)  # A side of a truck's cab forward, and upwards
 COOLER = Region(188, 98, 252, 150)  # An air conditioner from above
-
 PLAIN = CAB_SIDE.at(np.full(4, 0.1), np.full(4, 0.9))
 """A panel without anything on it, in the texture `freight`."""
 

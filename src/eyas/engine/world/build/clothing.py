@@ -37,9 +37,7 @@ FACE = Region(4, 4, 252, 110)  # Around a head, from the chin to the crown
 SKIN = Region(4, 118, 124, 172)  # Bare limbs, around and upwards
 NECK = Region(132, 118, 252, 172)  # A neck, in the shade of the chin above
 HAIR = Region(4, 180, 252, 252)  # Around a head of hair, upwards
-
 CLOTHES = ("plain", "striped", "checked", "jacket", "quilted", "coat")  # Cuts and patterns
-
 PEOPLE_TEXTURES = (*(f"clothes_{cut}" for cut in CLOTHES), "heads")
 
 

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["dot", "length", "rounded", "snapped", "unit"]
 
-_DIGITS = 3
-_STEP = 0.001
+_DIGITS = 3  # Decimals of metres
+_STEP = 0.001  # One millimetre [m]
 
 
 def rounded(points: ArrayLike) -> NDArray[np.float64]:

@@ -53,7 +53,6 @@ _LAMPS, _INDICATORS = 0.62, 0.74
 width."""
 
 _TALL = 0.78  # Inner limit of lamps beside a rear window, likewise
-
 _ENDS = (-1.0, -_LAMPS, _LAMPS, 1.0)
 _LIT = (-1.0, -_INDICATORS, -_LAMPS, _LAMPS, _INDICATORS, 1.0)
 _FINE = _Detail((0, 1, 2, 3, 4, 5, 6, 7), _ENDS, _LIT, arches=True)

@@ -39,7 +39,6 @@ BLACK_PAINT = Material(
 """A nearly black shade of the body colour, with the seams of a roof."""
 
 GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)  # Tinted windows
-
 PANE = Material(texture="panes", tint=(0.5, 0.51, 0.52), surface=Surface.GLASS)
 """Tinted windows with their frames, and what is behind them."""
 
@@ -64,20 +63,12 @@ INDICATOR_RIGHT = Material(tint=(0.80, 0.36, 0.05), surface=Surface.INDICATOR_RI
 """Indicators, on the right of the vehicle."""
 
 TRIM = plain(0.10, 0.10, 0.11)  # Grilles, bumpers, undersides
-
 TYRE = plain(0.12, 0.12, 0.12)  # Rubber
-
 RIM = plain(0.68, 0.69, 0.71)  # Wheel discs
-
 STEEL = plain(0.34, 0.35, 0.37)  # Frames and tanks below the body
-
 BRIGHT = plain(0.74, 0.75, 0.76)  # Polished metal
-
 PLATE = plain(0.88, 0.88, 0.84)  # Number plates
-
 SKIN_WHITE = plain(0.86, 0.87, 0.86)  # White panels of trailers and helmets
-
 CLOTH = plain(0.16, 0.18, 0.25)  # A rider's suit
-
 FREIGHT = Material(texture="freight", tint=(0.94, 0.95, 0.94))
 """White panels of boxes on wheels, with seams, doors and bars."""

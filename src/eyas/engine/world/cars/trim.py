@@ -1,5 +1,5 @@
-"""What stands out from a car's body: bumpers with dark lower lips at both ends, mirrors, plates,
-the third brake lamp, rails, walls of the arches.
+"""Parts that stand out from a car's body: bumpers with dark lower lips at both ends, mirrors,
+plates, the third brake lamp, rails, walls of the arches.
 """
 
 import numpy as np
@@ -25,11 +25,8 @@ from eyas.lanes import exact
 __all__ = ["AHEAD", "add_bumpers", "add_trimmings"]
 
 AHEAD = 0.04  # Depth of a bumper beyond the end of the body [m]
-
 _ASIDE = 0.025  # Depth of a bumper beyond the sides [m]
-
 _TOP = 0.565  # Height of its upper edge, as a share of that of the belt line above the floor
-
 _TALLEST = 0.5  # Height of a bumper at most [m]: those of vans are no taller than those of cars
 
 

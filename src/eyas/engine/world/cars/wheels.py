@@ -12,9 +12,7 @@ from eyas.lanes import exact
 __all__ = ["DESIGNS", "wheel_levels"]
 
 DESIGNS = 4  # Number of designs of discs
-
 _DISC = 0.66  # Radius of the disc, as a share of the wheel's radius
-
 _SHOULDER = 0.92
 """Radius where the tread begins to bend into the side, as a share of the wheel's radius."""
 

@@ -43,11 +43,8 @@ ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 
 PLAN_FILE = "map.plan.json"  # File in the folder of an imported map with its plan
-
 PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")  # Endings of the names of files with plans
-
 NETWORK_FILE = "network.npz"  # File in a map's package with the processed roads of its seed 0
-
 TRAFFIC_FILE = "traffic.npz"  # File in a map's package with the canonical recording of its traffic
 
 
@@ -62,7 +59,6 @@ SIGNALS_TRAFFIC_FILE = "traffic-signals.npz"
 """File in a map's package with the canonical recording of drivers who obey its traffic lights."""
 
 SIGNALS_FILE = "signals.npz"  # File in a map's package with what these lights show
-
 TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
 """Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
 

@@ -25,13 +25,9 @@ __all__ = [
 ]
 
 WHEEL_RADIUS: Final = 0.34  # 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]
-
 AXLES: Final = (0.52, -0.52)  # x of the front and of the rear axle: a wheelbase of 1.04 m [m].
-
 CRANK: Final = (-0.10, 0.28)  # x and z of the axle of the cranks [m]
-
 SADDLE: Final = (-0.27, 0.90)  # x and z of the middle of the saddle [m]
-
 PAINTS: Final = ((0.10, 0.10, 0.11), (0.55, 0.09, 0.09), (0.12, 0.28, 0.48), (0.78, 0.78, 0.76))
 """Colours of frames, sRGB."""
 
@@ -39,7 +35,6 @@ _RUBBER = material("plain", (0.07, 0.07, 0.07))
 _SPOKES = material("plain", (0.50, 0.51, 0.52))
 _BLACK = material("plain", (0.10, 0.10, 0.10))
 _LENS = material("plain", (0.62, 0.06, 0.05))
-
 _TOP, _HEAD, _BARS = (-0.23, 0.0, 0.76), (0.36, 0.0, 0.90), (0.40, 0.0, 1.02)
 
 

@@ -34,15 +34,13 @@ __all__ = [
 ]
 
 POLE_HEIGHT = 6.6  # Height of the top of a pole above the road [m]
-
 POLE_RADIUS = 0.13  # Radius at the foot [m]
-
-_ARM = 5.6
-_ARM_HEIGHT = 6.1
+_ARM = 5.6  # Length of the arm over the road [m]
+_ARM_HEIGHT = 6.1  # Height of the arm [m]
 _HEADS = (2.6, 5.3)  # Distances of the heads along the arm [m]
 _CENTRES = (*((x, 0.16, _ARM_HEIGHT - 0.35) for x in _HEADS), (0.0, 0.24, 3.1))
 """Middles of the heads; the last is on the pole [m]."""
-_BEYOND_KERB = 0.9
+_BEYOND_KERB = 0.9  # Distance of the pole from the kerb [m]
 _BEFORE_LINE = 0.6  # Distance of the pole before the stop line [m]
 _STEEL = material("plain", (0.55, 0.56, 0.57))
 _CASE = material("plain", (0.13, 0.14, 0.14))
@@ -57,7 +55,7 @@ _SHINING = tuple(
 )
 _RISES = (0.33, 0.0, -0.33)
 """Heights of the red, amber and green lens over the middle of a head [m]."""
-_RED, _AMBER, _GREEN = range(3)
+_RED, _AMBER, _GREEN = range(3)  # Lenses from the top down
 _ASPECTS = ((_RED,), (_RED, _AMBER), (_AMBER,), (_GREEN,))
 """Lenses that shine, by `eyas.engine.traffic.signals.Aspect`."""
 
