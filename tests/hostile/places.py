@@ -131,7 +131,7 @@ OWN = {
     "engine.core.identity.build:_digest_of": _PACKAGE,
     "engine.core.cache.array_file:map_arrays": _CACHE,
     "engine.core.installed:_origin": _PACKAGE,
-    "engine.core.own_code:origin_of": _CODE,
+    "engine.core.named_code:origin_of": _CODE,
     "engine.core.machine:_processor": _PACKAGE,
     "engine.core.identity.program:definitions_of": _PACKAGE,
     "engine.recordings.export:_done": _OUTPUT,

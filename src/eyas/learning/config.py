@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.settings.section import Changes, Section
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.simple_maps import simple_world

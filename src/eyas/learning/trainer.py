@@ -11,7 +11,7 @@ import torch
 from eyas.engine.camera.config import ColourLayout
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.own_code import origin_of
+from eyas.engine.core.named_code import origin_of
 from eyas.engine.core.rng import TEST_SEEDS, stream
 from eyas.engine.envs.choice import steps_per_action
 from eyas.engine.envs.observation import observation_space

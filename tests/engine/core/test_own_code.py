@@ -5,7 +5,8 @@ import sys
 import pytest
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.own_code import imported, left_out, origin_of, running, takes
+from eyas.engine.core.named_code import origin_of
+from eyas.engine.core.own_code import imported, left_out, running, takes
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 
 from eyas.cli.main import main
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.own_code import code_named
+from eyas.engine.core.named_code import code_named
 from eyas.engine.core.registry import Registry
 from eyas.engine.custom.user_class import made
 from eyas.engine.envs.choice import chosen_settings

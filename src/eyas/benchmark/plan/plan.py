@@ -21,7 +21,7 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.identity.build import Build, this_build
 from eyas.engine.core.installed import installed_version
-from eyas.engine.core.own_code import Origin, origin_of
+from eyas.engine.core.named_code import Origin, origin_of
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.policies.policy import Policy
 from eyas.engine.world.maps import MAPS

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.engine.core.config import Config
 from eyas.engine.core.doors import brought
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.targets.habit import Behaviour
 
 __all__ = ["ENDINGS", "MESHES", "CustomConfig"]

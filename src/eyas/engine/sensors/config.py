@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.config import Config
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Deviation = Annotated[float, Field(ge=0, le=1e6)]

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import user_path
-from eyas.engine.core.own_code import code_named
+from eyas.engine.core.named_code import code_named
 from eyas.engine.settings.config import EyasConfig, variants
 
 __all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code", "refuse_named"]

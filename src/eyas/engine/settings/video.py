@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.settings.env import ActionSpeeds
 
 __all__ = ["VideoConfig"]

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.core.variation import Uniform, Variation, within
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]

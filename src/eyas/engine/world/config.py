@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.core.config import Config
-from eyas.engine.core.own_code import NAMES_CODE
+from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, within
 
 __all__ = ["LightConfig", "WorldConfig", "WorldWindConfig", "world_of"]
