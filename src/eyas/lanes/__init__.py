@@ -4,8 +4,8 @@ May import: nothing of Eyas. Begin with `docs/lanes.md`; operations on lanes are
 `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
 """
 
+from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.calls import BoundCall, CompiledCall, ParallelCall, compiled, parallel
-from eyas.lanes.held import Held
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
     Kernel,
@@ -20,9 +20,9 @@ from eyas.lanes.jit import (
 __all__ = [
     "BoundCall",
     "CompiledCall",
-    "Held",
     "Intrinsic",
     "Kernel",
+    "PackedBundle",
     "ParallelCall",
     "VariableError",
     "address_of",

@@ -33,7 +33,7 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.kernels.pixels import pack
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.pack.light import encoded_tone
-from eyas.lanes import Held, exact, kernel, parallel, thread_count
+from eyas.lanes import PackedBundle, exact, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,
     gather,
@@ -95,8 +95,8 @@ class Development:
         grey = spectrum is not Spectrum.COLOUR
         mosaic = Demosaicking.NONE if grey else imager.mosaic
         limits = np.array([*exposure.time, *exposure.iso])
-        self._exposed = Held(Exposed(self._imagers, self.exposure, limits))
-        self._work = Held(
+        self._exposed = PackedBundle(Exposed(self._imagers, self.exposure, limits))
+        self._work = PackedBundle(
             _Work(
                 self._imagers,
                 self.exposure,

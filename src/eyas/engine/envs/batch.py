@@ -43,7 +43,7 @@ from eyas.engine.targets.looks import LookTable
 from eyas.engine.task.done import DoneReason
 from eyas.engine.task.journal import Journal
 from eyas.engine.task.step_line import step_line
-from eyas.lanes import BoundCall, CompiledCall, Held, Kernel
+from eyas.lanes import BoundCall, CompiledCall, Kernel, PackedBundle
 
 __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
@@ -52,7 +52,7 @@ _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
-_BOUND = (BoundCall, Held)  # To the addresses of arrays, which stay
+_BOUND = (BoundCall, PackedBundle)  # To the addresses of arrays, which stay
 _SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)

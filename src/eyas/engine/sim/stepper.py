@@ -29,7 +29,7 @@ from eyas.engine.task.rules import Rules
 from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
-from eyas.lanes import BoundCall, Held
+from eyas.lanes import BoundCall, PackedBundle
 
 Floats = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ class Stepper:
         self._kernels = step_kernels(config, tracker)
         self._turning_kernels = partial(step_kernels, config, with_gimbal(tracker))
         self._orders = Orders.create(count)
-        self._held_orders = Held(self._orders)
+        self._held_orders = PackedBundle(self._orders)
         self._turning_orders = self._orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
         active, bodies = self._orders.active, tracker.visible
         self.sensors = SensorSuite(config, assets, worlds, snapshot, active, bodies=bodies)
@@ -118,7 +118,7 @@ class Stepper:
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        self._held_state = Held(self._state_by(rules))
+        self._held_state = PackedBundle(self._state_by(rules))
         self._step = self._kernels.bind(self._held_state, self._held_orders)
         self._turning: BoundCall | None = None
 
@@ -163,7 +163,7 @@ class Stepper:
         """Return the step that also turns cameras; it is compiled when it is first needed."""
         if self._turning is None:
             kernels = self._turning_kernels()
-            self._turning = kernels.fly.bind(self._held_state, Held(self._turning_orders))
+            self._turning = kernels.fly.bind(self._held_state, PackedBundle(self._turning_orders))
         return self._turning
 
     def carry(self, steps: int) -> None:

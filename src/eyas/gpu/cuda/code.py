@@ -48,7 +48,7 @@ class Ptx(NamedTuple):
 def ptx_code(
     call: CompiledCall,  # The kernel
     types: tuple[Any, ...],  # Bundles of these kinds
-    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.held.Held`
+    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.bundles.PackedBundle`
     threads: int,  # See `eyas.lanes.device.Device.launch`
 ) -> Ptx:
     """Return the PTX of a kernel for bundles of some kinds."""

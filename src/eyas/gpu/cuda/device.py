@@ -25,7 +25,7 @@ from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
 
-_SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`.
+_SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.bundles`.
 
 
 class CudaDevice:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.sky.clouds import DEEPEST, CloudRays, cloud_rays
 from eyas.engine.render.kernels.sky.radiance import CLOUD_BEND, CLOUDS_FROM
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
-from eyas.lanes import Held, exact, thread_count
+from eyas.lanes import PackedBundle, exact, thread_count
 
 _ROWS, _COLUMNS = 208, 2048
 _SEEN = 0.65  # Correction of the cover: clouds hide more when seen from the side than from below
@@ -37,7 +37,7 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
         plan_directions(_COLUMNS).astype(np.float32),
         output,
     )
-    cloud_rays(thread_count(), Held(rays))
+    cloud_rays(thread_count(), PackedBundle(rays))
     return output
 
 

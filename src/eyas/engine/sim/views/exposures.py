@@ -16,7 +16,7 @@ from eyas.engine.camera.poses import (
     Exposure,
     Moments,
     Moving,
-    Seen,
+    ViewMotion,
     motion_in_pixels,
     poses_at,
 )
@@ -81,12 +81,12 @@ def ways_of(
     exposure: Exposure,  # V cameras
     window: Floats,  # The time around the instant of each [s], shape (V,)
     floor: Floats,  # Height of the ground that each sees [m], shape (V,)
-    frame: Floats,  # See `Seen.frame`
+    frame: Floats,  # See `ViewMotion.frame`
     moving: Moving,  # Things that move
 ) -> Floats:
     """Return the largest motion through each picture in a given time [pixels], shape (V,)."""
     place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
-    seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
+    seen = ViewMotion(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)
     return seen.motion
 

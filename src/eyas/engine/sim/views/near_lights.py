@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eyas.engine.sim.views.additions import SignalLights
 from eyas.engine.sim.views.near_actors import SLACK, Listed, ViewQuery, eight_may_matter
 from eyas.engine.state.draw import DrawList
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
 
@@ -68,7 +68,7 @@ class NearLights:
         sphere[:3, :count] = lights.pose[:, :, 3].T
         sphere[3, count:] = -1e9  # so far behind all edges that no camera sees them
         sphere[3, :count] = 1.001 * reach * _scale(lights.pose) + SLACK
-        self._poles = Held(_Poles(sphere))
+        self._poles = PackedBundle(_Poles(sphere))
 
     def bind(self, query: ViewQuery, listed: Listed) -> None:
         """Use these buffers from now on."""

@@ -15,7 +15,7 @@ from eyas.engine.state.motion import ActorView
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 
 Floats = NDArray[np.float64]
 
@@ -131,10 +131,10 @@ def _enclose(vertices: _Vertices, query: _Query) -> None:
 
 
 @lru_cache(maxsize=8)
-def _vertices_of(kinds: tuple[int, ...]) -> Held[_Vertices]:
+def _vertices_of(kinds: tuple[int, ...]) -> PackedBundle[_Vertices]:
     """Return the vertices of the parts of some kinds, indices into `KINDS`, as in `Rigs`."""
     each = [np.unique(levels[0].positions, axis=0) for levels in load_parts(kinds).parts]
-    return Held(
+    return PackedBundle(
         _Vertices(
             np.concatenate(each).astype(np.float64),
             np.concatenate([[0], np.cumsum([len(points) for points in each])]).astype(np.int64),

@@ -33,7 +33,7 @@ from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
 _LONGEST = 3.0
@@ -122,7 +122,12 @@ class VisibleActors:
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
-        self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
+        self._given = (
+            PackedBundle(motion),
+            PackedBundle(bounds_of(motion, actor)),
+            PackedBundle(kinds),
+            PackedBundle(looks),
+        )
         self._size = _Size(0, 0, 0, 0)
 
     def of(
