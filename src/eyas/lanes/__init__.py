@@ -1,6 +1,7 @@
-"""The language of kernels: functions compiled for lanes of the processor, and kept on disk.
+"""Python that becomes SIMD and PTX: kernels for lanes of the processor, compiled and kept on disk.
 
-May import: nothing of Eyas. Begin with `docs/lanes.md`; operations on lanes are in
+May import: nothing of Eyas.
+Begin with `README.md` and `docs/lanes.md`, then `jit.py`; operations on lanes are in
 `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
 """
 
