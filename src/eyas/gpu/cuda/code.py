@@ -30,11 +30,10 @@ OLDEST = (8, 0)  # The least compute capability of cards that are served: that o
 
 SUFFIX = ".eyp"  # End of the names of files of PTX
 
-_ROOM = Path(eyas.lanes.__file__).parent
+_MAKER = Path(__file__).parents[1] / "ptx.py"
+"""The file that decides what kernels become, beside the language of kernels."""
 
-_MAKERS = ("ptx.py",)  # Files that decide what kernels become, beside the language of kernels
-
-ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
+ARCHIVE = Path(eyas.lanes.__file__).parent / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
 
 
@@ -75,7 +74,7 @@ def ptx_code(
 @cache
 def _made_of() -> str:
     """Return a digest of what turns kernels into PTX."""
-    return digest((language_hash(), *(syntax_of(_ROOM / name)[""].digest for name in _MAKERS)))
+    return digest((language_hash(), syntax_of(_MAKER)[""].digest))
 
 
 def _made_by() -> tuple[str, ...]:
