@@ -22,15 +22,14 @@ _FORMATS = {bool: "?", int: "q", float: "d"}  # Formats of numbers, in the langu
 
 
 class PackedBundle(Generic[Bundle]):
-    """A bundle, laid out in the kernels' memory format.
-
-    Args:
-        bundle: The tuple. Its arrays are not copied: kernels see later changes.
-    """
+    """A bundle, laid out in the kernels' memory format."""
 
     __slots__ = ("_memory", "address", "bundle", "kind", "size")
 
-    def __init__(self, bundle: Bundle) -> None:
+    def __init__(
+        self,
+        bundle: Bundle,  # The tuple. Its arrays are not copied: kernels see later changes
+    ) -> None:
         words: list[Any] = []
         key: list[object] = []
         flatten(bundle, words, key)

@@ -67,12 +67,10 @@ def _kept(path: Path) -> int | None:
     return None if found is None else load(found)
 
 
-def nothing_compiled(function: Callable[..., Any]) -> bool:
-    """Return whether a kernel is neither cached nor shipped for any bundles, as at a first start.
-
-    Args:
-        function: See `eyas.lanes.calls.CompiledCall`.
-    """
+def nothing_compiled(
+    function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
+) -> bool:
+    """Return whether a kernel is neither cached nor shipped for any bundles, as at first."""
     name = _name_of(function)
     return not any(kernel_folder().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
 

@@ -71,22 +71,15 @@ class Development:
 
     Attributes:
         exposure: Exposure times and speeds, written in place.
-
-    Args:
-        imager: The sensor.
-        exposure: Its exposure.
-        spectrum: What light it tells apart.
-        luminance: That of radiance 1 [cd/m^2].
-        count: N.
     """
 
     def __init__(
         self,
-        imager: ImagerConfig,
+        imager: ImagerConfig,  # The sensor
         exposure: ExposureConfig,
-        spectrum: Spectrum,
-        luminance: float,
-        count: int,
+        spectrum: Spectrum,  # What light it tells apart
+        luminance: float,  # That of radiance 1 [cd/m^2]
+        count: int,  # N
     ) -> None:
         self.exposure = ExposureState.create(count)
         self._imagers = ImagerState.create(count)

@@ -42,18 +42,13 @@ from eyas.lanes.vector import WIDTH
 
 
 class CpuRenderer:
-    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`.
-
-    Args:
-        geometry: Everything that can be drawn.
-        light: Light and air.
-        ready: Called before anything is drawn; returns when the kernels are compiled.
-    """
+    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`."""
 
     def __init__(
         self,
-        geometry: Geometry,
-        light: Light,
+        geometry: Geometry,  # Everything that can be drawn
+        light: Light,  # Light and air
+        # Called before anything is drawn; returns when the kernels are compiled
         ready: Callable[[], object] | None = None,
     ) -> None:
         self._geometry, self._light = geometry, light

@@ -75,22 +75,15 @@ class Stepper:
         seen: The state that agents see.
         told: What the trackers tell of themselves, see `Tracker.told`.
         samplers: Called with each tracker and the key of its episode that begins.
-
-    Args:
-        config: The settings.
-        assets: Map and traffic.
-        tracker: The kind of the trackers.
-        worlds: The worlds of the trackers.
-        snapshot: Their state.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        tracker: Tracker,
-        worlds: Worlds,
-        snapshot: Snapshot,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map and traffic
+        tracker: Tracker,  # The kind of the trackers
+        worlds: Worlds,  # The worlds of the trackers
+        snapshot: Snapshot,  # Their state
     ) -> None:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot

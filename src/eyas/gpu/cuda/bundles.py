@@ -59,12 +59,6 @@ class Blocks:
 class CudaBundle:
     """A bundle in the memory of a graphics processor.
 
-    Args:
-        bundle: The tuple.
-        on_card: Puts its arrays there; it is called for all that is no tuple.
-        blocks: Where the bundle is laid out.
-        nothing: Address there for empty arrays, see `eyas.lanes.bundles`.
-
     Attributes:
         bundle: The tuple with its arrays there.
         address: Its address there.
@@ -74,10 +68,12 @@ class CudaBundle:
 
     def __init__(
         self,
+        # The tuple
         bundle: Any,  # noqa: ANN401
+        # Puts its arrays there; it is called for all that is no tuple
         on_card: Callable[[Any], Any],
-        blocks: Blocks,
-        nothing: int,
+        blocks: Blocks,  # Where the bundle is laid out
+        nothing: int,  # Address there for empty arrays, see `eyas.lanes.bundles`
     ) -> None:
         words: list[Any] = []
         key: list[object] = []

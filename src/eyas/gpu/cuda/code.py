@@ -82,12 +82,11 @@ def _made_by() -> tuple[str, ...]:
     return (_made_of(), *versions)
 
 
-def archive_of(codes: Mapping[str, Ptx]) -> bytes:
-    """Return the content of an archive.
-
-    Args:
-        codes: PTX by the names of the files in which it is kept, without the last part.
-    """
+def archive_of(
+    # PTX by the names of the files in which it is kept, without the last part
+    codes: Mapping[str, Ptx],
+) -> bytes:
+    """Return the content of an archive."""
     names = sorted(codes)
     header = [_made_of(), [(name, codes[name].entry) for name in names]]
     return lzma.compress(b"".join(packed(header, [codes[name].text for name in names])))

@@ -220,11 +220,10 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_renew_lock)
 
 
-def cuda_device(ordinal: int = 0) -> CudaDevice:
+def cuda_device(
+    ordinal: int = 0,  # See `eyas.gpu.cuda.cards.card`
+) -> CudaDevice:
     """Return a graphics processor of NVIDIA: one object for each in a process.
-
-    Args:
-        ordinal: See `eyas.gpu.cuda.cards.card`.
 
     Raises:
         CudaError: There is none, or it cannot be used; one line says why.

@@ -65,23 +65,17 @@ class DeviceObserver:
         visible: Share of each target that the latest picture shows, if it is measured, on the host,
             shape (N,).
 
-    Args:
-        config: What is observed.
-        simulation: The trackers.
-        view: Draws what they see.
-        measures: Whether targets are measured in the pictures, for teachers.
-
     Raises:
         ConfigError: A part is not there on a device.
     """
 
     def __init__(
         self,
-        config: ObservationConfig,
-        simulation: DeviceSimulation,
-        view: DeviceView,
+        config: ObservationConfig,  # What is observed
+        simulation: DeviceSimulation,  # The trackers
+        view: DeviceView,  # Draws what they see
         *,
-        measures: bool = False,
+        measures: bool = False,  # Whether targets are measured in the pictures, for teachers
     ) -> None:
         self.space = observation_space(config, simulation.config)
         for part in config.parts:

@@ -17,13 +17,12 @@ _TEXEL = 9.0 / SIZE  # Side of a texel of the cloud heights [km]
 
 
 @functools.lru_cache(maxsize=4)
-def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
+def build_clouds(
+    cover: float,  # Share of the sky that clouds cover, 0 to 1
+    sun: tuple[float, float, float],  # Unit vector towards the sun
+) -> NDArray[np.uint8]:
     """Return the clouds' panorama, see `eyas.engine.render.kernels.sky.clouds`; one empty texel for
     none.
-
-    Args:
-        cover: Share of the sky that clouds cover, 0 to 1.
-        sun: Unit vector towards the sun.
     """
     if cover <= 0.0:
         return np.zeros((1, 1, 2), np.uint8)

@@ -54,14 +54,13 @@ def _list_lights(poles: _Poles, query: ViewQuery, listed: Listed, found: _Found)
 
 
 class NearLights:
-    """Lists the lights that some views may show.
+    """Lists the lights that some views may show."""
 
-    Args:
-        lights: All of them.
-        reach: How far the corners of a light are from the foot of its pole, at most [m].
-    """
-
-    def __init__(self, lights: SignalLights, reach: float) -> None:
+    def __init__(
+        self,
+        lights: SignalLights,  # All of them
+        reach: float,  # How far the corners of a light are from the foot of its pole, at most [m]
+    ) -> None:
         self._lights = lights
         count = len(lights.pose)
         sphere = np.zeros((4, -(-count // WIDTH) * WIDTH), np.float32)
@@ -76,14 +75,13 @@ class NearLights:
         self._found = _Found(*(np.zeros(size, np.int64) for size in (1, most, most)))
         self.list = _list_lights.bind(self._poles, query, listed, self._found)
 
-    def write(self, time: NDArray[np.float64], slots: int, flat: DrawList) -> None:
-        """Write the lights found into their slots.
-
-        Args:
-            time: Time of each world [s], shape (W,).
-            slots: Slots in the list of a world.
-            flat: The lists of all worlds, as of one.
-        """
+    def write(
+        self,
+        time: NDArray[np.float64],  # Time of each world [s], shape (W,)
+        slots: int,  # Slots in the list of a world
+        flat: DrawList,  # The lists of all worlds, as of one
+    ) -> None:
+        """Write the lights found into their slots."""
         count, lights = int(self._found.number[0]), self._lights
         if count == 0:
             return

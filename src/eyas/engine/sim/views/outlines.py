@@ -43,15 +43,14 @@ class _Query(NamedTuple):
 
 
 class Outlines:
-    """Poses the actors around a tracker, and encloses their vertices on the picture plane.
+    """Poses the actors around a tracker, and encloses their vertices on the picture plane."""
 
-    Args:
-        kind: Kind of each actor, index into `KINDS`, shape (A,).
-        width: Width of the pictures [pixels].
-        height: Their height [pixels].
-    """
-
-    def __init__(self, kind: NDArray[np.int32], width: int, height: int) -> None:
+    def __init__(
+        self,
+        kind: NDArray[np.int32],  # Kind of each actor, index into `KINDS`, shape (A,)
+        width: int,  # Width of the pictures [pixels]
+        height: int,  # Their height [pixels]
+    ) -> None:
         self._rigs, self._kinds = Rigs(kind), tuple(sorted({*kind.tolist()}))
         self._posed = self._rigs.draw_list(1)
         self._width, self._height = width, height

@@ -83,11 +83,7 @@ class _Query(NamedTuple):
 
 
 class ParkedObjects:
-    """All parked objects of a scene.
-
-    Args:
-        scene: The scene.
-    """
+    """All parked objects of a scene."""
 
     def __init__(self, scene: Scene) -> None:
         fixtures = scene.fixtures

@@ -96,25 +96,18 @@ class _Size(NamedTuple):
 
 
 class VisibleActors:
-    """Poses the actors that matter for some views, in draw lists that hold no others.
-
-    Args:
-        motion: Motion of all actors.
-        rigs: Their rigs.
-        looks: Models and colours of the actors of all worlds; may change.
-        reach: Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,).
-        spray: Whether vehicles throw up water.
-        lights: The lights of signals, which are listed behind the actors; None: there are none.
-    """
+    """Poses the actors that matter for some views, in draw lists that hold no others."""
 
     def __init__(
         self,
-        motion: Motion,
+        motion: Motion,  # Motion of all actors
         rigs: Rigs,
-        looks: Looks,
+        looks: Looks,  # Models and colours of the actors of all worlds; may change
+        # Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,)
         reach: NDArray[np.float64],
         *,
-        spray: bool = False,
+        spray: bool = False,  # Whether vehicles throw up water
+        # The lights of signals, which are listed behind the actors; None: there are none
         lights: NearLights | None = None,
     ) -> None:
         self._lights = lights

@@ -135,15 +135,14 @@ def _relations(
                     break
 
 
-def contradictory(claim: Claim, view: InView, rng: np.random.Generator) -> Claim | None:
+def contradictory(
+    claim: Claim,  # A claim that holds for the target
+    view: InView,  # What is in view
+    rng: np.random.Generator,  # Chooses the wrong statement
+) -> Claim | None:
     """Return a claim with one statement changed so that it fits nothing in view.
 
     The statement by which the kind tells apart is changed if that is enough: last named first.
-
-    Args:
-        claim: A claim that holds for the target.
-        view: What is in view.
-        rng: Chooses the wrong statement.
 
     Returns:
         None if something in view fits every change.
