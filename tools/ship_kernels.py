@@ -161,7 +161,7 @@ import torch
 from eyas import EyasVectorEnv
 from eyas.gpu.cuda import code
 from eyas.lanes.device import HostDevice
-from eyas.lanes.held import Held
+from eyas.lanes.bundles import PackedBundle
 
 code.ARCHIVE = Path("none")  # what is in the package already is made anew
 
@@ -176,7 +176,7 @@ class Recorder:
 
     def launch(self, call, workers, *bundles, threads=1, block=None):
         types = tuple(small(bundle.bundle) for bundle in bundles)
-        kinds = tuple(Held(bundle).kind for bundle in types)
+        kinds = tuple(PackedBundle(bundle).kind for bundle in types)
         code.ptx_code(call, types, kinds, threads)
 
 

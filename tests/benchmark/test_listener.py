@@ -8,7 +8,7 @@ from eyas.benchmark.policies.listener.detector import BODIES, NAMES, Detections
 from eyas.benchmark.policies.listener.judge import judged
 from eyas.benchmark.policies.table import open_policy
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
+from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 
 PERIOD = 0.064
@@ -90,10 +90,10 @@ def test_looks_and_places(claim, who):
 @pytest.mark.parametrize(
     ("doing", "who"),
     [
-        (Doing.STANDING, 0),
-        (Doing.STRAIGHT, 1),
-        (Doing.LEFT_TURN, 2),
-        (Doing.RIGHT_TURN, 3),
+        (MotionWord.STANDING, 0),
+        (MotionWord.STRAIGHT, 1),
+        (MotionWord.LEFT_TURN, 2),
+        (MotionWord.RIGHT_TURN, 3),
     ],
 )
 def test_what_they_do_tells_them_apart(doing, who):

@@ -21,7 +21,7 @@ from eyas.gpu.cuda.code import Ptx, archive_of
 from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.driver import VARIABLE, driver
 from eyas.gpu.cuda.kernels import function_of
-from eyas.lanes import Held, parallel
+from eyas.lanes import PackedBundle, parallel
 from eyas.lanes.calls import _ENTRY
 from eyas.lanes.device import HostDevice
 from eyas.lanes.entry import entry_address
@@ -89,7 +89,10 @@ class Fake:
 
     def runs(self, call, *bundles):
         """Have launches run a kernel as compiled for this processor."""
-        held = tuple(bundle if isinstance(bundle, Held) else Held(bundle) for bundle in bundles)
+        held = tuple(
+            bundle if isinstance(bundle, PackedBundle) else PackedBundle(bundle)
+            for bundle in bundles
+        )
         entry = _ENTRY(entry_address(call.function, held, over_workers=True))
 
         def run(_, parts, first, workers):
@@ -210,13 +213,13 @@ def test_a_bundle_lies_there_as_it_does_here_but_for_addresses(fake, card):
     plain = outer_of(HostDevice(), np.arange(6.0))
     empty = np.ndarray((0, 2), np.float64, bytearray())  # strides as on the card, in any numpy
     plain = plain._replace(plane=plain.plane.copy(), empty=empty)
-    here = Held(plain)
+    here = PackedBundle(plain)
     content = ctypes.string_at(here.address, here.size)
     for name in ("inner", "empty", "plane", "found"):
         found, known = getattr(there.bundle, name), getattr(plain, name)
         if name == "inner":
             found, known = found.values, known.values
-        old = Held((known,))
+        old = PackedBundle((known,))
         address = ctypes.string_at(old.address + 32, 8)  # after two words, size and size of one
         assert content.count(address) == 1
         content = content.replace(address, found.address.to_bytes(8, "little"))

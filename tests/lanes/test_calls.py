@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from eyas.lanes import CompiledCall, Held, ParallelCall, calls, compiled, parallel
+from eyas.lanes import CompiledCall, PackedBundle, ParallelCall, calls, compiled, parallel
 
 
 @parallel
@@ -46,7 +46,7 @@ def test_arrays_of_other_kinds_are_read_as_what_they_are():
 
 def test_what_is_written_into_a_held_array_later_is_seen():
     values, sums = np.ones((4, 2)), np.zeros(4)
-    held = Held(values)
+    held = PackedBundle(values)
     values[:] = 5.0
     add_up(2, 1.0, held, sums, 0)
     np.testing.assert_array_equal(sums, 10.0)

@@ -1,11 +1,12 @@
-"""The language of kernels: functions compiled for lanes of the processor, and kept on disk.
+"""Python that becomes SIMD and PTX: kernels for lanes of the processor, compiled and kept on disk.
 
-May import: nothing of Eyas. Begin with `docs/lanes.md`; operations on lanes are in
+May import: nothing of Eyas.
+Begin with `README.md` and `docs/lanes.md`, then `jit.py`; operations on lanes are in
 `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
 """
 
+from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.calls import BoundCall, CompiledCall, ParallelCall, compiled, parallel
-from eyas.lanes.held import Held
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
     Kernel,
@@ -20,9 +21,9 @@ from eyas.lanes.jit import (
 __all__ = [
     "BoundCall",
     "CompiledCall",
-    "Held",
     "Intrinsic",
     "Kernel",
+    "PackedBundle",
     "ParallelCall",
     "VariableError",
     "address_of",

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-from eyas.lanes.held import Held
+from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.jit import thread_count
 
@@ -32,7 +32,10 @@ class _Job:
     __slots__ = ("_address", "_failed", "_kernel", "_parts", "_table", "left", "turns")
 
     def __init__(
-        self, kernel: Callable[[int, int, int], int], parts: tuple[Held[Any], ...], workers: int
+        self,
+        kernel: Callable[[int, int, int], int],
+        parts: tuple[PackedBundle[Any], ...],
+        workers: int,
     ) -> None:
         self._kernel = kernel
         self._parts = parts
@@ -125,7 +128,7 @@ class BoundCall:
     __slots__ = ("_address", "_function", "_kept")
 
     def __init__(
-        self, function: Callable[[int, int, int], int], bundles: tuple[Held[Any], ...]
+        self, function: Callable[[int, int, int], int], bundles: tuple[PackedBundle[Any], ...]
     ) -> None:
         table = array("q", [bundle.address for bundle in bundles])
         self._function = function
@@ -161,7 +164,7 @@ class CompiledCall:
         self._loaded: dict[tuple[str, ...], Callable[[int, int, int], int]] = {}
 
     def bind(self, *bundles: Any) -> BoundCall:  # noqa: ANN401
-        """Return the call bound to bundles, `Held` or not; it runs in the calling thread."""
+        """Return the call bound to bundles, packed or not; it runs in the calling thread."""
         held = _held(bundles)
         return BoundCall(self._function(held), held)
 
@@ -169,7 +172,7 @@ class CompiledCall:
         """Call it once."""
         self.bind(*bundles)()
 
-    def _function(self, bundles: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+    def _function(self, bundles: tuple[PackedBundle[Any], ...]) -> Callable[[int, int, int], int]:
         """Return the function for bundles of these kinds; as a ctypes function, it releases the
         interpreter's lock.
         """
@@ -178,14 +181,14 @@ class CompiledCall:
             self._loaded[kinds] = self._load(bundles)
         return self._loaded[kinds]
 
-    def _load(self, bundles: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+    def _load(self, bundles: tuple[PackedBundle[Any], ...]) -> Callable[[int, int, int], int]:
         from eyas.lanes.entry import entry_address  # LLVM, for the first call only
 
         return _ENTRY(entry_address(self.function, bundles, over_workers=self.over_workers))
 
 
-def _held(bundles: tuple[Any, ...]) -> tuple[Held[Any], ...]:
-    return tuple([b if isinstance(b, Held) else Held(b) for b in bundles])
+def _held(bundles: tuple[Any, ...]) -> tuple[PackedBundle[Any], ...]:
+    return tuple([b if isinstance(b, PackedBundle) else PackedBundle(b) for b in bundles])
 
 
 class ParallelCall(CompiledCall):

@@ -11,8 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.calls import ParallelCall
-from eyas.lanes.held import Held
 
 
 class DeviceArray(Protocol):
@@ -150,15 +150,15 @@ class HostDevice:
         """See `Device`."""
         array.reshape(-1).view(np.uint8)[:] = 0
 
-    def held(self, bundle: Any) -> Held[Any]:  # noqa: ANN401
+    def held(self, bundle: Any) -> PackedBundle[Any]:  # noqa: ANN401
         """See `Device`."""
-        return Held(bundle)
+        return PackedBundle(bundle)
 
     def launch(
         self,
         call: ParallelCall,
         workers: int,
-        *bundles: Held[Any],
+        *bundles: PackedBundle[Any],
         threads: int = 1,
         block: int | None = None,
     ) -> None:

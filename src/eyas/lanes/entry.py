@@ -9,8 +9,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.folder import kernel_folder, refusal
-from eyas.lanes.held import Held
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import (
@@ -28,12 +28,12 @@ from eyas.lanes.trusted import OWNER, touch
 
 _LOG = logging.getLogger(OWNER)
 
-LOCK = threading.RLock()  # Held while numba and LLVM compile
+LOCK = threading.RLock()  # PackedBundle while numba and LLVM compile
 
 
 def entry_address(
     function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
-    bundles: tuple[Held[Any], ...],  # What it is called with
+    bundles: tuple[PackedBundle[Any], ...],  # What it is called with
     *,
     over_workers: bool,
 ) -> int:
@@ -67,12 +67,10 @@ def _kept(path: Path) -> int | None:
     return None if found is None else load(found)
 
 
-def nothing_compiled(function: Callable[..., Any]) -> bool:
-    """Return whether a kernel is neither cached nor shipped for any bundles, as at a first start.
-
-    Args:
-        function: See `eyas.lanes.calls.CompiledCall`.
-    """
+def nothing_compiled(
+    function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
+) -> bool:
+    """Return whether a kernel is neither cached nor shipped for any bundles, as at first."""
     name = _name_of(function)
     return not any(kernel_folder().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
 
@@ -82,7 +80,11 @@ def _name_of(function: Callable[..., Any]) -> str:
 
 
 def _compiled(
-    function: Callable[..., Any], bundles: tuple[Held[Any], ...], entry: str, *, over_workers: bool
+    function: Callable[..., Any],
+    bundles: tuple[PackedBundle[Any], ...],
+    entry: str,
+    *,
+    over_workers: bool,
 ) -> MachineCode:
     import numba  # half a second, for the first start only
 

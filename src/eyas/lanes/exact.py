@@ -153,12 +153,11 @@ def determinant(matrix: NDArray[np.floating]) -> float:
     return float(dot(a, cross(b, c)))
 
 
-def convolved(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+def convolved(
+    values: NDArray[np.float64],  # Shape (S,)
+    weights: NDArray[np.float64],  # Shape (W,), with W <= S
+) -> NDArray[np.float64]:
     """Return values smoothed by weights, wherever these all have a value to weigh.
-
-    Args:
-        values: Shape (S,).
-        weights: Shape (W,), with W <= S.
 
     Returns:
         Shape (S - W + 1,), as `numpy.convolve` in its mode "valid".

@@ -18,8 +18,16 @@ import numpy as np
 from eyas.lanes.syntax import INDEX, syntax_of
 
 LANGUAGE = (
-    *("compilation.py", "elementary", "front_end.py", "held.py", "intrinsics.py"),
-    *("machine_code.py", "modules.py", "operations.py", "targets.py", "vector"),
+    "bundles.py",
+    "compilation.py",
+    "elementary",
+    "front_end.py",
+    "intrinsics.py",
+    "machine_code.py",
+    "modules.py",
+    "operations.py",
+    "targets.py",
+    "vector",
 )
 """Files and folders of this room that decide what a kernel is compiled to, beside the kernel."""
 

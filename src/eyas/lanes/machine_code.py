@@ -155,7 +155,7 @@ def code_name(
 def code_file(
     folder: Path,  # The folder of kernels
     name: str,  # From `code_name`
-    kinds: Iterable[str],  # The kinds of its bundles, see `eyas.lanes.held.Held`
+    kinds: Iterable[str],  # The kinds of its bundles, see `eyas.lanes.bundles.PackedBundle`
     made_by: Iterable[str],  # What else the code depends on, except the processor and llvmlite
 ) -> Path:
     """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`."""

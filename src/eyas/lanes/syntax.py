@@ -22,7 +22,7 @@ _LEFT_OUT = frozenset(
 _PARSING = threading.Lock()
 
 
-class Written(NamedTuple):
+class SourceSyntax(NamedTuple):
     """What is written about a function, or in a whole file; of a file without the names."""
 
     digest: str
@@ -30,7 +30,7 @@ class Written(NamedTuple):
 
 
 @cache
-def syntax_of(path: Path) -> dict[str, Written]:
+def syntax_of(path: Path) -> dict[str, SourceSyntax]:
     """Return what is written in a file: functions by qualified name, and the whole file by "".
 
     Raises:
@@ -38,7 +38,7 @@ def syntax_of(path: Path) -> dict[str, Written]:
         SyntaxError: It is no Python.
     """
     known = INDEX.of(path.read_bytes())
-    return {name: Written(digest, tuple(names)) for name, (digest, names) in known.items()}
+    return {name: SourceSyntax(digest, tuple(names)) for name, (digest, names) in known.items()}
 
 
 def tree_of(text: bytes | str, mode: str = "exec") -> ast.AST:
@@ -51,15 +51,15 @@ def tree_of(text: bytes | str, mode: str = "exec") -> ast.AST:
         return ast.parse(text, mode=mode)
 
 
-def _parsed(text: bytes) -> dict[str, Written]:
+def _parsed(text: bytes) -> dict[str, SourceSyntax]:
     tree = tree_of(text)
-    found = {"": Written(_digest("".join(_said(tree)).encode()), ())}
+    found = {"": SourceSyntax(_digest("".join(_said(tree)).encode()), ())}
     for name, node in _functions(tree, ""):
         own = _written(node)
         before = found.get(name)  # defined twice, perhaps under conditions
         if before is not None:
             names = {*before.names, *own.names}
-            own = Written(_digest((before.digest + own.digest).encode()), tuple(sorted(names)))
+            own = SourceSyntax(_digest((before.digest + own.digest).encode()), tuple(sorted(names)))
         found[name] = own
     return found
 
@@ -77,8 +77,8 @@ def _functions(node: ast.AST, inside: str) -> Iterator[tuple[str, ast.AST]]:
             yield from _functions(child, inside)
 
 
-def _written(node: ast.AST) -> Written:
-    return Written(_digest("".join(_said(node)).encode()), tuple(sorted(set(_names(node)))))
+def _written(node: ast.AST) -> SourceSyntax:
+    return SourceSyntax(_digest("".join(_said(node)).encode()), tuple(sorted(set(_names(node)))))
 
 
 def _names(node: ast.AST) -> Iterator[str]:

@@ -5,11 +5,11 @@ import pytest
 import shapely
 import shapely.ops
 
+from eyas.engine.behaviours import ground
 from eyas.engine.behaviours.ground import Ground
 from eyas.engine.behaviours.scripted import STROLL
 from eyas.engine.behaviours.waiting import waiting_spots
 from eyas.engine.core.errors import SpawnError
-from eyas.engine.core.optics.lens import places
 from eyas.engine.core.variation import Mirrored, Uniform
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.motion import ActorState, Motion
@@ -171,8 +171,8 @@ def test_offsets_are_perpendicular_to_the_road_and_on_the_asked_side(city):
 )
 def test_an_offset_is_to_the_left_of_its_road(city, monkeypatch, offset, least, most):
     road = max(streets(city.scene.network), key=lambda road: shapely.LineString(road.left).length)
-    monkeypatch.setattr(places, "streets", lambda _network: [road])
-    roadside = places.Roadside(city.scene.network, city.obstacles)
+    monkeypatch.setattr(ground, "streets", lambda _network: [road])
+    roadside = ground.Roadside(city.scene.network, city.obstacles)
     points = roadside.sample(200, offset, 0.1, np.random.default_rng(0), "objects.max_count")
     line = shapely.LineString(road.left)
     left = line.buffer(5.0, single_sided=True)

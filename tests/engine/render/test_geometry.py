@@ -25,7 +25,7 @@ from eyas.engine.render.pack.triangles import gradients, solid_triangles
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Mesh
-from eyas.lanes import Held, kernel
+from eyas.lanes import PackedBundle, kernel
 
 from ...kit.small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
 
@@ -46,7 +46,7 @@ def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_pa
     for _ in range(2):
         old = cached(Kind.GEOMETRY, lambda: new, (), of=Geometry, folder=tmp_path)
     assert old is not new
-    assert Held(old).kind == Held(new).kind
+    assert PackedBundle(old).kind == PackedBundle(new).kind
     for name, array in new._asdict().items():
         np.testing.assert_array_equal(getattr(old, name), array, err_msg=name)
 

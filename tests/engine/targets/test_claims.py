@@ -7,11 +7,11 @@ from eyas.engine.targets.catalogue import model_index
 from eyas.engine.targets.grammar.claims import (
     Bearing,
     Claim,
-    Doing,
+    MotionWord,
     PicturePlace,
+    distinguishes,
     fits,
     holds,
-    tells_apart,
 )
 from eyas.engine.targets.grammar.in_view import BodyWord, InView
 from eyas.engine.targets.grammar.naming import PhraseKind, contradictory, phrase_about
@@ -44,11 +44,11 @@ TURNING, STRAIGHT, STANDING = (0.5, 8.0, RED), (0.0, 8.0, RED), (0.0, 0.0, RED)
 @pytest.mark.parametrize(
     ("doing", "nearly"),
     [
-        (Doing.LEFT_TURN, [True, False, False, False]),
-        (Doing.RIGHT_TURN, [False, False, False, True]),
-        (Doing.STRAIGHT, [False, True, False, False]),
-        (Doing.MOVING, [True, True, False, True]),
-        (Doing.STANDING, [False, False, True, False]),
+        (MotionWord.LEFT_TURN, [True, False, False, False]),
+        (MotionWord.RIGHT_TURN, [False, False, False, True]),
+        (MotionWord.STRAIGHT, [False, True, False, False]),
+        (MotionWord.MOVING, [True, True, False, True]),
+        (MotionWord.STANDING, [False, False, True, False]),
     ],
 )
 def test_what_something_does_is_asked_strictly_and_nearly(doing, nearly):
@@ -60,22 +60,22 @@ def test_what_something_does_is_asked_strictly_and_nearly(doing, nearly):
 
 def test_a_close_call_fits_but_does_not_hold():
     view = view_of((0.1, 8.0, RED), TURNING)
-    claim = Claim(BodyWord.SEDAN, doing=Doing.LEFT_TURN)
+    claim = Claim(BodyWord.SEDAN, doing=MotionWord.LEFT_TURN)
     assert fits(claim, view).tolist() == [True, True]
     assert holds(claim, view).tolist() == [False, True]
-    assert not tells_apart(claim, view, 1)  # a reader may mean the other
+    assert not distinguishes(claim, view, 1)  # a reader may mean the other
 
 
 def test_motion_alone_tells_two_of_the_same_look_apart():
     view = view_of(TURNING, STRAIGHT)
-    assert not tells_apart(Claim(BodyWord.SEDAN, "red"), view, 0)
-    assert tells_apart(Claim(BodyWord.SEDAN, "red", Doing.LEFT_TURN), view, 0)
+    assert not distinguishes(Claim(BodyWord.SEDAN, "red"), view, 0)
+    assert distinguishes(Claim(BodyWord.SEDAN, "red", MotionWord.LEFT_TURN), view, 0)
     for kinds in [(PhraseKind.BODY,), (PhraseKind.COLOUR,)]:
         assert phrase_about(view, 0, np.random.default_rng(1), kinds=kinds).claim is None
     for seed in range(20):
         phrase = phrase_about(view, 0, np.random.default_rng(seed), kinds=(PhraseKind.ACTION,))
         assert phrase.kind is PhraseKind.ACTION
-        assert phrase.claim.doing is Doing.LEFT_TURN
+        assert phrase.claim.doing is MotionWord.LEFT_TURN
 
 
 def test_motion_that_all_share_tells_nothing_apart():
@@ -86,10 +86,10 @@ def test_motion_that_all_share_tells_nothing_apart():
 
 def test_a_wrong_motion_fits_nothing_in_view():
     view = view_of(TURNING, STRAIGHT)
-    claim = Claim(BodyWord.SEDAN, "red", Doing.LEFT_TURN)
+    claim = Claim(BodyWord.SEDAN, "red", MotionWord.LEFT_TURN)
     for seed in range(20):
         wrong = contradictory(claim, view, np.random.default_rng(seed))
-        assert wrong.doing in (Doing.RIGHT_TURN, Doing.STANDING)
+        assert wrong.doing in (MotionWord.RIGHT_TURN, MotionWord.STANDING)
         assert wrong == claim._replace(doing=wrong.doing)
 
 

@@ -4,7 +4,7 @@ from array import array
 
 import numpy as np
 
-from eyas.lanes import Held
+from eyas.lanes import PackedBundle
 
 
 class ApartArray:
@@ -65,7 +65,7 @@ class ApartDevice:
         array.memory.reshape(-1).view(np.uint8)[:] = 0
 
     def held(self, bundle):
-        return Held(self._there(bundle))
+        return PackedBundle(self._there(bundle))
 
     def _there(self, part):
         if isinstance(part, np.ndarray):

@@ -16,7 +16,7 @@ from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.starts import AROUND_BODY
 from eyas.engine.targets.catalogue import MODELS, kind_index, kind_of, models_of
 from eyas.engine.targets.colour_names import COLOUR_NAMES
-from eyas.engine.targets.grammar.claims import Claim, fits, tells_apart
+from eyas.engine.targets.grammar.claims import Claim, distinguishes, fits
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, InView, body_of
 from eyas.engine.targets.grammar.naming import (
     NO_PHRASE,
@@ -287,7 +287,7 @@ def _right(
     kind, count = case
     own = body_of(int(view.model[row]))
     for claim in claims_about(view, row, kind, rng):
-        if claim.body is not own or claim.colour is None or not tells_apart(claim, view, row):
+        if claim.body is not own or claim.colour is None or not distinguishes(claim, view, row):
             continue
         match kind:
             case PhraseKind.COLOUR:
@@ -321,6 +321,6 @@ def _other(
     for own in (kind, *PhraseKind):
         for k in rng.permutation(len(others)).tolist():
             for claim in claims_about(view, others[k], own, rng):
-                if claim.colour is not None and tells_apart(claim, view, others[k]):
+                if claim.colour is not None and distinguishes(claim, view, others[k]):
                     return others[k], Phrase(in_words(claim, Wording.TEST, rng), claim, own)
     return None

@@ -14,7 +14,7 @@ from eyas.benchmark.policies.blobs import Blobs, blobs_in, coloured, painted, sa
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.engine.policies.steering import ground_offset, ground_width, towards
 from eyas.engine.targets.grammar.attributes import claim_of
-from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
+from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 from eyas.lanes import exact
 
@@ -255,18 +255,18 @@ def _ways(watched: list[tuple[float, Floats]]) -> list[Floats]:
     return ways
 
 
-def _misdoing(doing: Doing, way: Floats) -> float:
+def _misdoing(doing: MotionWord, way: Floats) -> float:
     """Return how badly a way of one second is what a claim says."""
     first, second = way[1] - way[0], way[2] - way[1]
     speed = exact.hypot(*(way[2] - way[0])) / _WATCHED
     turn = exact.atan2(first[0] * second[1] - first[1] * second[0], exact.dot(first, second))
     stands, moves = speed < _SPEEDS[0], speed > _SPEEDS[1]
     wrong = {
-        Doing.STANDING: not stands,
-        Doing.MOVING: not moves,
-        Doing.STRAIGHT: not moves or abs(turn) > _TURN,
-        Doing.LEFT_TURN: not moves or turn < _TURN,
-        Doing.RIGHT_TURN: not moves or turn > -_TURN,
+        MotionWord.STANDING: not stands,
+        MotionWord.MOVING: not moves,
+        MotionWord.STRAIGHT: not moves or abs(turn) > _TURN,
+        MotionWord.LEFT_TURN: not moves or turn < _TURN,
+        MotionWord.RIGHT_TURN: not moves or turn > -_TURN,
     }[doing]
     return 5.0 if wrong else 0.0
 

@@ -14,7 +14,7 @@ from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of
 from eyas.engine.targets.kind import Kind, Looks
 from eyas.engine.targets.quadrotor import QUADROTOR
 from eyas.engine.targets.rig import Rigs
-from eyas.engine.targets.words import looks_in_words
+from eyas.engine.targets.words import colour_words
 
 __all__ = ["ModelRow", "entries", "table"]
 
@@ -26,7 +26,7 @@ class ModelRow:
     name: str
     kind: str
     size: tuple[float, float, float]  # Length, width and height [m]
-    colours: tuple[str, ...]  # See `looks_in_words`
+    colours: tuple[str, ...]  # See `colour_words`
     motion: str
     mass: float | None  # [kg]; None: not known
     triangles: tuple[int, int]
@@ -47,7 +47,7 @@ def entries() -> list[ModelRow]:
                     name=MODELS[model].name,
                     kind=kind.name,
                     size=MODELS[model].size,
-                    colours=looks_in_words(model),
+                    colours=colour_words(model),
                     motion=MODELS[model].motion,
                     mass=MODELS[model].mass,
                     triangles=(_triangles(parts, 0), _triangles(parts, -1)),

@@ -30,20 +30,14 @@ _folded_by = interpreted(folded_by)
 
 
 class GapAcceptance:
-    """The gaps in traffic.
-
-    Args:
-        vehicles: The vehicles; None: there are none.
-        samples: Number of samples.
-        rate: Samples per second [Hz].
-        lights: What crossings with lights show, see `walk_plan`; None: there are none.
-    """
+    """The gaps in traffic."""
 
     def __init__(
         self,
-        vehicles: Motion | None,
-        samples: int,
-        rate: float,
+        vehicles: Motion | None,  # The vehicles; None: there are none
+        samples: int,  # Number of samples
+        rate: float,  # Samples per second [Hz]
+        # What crossings with lights show, see `walk_plan`; None: there are none
         lights: SignalPlan | None = None,
     ) -> None:
         self._samples, self._rate = samples, rate
@@ -101,13 +95,12 @@ class GapAcceptance:
         finishes: NDArray[np.bool_] = held[here + after] == held[here]
         return np.logical_and(goes, finishes)
 
-    def _busy_before(self, line: Floats, clear: float) -> NDArray[np.int64]:
-        """Return at how many samples before each a vehicle is on a line, shape (samples + 1,).
-
-        Args:
-            line: Where it begins and ends [m], shape (2, 2).
-            clear: Up to which distance of its sides it is a vehicle on it [m].
-        """
+    def _busy_before(
+        self,
+        line: Floats,  # Where it begins and ends [m], shape (2, 2)
+        clear: float,  # Up to which distance of its sides it is a vehicle on it [m]
+    ) -> NDArray[np.int64]:
+        """Return at how many samples before each a vehicle is on a line, shape (samples + 1,)."""
         key = min(line.tobytes(), line[::-1].tobytes()), clear  # there and back
         if key not in self._known:
             busy = np.zeros(self._samples, np.bool_)

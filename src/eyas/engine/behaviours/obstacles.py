@@ -74,15 +74,14 @@ class GroundObstacles:
         blocked[which] = True
         return blocked
 
-    def reach(self, start: Floats, direction: Floats, far: float, radius: float) -> Floats:
-        """Return how far one can go straight on [m], shape (K,).
-
-        Args:
-            start: Where from [m], shape (K, 2).
-            direction: Headings [rad], shape (K,).
-            far: The most that is returned [m].
-            radius: Distance to obstacles that is kept [m].
-        """
+    def reach(
+        self,
+        start: Floats,  # Where from [m], shape (K, 2)
+        direction: Floats,  # Headings [rad], shape (K,)
+        far: float,  # The most that is returned [m]
+        radius: float,  # Distance to obstacles that is kept [m]
+    ) -> Floats:
+        """Return how far one can go straight on [m], shape (K,)."""
         end = start + far * np.column_stack([exact.cos(direction), exact.sin(direction)])
         lines = shapely.linestrings(np.stack([start, end], axis=1))
         which, what = self._tree.query(lines, predicate="dwithin", distance=radius)

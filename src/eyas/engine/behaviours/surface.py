@@ -30,13 +30,12 @@ class Footing(NamedTuple):
 
 
 class WalkedSurface:
-    """The upper sides of ground, roads and pavements.
+    """The upper sides of ground, roads and pavements."""
 
-    Args:
-        scene: The map.
-    """
-
-    def __init__(self, scene: Scene) -> None:
+    def __init__(
+        self,
+        scene: Scene,  # The map
+    ) -> None:
         self._terrain = scene.terrain
         kinds = scene.object_class[scene.static_object]
         corners = scene.static.positions[scene.static.triangles].astype(np.float64)

@@ -23,15 +23,14 @@ class TimedMotion(NamedTuple):
     travelled: Floats  # Walkway since the beginning [m]
 
 
-def ride(chain: Chain, habit: Habit, time: Floats) -> TimedMotion:
+def ride(
+    chain: Chain,  # The path
+    habit: Habit,  # Speed, acceleration and largest yaw rate
+    time: Floats,  # Times since the beginning [s], shape (K,), at least 0
+) -> TimedMotion:
     """Return the motion along a path, at the end of which it stands still.
 
     Speed changes evenly; where a curve would need too fast a turn, or a spin follows, it is lower.
-
-    Args:
-        chain: The path.
-        habit: Speed, acceleration and largest yaw rate.
-        time: Times since the beginning [s], shape (K,), at least 0.
     """
     begin, ends = _speeds(chain, habit)
     duration, v, rate = _phases(chain, habit, begin, ends)

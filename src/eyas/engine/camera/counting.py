@@ -62,14 +62,12 @@ def tables_of_counts() -> Counts:
 
 
 @kernel(inline=True)
-def counted(counts: Counts, mean: float, word: int) -> float:
-    """Return a Poisson-distributed count, by inversion with a guide table (Devroye, 1986, III.2.4).
-
-    Args:
-        counts: The tables.
-        mean: 0 to `FEW`.
-        word: 32 random bits.
-    """
+def counted(
+    counts: Counts,  # The tables
+    mean: float,  # 0 to `FEW`
+    word: int,  # 32 random bits
+) -> float:
+    """Return a Poisson-distributed count: inversion with a guide table (Devroye 1986, III.2.4)."""
     scaled = mean * f4(1.0 / (_STEP * _STEP))
     row = to_i4(root(scaled))
     number = to_f4(row)

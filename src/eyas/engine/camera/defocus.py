@@ -30,13 +30,12 @@ def disc(
     return np.asarray(share / share.sum(), np.float32)
 
 
-def defocused(radiance: NDArray[np.float32], diameter: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Return pictures out of focus; beyond the border lies what is at the border.
-
-    Args:
-        radiance: Shape (V, 3, H, W).
-        diameter: Of the circle of confusion of each picture [pixels], shape (V,).
-    """
+def defocused(
+    radiance: NDArray[np.float32],  # Shape (V, 3, H, W)
+    # Of the circle of confusion of each picture [pixels], shape (V,)
+    diameter: NDArray[np.float64],
+) -> NDArray[np.float32]:
+    """Return pictures out of focus; beyond the border lies what is at the border."""
     blurred = radiance.copy()
     for size in np.unique(diameter[diameter > 1.0]).tolist():
         same = np.flatnonzero(diameter == size)

@@ -33,7 +33,7 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.kernels.pixels import pack
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.pack.light import encoded_tone
-from eyas.lanes import Held, exact, kernel, parallel, thread_count
+from eyas.lanes import PackedBundle, exact, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,
     gather,
@@ -71,22 +71,15 @@ class Development:
 
     Attributes:
         exposure: Exposure times and speeds, written in place.
-
-    Args:
-        imager: The sensor.
-        exposure: Its exposure.
-        spectrum: What light it tells apart.
-        luminance: That of radiance 1 [cd/m^2].
-        count: N.
     """
 
     def __init__(
         self,
-        imager: ImagerConfig,
+        imager: ImagerConfig,  # The sensor
         exposure: ExposureConfig,
-        spectrum: Spectrum,
-        luminance: float,
-        count: int,
+        spectrum: Spectrum,  # What light it tells apart
+        luminance: float,  # That of radiance 1 [cd/m^2]
+        count: int,  # N
     ) -> None:
         self.exposure = ExposureState.create(count)
         self._imagers = ImagerState.create(count)
@@ -95,8 +88,8 @@ class Development:
         grey = spectrum is not Spectrum.COLOUR
         mosaic = Demosaicking.NONE if grey else imager.mosaic
         limits = np.array([*exposure.time, *exposure.iso])
-        self._exposed = Held(Exposed(self._imagers, self.exposure, limits))
-        self._work = Held(
+        self._exposed = PackedBundle(Exposed(self._imagers, self.exposure, limits))
+        self._work = PackedBundle(
             _Work(
                 self._imagers,
                 self.exposure,

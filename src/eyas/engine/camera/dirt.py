@@ -96,13 +96,12 @@ class Dirt:
         drops = min(drops + wet * self._falling, MOST)
         self._drops.sample(tracker, drops, config.drop_size, _SMALLER, rng)
 
-    def cover(self, radiance: NDArray[np.float32], trackers: NDArray[np.integer]) -> None:
-        """Change the light of pictures in place.
-
-        Args:
-            radiance: Shape (V, 3, H, W).
-            trackers: The tracker of each, shape (V,).
-        """
+    def cover(
+        self,
+        radiance: NDArray[np.float32],  # Shape (V, 3, H, W)
+        trackers: NDArray[np.integer],  # The tracker of each, shape (V,)
+    ) -> None:
+        """Change the light of pictures in place."""
         chosen = trackers.astype(np.int64)
         workers = min(thread_count(), len(chosen))
         drops = bool(self._drops.number[chosen].any())

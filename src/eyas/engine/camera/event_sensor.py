@@ -56,13 +56,12 @@ class EventSensors:
         """Their pixels, and the events that these have emitted."""
         return self._pixels._replace(emitted=self._emitted)  # there may be more room by now
 
-    def forget(self, chosen: Integers, time: Floats) -> None:
-        """Begin to collect events anew.
-
-        Args:
-            chosen: The sensors, shape (V,).
-            time: When each has last seen [s], shape (V,).
-        """
+    def forget(
+        self,
+        chosen: Integers,  # The sensors, shape (V,)
+        time: Floats,  # When each has last seen [s], shape (V,)
+    ) -> None:
+        """Begin to collect events anew."""
         self._pixels.number[chosen] = 0
         self._since[chosen] = time
 

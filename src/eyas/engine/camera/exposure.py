@@ -163,14 +163,13 @@ def advance_exposure(
 
 
 @kernel
-def answer_meter(state: ExposureState, n: int, mean: tuple[float, float, float, float]) -> None:
-    """Note what the meter wants changed.
-
-    Args:
-        state: The exposures.
-        n: The tracker.
-        mean: Mean of the picture as a share of saturation, and of its red, green and blue.
-    """
+def answer_meter(
+    state: ExposureState,
+    n: int,  # The tracker
+    # Mean of the picture as a share of saturation, and of its red, green and blue
+    mean: tuple[float, float, float, float],
+) -> None:
+    """Note what the meter wants changed."""
     state.error[n] = log(state.target[n] / max(mean[0], _DARKEST)) / _LN2
     green = max(mean[2], _DARKEST)
     for channel in range(2):

@@ -26,16 +26,15 @@ from eyas.lanes.vector import (
 Floats = NDArray[np.float64]
 
 
-def vignette(strength: float, middle: tuple[float, float], size: tuple[int, int]) -> Floats:
+def vignette(
+    strength: float,  # Share that is missing there
+    middle: tuple[float, float],  # Column and row of the principal point [pixels]
+    size: tuple[int, int],  # Width and height of the picture [pixels]
+) -> Floats:
     """Return the share of light that reaches each pixel, shape (height, width).
 
     By the law of cos⁴ (natural vignetting): cos² = 1 / (1 + tan²), and tan grows with the distance
     from the principal point; at a corner's distance from the middle, 1 - `strength` is left.
-
-    Args:
-        strength: Share that is missing there.
-        middle: Column and row of the principal point [pixels].
-        size: Width and height of the picture [pixels].
     """
     width, height = size
     right = np.asarray((np.arange(width) + 0.5 - middle[0]) / (0.5 * width), np.float64)

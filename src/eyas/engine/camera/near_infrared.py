@@ -43,13 +43,12 @@ class _Work(NamedTuple):
     class_id: NDArray[np.uint8]  # Shape (V, pixels)
 
 
-def near_infrared(radiance: NDArray[np.float32], class_id: NDArray[np.uint8]) -> None:
-    """Replace the three colours of pictures by their near infrared, the same in each.
-
-    Args:
-        radiance: Linear red, green and blue, shape (V, 3, H, W); written in place.
-        class_id: `ObjectClass` of each pixel, shape (V, H, W).
-    """
+def near_infrared(
+    # Linear red, green and blue, shape (V, 3, H, W); written in place
+    radiance: NDArray[np.float32],
+    class_id: NDArray[np.uint8],  # `ObjectClass` of each pixel, shape (V, H, W)
+) -> None:
+    """Replace the three colours of pictures by their near infrared, the same in each."""
     views = len(radiance)
     work = _Work(radiance.reshape(views, 3, -1), class_id.reshape(views, -1))
     _change(min(thread_count(), views), work)

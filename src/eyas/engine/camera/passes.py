@@ -72,14 +72,13 @@ class _Work(NamedTuple):
     out: Single  # Of V exposures, shape (V, numbers); added to
 
 
-def add_passes(radiance: Single, pieces: Pieces, out: Single) -> None:
+def add_passes(
+    radiance: Single,  # Shape (P, 3, H, W)
+    pieces: Pieces,  # The P passes
+    out: Single,  # Shape (V, 3, H, W)
+) -> None:
     """Add the light of passes to the means of their exposures, in the order of the passes, so that
     how many are added at once changes no byte.
-
-    Args:
-        radiance: Shape (P, 3, H, W).
-        pieces: The P passes.
-        out: Shape (V, 3, H, W).
     """
     flat = radiance.reshape(len(radiance), -1), out.reshape(len(out), -1)
     work = _Work(flat[0], pieces.view, pieces.share, flat[1])

@@ -89,7 +89,7 @@ class Moving(NamedTuple):
     view must be the same whatever other views there are."""
 
 
-class Seen(NamedTuple):
+class ViewMotion(NamedTuple):
     """What V cameras see, as far as its motion in the picture is asked."""
 
     window: Floats  # Length of the time around the instant [s], shape (V,)
@@ -111,7 +111,9 @@ _WIDE = 1.0  # Roundings must not move the ground at the edge of the picture out
 
 
 @kernel(inline=True)
-def _way(seen: Seen, v: int, lens: Lens, reach: float, point: Vector, velocity: Vector) -> float:
+def _way(
+    seen: ViewMotion, v: int, lens: Lens, reach: float, point: Vector, velocity: Vector
+) -> float:
     """Return the way of a thing through the picture of view `v` [pixels]; 0 if it is not in it."""
     focal, half = lens
     x, y, z = point
@@ -140,7 +142,7 @@ def _way(seen: Seen, v: int, lens: Lens, reach: float, point: Vector, velocity: 
 
 @kernel(inline=True)
 def _way_of_ground(
-    exposure: Exposure, seen: Seen, v: int, lens: Lens, across: int, down: int
+    exposure: Exposure, seen: ViewMotion, v: int, lens: Lens, across: int, down: int
 ) -> float:
     """Return the way of what a place of the picture shows of the plane of the ground."""
     focal, half = lens
@@ -157,7 +159,7 @@ def _way_of_ground(
 
 
 @compiled
-def motion_in_pixels(exposure: Exposure, seen: Seen) -> None:
+def motion_in_pixels(exposure: Exposure, seen: ViewMotion) -> None:
     """Write how far what each camera sees moves through its picture within a time: the ground, at
     nine places of the picture, and things.
     """

@@ -140,19 +140,13 @@ class ThermalFrames(NamedTuple):
 
 
 class ThermalImager:
-    """Makes pictures of temperatures.
-
-    Args:
-        config: The settings.
-        temperatures: How warm surfaces are.
-        object_class: `ObjectClass` of each object of the scene, shape (O,).
-    """
+    """Makes pictures of temperatures."""
 
     def __init__(
         self,
-        config: ThermalConfig,
-        temperatures: SurfaceTemperatures,
-        object_class: NDArray[np.integer],
+        config: ThermalConfig,  # The settings
+        temperatures: SurfaceTemperatures,  # How warm surfaces are
+        object_class: NDArray[np.integer],  # `ObjectClass` of each object of the scene, shape (O,)
     ) -> None:
         low, high = config.span or (0.0, 0.0)
         self._scene = _Scene(

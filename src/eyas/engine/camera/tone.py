@@ -16,24 +16,22 @@ _LAST_STEP = f4(TONE_STEPS - 1)
 
 
 class ToneCurve:
-    """The renderer's curve, see `eyas.engine.render.pack.light.tone_table`.
+    """The renderer's curve, see `eyas.engine.render.pack.light.tone_table`."""
 
-    Args:
-        exposure: Factor on radiances, see `eyas.engine.state.lighting.Lighting`.
-    """
-
-    def __init__(self, exposure: float) -> None:
+    def __init__(
+        self,
+        exposure: float,  # Factor on radiances, see `eyas.engine.state.lighting.Lighting`
+    ) -> None:
         self._table = tone_table()
         # As `tone_byte` has it, so that the bytes are those of the renderer.
         self._scale = float(np.float32(exposure) * np.float32(TONE_STEPS / TONE_TOP))
 
-    def develop(self, radiance: NDArray[np.float32], rgb: NDArray[np.uint8]) -> None:
-        """Write the bytes of pictures.
-
-        Args:
-            radiance: Shape (V, 3, H, W).
-            rgb: sRGB, shape (V, H, W, 3), written in place.
-        """
+    def develop(
+        self,
+        radiance: NDArray[np.float32],  # Shape (V, 3, H, W)
+        rgb: NDArray[np.uint8],  # sRGB, shape (V, H, W, 3), written in place
+    ) -> None:
+        """Write the bytes of pictures."""
         views = len(radiance)
         work = _Work(
             radiance.reshape(views, 3, -1), rgb.reshape(views, -1), self._table, self._scale

@@ -43,7 +43,7 @@ from eyas.engine.targets.looks import LookTable
 from eyas.engine.task.done import DoneReason
 from eyas.engine.task.journal import Journal
 from eyas.engine.task.step_line import step_line
-from eyas.lanes import BoundCall, CompiledCall, Held, Kernel
+from eyas.lanes import BoundCall, CompiledCall, Kernel, PackedBundle
 
 __all__ = ["Batch", "Outcome", "Seeds", "Truth"]
 
@@ -51,8 +51,8 @@ _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kern
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
-"""Types made of the settings and the catalogue, which may have grown in this process."""
-_BOUND = (BoundCall, Held)  # Bound to the addresses of arrays, which stay
+"""Made of the settings and the catalogue, which may have grown in this process."""
+_BOUND = (BoundCall, PackedBundle)  # To the addresses of arrays, which stay
 _SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 """Types of parts for `eyas.engine.core.memento.remember` to leave out."""

@@ -98,13 +98,12 @@ class LensBank:
         self.tables = self._shape.tables(1, (1, 1))
         self.size = 0, 0
 
-    def slots(self, lenses: Floats, focal: Floats) -> NDArray[np.int32]:
-        """Return the rows of `tables` of some lenses, which are made if they are not known.
-
-        Args:
-            lenses: The numbers of `Lens`, shape (V, 10).
-            focal: Focal lengths of the views [pixels], shape (V, 2).
-        """
+    def slots(
+        self,
+        lenses: Floats,  # The numbers of `Lens`, shape (V, 10)
+        focal: Floats,  # Focal lengths of the views [pixels], shape (V, 2)
+    ) -> NDArray[np.int32]:
+        """Return the rows of `tables` of some lenses, which are made if they are not known."""
         numbers = np.concatenate([lenses, focal], axis=1)
         if (numbers == numbers[:1]).all():
             return np.full(len(numbers), self._slot(numbers[0], set()), np.int32)
@@ -179,13 +178,12 @@ class LensBank:
         width, height = tables.extent.max(axis=(0, 1)).tolist()
         self.size = max(width, self.size[0]), max(height, self.size[1])
 
-    def _sized(self, reach: Floats, camera: Floats) -> tuple[Floats, NDArray[np.int32]]:
-        """Return the focal lengths [pixels] and sizes of faces.
-
-        Args:
-            reach: See `Survey`.
-            camera: See `LensTables`.
-        """
+    def _sized(
+        self,
+        reach: Floats,  # See `Survey`
+        camera: Floats,  # See `LensTables`
+    ) -> tuple[Floats, NDArray[np.int32]]:
+        """Return the focal lengths [pixels] and sizes of faces."""
         # As many samples for each of the picture's as the least dense place needs, with the
         # picture's ratio of width to height of a pixel.
         dense = DENSITY / (reach[:, 2] * math.sqrt(self._shape.across * self._shape.down))

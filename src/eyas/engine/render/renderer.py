@@ -37,32 +37,27 @@ from eyas.engine.render.pack.light import Baked, build_light
 from eyas.engine.state.draw import NO_SPRAY, DrawList, DrawStage, Picture, Views
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
-from eyas.lanes import Held, interpreted, thread_count
+from eyas.lanes import PackedBundle, interpreted, thread_count
 from eyas.lanes.vector import WIDTH
 
 
 class CpuRenderer:
-    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`.
-
-    Args:
-        geometry: Everything that can be drawn.
-        light: Light and air.
-        ready: Called before anything is drawn; returns when the kernels are compiled.
-    """
+    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`."""
 
     def __init__(
         self,
-        geometry: Geometry,
-        light: Light,
+        geometry: Geometry,  # Everything that can be drawn
+        light: Light,  # Light and air
+        # Called before anything is drawn; returns when the kernels are compiled
         ready: Callable[[], object] | None = None,
     ) -> None:
         self._geometry, self._light = geometry, light
         self._ready = ready
-        self._held = Held(geometry), Held(light)
-        self._last = Held(_NO_MOVERS), Held(NO_OUTPUT), Held(NO_TABLES)
-        self._scratch: dict[tuple[object, ...], Held[Scratch]] = {}
+        self._held = PackedBundle(geometry), PackedBundle(light)
+        self._last = PackedBundle(_NO_MOVERS), PackedBundle(NO_OUTPUT), PackedBundle(NO_TABLES)
+        self._scratch: dict[tuple[object, ...], PackedBundle[Scratch]] = {}
         self._banks: dict[tuple[int, int, int, int], LensBank] = {}
-        self._tasks: dict[Size, Held[Task]] = {}
+        self._tasks: dict[Size, PackedBundle[Task]] = {}
 
     @property
     def packed(self) -> tuple[Geometry, Light]:
@@ -133,7 +128,7 @@ class CpuRenderer:
             bent, timed,
         )  # fmt: skip
         # Taken away while it is in use, so that another thread that draws gets another one.
-        task = self._tasks.pop(size, None) or Held(new_task(size))
+        task = self._tasks.pop(size, None) or PackedBundle(new_task(size))
         band = task.bundle.job.band
         jobs, workers = len(band), min(threads, len(band))
         set_views(task.bundle, views, float(self._light.weather.fog_density), workers)
@@ -168,7 +163,7 @@ class CpuRenderer:
         slots: int,
         measured: bool,
         face: tuple[int, int] | None,
-    ) -> Held[Scratch]:
+    ) -> PackedBundle[Scratch]:
         """Return working memory, the same as last time for the same size.
 
         `face` is the largest width and height of a lens' faces [pixels], None without lenses.
@@ -210,7 +205,7 @@ class CpuRenderer:
                 recorded=np.empty((workers, 0), np.int64),
                 bent_tile=np.zeros((0, 0, 4), np.int32),
             )
-            _keep(self._scratch, key, Held(scratch))
+            _keep(self._scratch, key, PackedBundle(scratch))
         return self._scratch[key]
 
 

@@ -41,24 +41,16 @@ class Lidar:
 
     Points are numbered through an episode, those of its first turn below 0. The latest are kept, as
     many as a message may be late: what is told is the last turn of some time ago.
-
-    Args:
-        config: The settings.
-        snapshot: State of the trackers.
-        obstacles: What their rays may hit.
-        active: Whether each tracker moves in a step, shape (N,); read at each.
-        latest: Most steps of 2 ms by which a message may be late, besides `delay_steps`.
-        mount: Where it is if the settings do not say.
     """
 
     def __init__(
         self,
-        config: LidarConfig,
-        snapshot: Snapshot,
-        obstacles: Obstacles,
-        active: NDArray[np.bool_],
-        latest: int = 0,
-        mount: MountConfig = MOUNT,
+        config: LidarConfig,  # The settings
+        snapshot: Snapshot,  # State of the trackers
+        obstacles: Obstacles,  # What their rays may hit
+        active: NDArray[np.bool_],  # Whether each tracker moves in a step, shape (N,); read at each
+        latest: int = 0,  # Most steps of 2 ms by which a message may be late, besides `delay_steps`
+        mount: MountConfig = MOUNT,  # Where it is if the settings do not say
     ) -> None:
         count, points = len(active), config.points
         self._longest, self._points = config.max_range, points
@@ -136,13 +128,12 @@ class Lidar:
         packets: Floats = rows.reshape(len(rows), -1)
         return packets
 
-    def fill(self, out: NDArray[np.float32], late: NDArray[np.int64] | None = None) -> None:
-        """Write the distances [m], the largest range where nothing is, shape (N, points).
-
-        Args:
-            out: Where to write.
-            late: As for `ranges`.
-        """
+    def fill(
+        self,
+        out: NDArray[np.float32],  # Where to write
+        late: NDArray[np.int64] | None = None,  # As for `ranges`
+    ) -> None:
+        """Write the distances [m], the largest range where nothing is, shape (N, points)."""
         np.minimum(self.ranges(late), self._longest, out=out, casting="same_kind")
 
     def _told(self, kept: NDArray[Number], late: NDArray[np.int64] | None) -> NDArray[Number]:

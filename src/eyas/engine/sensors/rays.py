@@ -37,16 +37,15 @@ class Ray(NamedTuple):
 
 
 @kernel(inline=True)
-def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[float, int]:
+def cast_ray(
+    ray: Ray,
+    reach: float,  # Its length [m]
+    obstacles: Obstacles,  # What it may meet
+    boxes: int,  # Number of boxes in `obstacles.boxes`
+) -> tuple[float, int]:
     """Return the distance of the first thing [m], infinity if there is none, and its object id.
 
     Rays that begin inside a solid meet its far side.
-
-    Args:
-        ray: The ray.
-        reach: Its length [m].
-        obstacles: What it may meet.
-        boxes: Number of boxes in `obstacles.boxes`.
     """
     best, thing = _cast_solids(ray, reach, obstacles.solids)
     near, actor = _cast_boxes(ray, min(reach, best), obstacles.boxes, boxes)

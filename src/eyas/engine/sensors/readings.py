@@ -44,20 +44,14 @@ class Readings:
     Attributes:
         told: What they tell now, the original's in the columns 1 to 19 of the basic packet, shape
             (N, C); written in place.
-
-    Args:
-        fitted: The sensors, with their errors.
-        snapshot: State of the trackers.
-        terrain: The ground.
-        active: Whether each tracker moves in a step, shape (N,); read at each.
     """
 
     def __init__(
         self,
-        fitted: Sequence[Fitted],
-        snapshot: Snapshot,
-        terrain: Terrain,
-        active: NDArray[np.bool_],
+        fitted: Sequence[Fitted],  # The sensors, with their errors
+        snapshot: Snapshot,  # State of the trackers
+        terrain: Terrain,  # The ground
+        active: NDArray[np.bool_],  # Whether each tracker moves in a step, shape (N,); read at each
     ) -> None:
         errors, count = [each.errors for each in fitted], len(active)
         widths = [each.sensor.width for each in fitted]

@@ -17,22 +17,15 @@ class FrameStack:
     Attributes:
         shape: Shape of one stack: (H, W, frames x channels) or (frames x channels, H, W).
         images: The stacks, shape (N, *shape); the newest picture has the last channels.
-
-    Args:
-        count: N.
-        size: Height and width [pixels].
-        colours: RGB, or grey as in ITU-R BT.601 (Pillow's mode `L`).
-        layout: Order of the axes.
-        frames: Number of pictures in a stack.
     """
 
     def __init__(
         self,
-        count: int,
-        size: tuple[int, int],
-        colours: Colours = Colours.RGB,
-        layout: ColourLayout = ColourLayout.HWC,
-        frames: int = 1,
+        count: int,  # N
+        size: tuple[int, int],  # Height and width [pixels]
+        colours: Colours = Colours.RGB,  # RGB, or grey as in ITU-R BT.601 (Pillow's mode `L`)
+        layout: ColourLayout = ColourLayout.HWC,  # Order of the axes
+        frames: int = 1,  # Number of pictures in a stack
     ) -> None:
         self._grey = colours is Colours.GREY
         self._channels = 1 if self._grey else 3

@@ -88,13 +88,12 @@ def extras_of(config: SimConfig) -> tuple[ExtraConfig, ...]:
     )
 
 
-def vehicles_of(crowd: Crowd, known: int) -> int:
+def vehicles_of(
+    crowd: Crowd,
+    known: int,  # Number of vehicles that the traffic has
+) -> int:
     """Return how many of the vehicles in `traffic` are in the world; as in the original, none
     unless they are the targets or asked for.
-
-    Args:
-        crowd: The crowd.
-        known: Number of vehicles that the traffic has.
 
     Raises:
         ConfigError: More are asked for than there are.

@@ -46,12 +46,11 @@ class Surroundings(NamedTuple):
     """What crossings with lights show, see `walk_plan`; None: there are none."""
 
 
-def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+def crowd_motions(
+    crowd: Crowd,
+    around: Surroundings,  # Where and when it moves
+) -> list[Motion]:
     """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
-
-    Args:
-        crowd: The crowd.
-        around: Where and when it moves.
 
     Raises:
         ConfigError: Somebody is to cross roads among vehicles whose motion is not known.

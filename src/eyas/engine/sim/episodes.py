@@ -27,7 +27,7 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.targets.catalogue import MODELS, kind_of
 from eyas.engine.traffic.replay import check_time
 from eyas.engine.traffic.source import TrafficSource
-from eyas.lanes import Held, interpreted
+from eyas.lanes import PackedBundle, interpreted
 from eyas.lanes.pcg64 import STATE
 
 Sampler = Callable[[int, EpisodeKey], None]  # Draws something for the episode of a tracker
@@ -79,7 +79,7 @@ class Episodes:
         self.models = _model_table()
         self._rules = _rules(config, int(traffic.duration / PHYSICS_STEP))
         self._sides = _sides(config, worlds)
-        self._draw = Held(
+        self._draw = PackedBundle(
             EpisodeSampling(
                 snapshot,
                 worlds.of,
@@ -96,7 +96,7 @@ class Episodes:
                 state=np.zeros(STATE, np.int64),
             )
         )
-        self._call = Held(Call.create(count))
+        self._call = PackedBundle(Call.create(count))
         self._bind()
 
     def _bind(self) -> None:

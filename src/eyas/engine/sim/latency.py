@@ -76,14 +76,13 @@ class LateCommands:
         self._commands[self._next, tracker] = 0.0
         self._since[self._next, tracker] = -1  # before any that is given
 
-    def pieces(self, commands: Floats, steps: int, clock: Integers) -> Iterator[tuple[Floats, int]]:
-        """Yield the commands in force during the next steps, and for how many steps.
-
-        Args:
-            commands: The new commands, shape (N, 4) or (N, 8).
-            steps: Number of physics steps.
-            clock: Physics steps of each tracker since its reset, shape (N,).
-        """
+    def pieces(
+        self,
+        commands: Floats,  # The new commands, shape (N, 4) or (N, 8)
+        steps: int,  # Number of physics steps
+        clock: Integers,  # Physics steps of each tracker since its reset, shape (N,)
+    ) -> Iterator[tuple[Floats, int]]:
+        """Yield the commands in force during the next steps, and for how many steps."""
         self._next = (self._next + 1) % len(self._since)
         more = commands.shape[1] - self._commands.shape[2]
         if more > 0:  # the first that turn cameras

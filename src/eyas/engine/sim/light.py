@@ -32,16 +32,15 @@ class LightRules(NamedTuple):
 
 
 @kernel
-def change_light(rules: LightRules, state: NDArray[np.int64]) -> tuple[float, float, float]:
+def change_light(
+    rules: LightRules,  # How they are sampled
+    state: NDArray[np.int64],  # The random stream, see `eyas.lanes.pcg64`
+) -> tuple[float, float, float]:
     """Draw factors on the sky's light and the sun's, and the density of the fog [1/m].
 
     As in the original, the luminosity of a world is 1 by day and 0.3 at night; a change is added to
     it or replaces it, and the result is at least 0. Unlike in the original, changes do not
     accumulate over resets.
-
-    Args:
-        rules: How they are sampled.
-        state: The random stream, see `eyas.lanes.pcg64`.
     """
     own = rules.luminosity
     sky = sampled(rules.sky, state) + (0.0 if rules.sky_replaces == 1 else own)
@@ -57,20 +56,14 @@ class LightChanges:
 
     Attributes:
         rules: How they are sampled.
-
-    Args:
-        config: The settings.
-        weather: The weather's own light.
-        changes: `Snapshot.light`; set here.
-        wind: The wind; None: there is none.
     """
 
     def __init__(
         self,
-        config: LightConfig,
-        weather: Lighting,
-        changes: LightState,
-        wind: WorldWindConfig | None = None,
+        config: LightConfig,  # The settings
+        weather: Lighting,  # The weather's own light
+        changes: LightState,  # `Snapshot.light`; set here
+        wind: WorldWindConfig | None = None,  # The wind; None: there is none
     ) -> None:
         self._wind = wind
         self._changes = changes

@@ -29,26 +29,18 @@ _NOWHERE = 1e9  # Place of trackers that have not started yet [m]
 
 
 class Starts:
-    """Tells where the trackers that begin an episode would be free.
-
-    Args:
-        solids: Returns what stands; called when it is first needed.
-        terrain: The ground.
-        motion: The traffic.
-        snapshot: State of N trackers, of which targets, ticks and start offsets are drawn.
-        worlds: Their worlds.
-        shared_target: Whether trackers of a world start around one target, however near.
-    """
+    """Tells where the trackers that begin an episode would be free."""
 
     def __init__(
         self,
-        solids: Callable[[], Solids],
-        terrain: Terrain,
-        motion: Motion,
+        solids: Callable[[], Solids],  # Returns what stands; called when it is first needed
+        terrain: Terrain,  # The ground
+        motion: Motion,  # The traffic
+        # State of N trackers, of which targets, ticks and start offsets are drawn
         snapshot: Snapshot,
         worlds: Worlds,
         *,
-        shared_target: bool,
+        shared_target: bool,  # Whether trackers of a world start around one target, however near
     ) -> None:
         self._solids, self._terrain, self._motion = solids, terrain, motion
         self._snapshot, self._worlds = snapshot, worlds

@@ -31,7 +31,7 @@ from eyas.engine.trackers.drone import advance, aim, carry, start
 from eyas.engine.trackers.tracker import Tracker
 from eyas.engine.trackers.tracker import stand as launch
 from eyas.engine.traffic.interpolation import interpolate_actor
-from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
+from eyas.lanes import BoundCall, CompiledCall, PackedBundle, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 
 
@@ -128,7 +128,7 @@ class StepKernels(NamedTuple):
     fly_one: Kernel  # `fly_one(state, orders, n)`: what `fly` does for tracker `n`
     begin_one: Kernel  # `begin_one(state, n, pitch)`: what `begin` does for tracker `n`
 
-    def bind(self, state: Held[StepState], orders: Held[Orders]) -> Step:
+    def bind(self, state: PackedBundle[StepState], orders: PackedBundle[Orders]) -> Step:
         """Return the calls, bound to a state."""
         return Step(*(kernel.bind(state, orders) for kernel in self[:3]))
 

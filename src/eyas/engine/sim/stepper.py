@@ -29,7 +29,7 @@ from eyas.engine.task.rules import Rules
 from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
-from eyas.lanes import BoundCall, Held
+from eyas.lanes import BoundCall, PackedBundle
 
 Floats = NDArray[np.float64]
 
@@ -75,22 +75,15 @@ class Stepper:
         seen: The state that agents see.
         told: What the trackers tell of themselves, see `Tracker.told`.
         samplers: Called with each tracker and the key of its episode that begins.
-
-    Args:
-        config: The settings.
-        assets: Map and traffic.
-        tracker: The kind of the trackers.
-        worlds: The worlds of the trackers.
-        snapshot: Their state.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        tracker: Tracker,
-        worlds: Worlds,
-        snapshot: Snapshot,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map and traffic
+        tracker: Tracker,  # The kind of the trackers
+        worlds: Worlds,  # The worlds of the trackers
+        snapshot: Snapshot,  # Their state
     ) -> None:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
@@ -102,7 +95,7 @@ class Stepper:
         self._kernels = step_kernels(config, tracker)
         self._turning_kernels = partial(step_kernels, config, with_gimbal(tracker))
         self._orders = Orders.create(count)
-        self._held_orders = Held(self._orders)
+        self._held_orders = PackedBundle(self._orders)
         self._turning_orders = self._orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
         active, bodies = self._orders.active, tracker.visible
         self.sensors = SensorSuite(config, assets, worlds, snapshot, active, bodies=bodies)
@@ -118,7 +111,7 @@ class Stepper:
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        self._held_state = Held(self._state_by(rules))
+        self._held_state = PackedBundle(self._state_by(rules))
         self._step = self._kernels.bind(self._held_state, self._held_orders)
         self._turning: BoundCall | None = None
 
@@ -163,7 +156,7 @@ class Stepper:
         """Return the step that also turns cameras; it is compiled when it is first needed."""
         if self._turning is None:
             kernels = self._turning_kernels()
-            self._turning = kernels.fly.bind(self._held_state, Held(self._turning_orders))
+            self._turning = kernels.fly.bind(self._held_state, PackedBundle(self._turning_orders))
         return self._turning
 
     def carry(self, steps: int) -> None:

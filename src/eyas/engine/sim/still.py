@@ -14,14 +14,13 @@ _shining = interpreted(shining)
 
 
 class StillWorld:
-    """One world without trackers: for galleries, benchmarks and tests of pictures.
+    """One world without trackers: for galleries, benchmarks and tests of pictures."""
 
-    Args:
-        assets: Map, traffic and renderer.
-        seed: Seed of the actors' models and colours.
-    """
-
-    def __init__(self, assets: Assets, seed: int = 1) -> None:
+    def __init__(
+        self,
+        assets: Assets,  # Map, traffic and renderer
+        seed: int = 1,  # Seed of the actors' models and colours
+    ) -> None:
         self.assets = assets
         model, colour = LookSampler(assets.traffic.motion.kind).sample(np.random.default_rng(seed))
         self._looks = Looks(model[None], colour[None])

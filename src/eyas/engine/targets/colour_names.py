@@ -52,11 +52,10 @@ def _nearest(colour: tuple[float, ...]) -> str:
     return min(COLOUR_NAMES, key=away)
 
 
-def colour_distances(colours: NDArray[np.floating]) -> NDArray[np.float64]:
+def colour_distances(
+    colours: NDArray[np.floating],  # sRGB 0 to 1, shape (A, 3)
+) -> NDArray[np.float64]:
     """Return the squared distances of colours from those with names, as `colour_name` measures.
-
-    Args:
-        colours: sRGB 0 to 1, shape (A, 3).
 
     Returns:
         In the order of `COLOUR_NAMES`, shape (A, names).

@@ -60,15 +60,14 @@ class Model:
             raise ConfigError(f"targets: {self.name!r} is {self.size} m; allowed: above 0")
 
     def check_meshes(
-        self, points: NDArray[np.floating], tolerance: float, *, antennas: bool = False
+        self,
+        # All points of the finest meshes of the resting model [m], shape (P, 3)
+        points: NDArray[np.floating],
+        tolerance: float,  # Share of the size that they may differ by
+        *,
+        antennas: bool = False,  # Whether something may stand out above
     ) -> None:
-        """Raise a `ConfigError` if the meshes are not of the size that is said.
-
-        Args:
-            points: All points of the finest meshes of the resting model [m], shape (P, 3).
-            tolerance: Share of the size that they may differ by.
-            antennas: Whether something may stand out above.
-        """
+        """Raise a `ConfigError` if the meshes are not of the size that is said."""
         ratio = np.ptp(points, axis=0) / self.size
         wrong = np.abs(ratio - 1.0) > tolerance
         wrong[2] &= not (antennas and ratio[2] > 1.0)

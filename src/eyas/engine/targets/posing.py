@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
-from eyas.lanes import BoundCall, Held, ParallelCall, kernel, parallel, specialised
+from eyas.lanes import BoundCall, PackedBundle, ParallelCall, kernel, parallel, specialised
 
 _MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
@@ -94,15 +94,19 @@ class PoseCall:
 
     def __init__(self, table: tuple[Any, ...], one: Callable[..., None]) -> None:
         self.table, self.one = table, one
-        self._kernel, self._table = _pose_all_of(one), Held(table)
-        self._held: tuple[Held[Any], ...] = ()
+        self._kernel, self._table = _pose_all_of(one), PackedBundle(table)
+        self._held: tuple[PackedBundle[Any], ...] = ()
         self._bound: BoundCall | None = None
 
     def __call__(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig.pose`."""
         given = (group, actors, looks, Slots(out.part, out.pose, out.colour, out.object_id))
         before = self._held
-        held = tuple(map(Held.again, before, given)) if before else tuple(map(Held, given))
+        held = (
+            tuple(map(PackedBundle.again, before, given))
+            if before
+            else tuple(map(PackedBundle, given))
+        )
         if self._bound is None or not all(map(operator.is_, held, before)):
             self._held, self._bound = held, self._kernel.bind(self._table, *held)
         if looks.model.shape[0] * len(group.actor) < _MANY:

@@ -78,14 +78,13 @@ class Rigs:
             reach.append(rig.reach(parts[own]))
         return np.array(reach)
 
-    def pose(self, actors: ActorState, looks: Looks, out: DrawList) -> None:
-        """Fill a draw list in place.
-
-        Args:
-            actors: State of A actors in each of W worlds.
-            looks: Models and colours of the same actors.
-            out: A draw list from `draw_list`.
-        """
+    def pose(
+        self,
+        actors: ActorState,  # State of A actors in each of W worlds
+        looks: Looks,  # Models and colours of the same actors
+        out: DrawList,  # A draw list from `draw_list`
+    ) -> None:
+        """Fill a draw list in place."""
         for rig, group in self.casts:
             rig.pose(group, actors, looks, out)
 

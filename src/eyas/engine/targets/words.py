@@ -33,7 +33,7 @@ _ACROSS: Final = _Row(("left", "right"), ("leftmost", "rightmost"), "{} from the
 _AWAY: Final = _Row(("nearer", "farther"), ("nearest", "farthest"), "{} nearest")
 
 
-class Seen(NamedTuple):
+class ObjectInView(NamedTuple):
     """What a camera sees of a moving object."""
 
     model: int  # Index into `MODELS`
@@ -61,7 +61,7 @@ def words_of(model: int, colour: Sequence[float]) -> str:
     return phrases(model, colour)[0]
 
 
-def looks_in_words(model: int) -> tuple[str, ...]:
+def colour_words(model: int) -> tuple[str, ...]:
     """Return the names of the colours that a model may have, in the order of its kind's.
 
     For what always looks the same, such as a robot: what it looks like.
@@ -72,9 +72,11 @@ def looks_in_words(model: int) -> tuple[str, ...]:
     return tuple(dict.fromkeys(colour_name(colour) for colour in kind_of(model).colours))
 
 
-def told_apart(target: Seen, others: Sequence[Seen]) -> str:
+def distinguishing_phrase(target: ObjectInView, others: Sequence[ObjectInView]) -> str:
     """Return the shortest description of a target that none of the others in view shares."""
-    rivals: dict[str, list[Seen]] = {own: [] for own in phrases(target.model, target.colour)}
+    rivals: dict[str, list[ObjectInView]] = {
+        own: [] for own in phrases(target.model, target.colour)
+    }
     for other in others:
         for phrase in phrases(other.model, other.colour):
             if phrase in rivals:
@@ -89,7 +91,7 @@ def told_apart(target: Seen, others: Sequence[Seen]) -> str:
     return f"{phrase}, {_place(target, alike)}"
 
 
-def _doing(seen: Seen) -> str:
+def _doing(seen: ObjectInView) -> str:
     kind = kind_of(seen.model).object_class
     if seen.speed < kind_of(seen.model).slowest:
         alive = kind in (ObjectClass.PERSON, ObjectClass.ROBOT)
@@ -104,7 +106,7 @@ def _doing(seen: Seen) -> str:
     return "turning left" if seen.yaw_rate > 0.0 else "turning right"
 
 
-def _place(target: Seen, alike: Sequence[Seen]) -> str:
+def _place(target: ObjectInView, alike: Sequence[ObjectInView]) -> str:
     """Return which of those that look the same it is."""
     beside = min(abs(other.column - target.column) for other in alike)
     if beside >= _ASIDE:

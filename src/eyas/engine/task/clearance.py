@@ -33,15 +33,14 @@ class Margin(NamedTuple):
 
 
 class Clearance:
-    """Answers for many places at once.
+    """Answers for many places at once."""
 
-    Args:
-        solids: What stands.
-        terrain: The ground.
-        motion: Traffic, none of which counts.
-    """
-
-    def __init__(self, solids: Solids, terrain: Terrain, motion: Motion) -> None:
+    def __init__(
+        self,
+        solids: Solids,  # What stands
+        terrain: Terrain,  # The ground
+        motion: Motion,  # Traffic, none of which counts
+    ) -> None:
         nobody = np.zeros((1, 0), np.int32)
         self._obstacles = obstacles_of(solids, terrain, motion, np.zeros(1, np.int32), nobody)
 

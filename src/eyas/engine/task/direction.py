@@ -25,18 +25,17 @@ _LEFT, _RIGHT = int(TargetDirection.LEFT), int(TargetDirection.RIGHT)
 
 
 @kernel
-def target_direction(dx: float, dy: float, yaw: float, last_yaw: float, slowest: float) -> int:
+def target_direction(
+    dx: float,  # Motion east [m]
+    dy: float,  # Motion north [m]
+    yaw: float,  # Heading [rad]
+    last_yaw: float,  # Heading one step ago [rad]
+    slowest: float,  # Speed below which it stands [m/s], see `eyas.engine.targets.kind.Kind`
+) -> int:
     """Return the `TargetDirection` of one 2 ms step.
 
     Left and right follow the true turn; the original ignores the sign of its rotation axis and so
     swaps them for half of all headings.
-
-    Args:
-        dx: Motion east [m].
-        dy: Motion north [m].
-        yaw: Heading [rad].
-        last_yaw: Heading one step ago [rad].
-        slowest: Speed below which it stands [m/s], see `eyas.engine.targets.kind.Kind`.
     """
     turn = wrap_angle(yaw - last_yaw)
     if turn > _TURNING:

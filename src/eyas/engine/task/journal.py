@@ -20,23 +20,18 @@ class Journal:
     """`Agent<i>.log` of each tracker, begun anew, in which a line is there at once; and a line on
     the console for each episode.
 
-    Args:
-        folder: The folder of the logs, made if needed; None: only the console gets lines.
-        trackers: Names of the trackers.
-        numbers: Number of each, for its file; None: 0, 1, ...
-        verbose: Whether anything is logged.
-
     Raises:
         OutputError: A log cannot be written.
     """
 
     def __init__(
         self,
+        # The folder of the logs, made if needed; None: only the console gets lines
         folder: Path | None,
-        trackers: Sequence[str],
-        numbers: Sequence[int] | None = None,
+        trackers: Sequence[str],  # Names of the trackers
+        numbers: Sequence[int] | None = None,  # Number of each, for its file; None: 0, 1,
         *,
-        verbose: bool,
+        verbose: bool,  # Whether anything is logged
     ) -> None:
         self._trackers = trackers
         self._folder = folder

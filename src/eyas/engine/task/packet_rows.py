@@ -58,15 +58,14 @@ _TARGET_DIRECTION = first_column(REWARD_COLUMNS, "target_direction")
 
 
 class PacketRows:
-    """Packets of N trackers as rows of numbers.
+    """Packets of N trackers as rows of numbers."""
 
-    Args:
-        snapshot: State of N trackers; read at each call.
-        camera: Camera whose settings each reward packet holds.
-        terrain: Ground of the map; its floor is z = 0 of the land frame.
-    """
-
-    def __init__(self, snapshot: Snapshot, camera: CameraConfig, terrain: Terrain) -> None:
+    def __init__(
+        self,
+        snapshot: Snapshot,  # State of N trackers; read at each call
+        camera: CameraConfig,  # Camera whose settings each reward packet holds
+        terrain: Terrain,  # Ground of the map; its floor is z = 0 of the land frame
+    ) -> None:
         count = len(snapshot.episodes.number)
         self._basic = np.zeros((count, len(BASIC_FIELDS)))
         rows = self._reward = np.zeros((count, len(REWARD_FIELDS)))

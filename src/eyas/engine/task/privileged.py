@@ -27,16 +27,15 @@ def privileged_row(snapshot: Snapshot, n: int, row: NDArray[np.float32]) -> None
 
 
 @compiled
-def fill_privileged(snapshot: Snapshot, out: NDArray[np.float32]) -> None:
+def fill_privileged(
+    snapshot: Snapshot,  # N trackers
+    out: NDArray[np.float32],  # Shape (N, 16)
+) -> None:
     """Write the true motion of the targets, seen from the trackers.
 
     The numbers: the target's centre in the body frame [m], its first [m/s] and second [m/s^2]
     change, 3 numbers each; sine and cosine of its heading relative to the body's; its speed [m/s];
     its length, width and height [m]; the pitch of the camera, positive down [rad].
-
-    Args:
-        snapshot: N trackers.
-        out: Shape (N, 16).
     """
     for n in range(out.shape[0]):
         privileged_row(snapshot, n, out[n])

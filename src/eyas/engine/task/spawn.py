@@ -25,18 +25,17 @@ class StartValues:
 
 
 @kernel
-def start_distance(pitch: float, height: float, vertical_bias: float, ahead: float) -> float:
+def start_distance(
+    pitch: float,  # Of the camera, positive down [rad]
+    height: float,  # [m]
+    vertical_bias: float,  # [m]
+    ahead: float,  # See `start_pose` [m]
+) -> float:
     """Return how far ahead of the target's reference point the tracker starts [m].
 
     It starts so far behind the target that, without biases, its optical axis meets the target's
     centre. As in the original, this neglects the place of the camera in the body and the height of
     the reference point, and applies `ahead` along the tracker's heading.
-
-    Args:
-        pitch: Of the camera, positive down [rad].
-        height: [m]
-        vertical_bias: [m]
-        ahead: See `start_pose` [m].
     """
     return ahead + vertical_bias - tan(abs(0.5 * math.pi - pitch)) * height
 

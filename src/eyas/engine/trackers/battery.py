@@ -38,13 +38,12 @@ class Battery(NamedTuple):
 
 
 @kernel
-def open_voltage(charge: float) -> float:
+def open_voltage(
+    charge: float,  # From 0 to 1
+) -> float:
     """Return the voltage of a cell without a load [V].
 
     The fit of Chen and Rincon-Mora (2006) to cells of lithium-ion polymer.
-
-    Args:
-        charge: From 0 to 1.
     """
     curve = 0.2156 + charge * (-0.1178 + charge * 0.3201)
     return 3.685 + charge * curve - 1.031 * exp(-35.0 * charge)

@@ -40,15 +40,14 @@ def desired_force(
 
 
 @kernel
-def within_tilt(force: Vector, weight: float, limit: float) -> Vector:
+def within_tilt(
+    force: Vector,  # Force besides the one against the weight [N]
+    weight: float,  # [N]
+    limit: float,  # Largest angle between the sum and the vertical [rad]
+) -> Vector:
     """Return a force added to the weight, scaled down so that their sum tilts within a limit.
 
     The original solves a quadratic equation for the scale; this is its solution.
-
-    Args:
-        force: Force besides the one against the weight [N].
-        weight: [N]
-        limit: Largest angle between the sum and the vertical [rad].
     """
     x, y, z = force
     aside, tangent = math.sqrt(x * x + y * y), tan(limit)
@@ -96,19 +95,18 @@ def body_axes(
 
 
 @kernel
-def mixed(frame: Airframe, force: Vector, torque: Vector, attitude: Row) -> Thrusts:
+def mixed(
+    frame: Airframe,  # Its arm, its rotor constants and its way at the limits are used
+    force: Vector,  # Force that the rotors should exert, world frame [N]
+    torque: Vector,  # Torque that they should exert, body frame [N m]
+    attitude: Row,  # Body to world, shape (4,)
+) -> Thrusts:
     """Return the thrusts of the rotors, each from 0 to that of the largest rate [N].
 
     A rotor cannot pull down: what it lacks is added to all four, one after the other, which keeps
     the torque and raises the total. As in the original's code, if so told, what it lacks is added
     only to those before it: its loop takes the thrust of rotor i from each in turn, and that is 0
     once its own turn has come. Then the torque is not kept.
-
-    Args:
-        frame: Its arm, its rotor constants and its way at the limits are used.
-        force: Force that the rotors should exert, world frame [N].
-        torque: Torque that they should exert, body frame [N m].
-        attitude: Body to world, shape (4,).
     """
     x, y, z = rotate(attitude, 0.0, 0.0, 1.0)
     total = max(0.0, force[0] * x + force[1] * y + force[2] * z)

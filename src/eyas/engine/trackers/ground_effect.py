@@ -12,18 +12,17 @@ _NEAREST = 0.5  # Least height over the ground for which the formula is made, in
 
 
 @kernel
-def ground_effect(frame: Airframe, radius: float, height: float) -> float:
+def ground_effect(
+    frame: Airframe,  # The distance of its rotors is used
+    radius: float,  # Of a rotor [m]
+    height: float,  # Of the rotors over the ground [m]
+) -> float:
     """Return the thrust of four rotors over the ground, over that of the same far above it.
 
     Sanchez-Cuevas, Heredia and Ollero, "Characterization of the aerodynamic ground effect and its
     influence in multirotor control" (International Journal of Aerospace Engineering, 2017): the
     image of a source for each rotor below the ground. Their term for a wide body, which they fit to
     one, is left out; for one rotor it is the formula of Cheeseman and Bennett (1955).
-
-    Args:
-        frame: The distance of its rotors is used.
-        radius: Of a rotor [m].
-        height: Of the rotors over the ground [m].
     """
     z = max(height, _NEAREST * radius)
     beside = 4.0 * frame.arm * frame.arm + 4.0 * z * z

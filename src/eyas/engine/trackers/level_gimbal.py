@@ -52,14 +52,13 @@ def level_angles(pitch: float, yaw: float, body_roll: float, body_pitch: float) 
 
 
 @kernel(inline=True)
-def reset_level(trackers: TrackerState, filters: NDArray[np.float64], n: int) -> None:
-    """Move the joints of gimbal `n` to what its commanded angles need, at once.
-
-    Args:
-        trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
-        filters: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set.
-        n: Index of the tracker.
-    """
+def reset_level(
+    # Source of the body's attitude and the commanded angles; its joint angles are set
+    trackers: TrackerState,
+    filters: NDArray[np.float64],  # Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set
+    n: int,  # Index of the tracker
+) -> None:
+    """Move the joints of gimbal `n` to what its commanded angles need, at once."""
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     gimbal[0], gimbal[1], gimbal[2] = level_angles(commanded[0], commanded[1], euler[0], euler[1])
     for axis in range(3):

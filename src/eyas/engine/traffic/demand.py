@@ -22,14 +22,13 @@ class RoadLinks:
     length: dict[str, float]  # [m]
 
 
-def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> RoadLinks:
+def without_turnarounds(
+    links: RoadLinks,
+    ends: dict[str, tuple[str, str]],  # Junctions that each edge leaves and reaches
+) -> RoadLinks:
     """Return the links without U-turns, except where there is no other way on.
 
     Long vehicles swing out widely in a U-turn, and drivers rarely turn around at a crossing.
-
-    Args:
-        links: All links.
-        ends: Junctions that each edge leaves and reaches.
     """
     onward = {
         edge: tuple(name for name in following if ends[name] != ends[edge][::-1])

@@ -55,21 +55,14 @@ Running = Generator[None, None, None]
 
 
 class Manoeuvres:
-    """What drivers do beside driving.
-
-    Args:
-        sumo: The running simulation.
-        config: Settings from `eyas.engine.traffic.record.resolved`.
-        cover: The stretches of lanes that are hidden from above.
-        links: The roads, as each class of vehicles may use them.
-    """
+    """What drivers do beside driving."""
 
     def __init__(
         self,
-        sumo: ModuleType,
-        config: TrafficConfig,
-        cover: Cover,
-        links: Mapping[VehicleType, RoadLinks],
+        sumo: ModuleType,  # The running simulation
+        config: TrafficConfig,  # Settings from `eyas.engine.traffic.record.resolved`
+        cover: Cover,  # The stretches of lanes that are hidden from above
+        links: Mapping[VehicleType, RoadLinks],  # The roads, as each class of vehicles may use them
     ) -> None:
         assert config.seed is not None
         self._sumo, self._links = sumo, links
@@ -81,13 +74,12 @@ class Manoeuvres:
         self._rng = stream(config.seed, "freed drivers")
         self._time = 0.0
 
-    def advance(self, time: float, vehicles: Mapping[int, VehicleType]) -> None:
-        """Let all drivers act.
-
-        Args:
-            time: Time of SUMO [s].
-            vehicles: Class of each vehicle in the world, by its number.
-        """
+    def advance(
+        self,
+        time: float,  # Time of SUMO [s]
+        vehicles: Mapping[int, VehicleType],  # Class of each vehicle in the world, by its number
+    ) -> None:
+        """Let all drivers act."""
         self._time, self._classes = time, vehicles
         for number, kind in vehicles.items():
             if number not in self._running:
@@ -143,17 +135,14 @@ class Manoeuvres:
 
 
 class Driver:
-    """One driver.
-
-    Args:
-        sumo: The running simulation.
-        name: SUMO's name of the vehicle.
-        rng: Where his decisions come from.
-        world: What he knows.
-    """
+    """One driver."""
 
     def __init__(
-        self, sumo: ModuleType, name: str, rng: np.random.Generator, world: Manoeuvres
+        self,
+        sumo: ModuleType,  # The running simulation
+        name: str,  # SUMO's name of the vehicle
+        rng: np.random.Generator,  # Where his decisions come from
+        world: Manoeuvres,  # What he knows
     ) -> None:
         self._vehicle: Final = sumo.vehicle
         self._sumo, self._name, self._rng, self._world = sumo, name, rng, world

@@ -14,20 +14,15 @@ class Entrance:
 
     Attributes:
         entered: Class of each vehicle, by its number.
-
-    Args:
-        sumo: The running simulation; its types of vehicles have the names of the classes.
-        fleet: The vehicles, the earliest first.
-        actors: Class of each actor: there is room for so many vehicles.
-        demand: When vehicles enter and leave.
     """
 
     def __init__(
         self,
+        # The running simulation; its types of vehicles have the names of the classes
         sumo: ModuleType,
-        fleet: Iterator[Departure],
-        actors: Sequence[VehicleType],
-        demand: Demand,
+        fleet: Iterator[Departure],  # The vehicles, the earliest first
+        actors: Sequence[VehicleType],  # Class of each actor: there is room for so many vehicles
+        demand: Demand,  # When vehicles enter and leave
     ) -> None:
         self.entered: list[VehicleType] = []
         self._sumo = sumo

@@ -193,17 +193,16 @@ def record_canonical(
     save(made, path)
 
 
-def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float, cover: Cover) -> Path:
+def _cache_file(
+    graph: RoadGraph,  # Roads to drive on
+    wanted: TrafficConfig,  # Settings of the traffic, from `resolved`
+    duration: float,  # Length of the recording [s]
+    cover: Cover,  # The stretches of lanes in which drivers hide
+) -> Path:
     """Return the path of a recording in the cache.
 
     It does not depend on the version of SUMO, so that users without SUMO can use recordings made
     by others.
-
-    Args:
-        graph: Roads to drive on.
-        wanted: Settings of the traffic, from `resolved`.
-        duration: Length of the recording [s].
-        cover: The stretches of lanes in which drivers hide.
     """
     content = {
         "roads": graph_hash(graph),

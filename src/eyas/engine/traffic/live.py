@@ -46,16 +46,6 @@ class LiveSumo:
         motion: Motion of all actors; its table is filled while time goes on.
         reactions: What is called before each step of SUMO; append your own.
 
-    Args:
-        graph: The roads.
-        config: Settings from `resolved`.
-        terrain: The ground; roads follow its relief.
-        kind: Function of the name of a class that returns its index, see `Motion.kind`.
-        duration: Last time [s].
-        others: Motions of those who are in the world besides; only vehicles are targets.
-        cover: The stretches of lanes in which drivers hide.
-        lamps: Whether they signal, as SUMO has it.
-
     Raises:
         MissingExtraError: SUMO is not installed.
         ConfigError: SUMO already runs in this process, or the roads have no room for the traffic.
@@ -66,14 +56,16 @@ class LiveSumo:
     def __init__(
         self,
         graph: RoadGraph,
-        config: TrafficConfig,
-        terrain: Terrain,
+        config: TrafficConfig,  # Settings from `resolved`
+        terrain: Terrain,  # The ground; roads follow its relief
+        # Function of the name of a class that returns its index, see `Motion.kind`
         kind: Callable[[str], int],
-        duration: float,
+        duration: float,  # Last time [s]
         *,
+        # Motions of those who are in the world besides; only vehicles are targets
         others: Sequence[Motion] = (),
-        cover: Cover = (),
-        lamps: bool = False,
+        cover: Cover = (),  # The stretches of lanes in which drivers hide
+        lamps: bool = False,  # Whether they signal, as SUMO has it
     ) -> None:
         _check_alone()
         fleet = fleet_of(config, WARM_UP + duration)

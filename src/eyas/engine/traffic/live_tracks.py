@@ -93,14 +93,13 @@ class LiveTracks:
         rate = arrays.pop("rate")
         return Tracks(rate=rate, **{name: array[rows] for name, array in arrays.items()})
 
-    def _smooth_stay(self, stay: slice, actor: int, wanted: slice) -> None:
-        """Smooth some samples of a stay in the world.
-
-        Args:
-            stay: Its samples, as far as they are in the window.
-            actor: The actor.
-            wanted: The samples to write.
-        """
+    def _smooth_stay(
+        self,
+        stay: slice,  # Its samples, as far as they are in the window
+        actor: int,
+        wanted: slice,  # The samples to write
+    ) -> None:
+        """Smooth some samples of a stay in the world."""
         if wanted.start >= wanted.stop:
             return
         tracks, length = self._tracks, float(self._raw.vehicle_length[actor])

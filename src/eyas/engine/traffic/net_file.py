@@ -180,12 +180,11 @@ def _lane(lane: ElementTree.Element) -> NetLane:
     )
 
 
-def road_network(net: SumoNet, graph_hash: str) -> RoadNetwork:
+def road_network(
+    net: SumoNet,  # The network
+    graph_hash: str,  # Hash of the graph that holds it
+) -> RoadNetwork:
     """Return the lanes and junctions of a finished network, without sidewalks.
-
-    Args:
-        net: The network.
-        graph_hash: Hash of the graph that holds it.
 
     Raises:
         ConfigError: No car may drive anywhere in it.

@@ -151,12 +151,11 @@ def _told(config: TrafficConfig) -> dict[str, Any]:
     return config.model_dump(mode="json", exclude=usual)
 
 
-def from_bytes(data: bytes, source: str) -> Recording:
+def from_bytes(
+    data: bytes,  # Content of the file, from `to_bytes`
+    source: str,  # Name of the file for messages
+) -> Recording:
     """Return the recording from the content of its file.
-
-    Args:
-        data: Content of the file, from `to_bytes`.
-        source: Name of the file for messages.
 
     Raises:
         DataFileError: The content is truncated, damaged or not a recording.

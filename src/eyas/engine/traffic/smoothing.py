@@ -92,14 +92,13 @@ def runs(
     )
 
 
-def held(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.float64]:
+def held(
+    values: NDArray[np.float64],  # Values at the samples, shape (S, ...)
+    present: NDArray[np.bool_],  # Whether the actor is in the world, shape (S,)
+) -> NDArray[np.float64]:
     """Return values with each absent sample replaced by the last present one before it.
 
     Samples before the first present one take its value.
-
-    Args:
-        values: Values at the samples, shape (S, ...).
-        present: Whether the actor is in the world, shape (S,).
     """
     if not present.any():
         return np.zeros_like(values)

@@ -142,19 +142,17 @@ class SumoRun:
         vehicle_length: SUMO's length of each actor's class [m], shape (A,).
         sumo: The module libsumo, with the simulation loaded.
 
-    Args:
-        network: SUMO's network file.
-        config: Settings of the traffic; the seed is a number.
-        fleet: The vehicles.
-        cover: The stretches of lanes in which drivers hide.
-
     Raises:
         MissingExtraError: SUMO is not installed.
         ConfigError: SUMO already runs another simulation in this process, or the roads are too few.
     """
 
     def __init__(
-        self, network: bytes, config: TrafficConfig, fleet: Fleet, cover: Cover = ()
+        self,
+        network: bytes,  # SUMO's network file
+        config: TrafficConfig,  # Settings of the traffic; the seed is a number
+        fleet: Fleet,  # The vehicles
+        cover: Cover = (),  # The stretches of lanes in which drivers hide
     ) -> None:
         self.actors = vehicle_types(config)
         classes = tuple(dict.fromkeys(self.actors))

@@ -45,11 +45,10 @@ def import_libsumo() -> ModuleType:
     return _imported("libsumo")
 
 
-def sumo_version(purpose: str = "traffic") -> str:
+def sumo_version(
+    purpose: str = "traffic",  # The feature that needs it, as a noun phrase for the error
+) -> str:
     """Return the installed version of SUMO, for example `1.28.0`.
-
-    Args:
-        purpose: The feature that needs it, as a noun phrase for the error.
 
     Raises:
         MissingExtraError: SUMO is not installed.

@@ -84,14 +84,13 @@ def tow(
 
 
 @kernel
-def folded(hitch: float, towed: int) -> tuple[float, float, float, float]:
+def folded(
+    hitch: float,  # Angle between the two [rad]
+    towed: int,  # 1 for the trailer, 0 for the truck
+) -> tuple[float, float, float, float]:
     """Return where the truck or trailer has carried the frame of the straight vehicle: x, y [m],
     cosine and sine of its heading, in the frame of the whole. The origin of both is the middle of
     the chord.
-
-    Args:
-        hitch: Angle between the two [rad].
-        towed: 1 for the trailer, 0 for the truck.
     """
     s, c = sin_cos(hitch)
     return folded_by(s, c, towed)

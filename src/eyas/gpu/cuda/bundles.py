@@ -1,4 +1,4 @@
-"""Bundles in the memory of a graphics processor, laid out as `eyas.lanes.held` has them here."""
+"""Bundles in the memory of a graphics processor, laid out as `eyas.lanes.bundles` has them here."""
 
 import threading
 import weakref
@@ -9,7 +9,7 @@ import numpy as np
 
 from eyas.gpu.cuda.context import Context
 from eyas.gpu.cuda.memory import CudaArray
-from eyas.lanes.held import _NOTHING, _flatten, _layout, _layouts
+from eyas.lanes.bundles import LAYOUTS, NOTHING, flatten, layout_of
 
 _SLAB = 1 << 20
 """Memory for bundles is allocated in pieces of this size [bytes]; a bundle takes some kilobytes."""
@@ -59,31 +59,27 @@ class Blocks:
 class CudaBundle:
     """A bundle in the memory of a graphics processor.
 
-    Args:
-        bundle: The tuple.
-        on_card: Puts its arrays there; it is called for all that is no tuple.
-        blocks: Where the bundle is laid out.
-        nothing: Address there for empty arrays, see `eyas.lanes.held`.
-
     Attributes:
         bundle: The tuple with its arrays there.
         address: Its address there.
-        kind: Identifies its type, see `eyas.lanes.held.Held`; the same as there, if all its arrays
+        kind: Identifies its type, see `eyas.lanes.bundles.PackedBundle`; the same if all its arrays
             are writable and C-contiguous.
     """
 
     def __init__(
         self,
+        # The tuple
         bundle: Any,  # noqa: ANN401
+        # Puts its arrays there; it is called for all that is no tuple
         on_card: Callable[[Any], Any],
-        blocks: Blocks,
-        nothing: int,
+        blocks: Blocks,  # Where the bundle is laid out
+        nothing: int,  # Address there for empty arrays, see `eyas.lanes.bundles`
     ) -> None:
         words: list[Any] = []
         key: list[object] = []
 
         def add(value: Any) -> Any:  # noqa: ANN401  # anything in a bundle
-            """Append what `eyas.lanes.held` would; its words of an array are asked for once."""
+            """Append what `eyas.lanes.bundles` would; its words of an array are asked for once."""
             if isinstance(value, tuple):
                 key.extend((type(value), len(value)))
                 return _like(value, map(add, value))
@@ -91,20 +87,20 @@ class CudaBundle:
             if isinstance(part, CudaArray):
                 if part.words is None:
                     own: tuple[list[Any], list[object]] = [], []
-                    _flatten(part.stand_in, *own)
+                    flatten(part.stand_in, *own)
                     part.words = own
                 words.extend(part.words[0])
                 key.extend(part.words[1])
             else:
-                _flatten(part, words, key)
+                flatten(part, words, key)
             return part
 
         self.bundle = add(bundle)
-        layout = _layouts.get(tuple(key)) or _layouts.setdefault(
-            tuple(key), _layout(_mapped(self.bundle, lambda array: array.stand_in))
+        layout = LAYOUTS.get(tuple(key)) or LAYOUTS.setdefault(
+            tuple(key), layout_of(_mapped(self.bundle, lambda array: array.stand_in))
         )
         # Empty arrays have the very object for their address.
-        words = [nothing if word is _NOTHING else word for word in words]
+        words = [nothing if word is NOTHING else word for word in words]
         self.kind = layout.kind
         self.address = blocks.filled(layout.format.pack(*words), self)
 

@@ -32,11 +32,10 @@ class Card(NamedTuple):
             )
 
 
-def card(ordinal: int) -> Card:
+def card(
+    ordinal: int,  # Its number, as the driver counts those that it shows (`CUDA_VISIBLE_DEVICES`)
+) -> Card:
     """Return what the driver says about a graphics processor.
-
-    Args:
-        ordinal: Its number, as the driver counts those that it shows (`CUDA_VISIBLE_DEVICES`).
 
     Raises:
         CudaError: There is none.
@@ -54,13 +53,12 @@ def card(ordinal: int) -> Card:
     return Card(handle, name.value.decode(), memory, (major, minor), count)
 
 
-def gpu_line(ordinal: int = 0) -> str:
+def gpu_line(
+    ordinal: int = 0,  # See `card`
+) -> str:
     """Return in one line what graphics processor there is, or why none can be used.
 
     Processes that are forked later from this one cannot use it; others can.
-
-    Args:
-        ordinal: See `card`.
     """
     try:
         found = card(ordinal)

@@ -29,11 +29,10 @@ OLDEST = (8, 0)  # The least compute capability of cards that are served: that o
 
 SUFFIX = ".eyp"  # End of the names of files of PTX
 
-_HOUSE = Path(__file__).parents[1]
+_MAKER = Path(__file__).parents[1] / "ptx.py"
+"""The file that decides what kernels become, beside the language of kernels."""
 
-_MAKERS = ("ptx.py",)  # Files that decide what kernels become, beside the language of kernels
-
-ARCHIVE = _HOUSE / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
+ARCHIVE = _MAKER.parent / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
 
 
@@ -47,7 +46,7 @@ class Ptx(NamedTuple):
 def ptx_code(
     call: CompiledCall,  # The kernel
     types: tuple[Any, ...],  # Bundles of these kinds
-    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.held.Held`
+    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.bundles.PackedBundle`
     threads: int,  # See `eyas.lanes.device.Device.launch`
 ) -> Ptx:
     """Return the PTX of a kernel for bundles of some kinds."""
@@ -74,7 +73,7 @@ def ptx_code(
 @cache
 def _made_of() -> str:
     """Return a digest of what turns kernels into PTX."""
-    return digest((language_hash(), *(syntax_of(_HOUSE / name)[""].digest for name in _MAKERS)))
+    return digest((language_hash(), syntax_of(_MAKER)[""].digest))
 
 
 def _made_by() -> tuple[str, ...]:
@@ -82,12 +81,11 @@ def _made_by() -> tuple[str, ...]:
     return (_made_of(), *versions)
 
 
-def archive_of(codes: Mapping[str, Ptx]) -> bytes:
-    """Return the content of an archive.
-
-    Args:
-        codes: PTX by the names of the files in which it is kept, without the last part.
-    """
+def archive_of(
+    # PTX by the names of the files in which it is kept, without the last part
+    codes: Mapping[str, Ptx],
+) -> bytes:
+    """Return the content of an archive."""
     names = sorted(codes)
     header = [_made_of(), [(name, codes[name].entry) for name in names]]
     return lzma.compress(b"".join(packed(header, [codes[name].text for name in names])))

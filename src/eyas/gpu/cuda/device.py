@@ -25,7 +25,7 @@ from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
 
-_SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`.
+_SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.bundles`.
 
 
 class CudaDevice:
@@ -220,11 +220,10 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_renew_lock)
 
 
-def cuda_device(ordinal: int = 0) -> CudaDevice:
+def cuda_device(
+    ordinal: int = 0,  # See `eyas.gpu.cuda.cards.card`
+) -> CudaDevice:
     """Return a graphics processor of NVIDIA: one object for each in a process.
-
-    Args:
-        ordinal: See `eyas.gpu.cuda.cards.card`.
 
     Raises:
         CudaError: There is none, or it cannot be used; one line says why.

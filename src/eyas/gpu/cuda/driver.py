@@ -85,13 +85,12 @@ class CudaError(RuntimeError):
 
 
 class Driver:
-    """The driver of this process.
+    """The driver of this process."""
 
-    Args:
-        path: Its library.
-    """
-
-    def __init__(self, path: str) -> None:
+    def __init__(
+        self,
+        path: str,  # Its library
+    ) -> None:
         try:
             self._library = ctypes.CDLL(path)
             for name, types in _SIGNATURES.items():

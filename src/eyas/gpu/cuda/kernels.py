@@ -27,11 +27,7 @@ class Function(NamedTuple):
 
 
 class Functions:
-    """The kernels of a context, each compiled at its first call.
-
-    Args:
-        context: The context.
-    """
+    """The kernels of a context, each compiled at its first call."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -58,13 +54,12 @@ class Functions:
         return self._loaded[ptx]
 
 
-def function_of(context: Context, ptx: Ptx, name: str) -> Function:
+def function_of(
+    context: Context,  # Where it is to run
+    ptx: Ptx,  # The kernel
+    name: str,  # Its name for people
+) -> Function:
     """Have the driver compile a kernel, or find it in its cache.
-
-    Args:
-        context: Where it is to run.
-        ptx: The kernel.
-        name: Its name for people.
 
     Raises:
         CudaError: The driver refuses it; its log is in the message.

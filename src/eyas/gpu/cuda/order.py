@@ -30,25 +30,23 @@ class CudaEvent:
             call("cuEventElapsedTime", byref(passed), earlier._handle, self._handle)
         return passed.value / 1000.0
 
-    def holds(self, stream: int) -> None:
-        """Have a stream wait for it.
-
-        Args:
-            stream: The driver's pointer to it.
-        """
+    def holds(
+        self,
+        stream: int,  # The driver's pointer to it
+    ) -> None:
+        """Have a stream wait for it."""
         self._context.call("cuStreamWaitEvent", c_void_p(stream), self._handle, 0)
 
 
 class Graph:
-    """Work that was recorded, to be done again by one call.
+    """Work that was recorded, to be done again by one call."""
 
-    Args:
-        context: Where.
-        recording: The driver's pointer to the recording.
-        kept: What the work uses.
-    """
-
-    def __init__(self, context: Context, recording: c_void_p, kept: list[object]) -> None:
+    def __init__(
+        self,
+        context: Context,  # Where
+        recording: c_void_p,  # The driver's pointer to the recording
+        kept: list[object],  # What the work uses
+    ) -> None:
         self._context, self._kept, self._handle = context, kept, c_void_p()
         with context.current() as call:
             call("cuGraphInstantiateWithFlags", byref(self._handle), recording, c_uint64(0))
@@ -59,13 +57,12 @@ class Graph:
         self._context.call("cuGraphLaunch", self._handle, LEGACY)
 
 
-def recorded(context: Context, work: Callable[[c_void_p], list[object]]) -> Graph:
-    """Return what a function gives to a stream, without doing it.
-
-    Args:
-        context: Where.
-        work: The function; it gets the stream, and returns what the work uses.
-    """
+def recorded(
+    context: Context,  # Where
+    # The function; it gets the stream, and returns what the work uses
+    work: Callable[[c_void_p], list[object]],
+) -> Graph:
+    """Return what a function gives to a stream, without doing it."""
     stream, recording = c_void_p(), c_void_p()
     with context.current() as call:
         call("cuStreamCreate", byref(stream), _NON_BLOCKING)

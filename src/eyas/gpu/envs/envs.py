@@ -35,18 +35,17 @@ class DeviceEnvs:
         observation_space: What it sees.
         ended: Whose episodes the last step has ended, on the host, shape (N,).
 
-    Args:
-        config: The settings.
-        count: N.
-        device: The device, or its name.
-        measures: As for `EyasVectorEnv`.
-
     Raises:
         EyasError: A setting is wrong, or not there on a device; the message is one line.
     """
 
     def __init__(
-        self, config: EyasConfig, count: int, device: Device | str, *, measures: bool = False
+        self,
+        config: EyasConfig,  # The settings
+        count: int,  # N
+        device: Device | str,  # The device, or its name
+        *,
+        measures: bool = False,  # As for `EyasVectorEnv`
     ) -> None:
         where = device_of(device)
         _check(config)

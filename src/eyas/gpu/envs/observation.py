@@ -29,7 +29,7 @@ _FIRST, _END = SENSOR_COLUMNS.start, SENSOR_COLUMNS.stop
 Chosen = NDArray[np.int64]
 
 
-class Seen(NamedTuple):
+class ObservedTrackers(NamedTuple):
     """Who is observed."""
 
     views: NDArray[np.int64]  # Number of trackers V, shape (1,)
@@ -65,23 +65,17 @@ class DeviceObserver:
         visible: Share of each target that the latest picture shows, if it is measured, on the host,
             shape (N,).
 
-    Args:
-        config: What is observed.
-        simulation: The trackers.
-        view: Draws what they see.
-        measures: Whether targets are measured in the pictures, for teachers.
-
     Raises:
         ConfigError: A part is not there on a device.
     """
 
     def __init__(
         self,
-        config: ObservationConfig,
-        simulation: DeviceSimulation,
-        view: DeviceView,
+        config: ObservationConfig,  # What is observed
+        simulation: DeviceSimulation,  # The trackers
+        view: DeviceView,  # Draws what they see
         *,
-        measures: bool = False,
+        measures: bool = False,  # Whether targets are measured in the pictures, for teachers
     ) -> None:
         self.space = observation_space(config, simulation.config)
         for part in config.parts:
@@ -99,9 +93,11 @@ class DeviceObserver:
             {part: tensor_of(array) for part, array in arrays.items()}
             for arrays in (self._latest, self._final)
         ]
-        seen = Seen(np.zeros(1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.uint8))
+        seen = ObservedTrackers(
+            np.zeros(1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.uint8)
+        )
         self._seen = [Mirrored(device, array) for array in seen]
-        self._held_seen = device.held(Seen(*(own.array for own in self._seen)))
+        self._held_seen = device.held(ObservedTrackers(*(own.array for own in self._seen)))
         self._snapshot = device.held(simulation.snapshot)
         # Pictures that are observations as they are drawn.
         last, single = config.layout is ColourLayout.HWC, config.frames == 1
@@ -185,7 +181,7 @@ class DeviceObserver:
 
 
 @parallel
-def _stack_pictures(worker: int, workers: int, seen: Seen, pictures: Pictures) -> None:
+def _stack_pictures(worker: int, workers: int, seen: ObservedTrackers, pictures: Pictures) -> None:
     """Put the pixels of new pictures behind the older ones."""
     height, width = pictures.rgb.shape[1], pictures.rgb.shape[2]
     channels = 1 if pictures.grey == 1 else 3
@@ -216,7 +212,9 @@ def _plane_at(pictures: Pictures, n: int, row: int, column: int, plane: int) -> 
 
 
 @parallel
-def _fill_rows(worker: int, workers: int, snapshot: Snapshot, seen: Seen, rows: Rows) -> None:
+def _fill_rows(
+    worker: int, workers: int, snapshot: Snapshot, seen: ObservedTrackers, rows: Rows
+) -> None:
     """Write the numbers that trackers observe."""
     for v in range(worker, seen.views[0], workers):
         n = seen.tracker[v]

@@ -118,13 +118,12 @@ class ReadBackRenderer:
             int(views.instant is not None and views.falling),
         )
 
-    def draw_uploaded(self, given: UploadedViews, until: DrawStage = DrawStage.SHADING) -> None:
-        """Draw into `given.output`; the device may be at it when this returns.
-
-        Args:
-            given: From `uploaded`.
-            until: Last stage to run.
-        """
+    def draw_uploaded(
+        self,
+        given: UploadedViews,  # From `uploaded`
+        until: DrawStage = DrawStage.SHADING,  # Last stage to run
+    ) -> None:
+        """Draw into `given.output`; the device may be at it when this returns."""
         size, job, movers, output, falls = given
         self._renderer.draw(size, job, movers, output, falls=falls, until=until)
 

@@ -30,22 +30,15 @@ class HostEpisodes:
         worlds: The worlds, whose looks change in place.
         snapshot: The state before the first reset; later only what is drawn is set.
         memory: What the trackers remember; later only what is drawn is set, see `sampled_of`.
-
-    Args:
-        config: The settings.
-        assets: Map and traffic.
-        tracker: The kind of the trackers.
-        count: N.
-        size: Height and width of the pictures [pixels].
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        tracker: Tracker,
-        count: int,
-        size: tuple[int, int],
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map and traffic
+        tracker: Tracker,  # The kind of the trackers
+        count: int,  # N
+        size: tuple[int, int],  # Height and width of the pictures [pixels]
     ) -> None:
         self._size, self._aspect = size, config.camera.height / config.camera.width
         self.worlds = Worlds(config, assets, each_alone(count))

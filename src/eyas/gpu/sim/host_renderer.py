@@ -25,14 +25,13 @@ class _Cameras(Views):
 
 
 class HostRenderer:
-    """Draws what lies in the memory of this processor, see `DeviceDrawer`.
+    """Draws what lies in the memory of this processor, see `DeviceDrawer`."""
 
-    Args:
-        renderer: What draws.
-        samples: Samples per pixel.
-    """
-
-    def __init__(self, renderer: Renderer, samples: int = 1) -> None:
+    def __init__(
+        self,
+        renderer: Renderer,  # What draws
+        samples: int = 1,  # Samples per pixel
+    ) -> None:
         self._renderer, self._samples = renderer, samples
 
     def draw(

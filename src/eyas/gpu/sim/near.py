@@ -35,7 +35,7 @@ from eyas.gpu.sim.signals import SignalTimes, shown_part
 from eyas.lanes import ParallelCall, kernel, parallel, specialised
 
 
-class Shown(NamedTuple):
+class DeviceCameras(NamedTuple):
     """Cameras as the renderer reads them, see `eyas.gpu.render.device_views.DeviceViews`; where
     they are stands in `ViewQuery.eye`.
     """
@@ -81,7 +81,7 @@ def list_actors(
     focal: Focal,
     around: Surroundings,
     query: ViewQuery,
-    shown: Shown,
+    shown: DeviceCameras,
     listed: Listed,
     counts: Counts,
 ) -> None:
@@ -95,7 +95,7 @@ def list_actors(
 
 
 @kernel(inline=True)
-def _look(snapshot: Snapshot, focal: Focal, query: ViewQuery, shown: Shown, v: int) -> None:
+def _look(snapshot: Snapshot, focal: Focal, query: ViewQuery, shown: DeviceCameras, v: int) -> None:
     """Write the camera of view `v`."""
     cameras, light, n = snapshot.cameras, snapshot.light, query.world[v]
     query.time[v] = snapshot.episodes.tick[n] * PHYSICS_STEP

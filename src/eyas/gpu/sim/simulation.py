@@ -103,32 +103,23 @@ class DeviceSimulation:
         commands: Commands of the trackers, see `eyas.engine.trackers.tracker.Tracker.advance`, on
             the device, shape (N, 4) or (N, 8).
 
-    Args:
-        config: The settings.
-        assets: Map, traffic and renderer.
-        tracker: The kind of the trackers.
-        count: N.
-        device: The device.
-        size: Height and width of the pictures [pixels], which may squeeze the camera's.
-        steps: Physics steps of a command.
-        repeat: Commands of an action.
-        gimbal: Whether commands turn the cameras, see `eyas.engine.trackers.gimbal_command`.
-
     Raises:
         ConfigError: Devices cannot do what a setting asks for.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        tracker: Tracker,
-        count: int,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map, traffic and renderer
+        tracker: Tracker,  # The kind of the trackers
+        count: int,  # N
         device: Device,
         *,
+        # Height and width of the pictures [pixels], which may squeeze the camera's
         size: tuple[int, int],
-        steps: int,
-        repeat: int = 1,
+        steps: int,  # Physics steps of a command
+        repeat: int = 1,  # Commands of an action
+        # Whether commands turn the cameras, see `eyas.engine.trackers.gimbal_command`
         gimbal: bool = False,
     ) -> None:
         check_device(config, assets, tracker)

@@ -27,7 +27,7 @@ from eyas.gpu.sim.flight import FEW
 from eyas.gpu.sim.near import (
     Cast,
     Counts,
-    Shown,
+    DeviceCameras,
     Surroundings,
     empty_slots,
     list_actors,
@@ -67,7 +67,7 @@ class DeviceView:
         self._query: ViewQuery = uploaded(device, query)._replace(
             world=self._chosen.array, worlds=self._count.array
         )
-        self._shown: Shown = uploaded(device, _shown(count, timed=timed))
+        self._shown: DeviceCameras = uploaded(device, _shown(count, timed=timed))
         self._world = device.upload(np.arange(count, dtype=np.int32))
         last = round(assets.traffic.duration / PHYSICS_STEP)
         self._signals = device.held(signal_times(assets.signals, last))
@@ -184,8 +184,8 @@ def _query(views: int, aspect: float) -> ViewQuery:
     )
 
 
-def _shown(views: int, *, timed: bool) -> Shown:
-    return Shown(
+def _shown(views: int, *, timed: bool) -> DeviceCameras:
+    return DeviceCameras(
         axes=np.zeros((views, 3, 3)),
         subject=np.zeros(views, np.int32),
         light=LightState.create(views),

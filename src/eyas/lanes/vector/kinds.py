@@ -42,13 +42,12 @@ def lanes_are_threads(context: Any) -> bool:  # noqa: ANN401  # numba has no typ
     return getattr(context, "lanes_are_threads", False)
 
 
-def ir_type(kind: types.Type, *, threads: bool) -> ir.Type:
-    """Return LLVM's type of lanes, or of a number as the kernels hold it.
-
-    Args:
-        kind: The type.
-        threads: See `lanes_are_threads`.
-    """
+def ir_type(
+    kind: types.Type,
+    *,
+    threads: bool,  # See `lanes_are_threads`
+) -> ir.Type:
+    """Return LLVM's type of lanes, or of a number as the kernels hold it."""
     element = element_of(kind)
     if isinstance(element, types.Boolean):
         single: ir.Type = ir.IntType(1)

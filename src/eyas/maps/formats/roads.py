@@ -56,12 +56,11 @@ def _pairs(options: tuple[str, ...]) -> list[tuple[str, str]]:
     return list(zip(names, options[1::2], strict=True))
 
 
-def opendrive_xml(name: str, network: bytes) -> bytes:
+def opendrive_xml(
+    name: str,  # Name of the map
+    network: bytes,  # SUMO's network file
+) -> bytes:
     """Return a network as OpenDRIVE 1.4, by netconvert; the same network gives the same bytes.
-
-    Args:
-        name: Name of the map.
-        network: SUMO's network file.
 
     Raises:
         MissingExtraError: SUMO is not installed.

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.policies.listener.candidates import TrackedVehicles
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES, body_sizes
-from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
+from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, PicturePlace
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord
 from eyas.lanes import exact
 
@@ -96,7 +96,7 @@ def _placed(place: PicturePlace, where: Floats, looks: Floats) -> Floats:
     return first
 
 
-def _does(doing: Doing, way: Floats) -> float:
+def _does(doing: MotionWord, way: Floats) -> float:
     """Return the probability that a way is what a claim says."""
     if len(way) < 3:
         return _HARDLY
@@ -105,11 +105,11 @@ def _does(doing: Doing, way: Floats) -> float:
     limit, soft = _TURNS
     left, right = (float(_step(np.array(side * rate - limit), soft)) for side in (1.0, -1.0))
     return {
-        Doing.STANDING: 1.0 - moves,
-        Doing.MOVING: moves,
-        Doing.STRAIGHT: moves * (1.0 - left) * (1.0 - right),
-        Doing.LEFT_TURN: moves * left,
-        Doing.RIGHT_TURN: moves * right,
+        MotionWord.STANDING: 1.0 - moves,
+        MotionWord.MOVING: moves,
+        MotionWord.STRAIGHT: moves * (1.0 - left) * (1.0 - right),
+        MotionWord.LEFT_TURN: moves * left,
+        MotionWord.RIGHT_TURN: moves * right,
     }[doing]
 
 

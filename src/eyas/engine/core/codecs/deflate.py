@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, compiled, kernel
+from eyas.lanes import PackedBundle, compiled, kernel
 
 __all__ = ["deflated"]
 
@@ -76,7 +76,7 @@ def _tables() -> _Tables:
     return tables
 
 
-_TABLES = Held(_tables())
+_TABLES = PackedBundle(_tables())
 
 
 @compiled

@@ -19,7 +19,7 @@ from eyas.engine.render.kernels.light.ambient import (
 )
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.state.terrain import reliefs
-from eyas.lanes import Held, exact, thread_count
+from eyas.lanes import PackedBundle, exact, thread_count
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
@@ -93,7 +93,7 @@ def openness_of(
     square = math.ceil(DISTANCES[-1] / texel) + 1
     near = _near(decks, square)
     bake = OpennessBake(way, distance, solid, crowns, decks, square, near, openness)
-    bake_openness(workers, Held(bake))
+    bake_openness(workers, PackedBundle(bake))
     return openness
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.sky.clouds import DEEPEST, CloudRays, cloud_rays
 from eyas.engine.render.kernels.sky.radiance import CLOUD_BEND, CLOUDS_FROM
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
-from eyas.lanes import Held, exact, thread_count
+from eyas.lanes import PackedBundle, exact, thread_count
 
 _ROWS, _COLUMNS = 208, 2048
 _SEEN = 0.65  # Correction of the cover: clouds hide more when seen from the side than from below
@@ -17,13 +17,12 @@ _TEXEL = 9.0 / SIZE  # Side of a texel of the cloud heights [km]
 
 
 @functools.lru_cache(maxsize=4)
-def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
+def build_clouds(
+    cover: float,  # Share of the sky that clouds cover, 0 to 1
+    sun: tuple[float, float, float],  # Unit vector towards the sun
+) -> NDArray[np.uint8]:
     """Return the clouds' panorama, see `eyas.engine.render.kernels.sky.clouds`; one empty texel for
     none.
-
-    Args:
-        cover: Share of the sky that clouds cover, 0 to 1.
-        sun: Unit vector towards the sun.
     """
     if cover <= 0.0:
         return np.zeros((1, 1, 2), np.uint8)
@@ -37,7 +36,7 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
         plan_directions(_COLUMNS).astype(np.float32),
         output,
     )
-    cloud_rays(thread_count(), Held(rays))
+    cloud_rays(thread_count(), PackedBundle(rays))
     return output
 
 

@@ -21,12 +21,11 @@ _TEXEL = 9.0 / SIZE  # Side of a texel of the land [km]
 
 
 @functools.lru_cache(maxsize=4)
-def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
+def build_hills(
+    horizon: Horizon,  # Kind of hills
+    sun: tuple[float, float, float],  # Unit vector towards the sun
+) -> NDArray[np.uint8]:
     """Return the hills as seen from the centre of the map.
-
-    Args:
-        horizon: Kind of hills.
-        sun: Unit vector towards the sun.
 
     Returns:
         Cover, sunlight, woods, and distance from `HAZE_END` to `HILL_FARTHEST`, each 0 to 255

@@ -26,17 +26,16 @@ def no_land() -> NDArray[np.uint16]:
     return np.zeros((2, 2), np.uint16)
 
 
-def land_map(scene: Scene, ambient: AmbientMap, folder: Path | None = None) -> NDArray[np.uint16]:
+def land_map(
+    scene: Scene,  # The static scene
+    ambient: AmbientMap,  # Its map of the sky's light
+    folder: Path | None = None,  # Folder of the cache; None: the user's
+) -> NDArray[np.uint16]:
     """Return the map of a scene in the frame of its `AmbientMap`; kept in the cache.
 
     Low byte: how much of a place lies under crowns; high byte: how open to mist it is, 0 to 255
     each. Mist forms where the ground loses its heat to the sky (radiation fog) and over water
     that is warmer than the air; between buildings there is less of both.
-
-    Args:
-        scene: The static scene.
-        ambient: Its map of the sky's light.
-        folder: Folder of the cache; None: the user's.
     """
     shape = ambient.openness.shape
     water = _water(scene)

@@ -21,7 +21,7 @@ from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.render.pack.clusters import corners_of
 from eyas.engine.state.mesh import Surface
-from eyas.lanes import Held, exact, thread_count
+from eyas.lanes import PackedBundle, exact, thread_count
 from eyas.lanes.vector import WIDTH
 
 TEXEL = 0.2  # Side of a texel, unless the tiles would become too many [m]
@@ -183,7 +183,7 @@ def _draw(
         key=np.empty((workers, BLOCK_TEXELS, BLOCK_TEXELS + -BLOCK_TEXELS % WIDTH), np.int64),
         heights=heights,
     )
-    bake_tiles(workers, Held(geometry), Held(bake))
+    bake_tiles(workers, PackedBundle(geometry), PackedBundle(bake))
 
 
 def _cards(geometry: Geometry) -> NDArray[np.int32]:

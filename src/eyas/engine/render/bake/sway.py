@@ -21,15 +21,14 @@ def calm() -> NDArray[np.float32]:
     return np.zeros((0, 2), np.float32)
 
 
-def sway_of(scene: Scene, geometry: Geometry) -> NDArray[np.float32]:
+def sway_of(
+    scene: Scene,  # Its fixtures
+    geometry: Geometry,  # The same fixtures, in another order
+) -> NDArray[np.float32]:
     """Return how fast [1/s] and how far each fixture sways, 0 for those without leaves.
 
     They turn about their feet: a stand of many trees, which is wide, would rise and sink at its
     edges, so it sways less.
-
-    Args:
-        scene: Its fixtures.
-        geometry: The same fixtures, in another order.
     """
     has_leaves = np.array([_has_leaves(levels[0]) for levels in scene.fixtures.levels], np.bool_)
     prototype = geometry.fixture_prototype

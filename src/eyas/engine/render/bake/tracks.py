@@ -191,14 +191,12 @@ def _waves(points: Line, length: float, seed: int) -> Line:
     return np.asarray(exact.sin(exact.product(points, way) + phase).sum(axis=1) / 2.5)
 
 
-def _streaks(way: NDArray[np.int64], along: Line, aside: Line) -> Line:
-    """Return noise that is drawn out along lanes, -1 to 1: value noise of lanes' own coordinates.
-
-    Args:
-        way: Number of each point's lane or path, shape (K,).
-        along: Its place along it [m], shape (K,).
-        aside: Its distance from the middle [m], shape (K,).
-    """
+def _streaks(
+    way: NDArray[np.int64],  # Number of each point's lane or path, shape (K,)
+    along: Line,  # Its place along it [m], shape (K,)
+    aside: Line,  # Its distance from the middle [m], shape (K,)
+) -> Line:
+    """Return noise drawn out along lanes, -1 to 1: value noise of the lanes' coordinates."""
     length, width = _STREAK
     table = np.random.default_rng(3).uniform(-1.0, 1.0, (256, 256))
     row, column = along / length, aside / width

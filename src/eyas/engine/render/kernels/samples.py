@@ -81,16 +81,15 @@ def around(box: ScreenBox, view: View, x: float, y: float, z: float) -> ScreenBo
 
 
 @kernel(inline=True)
-def local_camera(view: View, origin: Direction, along_x: float, along_y: float) -> LocalCamera:
+def local_camera(
+    view: View,  # The samples
+    origin: Direction,  # Origin of the frame, world frame [m], of float64
+    along_x: float,  # The frame's x axis, a horizontal unit vector
+    along_y: float,  # The same
+) -> LocalCamera:
     """Return the camera of a view in an upright frame.
 
     Distances within it are short, so float32 is enough for them.
-
-    Args:
-        view: The samples.
-        origin: Origin of the frame, world frame [m], of float64.
-        along_x: The frame's x axis, a horizontal unit vector.
-        along_y: The same.
     """
     eye, ahead, left, up = view.eye, view.ahead, view.left, view.up
     x, y = eye.x - origin.x, eye.y - origin.y

@@ -20,17 +20,16 @@ _rotate = interpreted(rotate)  # of scalars, but arrays do as well
 
 
 class TrackerBodies:
-    """Adds to what each tracker sees the bodies of the others in its world, not its own.
-
-    Args:
-        mates: The trackers in the world of each of N trackers, itself among them.
-        actors: Number of actors in each world.
-        part: The renderer's part of a body; it has one if trackers share worlds.
-        visible: Whether trackers see each other at all.
-    """
+    """Adds to what each tracker sees the bodies of the others in its world, not its own."""
 
     def __init__(
-        self, mates: Sequence[NDArray[np.int64]], actors: int, part: int, *, visible: bool = True
+        self,
+        # The trackers in the world of each of N trackers, itself among them
+        mates: Sequence[NDArray[np.int64]],
+        actors: int,  # Number of actors in each world
+        part: int,  # The renderer's part of a body; it has one if trackers share worlds
+        *,
+        visible: bool = True,  # Whether trackers see each other at all
     ) -> None:
         self._part, self._actors = part, actors
         others = [own[own != n] for n, own in enumerate(mates)]
@@ -106,13 +105,12 @@ class SignalLights:
         aspect = self.plan.shown(time, self.row[pole])
         return np.where(aspect < 0, -1, self.first_part + aspect).astype(np.int32)
 
-    def added(self, movers: DrawList, time: NDArray[np.float64]) -> DrawList:
-        """Return a draw list with the lights after the movers.
-
-        Args:
-            movers: Lists of W worlds.
-            time: Time of the traffic in each [s], shape (W,).
-        """
+    def added(
+        self,
+        movers: DrawList,  # Lists of W worlds
+        time: NDArray[np.float64],  # Time of the traffic in each [s], shape (W,)
+    ) -> DrawList:
+        """Return a draw list with the lights after the movers."""
         worlds = len(time)
         part = self.parts(time[:, None], np.arange(len(self.row))[None])
         pose = np.broadcast_to(self.pose, (worlds, *self.pose.shape))

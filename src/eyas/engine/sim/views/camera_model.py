@@ -28,22 +28,15 @@ class CameraModel:
 
     Attributes:
         development: Their sensors; None: they have none.
-
-    Args:
-        config: The settings.
-        lighting: Light and air of the weather.
-        count: N.
-        lenses: Their lenses; None: they lose no light.
-        shutter: Their shutters, which stay open as long as the sensors are exposed; None: an
-            instant.
     """
 
     def __init__(
         self,
-        config: CameraConfig,
-        lighting: Lighting,
-        count: int,
-        lenses: Lenses | None = None,
+        config: CameraConfig,  # The settings
+        lighting: Lighting,  # Light and air of the weather
+        count: int,  # N
+        lenses: Lenses | None = None,  # Their lenses; None: they lose no light
+        # Their shutters, which stay open as long as the sensors are exposed; None: an instant
         shutter: Shutter | None = None,
     ) -> None:
         sensor = config.sensor

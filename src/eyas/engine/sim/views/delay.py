@@ -29,20 +29,15 @@ class PastState:
     Attributes:
         snapshot: Their state at that time; written in place.
         told: What their sensors with errors told then; None: none has errors.
-
-    Args:
-        latency: Of all that agents see.
-        now: The present state.
-        told: What sensors with errors tell now, shape (N, ...); None: none has errors.
-        sensor: Rate, delay and drop-out of its exposures.
     """
 
     def __init__(
         self,
-        latency: Latency,
-        now: Snapshot,
+        latency: Latency,  # Of all that agents see
+        now: Snapshot,  # The present state
+        # What sensors with errors tell now, shape (N, ...); None: none has errors
         told: Floats | None = None,
-        sensor: ReadingConfig = _ON_TIME,
+        sensor: ReadingConfig = _ON_TIME,  # Rate, delay and drop-out of its exposures
     ) -> None:
         count = len(now.light.sky)
         self.snapshot = Snapshot.create(count)
@@ -143,22 +138,15 @@ class SeenState:
         steady: The same without it.
         told: What sensors with errors tell, see `Readings.told`; None: none has errors.
         late: Steps by which messages to each tracker are late, shape (N,); None: none is.
-
-    Args:
-        latency: Of all that agents see, in physics steps.
-        camera: Rate, delay and drop-out of pictures.
-        now: The present state.
-        told: What sensors with errors tell now.
-        vibration: That of the cameras; None: there is none.
     """
 
     def __init__(
         self,
-        latency: Variation,
-        camera: ReadingConfig,
-        now: Snapshot,
-        told: Floats | None,
-        vibration: Vibration | None = None,
+        latency: Variation,  # Of all that agents see, in physics steps
+        camera: ReadingConfig,  # Rate, delay and drop-out of pictures
+        now: Snapshot,  # The present state
+        told: Floats | None,  # What sensors with errors tell now
+        vibration: Vibration | None = None,  # That of the cameras; None: there is none
     ) -> None:
         self._latency = Latency(latency, "observation_latency", len(now.light.sky))
         self._past: list[PastState] = []

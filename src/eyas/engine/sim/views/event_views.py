@@ -27,24 +27,16 @@ class EventViews:
 
     Attributes:
         sensors: The sensors.
-
-    Args:
-        config: The settings.
-        sensors: The sensors.
-        steady: The state that pictures show, without vibration.
-        vibration: That of the cameras; None: there is none.
-        aspect: Height of what the cameras show over its width.
-        stage: Who draws what they see.
     """
 
     def __init__(
         self,
-        config: EventsConfig,
+        config: EventsConfig,  # The settings
         sensors: EventSensors,
-        steady: Snapshot,
-        vibration: Vibration | None,
-        aspect: float,
-        stage: Stage,
+        steady: Snapshot,  # The state that pictures show, without vibration
+        vibration: Vibration | None,  # That of the cameras; None: there is none
+        aspect: float,  # Height of what the cameras show over its width
+        stage: Stage,  # Who draws what they see
     ) -> None:
         self.sensors = sensors
         self._config, self._steady, self._vibration = config, steady, vibration

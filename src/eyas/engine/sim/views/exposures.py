@@ -16,7 +16,7 @@ from eyas.engine.camera.poses import (
     Exposure,
     Moments,
     Moving,
-    Seen,
+    ViewMotion,
     motion_in_pixels,
     poses_at,
 )
@@ -81,48 +81,39 @@ def ways_of(
     exposure: Exposure,  # V cameras
     window: Floats,  # The time around the instant of each [s], shape (V,)
     floor: Floats,  # Height of the ground that each sees [m], shape (V,)
-    frame: Floats,  # See `Seen.frame`
+    frame: Floats,  # See `ViewMotion.frame`
     moving: Moving,  # Things that move
 ) -> Floats:
     """Return the largest motion through each picture in a given time [pixels], shape (V,)."""
     place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
-    seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
+    seen = ViewMotion(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)
     return seen.motion
 
 
 class Exposures:
-    """Draws exposures of N trackers' cameras.
-
-    Args:
-        shutter: Their shutters.
-        steady: The state that pictures show, without vibration.
-        vibration: That of the cameras; None: there is none.
-        aspect: Height of what the cameras show over its width.
-        stage: Who draws them.
-    """
+    """Draws exposures of N trackers' cameras."""
 
     def __init__(
         self,
         shutter: Shutter,
-        steady: Snapshot,
-        vibration: Vibration | None,
-        aspect: float,
-        stage: Stage,
+        steady: Snapshot,  # The state that pictures show, without vibration
+        vibration: Vibration | None,  # That of the cameras; None: there is none
+        aspect: float,  # Height of what the cameras show over its width
+        stage: Stage,  # Who draws them
     ) -> None:
         self._shutter, self._steady, self._vibration = shutter, steady, vibration
         self._aspect, self._stage = aspect, stage
         self._light = Picture(None, None, None, None, None)
 
-    def draw(self, chosen: Chosen, until: DrawStage, picture: Picture) -> None:
-        """Draw the exposures of some trackers.
-
-        Args:
-            chosen: The trackers, shape (V,).
-            until: See `Renderer.draw`.
-            picture: V pictures; colours are drawn without blur, radiances are the means of their
-                exposures.
-        """
+    def draw(
+        self,
+        chosen: Chosen,  # The trackers, shape (V,)
+        until: DrawStage,  # See `Renderer.draw`
+        # V pictures; colours are drawn without blur, radiances are the means of their exposures
+        picture: Picture,
+    ) -> None:
+        """Draw the exposures of some trackers."""
         height, width = picture_size(picture)
         exposure = exposure_of(chosen, self._steady, self._vibration)
         frame = np.array([width, self._aspect, height / width / self._aspect])

@@ -35,16 +35,14 @@ class FurtherOptics(Optics):
     Attributes:
         config: The settings.
         field_of_view: Horizontal [rad], shape (N,).
-
-    Args:
-        config: The settings.
-        assets: Scene, light and renderer.
-        hour: Hour of the day; None: the weather's own.
-        count: N.
     """
 
     def __init__(
-        self, config: FurtherCameraConfig, assets: Assets, hour: float | None, count: int
+        self,
+        config: FurtherCameraConfig,  # The settings
+        assets: Assets,  # Scene, light and renderer
+        hour: float | None,  # Hour of the day; None: the weather's own
+        count: int,  # N
     ) -> None:
         super().__init__(config, assets, hour, count)
         self.config = config
@@ -70,27 +68,18 @@ class FurtherCamera:
 
     Attributes:
         cameras: Where they are, from the last `place` on.
-
-    Args:
-        optics: Their optics.
-        config: The settings of the simulation.
-        assets: Scene and renderer.
-        worlds: The worlds, with their moving objects.
-        light: The light around each tracker.
-        state: State of the trackers.
-        visible: Whether trackers see each other.
     """
 
     def __init__(
         self,
         optics: FurtherOptics,
-        config: SimConfig,
-        assets: Assets,
-        worlds: Worlds,
-        light: LightChanges,
-        state: SeenState,
+        config: SimConfig,  # The settings of the simulation
+        assets: Assets,  # Scene and renderer
+        worlds: Worlds,  # The worlds, with their moving objects
+        light: LightChanges,  # The light around each tracker
+        state: SeenState,  # State of the trackers
         *,
-        visible: bool,
+        visible: bool,  # Whether trackers see each other
     ) -> None:
         own = optics.config
         self.config, self._optics, self._state = own, optics, state
@@ -102,13 +91,12 @@ class FurtherCamera:
             _Shown(shown, shown), optics, visible=visible,
         )  # fmt: skip
 
-    def draw(self, trackers: Chosen, picture: Picture) -> None:
-        """Draw what they see now.
-
-        Args:
-            trackers: The trackers, shape (V,).
-            picture: V pictures to draw into.
-        """
+    def draw(
+        self,
+        trackers: Chosen,  # The trackers, shape (V,)
+        picture: Picture,  # V pictures to draw into
+    ) -> None:
+        """Draw what they see now."""
         self.place()
         self._drawer.draw(trackers, picture, DrawStage.SHADING)
 

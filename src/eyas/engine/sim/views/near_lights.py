@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eyas.engine.sim.views.additions import SignalLights
 from eyas.engine.sim.views.near_actors import SLACK, Listed, ViewQuery, eight_may_matter
 from eyas.engine.state.draw import DrawList
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
 
@@ -54,21 +54,20 @@ def _list_lights(poles: _Poles, query: ViewQuery, listed: Listed, found: _Found)
 
 
 class NearLights:
-    """Lists the lights that some views may show.
+    """Lists the lights that some views may show."""
 
-    Args:
-        lights: All of them.
-        reach: How far the corners of a light are from the foot of its pole, at most [m].
-    """
-
-    def __init__(self, lights: SignalLights, reach: float) -> None:
+    def __init__(
+        self,
+        lights: SignalLights,  # All of them
+        reach: float,  # How far the corners of a light are from the foot of its pole, at most [m]
+    ) -> None:
         self._lights = lights
         count = len(lights.pose)
         sphere = np.zeros((4, -(-count // WIDTH) * WIDTH), np.float32)
         sphere[:3, :count] = lights.pose[:, :, 3].T
         sphere[3, count:] = -1e9  # so far behind all edges that no camera sees them
         sphere[3, :count] = 1.001 * reach * _scale(lights.pose) + SLACK
-        self._poles = Held(_Poles(sphere))
+        self._poles = PackedBundle(_Poles(sphere))
 
     def bind(self, query: ViewQuery, listed: Listed) -> None:
         """Use these buffers from now on."""
@@ -76,14 +75,13 @@ class NearLights:
         self._found = _Found(*(np.zeros(size, np.int64) for size in (1, most, most)))
         self.list = _list_lights.bind(self._poles, query, listed, self._found)
 
-    def write(self, time: NDArray[np.float64], slots: int, flat: DrawList) -> None:
-        """Write the lights found into their slots.
-
-        Args:
-            time: Time of each world [s], shape (W,).
-            slots: Slots in the list of a world.
-            flat: The lists of all worlds, as of one.
-        """
+    def write(
+        self,
+        time: NDArray[np.float64],  # Time of each world [s], shape (W,)
+        slots: int,  # Slots in the list of a world
+        flat: DrawList,  # The lists of all worlds, as of one
+    ) -> None:
+        """Write the lights found into their slots."""
         count, lights = int(self._found.number[0]), self._lights
         if count == 0:
             return

@@ -21,16 +21,14 @@ class Optics:
         shutter: None: all rows of a picture see one instant.
         model: What makes pictures of light; None: the renderer.
         thermal: What makes pictures of temperatures; None: they are made of light.
-
-    Args:
-        config: The settings.
-        assets: Scene, light and renderer.
-        hour: Hour of the day; None: the weather's own.
-        count: N.
     """
 
     def __init__(
-        self, config: CameraConfig, assets: Assets, hour: float | None, count: int
+        self,
+        config: CameraConfig,  # The settings
+        assets: Assets,  # Scene, light and renderer
+        hour: float | None,  # Hour of the day; None: the weather's own
+        count: int,  # N
     ) -> None:
         lighting = assets.lighting
         self.lenses = Lenses.of(config.lens, count)

@@ -15,7 +15,7 @@ from eyas.engine.state.motion import ActorView
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 
 Floats = NDArray[np.float64]
 
@@ -43,15 +43,14 @@ class _Query(NamedTuple):
 
 
 class Outlines:
-    """Poses the actors around a tracker, and encloses their vertices on the picture plane.
+    """Poses the actors around a tracker, and encloses their vertices on the picture plane."""
 
-    Args:
-        kind: Kind of each actor, index into `KINDS`, shape (A,).
-        width: Width of the pictures [pixels].
-        height: Their height [pixels].
-    """
-
-    def __init__(self, kind: NDArray[np.int32], width: int, height: int) -> None:
+    def __init__(
+        self,
+        kind: NDArray[np.int32],  # Kind of each actor, index into `KINDS`, shape (A,)
+        width: int,  # Width of the pictures [pixels]
+        height: int,  # Their height [pixels]
+    ) -> None:
         self._rigs, self._kinds = Rigs(kind), tuple(sorted({*kind.tolist()}))
         self._posed = self._rigs.draw_list(1)
         self._width, self._height = width, height
@@ -131,10 +130,10 @@ def _enclose(vertices: _Vertices, query: _Query) -> None:
 
 
 @lru_cache(maxsize=8)
-def _vertices_of(kinds: tuple[int, ...]) -> Held[_Vertices]:
+def _vertices_of(kinds: tuple[int, ...]) -> PackedBundle[_Vertices]:
     """Return the vertices of the parts of some kinds, indices into `KINDS`, as in `Rigs`."""
     each = [np.unique(levels[0].positions, axis=0) for levels in load_parts(kinds).parts]
-    return Held(
+    return PackedBundle(
         _Vertices(
             np.concatenate(each).astype(np.float64),
             np.concatenate([[0], np.cumsum([len(points) for points in each])]).astype(np.int64),

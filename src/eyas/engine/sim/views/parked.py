@@ -11,7 +11,7 @@ from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.render.kernels.scalars import i8
 from eyas.engine.state.scene import LABELLED, LAST_PARKED, ObjectClass, Scene
 from eyas.engine.state.snapshot import CameraState
-from eyas.lanes import Held, compiled, exact, kernel
+from eyas.lanes import PackedBundle, compiled, exact, kernel
 
 Floats = NDArray[np.float64]
 
@@ -83,11 +83,7 @@ class _Query(NamedTuple):
 
 
 class ParkedObjects:
-    """All parked objects of a scene.
-
-    Args:
-        scene: The scene.
-    """
+    """All parked objects of a scene."""
 
     def __init__(self, scene: Scene) -> None:
         fixtures = scene.fixtures
@@ -103,7 +99,7 @@ class ParkedObjects:
         vertices = [mesh.positions for mesh in meshes]
         triangles = [mesh.triangles for mesh in meshes]
         self._most = max(map(len, vertices), default=0)
-        self._copies = Held(
+        self._copies = PackedBundle(
             _Copies(
                 row=rows,
                 first_copy=np.append(first, len(copies)).astype(np.int64),

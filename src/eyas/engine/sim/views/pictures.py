@@ -41,27 +41,18 @@ class PictureDrawer:
 
     Attributes:
         aspect: Height of what their cameras show over its width.
-
-    Args:
-        config: The settings.
-        assets: Scene and renderer.
-        worlds: The worlds, with their moving objects.
-        light: The light around each tracker.
-        state: State of the trackers.
-        optics: What is modelled of their cameras beyond pinholes.
-        visible: Whether trackers see each other.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        worlds: Worlds,
-        light: LightChanges,
-        state: ShownState,
-        optics: Optics | None = None,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Scene and renderer
+        worlds: Worlds,  # The worlds, with their moving objects
+        light: LightChanges,  # The light around each tracker
+        state: ShownState,  # State of the trackers
+        optics: Optics | None = None,  # What is modelled of their cameras beyond pinholes
         *,
-        visible: bool = True,
+        visible: bool = True,  # Whether trackers see each other
     ) -> None:
         snapshot = state.shown
         self._worlds = worlds
@@ -86,19 +77,18 @@ class PictureDrawer:
             self._exposures = Exposures(optics.shutter, steady, vibration, self.aspect, self)
 
     def draw(
-        self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
+        self,
+        chosen: Chosen,  # The trackers, shape (V,)
+        picture: Picture,  # V pictures to draw into; the subject of each is its tracker's target
+        until: DrawStage,  # The stage at which to stop; see `Renderer.draw`
+        # Rules whose overlay is drawn over the colours; None: no overlay
+        overlaid: Rules | None = None,
     ) -> None:
         """Draw the pictures of trackers' cameras.
 
         Cameras have the aspect ratio of the configured picture. Pictures with another
         one show the same view distorted, like the original's observations: 320x240 resized to
         84x84.
-
-        Args:
-            chosen: The trackers, shape (V,).
-            picture: V pictures to draw into; the subject of each is its tracker's target.
-            until: The stage at which to stop; see `Renderer.draw`.
-            overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
         views, movers = self._own_views(chosen, cameras)
@@ -163,13 +153,12 @@ class PictureDrawer:
             ]
             paint_overlays(views, marks, deep)
 
-    def draw_parts(self, tracker: int, posed: DrawList) -> MovingParts:
-        """Draw which moving part each pixel of a tracker's picture shows.
-
-        Args:
-            tracker: The tracker.
-            posed: All actors of its world, each in the same slots in all pictures.
-        """
+    def draw_parts(
+        self,
+        tracker: int,
+        posed: DrawList,  # All actors of its world, each in the same slots in all pictures
+    ) -> MovingParts:
+        """Draw which moving part each pixel of a tracker's picture shows."""
         chosen = np.array([tracker], np.int32)
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
         views, _ = self._views(chosen, cameras, self.aspect, self._lenses)

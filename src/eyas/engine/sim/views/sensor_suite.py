@@ -44,25 +44,17 @@ class SensorSuite:
         further: The cameras that trackers have beside that one.
         events: None if there are no event cameras.
         follow: Whether `advance` must be called after each physics step.
-
-    Args:
-        config: The settings.
-        assets: Map and traffic.
-        worlds: The worlds of the trackers.
-        snapshot: Their state.
-        active: Whether each moves in a step, shape (N,); read at each.
-        bodies: Whether they have bodies, which others meet.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        worlds: Worlds,
-        snapshot: Snapshot,
-        active: NDArray[np.bool_],
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map and traffic
+        worlds: Worlds,  # The worlds of the trackers
+        snapshot: Snapshot,  # Their state
+        active: NDArray[np.bool_],  # Whether each moves in a step, shape (N,); read at each
         *,
-        bodies: bool,
+        bodies: bool,  # Whether they have bodies, which others meet
     ) -> None:
         self.lidar: Lidar | None = None
         self.readings: Readings | None = None

@@ -20,17 +20,14 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 
 
 class ThermalViews:
-    """The thermal cameras of N trackers.
-
-    Args:
-        config: The settings.
-        assets: Scene, light and renderer.
-        hour: Hour of the day; None: the weather's own.
-        count: N.
-    """
+    """The thermal cameras of N trackers."""
 
     def __init__(
-        self, config: ThermalConfig, assets: Assets, hour: float | None, count: int
+        self,
+        config: ThermalConfig,  # The settings
+        assets: Assets,  # Scene, light and renderer
+        hour: float | None,  # Hour of the day; None: the weather's own
+        count: int,  # N
     ) -> None:
         self._temperatures = SurfaceTemperatures(assets.lighting, hour)
         classes = assets.scene.object_class

@@ -40,27 +40,18 @@ class View:
         pictures: Draws it.
         lenses: The lenses of the trackers' cameras; None: they bend nothing.
         further: The cameras that trackers have beside their own, by name.
-
-    Args:
-        config: The settings.
-        assets: Scene and renderer.
-        worlds: The worlds, with their moving objects.
-        light: The light around each tracker.
-        sensors: What is sensed.
-        state: The state that is seen.
-        visible: Whether trackers see each other.
     """
 
     def __init__(
         self,
-        config: SimConfig,
-        assets: Assets,
-        worlds: Worlds,
-        light: LightChanges,
-        sensors: SensorSuite,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Scene and renderer
+        worlds: Worlds,  # The worlds, with their moving objects
+        light: LightChanges,  # The light around each tracker
+        sensors: SensorSuite,  # What is sensed
         state: SeenState,
         *,
-        visible: bool,
+        visible: bool,  # Whether trackers see each other
     ) -> None:
         self.state = state
         self.lenses = sensors.optics.bent
@@ -142,13 +133,12 @@ class View:
             if told is not None  # it is where there are such sensors
         }
 
-    def actors(self, tracker: int, later: int = 0) -> ActorView:
-        """Return the actors around a tracker at the instant that its pictures show.
-
-        Args:
-            tracker: The tracker.
-            later: Physics steps after that.
-        """
+    def actors(
+        self,
+        tracker: int,
+        later: int = 0,  # Physics steps after that
+    ) -> ActorView:
+        """Return the actors around a tracker at the instant that its pictures show."""
         tick = int(self.state.shown.episodes.tick[tracker]) + later
         state, model = self._worlds.actors_around(tracker, tick)
         before, _ = self._worlds.actors_around(tracker, tick - 1)
@@ -164,14 +154,13 @@ class View:
     def _outlines(self) -> Outlines:
         return Outlines(self._kind, self._camera.width, self._camera.height)
 
-    def whole_boxes(self, tracker: int, actors: ActorView, wanted: NDArray[np.integer]) -> Floats:
-        """Return what some actors would cover of a tracker's picture, see `Outlines.of`.
-
-        Args:
-            tracker: The tracker.
-            actors: The actors around it.
-            wanted: Which of them, shape (B,).
-        """
+    def whole_boxes(
+        self,
+        tracker: int,
+        actors: ActorView,  # The actors around it
+        wanted: NDArray[np.integer],  # Which of them, shape (B,)
+    ) -> Floats:
+        """Return what some actors would cover of a tracker's picture, see `Outlines.of`."""
         cameras, lens = self.state.shown.cameras, self.lens_of(tracker)
         return self._outlines.of(actors, wanted, cameras, tracker, lens)
 
@@ -194,33 +183,30 @@ class View:
         """Return the lens of a tracker's camera; None: it is a pinhole."""
         return None if self.lenses is None else self.lenses.of_tracker(tracker)
 
-    def parts(self, tracker: int, actors: ActorView) -> MovingParts:
-        """Return which moving part each pixel of a tracker's picture shows.
-
-        Args:
-            tracker: The tracker.
-            actors: The actors around it.
-        """
+    def parts(
+        self,
+        tracker: int,
+        actors: ActorView,  # The actors around it
+    ) -> MovingParts:
+        """Return which moving part each pixel of a tracker's picture shows."""
         return self.pictures.draw_parts(tracker, self._outlines.posed(actors))
 
-    def words(self, tracker: int, aspect: float, actors: ActorView | None = None) -> str:
-        """Return the target of a tracker in words, see `eyas.engine.sim.views.words`.
-
-        Args:
-            tracker: The tracker.
-            aspect: Height of its camera's picture over its width.
-            actors: The actors around it; None: not known yet.
-        """
+    def words(
+        self,
+        tracker: int,
+        aspect: float,  # Height of its camera's picture over its width
+        actors: ActorView | None = None,  # The actors around it; None: not known yet
+    ) -> str:
+        """Return the target of a tracker in words, see `eyas.engine.sim.views.words`."""
         around, lens = actors or self.actors(tracker), self.lens_of(tracker)
         return target_in_words(self.state.shown, around, tracker, aspect, lens)
 
-    def in_view(self, tracker: int, later: int = 0) -> InView:
-        """Return the moving objects in a tracker's view, for phrases about them.
-
-        Args:
-            tracker: The tracker.
-            later: Physics steps after the instant that its pictures show; the camera stays.
-        """
+    def in_view(
+        self,
+        tracker: int,
+        later: int = 0,  # Physics steps after the instant that its pictures show; the camera stays
+    ) -> InView:
+        """Return the moving objects in a tracker's view, for phrases about them."""
         aspect = self._camera.height / self._camera.width
         actors = self.actors(tracker, later)
         return in_view(self.state.shown, actors, tracker, aspect, self.lens_of(tracker))

@@ -33,7 +33,7 @@ from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
-from eyas.lanes import Held, compiled
+from eyas.lanes import PackedBundle, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
 _LONGEST = 3.0
@@ -96,25 +96,18 @@ class _Size(NamedTuple):
 
 
 class VisibleActors:
-    """Poses the actors that matter for some views, in draw lists that hold no others.
-
-    Args:
-        motion: Motion of all actors.
-        rigs: Their rigs.
-        looks: Models and colours of the actors of all worlds; may change.
-        reach: Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,).
-        spray: Whether vehicles throw up water.
-        lights: The lights of signals, which are listed behind the actors; None: there are none.
-    """
+    """Poses the actors that matter for some views, in draw lists that hold no others."""
 
     def __init__(
         self,
-        motion: Motion,
+        motion: Motion,  # Motion of all actors
         rigs: Rigs,
-        looks: Looks,
+        looks: Looks,  # Models and colours of the actors of all worlds; may change
+        # Distance up to which an actor of each of the rigs' kinds may matter [m], shape (K,)
         reach: NDArray[np.float64],
         *,
-        spray: bool = False,
+        spray: bool = False,  # Whether vehicles throw up water
+        # The lights of signals, which are listed behind the actors; None: there are none
         lights: NearLights | None = None,
     ) -> None:
         self._lights = lights
@@ -122,7 +115,12 @@ class VisibleActors:
         kinds, actor = kind_table(rigs, reach, spray=spray), column_actors(rigs)
         self._rigs, self._signal = rigs, motion.lamps.size > 0
         self._reach = np.minimum(kinds.reach, _LONGEST)
-        self._given = Held(motion), Held(bounds_of(motion, actor)), Held(kinds), Held(looks)
+        self._given = (
+            PackedBundle(motion),
+            PackedBundle(bounds_of(motion, actor)),
+            PackedBundle(kinds),
+            PackedBundle(looks),
+        )
         self._size = _Size(0, 0, 0, 0)
 
     def of(

@@ -11,7 +11,7 @@ from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of
 from eyas.engine.targets.grammar.in_view import InView
-from eyas.engine.targets.words import Seen, told_apart
+from eyas.engine.targets.words import ObjectInView, distinguishing_phrase
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
@@ -35,9 +35,9 @@ def target_in_words(
     middle = corners.mean(axis=1)
     forward, column = middle[:, 0], _placed(middle, wide, aspect, lens)[:, 0]
 
-    def seen(row: int) -> Seen:
+    def seen(row: int) -> ObjectInView:
         actor = chosen[row]
-        return Seen(
+        return ObjectInView(
             model=int(model[actor]),
             colour=colour[actor].tolist(),
             speed=float(actors.speed[0, actor]),
@@ -48,7 +48,7 @@ def target_in_words(
 
     (own,) = np.flatnonzero(chosen == target).tolist()
     others = np.flatnonzero(inside & (chosen != target)).tolist()
-    return told_apart(seen(own), [seen(row) for row in others])
+    return distinguishing_phrase(seen(own), [seen(row) for row in others])
 
 
 def in_view(

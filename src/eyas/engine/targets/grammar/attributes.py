@@ -6,18 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.targets.colour_names import COLOUR_NAMES
-from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
+from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 
 Vector = NDArray[np.float32]
-Word = TypeVar("Word", BodyWord, Doing, PicturePlace, Bearing)
+Word = TypeVar("Word", BodyWord, MotionWord, PicturePlace, Bearing)
 
 _COLOUR = ("said", "red", "green", "blue")
 
 ATTRIBUTES: Final[tuple[str, ...]] = (
     *(f"colour_{part}" for part in _COLOUR),
     *(f"body_{word}" for word in BodyWord),
-    *(f"doing_{doing}" for doing in Doing),
+    *(f"doing_{doing}" for doing in MotionWord),
     *(f"place_{place}" for place in PicturePlace),
     *(f"bearing_{bearing}" for bearing in Bearing),
     *(f"other_colour_{part}" for part in _COLOUR),
@@ -58,7 +58,7 @@ def claim_of(vector: NDArray[np.floating]) -> Claim | None:
     return Claim(
         body,
         _colour_in(vector, "colour"),
-        _said(vector, "doing", Doing),
+        _said(vector, "doing", MotionWord),
         _said(vector, "place", PicturePlace),
         _said(vector, "bearing", Bearing),
         _said(vector, "other_body", BodyWord),

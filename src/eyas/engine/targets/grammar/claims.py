@@ -21,7 +21,7 @@ Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 
-class Doing(StrEnum):
+class MotionWord(StrEnum):
     """What something does in the first picture."""
 
     STANDING = "standing"
@@ -59,7 +59,7 @@ class Claim(NamedTuple):
 
     body: BodyWord
     colour: str | None = None  # A name in `COLOUR_NAMES`
-    doing: Doing | None = None
+    doing: MotionWord | None = None
     place: PicturePlace | None = None
     bearing: Bearing | None = None  # Only with a reference
     other_body: BodyWord | None = None  # The reference, of which there is one only in view
@@ -71,7 +71,7 @@ class Claim(NamedTuple):
         return None if self.other_body is None else Claim(self.other_body, self.other_colour)
 
 
-def tells_apart(claim: Claim, view: InView, row: int) -> bool:
+def distinguishes(claim: Claim, view: InView, row: int) -> bool:
     """Return whether a claim is true of one of those in view, and nothing else nearly fits it."""
     alike = fits(claim, view)
     alike[row] = False
@@ -148,21 +148,21 @@ _TURNING: Final = 0.2
 """Yaw rate from which on something clearly turns [rad/s]; from a third of it on it nearly does."""
 
 
-def _does(doing: Doing, view: InView, *, strict: bool) -> Mask:
+def _does(doing: MotionWord, view: InView, *, strict: bool) -> Mask:
     slowest = np.array([kind_of(model).slowest for model in view.model.tolist()], np.float64)
     low, high = 0.3 * slowest, 3.0 * slowest
     moves = view.speed >= (high if strict else low)
     turn = _TURNING if strict else _TURNING / 3.0
     match doing:
-        case Doing.STANDING:
+        case MotionWord.STANDING:
             return view.speed < (low if strict else high)
-        case Doing.MOVING:
+        case MotionWord.MOVING:
             return moves
-        case Doing.STRAIGHT:
+        case MotionWord.STRAIGHT:
             return moves & (np.abs(view.yaw_rate) < (_TURNING / 3.0 if strict else _TURNING))
-        case Doing.LEFT_TURN:
+        case MotionWord.LEFT_TURN:
             return moves & (view.yaw_rate >= turn)
-        case Doing.RIGHT_TURN:
+        case MotionWord.RIGHT_TURN:
             return moves & (-view.yaw_rate >= turn)
 
 

@@ -12,12 +12,12 @@ from eyas.engine.targets.grammar.attributes import attributes_of
 from eyas.engine.targets.grammar.claims import (
     Bearing,
     Claim,
-    Doing,
+    MotionWord,
     PicturePlace,
+    distinguishes,
     fits,
     holds,
     is_painted,
-    tells_apart,
 )
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, InView, body_of
 from eyas.engine.targets.grammar.wording import Wording, in_words
@@ -67,7 +67,7 @@ def phrase_about(
     """
     for kind in _shuffled(kinds, rng):
         for claim in claims_about(view, row, kind, rng):
-            if tells_apart(claim, view, row):
+            if distinguishes(claim, view, row):
                 return Phrase(in_words(claim, wording, rng), claim, kind)
     return NO_PHRASE
 
@@ -77,7 +77,7 @@ def claims_about(
 ) -> Iterator[Claim]:
     """Yield claims of a kind about one of those in view, in random order.
 
-    They are true of it but for what `tells_apart` finds.
+    They are true of it but for what `distinguishes` finds.
     """
     looks = _shuffled(descriptions(view, row), rng)
     match kind:
@@ -88,7 +88,9 @@ def claims_about(
             yield from (look for look in looks if look.body is own)
         case PhraseKind.ACTION:
             for look in looks:
-                yield from (look._replace(doing=doing) for doing in _shuffled(tuple(Doing), rng))
+                yield from (
+                    look._replace(doing=doing) for doing in _shuffled(tuple(MotionWord), rng)
+                )
         case PhraseKind.PLACE:
             for look in looks:
                 places = _shuffled(tuple(PicturePlace), rng)
@@ -126,22 +128,21 @@ def _relations(
                     other_body=reference.body,
                     other_colour=reference.colour,
                 )
-                if tells_apart(reference, view, other) and holds(claim, view)[row]:
+                if distinguishes(reference, view, other) and holds(claim, view)[row]:
                     yield from (
                         claim._replace(body=look.body, colour=look.colour) for look in looks
                     )
                     break
 
 
-def contradictory(claim: Claim, view: InView, rng: np.random.Generator) -> Claim | None:
+def contradictory(
+    claim: Claim,  # A claim that holds for the target
+    view: InView,  # What is in view
+    rng: np.random.Generator,  # Chooses the wrong statement
+) -> Claim | None:
     """Return a claim with one statement changed so that it fits nothing in view.
 
     The statement by which the kind tells apart is changed if that is enough: last named first.
-
-    Args:
-        claim: A claim that holds for the target.
-        view: What is in view.
-        rng: Chooses the wrong statement.
 
     Returns:
         None if something in view fits every change.
@@ -149,7 +150,7 @@ def contradictory(claim: Claim, view: InView, rng: np.random.Generator) -> Claim
     for field, words in (
         ("place", tuple(PicturePlace)),
         ("bearing", tuple(Bearing)),
-        ("doing", tuple(Doing)),
+        ("doing", tuple(MotionWord)),
         ("colour", tuple(COLOUR_NAMES)),
         ("body", tuple(BodyWord)[1:9]),
     ):

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
+from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 
 CHARACTERS: Final = "abcdefghijklmnopqrstuvwxyz ,'"  # All characters of phrases
@@ -46,7 +46,7 @@ class WordingSet(NamedTuple):
     """Expressions, each of which one is sampled from; `{}` is replaced."""
 
     sentences: tuple[str, ...]  # Around "the red car"
-    doing: Mapping[Doing, tuple[str, ...]]
+    doing: Mapping[MotionWord, tuple[str, ...]]
     """After the noun; `{}` is "driving", "walking" or "moving"."""
     place: Mapping[PicturePlace, tuple[str, ...]]  # After that
     bearing: Mapping[Bearing, tuple[str, ...]]  # `{}` is the reference: "the bus"
@@ -62,11 +62,11 @@ WORDINGS: Mapping[Wording, WordingSet] = {
             "the target is {}",
         ),
         doing={
-            Doing.STANDING: ("standing still", "that stands still"),
-            Doing.MOVING: ("on the move", "that is {}"),
-            Doing.STRAIGHT: ("{} straight on", "that is {} straight on"),
-            Doing.LEFT_TURN: ("turning left", "that turns left"),
-            Doing.RIGHT_TURN: ("turning right", "that turns right"),
+            MotionWord.STANDING: ("standing still", "that stands still"),
+            MotionWord.MOVING: ("on the move", "that is {}"),
+            MotionWord.STRAIGHT: ("{} straight on", "that is {} straight on"),
+            MotionWord.LEFT_TURN: ("turning left", "that turns left"),
+            MotionWord.RIGHT_TURN: ("turning right", "that turns right"),
         },
         place={
             PicturePlace.LEFT: ("on the left", "in the left half"),
@@ -93,11 +93,11 @@ WORDINGS: Mapping[Wording, WordingSet] = {
             "we want {}",
         ),
         doing={
-            Doing.STANDING: ("which has stopped", "waiting in its place"),
-            Doing.MOVING: ("which keeps {}", "under way"),
-            Doing.STRAIGHT: ("which keeps {} ahead without a turn", "going straight"),
-            Doing.LEFT_TURN: ("which bends to the left", "taking a left"),
-            Doing.RIGHT_TURN: ("which bends to the right", "taking a right"),
+            MotionWord.STANDING: ("which has stopped", "waiting in its place"),
+            MotionWord.MOVING: ("which keeps {}", "under way"),
+            MotionWord.STRAIGHT: ("which keeps {} ahead without a turn", "going straight"),
+            MotionWord.LEFT_TURN: ("which bends to the left", "taking a left"),
+            MotionWord.RIGHT_TURN: ("which bends to the right", "taking a right"),
         },
         place={
             PicturePlace.LEFT: ("left of the middle", "over on the left hand side"),

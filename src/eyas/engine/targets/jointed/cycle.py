@@ -30,14 +30,13 @@ def shapes_of(figure: Figure) -> list[Shape]:
     return shapes
 
 
-def frames_of(figure: Figure, cycle: NDArray[np.float64], *, moving: bool) -> NDArray[np.float64]:
-    """Return the frames of the drawn parts in the model frame, shape (K, S, 3, 4) [m].
-
-    Args:
-        figure: The figure.
-        cycle: Parts of a cycle, shape (K,).
-        moving: Whether it moves; else it rests, and all K frames are alike.
-    """
+def frames_of(
+    figure: Figure,
+    cycle: NDArray[np.float64],  # Parts of a cycle, shape (K,)
+    *,
+    moving: bool,  # Whether it moves; else it rests, and all K frames are alike
+) -> NDArray[np.float64]:
+    """Return the frames of the drawn parts in the model frame, shape (K, S, 3, 4) [m]."""
     frames = {"ground": _level(len(cycle)), "trunk": _trunk(figure.gait, cycle, moving=moving)}
     drawn = []
     for joint in figure.joints:

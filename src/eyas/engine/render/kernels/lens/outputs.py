@@ -14,14 +14,13 @@ _SKY = int(ObjectClass.SKY)
 
 
 @kernel
-def write_bent_depth(band: Band, output: NDArray[np.float32]) -> None:
+def write_bent_depth(
+    band: Band,  # One sample for each pixel
+    output: NDArray[np.float32],  # Shape (rows, columns)
+) -> None:
     """Write the distance along the camera's optical axis of each pixel that the band shows [m].
 
     Keys have it along the axis of their face.
-
-    Args:
-        band: One sample for each pixel.
-        output: Shape (rows, columns).
     """
     key, glass, view = band.key, band.glass, band.camera
     for row in range(band.lines):

@@ -89,17 +89,16 @@ def glass_of(task: Task, tables: LensTables, number: int, face: int, top: int) -
 
 
 @kernel(inline=True)
-def _inverse_at(source: Band, keys: int, at: int, aside: float, below: float) -> float:
+def _inverse_at(
+    source: Band,  # The face
+    keys: int,  # What the samples show
+    at: int,  # Where they are
+    aside: float,  # -0.5 to 0.5 [samples]
+    below: float,  # The same
+) -> float:
     """Return 1/distance of eight samples' triangles, aside and below of the samples' centres.
 
     It is linear on the screen, so neighbours that show the same triangle tell it.
-
-    Args:
-        source: The face.
-        keys: What the samples show.
-        at: Where they are.
-        aside: -0.5 to 0.5 [samples].
-        below: The same.
     """
     key, tag, own = source.key, tag_of(keys), distance_inverse(keys)
     one, stride, zero = i4(1), i4(source.key.shape[1]), f4(0.0)

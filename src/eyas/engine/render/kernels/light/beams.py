@@ -86,15 +86,14 @@ def _screen_box(caster: Caster, view: View) -> ScreenBox:
 
 
 @kernel
-def cast_beam(caster: Caster, band: Band, brakes: bool) -> None:
+def cast_beam(
+    caster: Caster,  # The vehicle
+    band: Band,
+    brakes: bool,  # Whether its brake lamps are lit
+) -> None:
     """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Band.shade`.
 
     Its own body lies neither ahead of its front nor behind its back.
-
-    Args:
-        caster: The vehicle.
-        band: The band.
-        brakes: Whether its brake lamps are lit.
     """
     steps = f4(255.0 * _BRAKING) if brakes else f4(255.0)
     view, key, shade = band.camera, band.key, band.shade

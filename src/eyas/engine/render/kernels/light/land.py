@@ -10,15 +10,14 @@ _OUTSIDE = f4(0.72)
 
 
 @kernel(inline=True)
-def land_at(light: Light, x: float, y: float) -> tuple[float, float]:
+def land_at(
+    light: Light,  # Its map, see `eyas.engine.render.bake.land.land_map`
+    x: float,  # The place [m]
+    y: float,  # The place [m]
+) -> tuple[float, float]:
     """Return how much a place lies under trees, and how open to mist it is, each 0 to 1.
 
     Beyond the map it is open land without trees.
-
-    Args:
-        light: Its map, see `eyas.engine.render.bake.land.land_map`.
-        x: The place [m].
-        y: The place [m].
     """
     frame, zero, unit = light.ambient_frame, f4(0.0), f4(1.0 / 255.0)
     rows, columns = light.land.shape

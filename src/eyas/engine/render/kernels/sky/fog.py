@@ -36,19 +36,18 @@ def fog_share(lit: Illumination, distance: float) -> float:
 
 
 @kernel(inline=True)
-def land_fog(light: Light, lit: Illumination, eye: Colour, point: Colour, away: float) -> float:
+def land_fog(
+    light: Light,  # Says where the ground is
+    lit: Illumination,  # Light and air
+    eye: Colour,  # Optical centre [m]
+    point: Colour,  # The point [m]
+    away: float,  # Distance between them [m]
+) -> float:
     """Return how much of what lies at a point the air hides, 0 to 1; fog lies in banks.
 
     It is thicker low down and in banks of some ten metres, and on average as thick as without: the
     mean of the noise is a half, and that of the heights is about 7 m. Seen over a long way, banks
     and gaps even out.
-
-    Args:
-        light: Says where the ground is.
-        lit: Light and air.
-        eye: Optical centre [m].
-        point: The point [m].
-        away: Distance between them [m].
     """
     away = lesser(away, _FARTHEST)
     if lit.air.banks == f4(0.0):

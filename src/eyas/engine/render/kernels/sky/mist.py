@@ -22,18 +22,17 @@ def _vanishing(x: float) -> float:
 
 
 @kernel(inline=True)
-def mist_share(light: Light, lit: Illumination, eye: Colour, point: Colour, away: float) -> float:
+def mist_share(
+    light: Light,  # Says where land is open
+    lit: Illumination,  # Light and air
+    eye: Colour,  # Optical centre [m]
+    point: Colour,  # The point [m]
+    away: float,  # Distance between them [m]
+) -> float:
     """Return how much of what lies at a point the mist hides, 0 to 1.
 
     Its extinction falls off with height as `exp(-z / depth)`; along a ray from z1 to z2 the mean
     is `(exp(-z1 / depth) - exp(-z2 / depth)) depth / (z2 - z1)`.
-
-    Args:
-        light: Says where land is open.
-        lit: Light and air.
-        eye: Optical centre [m].
-        point: The point [m].
-        away: Distance between them [m].
     """
     zero, one, half, air = f4(0.0), f4(1.0), f4(0.5), lit.air
     ground, deep = light.ambient_frame.ground, air.per_mist_depth

@@ -32,18 +32,17 @@ _STAR_SIZE = f4(0.0011)
 
 
 @kernel(inline=True)
-def starlight(x: float, y: float, z: float, around: float, pixel: float) -> tuple[float, float]:
+def starlight(
+    x: float,  # The direction
+    y: float,  # The direction
+    z: float,  # The direction
+    around: float,  # Its `azimuth`
+    pixel: float,  # Angle that a pixel spans [rad]
+) -> tuple[float, float]:
     """Return the radiance of the star in a direction of length 1, and its tint: red above 0.
 
     Each cell's hash says where its star stands and how bright it is: few are bright, most cells
     have one too faint to see.
-
-    Args:
-        x: The direction.
-        y: The direction.
-        z: The direction.
-        around: Its `azimuth`.
-        pixel: Angle that a pixel spans [rad].
     """
     zero, one, unit, byte = f4(0.0), f4(1.0), f4(1.0 / 255.0), u4(255)
     column, row = to_i4(around * _STAR_COLUMNS), to_i4(greater(z, zero) * _STAR_ROWS)

@@ -56,15 +56,14 @@ Colour = tuple[float, float, float]
 
 
 @kernel(inline=True)
-def _panorama(values: NDArray[np.uint8], row: float, around: float, channel: int) -> float:
-    """Return a channel, 0 to 1, interpolated between the four nearest values.
-
-    Args:
-        values: Shape (rows, columns, channels); the number of columns is a power of 2.
-        row: From -0.5; below the first and above the last row it is the row's.
-        around: See `azimuth`.
-        channel: Index of the channel.
-    """
+def _panorama(
+    # Shape (rows, columns, channels); the number of columns is a power of 2
+    values: NDArray[np.uint8],
+    row: float,  # From -0.5; below the first and above the last row it is the row's
+    around: float,  # See `azimuth`
+    channel: int,  # Index of the channel
+) -> float:
+    """Return a channel, 0 to 1, interpolated between the four nearest values."""
     rows, columns, channels = values.shape
     row = lesser(greater(row, f4(0.0)), f4(rows - 1))
     # One round on: above 0, where cutting off is rounding down.
@@ -96,15 +95,14 @@ def _dot(x: float, y: float, z: float, direction: Direction) -> float:
 
 
 @kernel(inline=True)
-def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, float, float]:
+def _air(
+    lit: Illumination,  # Light and air
+    z: float,  # Upward component of the direction, of length 1
+    toward_sun: float,  # Cosine of its angle to the sun, at least 0
+) -> tuple[float, float, float, float]:
     """Return the radiance of a cloudless sky and the transparency of the haze.
 
     Paler towards the horizon, and brighter round the sun.
-
-    Args:
-        lit: Light and air.
-        z: Upward component of the direction, of length 1.
-        toward_sun: Cosine of its angle to the sun, at least 0.
     """
     zenith, horizon, fog, sun = lit.zenith, lit.horizon, lit.fog, lit.sun_colour
     up = greater(z, f4(0.0))
@@ -127,19 +125,18 @@ def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, 
 
 
 @kernel(inline=True)
-def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: float) -> Colour:
+def sky(
+    light: Light,  # Panoramas
+    lit: Illumination,  # Light and air
+    x: float,  # The direction
+    y: float,  # The direction
+    z: float,  # The direction
+    pixel: float,  # Angle that a pixel spans [rad]
+) -> Colour:
     """Return the colour of a direction of length 1 in which nothing stands.
 
     Stars by night, air, the sun or the moon, clouds in front of them, hills in front of all, far
     land below.
-
-    Args:
-        light: Panoramas.
-        lit: Light and air.
-        x: The direction.
-        y: The direction.
-        z: The direction.
-        pixel: Angle that a pixel spans [rad].
     """
     zero, one = like(z, f4(0.0)), like(z, f4(1.0))
     around = azimuth(x, y)
@@ -345,14 +342,13 @@ def _middle(band: Band, row: int, first: int) -> tuple[float, float]:
 
 
 @kernel
-def draw_backdrop(band: Band, canvas: Canvas) -> None:
+def draw_backdrop(
+    band: Band,
+    canvas: Canvas,  # Its colours
+) -> None:
     """Write the sky at the centre of each pixel in which any sample shows it.
 
     Separate from `shade_band`, so that the code that shades surfaces stays small.
-
-    Args:
-        band: The band.
-        canvas: Its colours.
     """
     view, light, lit, width = band.camera, band.light, band.lit, band.columns
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)

@@ -60,14 +60,13 @@ def _of_instance(band: Band, row: int, triangle: int, ray: Vector, distance: flo
 
 
 @kernel
-def write_normals(band: Band, pixels: NDArray[np.uint8]) -> None:
+def write_normals(
+    band: Band,  # One sample for each pixel
+    pixels: NDArray[np.uint8],  # Shape (rows, columns, 3)
+) -> None:
     """Write the unit normals of a band: right, down and ahead, each from -1 to 1 as 0 to 255.
 
     They face the camera; 0, 0, 0 is the sky.
-
-    Args:
-        band: One sample for each pixel.
-        pixels: Shape (rows, columns, 3).
     """
     rays, key, width, glass = rays_of(band.camera), band.key, pixels.shape[1], band.glass
     numbers, half = to_f4(lane_numbers()), splat(f4(0.5))

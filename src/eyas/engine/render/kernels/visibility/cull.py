@@ -97,15 +97,14 @@ def _box_reaches(side: Side, boxes: NDArray[np.float32], at: int, step: int) -> 
 
 
 @kernel(inline=True)
-def in_boxes(sides: Sides, boxes: NDArray[np.float32], at: int, step: int) -> bool:
-    """Return which of eight boxes may reach inside all planes.
-
-    Args:
-        sides: The planes.
-        boxes: Lower corner x, y, z and upper corner x, y, z of boxes, a row each.
-        at: Index of the first number of the first box.
-        step: Length of the rows.
-    """
+def in_boxes(
+    sides: Sides,  # The planes
+    # Lower corner x, y, z and upper corner x, y, z of boxes, a row each
+    boxes: NDArray[np.float32],
+    at: int,  # Index of the first number of the first box
+    step: int,  # Length of the rows
+) -> bool:
+    """Return which of eight boxes may reach inside all planes."""
     return (
         _box_reaches(sides.left, boxes, at, step)
         & _box_reaches(sides.right, boxes, at, step)

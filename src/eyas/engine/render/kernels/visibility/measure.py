@@ -132,15 +132,14 @@ def _measure(
 
 
 @kernel
-def measure_actors(band: Band, shown: Band, count: int, output: NDArray[np.int32]) -> None:
-    """Measure all actors of a world in a band, each alone and as the band shows it.
-
-    Args:
-        band: One sample for each pixel; `alone` must be clear, and is so again.
-        shown: What the picture shows: the same, or the picture of which it is a face.
-        count: Rows of `Band.drawn` that it uses.
-        output: See `Output.actor`, shape (A, 10); rows of actors outside the band are not written.
-    """
+def measure_actors(
+    band: Band,  # One sample for each pixel; `alone` must be clear, and is so again
+    shown: Band,  # What the picture shows: the same, or the picture of which it is a face
+    count: int,  # Rows of `Band.drawn` that it uses
+    # See `Output.actor`, shape (A, 10); rows of actors outside the band are not written
+    output: NDArray[np.int32],
+) -> None:
+    """Measure all actors of a world in a band, each alone and as the band shows it."""
     movers, world = band.movers, band.world
     slots = movers.part.shape[1]
     first = next_thing(band, 0)

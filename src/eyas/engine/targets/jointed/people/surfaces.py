@@ -20,14 +20,13 @@ Row = tuple[float, float, float, float]
 """z of an outline, how far it reaches ahead and back of the axis, and half its width [m]."""
 
 
-def loop(row: Row, sides: int, *, box: float = 0.0) -> NDArray[np.float64]:
-    """Return an outline from the middle of the back over the right side, shape (sides, 3).
-
-    Args:
-        row: Its measures.
-        sides: Number of corners, even.
-        box: 0 for half ellipses, 1 for almost rectangles.
-    """
+def loop(
+    row: Row,  # Its measures
+    sides: int,  # Number of corners, even
+    *,
+    box: float = 0.0,  # 0 for half ellipses, 1 for almost rectangles
+) -> NDArray[np.float64]:
+    """Return an outline from the middle of the back over the right side, shape (sides, 3)."""
     z, ahead, back, half = row
     c, s = _unit(sides, box)
     x = np.where(c > 0.0, ahead, back) * c

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, compiled, vector
+from eyas.lanes import PackedBundle, compiled, vector
 from eyas.lanes.compilation import size_of
 
 f4 = np.float32
@@ -66,12 +66,12 @@ def test_kernels_read_every_number_where_it_was_written():
 
 @pytest.mark.parametrize("bundle", [mixed(), (), (True,), (1, True), ((), np.zeros(()))])
 def test_a_bundle_is_as_large_as_numba_takes_it_to_be(bundle):
-    assert Held(bundle).size == size_of(numba.typeof(bundle))
+    assert PackedBundle(bundle).size == size_of(numba.typeof(bundle))
 
 
 def test_bundles_of_the_same_types_are_of_one_kind_and_others_of_another():
     def kind(*values):
-        return Held(values).kind
+        return PackedBundle(values).kind
 
     array = np.zeros((4, 4))
     still = np.zeros((4, 4))
@@ -90,7 +90,7 @@ def test_bundles_of_the_same_types_are_of_one_kind_and_others_of_another():
 
 def test_what_kernels_cannot_read_is_refused():
     with pytest.raises(TypeError, match="str"):
-        Held((1, "text"))
+        PackedBundle((1, "text"))
 
 
 def test_lanes_that_are_not_wanted_may_be_read_from_an_empty_array():

@@ -15,36 +15,35 @@ from numpy.typing import NDArray
 Bundle = TypeVar("Bundle")
 
 _SPARE = np.zeros(512)
-_NOTHING = _SPARE.ctypes.data
+NOTHING = _SPARE.ctypes.data
 """Address of empty arrays: lanes that are not wanted are read from where the first elements are."""
 
 _FORMATS = {bool: "?", int: "q", float: "d"}  # Formats of numbers, in the language of `struct`
 
 
-class Held(Generic[Bundle]):
-    """A bundle, laid out in the kernels' memory format.
-
-    Args:
-        bundle: The tuple. Its arrays are not copied: kernels see later changes.
-    """
+class PackedBundle(Generic[Bundle]):
+    """A bundle, laid out in the kernels' memory format."""
 
     __slots__ = ("_memory", "address", "bundle", "kind", "size")
 
-    def __init__(self, bundle: Bundle) -> None:
+    def __init__(
+        self,
+        bundle: Bundle,  # The tuple. Its arrays are not copied: kernels see later changes
+    ) -> None:
         words: list[Any] = []
         key: list[object] = []
-        _flatten(bundle, words, key)
-        layout = _layouts.get(tuple(key)) or _layouts.setdefault(tuple(key), _layout(bundle))
+        flatten(bundle, words, key)
+        layout = LAYOUTS.get(tuple(key)) or LAYOUTS.setdefault(tuple(key), layout_of(bundle))
         self._memory = bytearray(layout.format.pack(*words))
         self.bundle = bundle
         self.kind = layout.kind  # Identifies the type of the bundle, the same in every process
         self.size = layout.size  # [bytes]
         self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
 
-    def again(self, bundle: Bundle) -> "Held[Bundle]":
+    def again(self, bundle: Bundle) -> "PackedBundle[Bundle]":
         """Return this if a bundle has the very same parts, else the other bundle laid out."""
         same = all(map(operator.is_, self.bundle, bundle))  # type: ignore[call-overload]
-        return self if same else Held(bundle)
+        return self if same else PackedBundle(bundle)
 
 
 class _Layout(NamedTuple):
@@ -55,19 +54,19 @@ class _Layout(NamedTuple):
     format: struct.Struct
 
 
-_layouts: dict[tuple[object, ...], _Layout] = {}  # Layouts by the types in a bundle
+LAYOUTS: dict[tuple[object, ...], _Layout] = {}  # Layouts by the types in a bundle
 
 
-def _flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: ANN401  # anything
+def flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: ANN401  # anything
     """Append the words of a value in memory, and the types that determine its layout."""
     if isinstance(value, tuple):
         key += (type(value), len(value))
         for part in value:
-            _flatten(part, words, key)
+            flatten(part, words, key)
     elif isinstance(value, np.ndarray):
         key += (value.dtype, value.ndim, value.flags.num)
         # Asking for an address takes two microseconds, and most outputs of a picture are empty.
-        address = value.ctypes.data if value.size else _NOTHING
+        address = value.ctypes.data if value.size else NOTHING
         words += (0, 0, value.size, value.itemsize, address)
         words += value.shape
         words += value.strides
@@ -76,7 +75,8 @@ def _flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: 
         words.append(value)
 
 
-def _layout(bundle: object) -> _Layout:
+def layout_of(bundle: object) -> _Layout:
+    """Return how a bundle lies in memory."""
     kind, code, size, _ = _part(bundle)
     return _Layout(kind, size, struct.Struct(f"={code}" if size else "x"))
 
