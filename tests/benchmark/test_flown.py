@@ -8,7 +8,7 @@ from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.episodes.first_fitting import first_fitting
 from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED, leaves_its_way
 from eyas.benchmark.plan.plan import EvaluationPlan, opened
-from eyas.benchmark.policies.follow import follow
+from eyas.benchmark.policies.follow import Follow
 from eyas.benchmark.policies.oracle_commands import flown_over
 from eyas.benchmark.policies.predictors import constant_velocity
 from eyas.benchmark.protocols.table import PROTOCOLS
@@ -98,7 +98,7 @@ def test_targets_that_just_go_on_or_stay_are_left_out():
 
 def test_velocities_steer_where_the_drone_is_told_to_be(batch):
     """What it is behind its command is on its way already."""
-    env = follow({"actions": "velocity"}).env
+    env = Follow({"actions": "velocity"}).env
     state = batch.snapshot()
     place, still = state.targets.centre[:, :2], np.zeros((8, 2))
     before = np.asarray(flown_over(state, place, still, env))[:, :2]
