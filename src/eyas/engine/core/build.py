@@ -54,7 +54,7 @@ class Build(Config):
     @property
     def world(self) -> str:
         """Twelve hexadecimal digits that differ where episodes may differ, see `WORLD`."""
-        return self._id_of(WORLD)
+        return self._id_of([room for room in self.rooms if _lies_in(room, WORLD)])
 
     def id_without(self, names: Collection[str]) -> str:
         """Return twelve hexadecimal digits that differ where others than these do.
@@ -65,8 +65,7 @@ class Build(Config):
         return self._id_of([room for room in self.rooms if not _lies_in(room, names)])
 
     def _id_of(self, names: Collection[str]) -> str:
-        rooms = [room for room in sorted(self.rooms) if _lies_in(room, names)]
-        said = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
+        said = "\n".join(f"{room} {self.rooms[room]}" for room in sorted(names))
         return sha256(said.encode()).hexdigest()[:12]
 
     def difference(
