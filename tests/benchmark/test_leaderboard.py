@@ -157,10 +157,10 @@ def test_dropped_failures_are_caught(board, caplog):
 
 
 def test_what_another_build_has_flown_is_not_verifiable(board):
-    edit_build(board / "hover", "sim")
+    edit_build(board / "hover", "engine/sim")
     found = only(board / "hover")
     assert found.verdict is Verdict.UNKNOWN
-    assert "differs from this one in sim" in found.why
+    assert "differs from this one in engine/sim" in found.why
     edit_plan(board / "follow", latency="measured")
     assert "does not repeat" in only(board / "follow").line
 
@@ -272,9 +272,9 @@ def edit_build(folder, room):
 
 
 def test_what_other_programs_have_flown_stands_in_tables_of_its_own(board):
-    edit_build(board / "hover", "exports")  # writes films, flies nothing
+    edit_build(board / "hover", "engine/exports")  # writes films, flies nothing
     assert shown(board).count("<h2>") == 1
-    edit_build(board / "hover", "sim")
+    edit_build(board / "hover", "engine/sim")
     assert shown(board).count("<h2>") == 2
 
 

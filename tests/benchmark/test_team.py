@@ -10,7 +10,7 @@ from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.flight.batch_flight import BatchFlight
 from eyas.benchmark.flight.meter import LOOK
 from eyas.benchmark.flight.policy_runner import fly_batch
-from eyas.benchmark.flight.team import SEARCH_LIMIT, TeamScenario
+from eyas.benchmark.flight.team import SEARCH_LIMIT, TeamScenario, lid_of
 from eyas.benchmark.flight.team_radio import MESSAGE, Radio
 from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
@@ -33,6 +33,14 @@ def chosen(name="pair", count=1, seed=1_000_000):
 def pair():
     protocol, episodes = chosen()
     return protocol, episodes, EpisodeBatch(episodes, protocol, EnvConfig())
+
+
+def test_each_drone_of_a_team_is_the_covered_one_in_some_episodes_and_one_in_each():
+    protocol, episodes = chosen("team", count=10)
+    covered = [lid_of(each, protocol, 4)[1] > 0 for each in episodes]
+    names = {each.variant for each, own in zip(episodes, covered, strict=True) if own}
+    assert names == set(protocol.variants)
+    assert np.sum(np.reshape(covered, (-1, 4)), axis=1).tolist() == [1] * (len(episodes) // 4)
 
 
 def test_the_drones_of_a_team_have_one_target_and_other_starts(pair):

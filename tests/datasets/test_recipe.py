@@ -109,6 +109,12 @@ def test_values_come_equally_often_and_parts_begin_at_different_times():
         assert len(set(times)) == len(times)
 
 
+def test_no_episode_of_a_part_ends_before_its_time():
+    for part in planned(changed(frames=8000)):
+        done = part.config.done
+        assert done.grace_steps == min(100, done.total_steps)
+
+
 def test_variants_have_the_same_seed_and_time():
     parts = planned(changed(variants={"clean": {}, "late": {"control": {"frequency": 50.0}}}))
     for clean, late in zip(parts[::2], parts[1::2], strict=True):

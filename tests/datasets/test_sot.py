@@ -6,11 +6,13 @@ import shutil
 from contextlib import redirect_stdout
 from hashlib import sha256
 from io import StringIO
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from eyas.datasets.formats.sot import cover_levels
+from eyas.datasets.formats.vot import resizing
 from eyas.engine.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
 from eyas.engine.exports.label import LABELS
 from eyas.engine.recordings.export import ExportOptions, export
@@ -102,6 +104,13 @@ def test_dtb70_loads(got10k, exported, shown):
         (episode,) = (each for each in shown if each.name == name)
         assert len(pictures) == len(episode)
         assert boxes.tolist() == [clipped(label) for label in episode.labels]
+
+
+def test_the_size_changes_where_a_side_has_grown_by_a_quarter_in_a_second():
+    sides = (100, 100, 124, 125, 155, 0)
+    labels = [{"target_box": [0, 0, side, side]} for side in sides]
+    found = resizing(SimpleNamespace(labels=labels, fps=2.0))
+    assert found.tolist() == [False, False, False, True, True, False]
 
 
 @pytest.mark.parametrize("split", ["train", "val"])

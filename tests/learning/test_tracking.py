@@ -225,9 +225,9 @@ def test_an_interrupted_training_goes_on_to_the_same_bytes(tmp_path):
 def test_another_build_does_not_go_on(tmp_path):
     trained(tmp_path, lines=16)
     build = json.loads((tmp_path / "build.json").read_text())
-    build["rooms"]["task"] = "another"
+    build["rooms"]["engine/task"] = "another"
     (tmp_path / "build.json").write_text(json.dumps(build))
-    with pytest.raises(OutputError, match="differs from this one in task; resume with that"):
+    with pytest.raises(OutputError, match="differs from this one in engine/task; resume with that"):
         trained(tmp_path, resume=True)
 
 

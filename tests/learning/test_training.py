@@ -20,6 +20,7 @@ from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.config import EyasConfig
+from eyas.learning.algorithm import Algorithm
 from eyas.learning.checkpoint import _NOT_LEARNED, RunFolder
 from eyas.learning.commands import _default_folder
 from eyas.learning.shards import TorchThreads
@@ -200,6 +201,21 @@ def test_other_settings_and_other_folders_are_refused(tmp_path, whole):
         with pytest.raises(EyasError, match=message) as caught:
             train(config, tmp_path / folder, resume=resume, say=quiet)
         assert "\n" not in str(caught.value)
+
+
+def test_the_rate_of_learning_falls_linearly_to_its_last_share(tmp_path, monkeypatch):
+    rates = []
+    descend = Algorithm.descend
+
+    def told(self, *arguments):
+        rates.append(self.learner.optimiser.param_groups[0]["lr"])
+        return descend(self, *arguments)
+
+    monkeypatch.setattr(Algorithm, "descend", told)
+    changes = {"stages": [{"total_timesteps": 128}], "method": "ppo", "final_rate": 0.4}
+    train(updated(SMALL, {"train": changes}), tmp_path / "run", say=quiet)
+    shares = np.array(list(dict.fromkeys(rates))) / rates[0]
+    assert shares == pytest.approx([1.0, 0.75, 0.5, 0.4])
 
 
 def test_a_damaged_checkpoint_is_one_line(tmp_path):

@@ -21,6 +21,7 @@ __all__ = ["app", "run"]
 
 # Typer brings its own copy of click in new versions and uses click in old ones.
 _UsageError: Any = typer.BadParameter.__mro__[1]
+Click = Any  # an object of Typer's own copy of click, or of click
 
 
 class _Carried(Exception):  # noqa: N818  # no error
@@ -31,7 +32,7 @@ class _Carried(Exception):  # noqa: N818  # no error
 
 
 class _Group(typer.core.TyperGroup):
-    def invoke(self, ctx: Any) -> Any:  # noqa: ANN401  # as in Typer
+    def invoke(self, ctx: Click) -> Any:  # noqa: ANN401  # as in Typer
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as interrupt:
@@ -119,7 +120,7 @@ def _options(
         logging.getLogger("eyas").setLevel(logging.DEBUG)
 
 
-def _quiet(command: Any) -> dict[str, Any]:  # noqa: ANN401  # Typer's
+def _quiet(command: Click) -> dict[str, Any]:
     """Return the defaults of a command, and of those in it, where each that can be is quiet."""
     inner = {name: _quiet(each) for name, each in getattr(command, "commands", {}).items()}
     own = any("--quiet" in option.opts for option in command.params)
@@ -135,7 +136,7 @@ class _Line(logging.Formatter):
         return f"eyas: {word}" + "\n".join(lines)
 
 
-def _as_switches(command: Any) -> Any:  # noqa: ANN401  # Typer's own copy of click, or click
+def _as_switches(command: Click) -> Click:
     """Return a command whose help, and that of all in it, prints switches without `<bool>`, which
     new versions of Typer add.
     """
@@ -146,7 +147,7 @@ def _as_switches(command: Any) -> Any:  # noqa: ANN401  # Typer's own copy of cl
 
 
 def _patched(get_params: Callable[[Any], list[Any]]) -> Callable[[Any], list[Any]]:
-    def params(context: Any) -> list[Any]:  # noqa: ANN401  # as above
+    def params(context: Click) -> list[Any]:
         found = get_params(context)
         for each in found:
             described = getattr(each, "type_descriptor", None)
@@ -208,7 +209,7 @@ def _not_printed(error: OSError) -> int:
     return _failed(f"stdout: cannot write: {error.strerror or error}")
 
 
-def _misused(error: Any) -> int:  # noqa: ANN401  # Typer's
+def _misused(error: Click) -> int:
     """Return the exit code of a command line that is wrong."""
     message = error.format_message()
     if type(error).__name__ != "NoArgsIsHelpError":

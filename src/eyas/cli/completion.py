@@ -8,6 +8,8 @@ import typer
 
 __all__ = ["Shell", "commands", "completion", "script"]
 
+Command = Any  # Typer's own copy of click's class, or click's
+
 
 class Shell(StrEnum):
     """Shells that can complete."""
@@ -29,7 +31,7 @@ def completion(
     typer.echo(script(shell, typer.main.get_command(app)), nl=False)
 
 
-def script(shell: Shell, command: Any) -> str:  # noqa: ANN401  # Typer's own copy of click, or click
+def script(shell: Shell, command: Command) -> str:
     """Return the script for a shell."""
     known = [
         (path.removeprefix("eyas").strip(), list(getattr(one, "commands", ())), _options(one))
@@ -44,14 +46,14 @@ Known = tuple[str, list[str], list[tuple[str, str]]]
 """Path of a command, names of the commands in it, its options with their help."""
 
 
-def commands(path: str, command: Any) -> Iterator[tuple[str, Any]]:  # noqa: ANN401
+def commands(path: str, command: Command) -> Iterator[tuple[str, Any]]:
     """Yield a command and all those in it, each with what is typed for it."""
     yield path, command
     for name, each in getattr(command, "commands", {}).items():
         yield from commands(f"{path} {name}", each)
 
 
-def _options(command: Any) -> list[tuple[str, str]]:  # noqa: ANN401
+def _options(command: Command) -> list[tuple[str, str]]:
     options = [
         (word, getattr(each, "help", "") or "")
         for each in command.params

@@ -17,7 +17,7 @@ from eyas.engine.recordings.format import CLASS_NAMES, SeenObject, objects_of
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = ["EDGES", "PartFacts", "added", "facts_of"]
+__all__ = ["EDGES", "PartFacts", "added", "episode_kinds", "facts_of"]
 
 EDGES: dict[str, tuple[float, ...]] = {
     "size": (0, 8, 16, 32, 64, 96, 128, 256, 512),
@@ -77,7 +77,7 @@ def facts_of(
         for name, values in target.items():
             visible = [each[name] for each in of_episode if each["visible"] > 0.0]
             values += binned(name, visible)
-        counts["episodes_by"].update(_episode_kinds(of_episode))
+        counts["episodes_by"].update(episode_kinds(of_episode))
     frames = len(rows)
     same = {name: {value: frames} for name, value in place.items() if name != "split"}
     return PartFacts(
@@ -149,7 +149,7 @@ def _target_counts(labels: list[Label]) -> Counter[str]:
     return counted
 
 
-def _episode_kinds(frames: list[dict[str, float]]) -> Counter[str]:
+def episode_kinds(frames: list[dict[str, float]]) -> Counter[str]:
     """Return the strata of an episode, as trackers are judged by them."""
     shown = [each for each in frames if each["visible"] > 0.0]
     hidden = sum(each["visible"] < 0.5 for each in frames) / len(frames)

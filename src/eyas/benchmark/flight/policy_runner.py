@@ -27,6 +27,8 @@ from eyas.lanes import limit_threads
 
 __all__ = ["SOLVED", "Runner", "connected", "flown", "on_ray", "one_line", "run_here"]
 
+Ray = Any  # the module, which has no types
+
 
 @contextmanager
 def connected() -> Iterator[Any]:
@@ -51,7 +53,7 @@ def connected() -> Iterator[Any]:
             ray.shutdown()
 
 
-def _begin(ray: Any) -> None:  # noqa: ANN401  # a module
+def _begin(ray: Ray) -> None:
     main = threading.current_thread() is threading.main_thread()
     handler = signal.getsignal(signal.SIGTERM)
     try:
@@ -141,7 +143,7 @@ def on_ray() -> Iterator[Runner]:
 
 
 def _fly(
-    ray: Any,  # noqa: ANN401  # a module
+    ray: Ray,
     plan: EvaluationPlan,
     parts: list[list[EpisodeSpec]],
 ) -> Iterator[list[EpisodeRecord]]:

@@ -18,7 +18,7 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.rng import stream
 from eyas.engine.policies.sight import visible_shares
 
-__all__ = ["SEARCH_LIMIT", "TeamScenario"]
+__all__ = ["SEARCH_LIMIT", "TeamScenario", "lid_of"]
 
 SEARCH_LIMIT = 15.0  # Longest time that is waited for a drone to see the target again [s]
 _LIDS = (5.0, 10.0, 15.0)  # How long a camera is covered [s]
@@ -47,7 +47,7 @@ class TeamScenario(Scenario):
         self._sees = np.zeros((batch.count, self._looks), np.bool_)
         self._flown = np.zeros(batch.count, np.int64)
         self._lid = np.array(
-            [_lid_of(episode, protocol, self._size) for episode in episodes], np.int64
+            [lid_of(episode, protocol, self._size) for episode in episodes], np.int64
         )
         """First covered control step of each, and the first after it, shape (N, 2)."""
 
@@ -96,9 +96,9 @@ class TeamScenario(Scenario):
         return SEARCH_LIMIT
 
 
-def _lid_of(episode: EpisodeSpec, protocol: Protocol, size: int) -> tuple[int, int]:
-    """Return from which control step on a drone's camera is covered, and until which; (0, 0): it is
-    not, as another one of its team is.
+def lid_of(episode: EpisodeSpec, protocol: Protocol, size: int) -> tuple[int, int]:
+    """Return the first covered control step of a drone's camera, and the first after them;
+    (0, 0): another drone of its team is the covered one.
     """
     random = stream(episode.seed, "lid")
     blind = int(random.integers(size))

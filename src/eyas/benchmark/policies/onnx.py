@@ -29,7 +29,7 @@ from eyas.benchmark.policies.action_choice import Chooser
 from eyas.benchmark.policies.listener.detector import VehicleDetector
 from eyas.benchmark.policies.listener.listener import Listener
 from eyas.benchmark.policies.simple import HOVER
-from eyas.benchmark.policies.tracker.detector import Detector
+from eyas.benchmark.policies.tracker.detector import Detector, Session
 from eyas.benchmark.policies.tracker.metadata import METADATA, TRACKER, metadata
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
@@ -51,7 +51,7 @@ class OnnxPolicy:
     def __init__(
         self,
         path: Path,
-        session: Any,  # noqa: ANN401  # onnxruntime has no types
+        session: Session,
         changes: Mapping[str, Any],
         *,
         sampled: bool,

@@ -19,6 +19,7 @@ from eyas.engine.sim.scenes import load_network
 __all__ = ["FOLDER", "draw_plots", "require_matplotlib", "save_plot"]
 
 FOLDER = "plots"
+Axes = Any  # matplotlib has no types
 _FLIGHTS = 8  # Flights that are drawn on a map; more could not be told apart
 _INK, _SECOND, _SOFT, _ROAD = "#1b6ca8", "#c8553d", "#9db9cc", "#d9d9d6"
 
@@ -80,7 +81,7 @@ def save_plot(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a f
         figure.savefig(part, format="png", metadata={"Software": None})
 
 
-def _reward(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None:  # noqa: ANN401
+def _reward(axes: Axes, records: Sequence[EpisodeRecord], horizon: float) -> None:
     """Draw the mean reward and its quartiles; flights that have ended early count as 0."""
     points = max(round(horizon / TRACE_PERIOD - 0.5), 1)
     table = np.zeros((len(records), points))
@@ -95,7 +96,7 @@ def _reward(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None
     axes.legend(frameon=False, loc="best")
 
 
-def _lost(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None:  # noqa: ANN401
+def _lost(axes: Axes, records: Sequence[EpisodeRecord], horizon: float) -> None:
     """Draw the Kaplan-Meier curve of the share that is not lost yet."""
     seen = [record for record in records if record.found_after is not None]
     at, left = survival(
@@ -111,7 +112,7 @@ def _lost(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None: 
     axes.set(xlim=(0, horizon), ylim=(-0.02, 1.02))
 
 
-def _recovered(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401
+def _recovered(axes: Axes, records: Sequence[EpisodeRecord]) -> None:
     """Draw how often the target is recovered against the time for which it was lost."""
     means = {
         length: float(np.mean(own))
@@ -129,7 +130,7 @@ def _of(variant: str, records: Sequence[EpisodeRecord]) -> list[float]:
     return [share for share in own if share is not None]
 
 
-def _flights(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401
+def _flights(axes: Axes, records: Sequence[EpisodeRecord]) -> None:
     """Draw the paths of drones and targets over the roads of their map."""
     network = load_network(*Place(records[0].map, "", "").town)
     for lane in np.split(network.lane_points, network.lane_first[1:-1]):

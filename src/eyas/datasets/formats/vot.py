@@ -21,7 +21,7 @@ from eyas.engine.recordings.format import (
 )
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = ["Vot"]
+__all__ = ["Vot", "resizing"]
 
 CAMERA_MOVES = 0.5
 """Speed [m/s], or rate of turning [rad/s], from which the camera counts as moving."""
@@ -83,7 +83,7 @@ def _tags(episode: RecordedEpisode) -> dict[str, NDArray[np.bool_]]:
         "out_of_view": ~in_view | (episode.array("target_truncated") > 0.0),
         "camera_motion": (velocity >= CAMERA_MOVES) | (_turning(episode) >= CAMERA_MOVES),
         "motion_change": acceleration >= MOTION_CHANGES,
-        "size_change": _resizing(episode),
+        "size_change": resizing(episode),
     }
 
 
@@ -95,7 +95,7 @@ def _turning(episode: RecordedEpisode) -> NDArray[np.float64]:
     return np.concatenate([[0.0], angles]) * episode.fps
 
 
-def _resizing(episode: RecordedEpisode) -> NDArray[np.bool_]:
+def resizing(episode: RecordedEpisode) -> NDArray[np.bool_]:
     """Return whether the target's box has another size than a second ago, shape (T,)."""
     boxes = target_boxes(episode.labels)
     side = np.sqrt(boxes[:, 2].astype(np.float64) * boxes[:, 3])

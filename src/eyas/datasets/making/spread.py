@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from eyas.benchmark.flight.policy_runner import connected, one_line
+from eyas.benchmark.flight.policy_runner import Ray, connected, one_line
 from eyas.datasets.making.make import Recorded
 from eyas.datasets.making.parts import PART_FILE, read_facts, record_part
 from eyas.datasets.plan import Part, in_order_of_work
@@ -38,7 +38,7 @@ def on_ray() -> Iterator[Recorded]:
 
 
 def _recorded(
-    ray: Any,  # noqa: ANN401  # a module
+    ray: Ray,
     parts: Sequence[Part],
     root: Path,
 ) -> Iterator[tuple[Part, PartFacts]]:

@@ -11,7 +11,7 @@ from eyas.engine.exports.label import Label
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.lanes import exact
 
-__all__ = ["strata_of"]
+__all__ = ["near_look_alikes", "strata_of"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -29,7 +29,7 @@ def strata_of(episode: RecordedEpisode) -> Mapping[str, Mapping[str, Mask]]:
     size = np.sqrt(sides.prod(axis=1))
     world, count = episode.config.world, len(labels)
     every = np.ones(count, np.bool_)
-    alike = np.array([_look_alikes(label) for label in labels])
+    alike = np.array([near_look_alikes(label) for label in labels])
     return {
         "visible": {
             "whole": visible >= 0.999,
@@ -68,7 +68,7 @@ def _speeds(
     }
 
 
-def _look_alikes(label: Label) -> int:
+def near_look_alikes(label: Label) -> int:
     """Return how many moving others of the target's class are near it in the picture."""
     left, top, right, bottom = label["target_box"]
     reach = _NEAR * float(exact.hypot(right - left, bottom - top))

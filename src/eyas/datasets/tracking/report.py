@@ -7,7 +7,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from eyas.benchmark.report.plots import save_plot
+from eyas.benchmark.report.plots import Axes, save_plot
 
 __all__ = ["draw_curves", "print_figures"]
 
@@ -50,11 +50,11 @@ def draw_curves(out: Path, results: dict[str, Any]) -> None:
     """
     title = f"{results['tracker']} on {results['data']}"
 
-    def success(axes: Any) -> None:  # noqa: ANN401  # matplotlib's
+    def success(axes: Axes) -> None:
         axes.plot(np.linspace(0.0, 1.0, 101), results["curves"]["success"], color="#1b6ca8")
         axes.set(xlabel="overlap above", ylabel="share of frames", xlim=(0, 1), ylim=(0, 1))
 
-    def precision(axes: Any) -> None:  # noqa: ANN401  # matplotlib's
+    def precision(axes: Axes) -> None:
         axes.plot(np.arange(51), results["curves"]["precision"], color="#1b6ca8")
         axes.set(xlabel="centre within [pixels]", ylabel="share of frames", xlim=(0, 50))
         axes.set_ylim(0, 1)

@@ -37,6 +37,7 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float64]
+Session = Any  # onnxruntime has no types
 
 OUTPUTS: Final = ("vehicles", "places", "headings", "colours", "bodies")
 STRIDE: Final = 4  # Side of a cell [pixels]
@@ -77,11 +78,11 @@ class Detections(NamedTuple):
 class VehicleDetector:
     """The network."""
 
-    def __init__(self, session: Any, scale: float) -> None:  # noqa: ANN401  # no types
+    def __init__(self, session: Session, scale: float) -> None:
         self._session, self._scale = session, scale
 
     @staticmethod
-    def fits(session: Any) -> bool:  # noqa: ANN401  # the same
+    def fits(session: Session) -> bool:
         """Return whether a session is one of such a network."""
         return "vehicles" in {each.name for each in session.get_outputs()}
 

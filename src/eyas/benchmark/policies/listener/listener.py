@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.listener.candidates import Candidates
-from eyas.benchmark.policies.listener.detector import Detections, VehicleDetector
+from eyas.benchmark.policies.listener.detector import Detections, Session, VehicleDetector
 from eyas.benchmark.policies.listener.judge import judged
 from eyas.benchmark.policies.tracker.ground import Ground
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
@@ -50,7 +50,7 @@ class Listener:
     def __init__(
         self,
         path: Path,
-        session: Any,  # noqa: ANN401  # onnxruntime has no types
+        session: Session,
         own: Mapping[str, Any],
         said: Mapping[str, Any],
         changes: Mapping[str, Any],

@@ -28,6 +28,7 @@ from eyas.lanes import exact
 __all__ = ["OUTPUTS", "STRIDE", "Detector", "TargetDetection", "TargetPrior"]
 
 Floats = NDArray[np.float64]
+Session = Any  # onnxruntime has no types
 
 OUTPUTS = ("scores", "places", "keys", "ahead")
 STRIDE = 4  # Side of a cell [pixels]
@@ -65,7 +66,7 @@ class Detector:
         size: Height and width of the pictures [pixels].
     """
 
-    def __init__(self, session: Any, size: tuple[int, int]) -> None:  # noqa: ANN401  # no types
+    def __init__(self, session: Session, size: tuple[int, int]) -> None:
         self._session = session
         shapes = {each.name: each.shape for each in session.get_inputs()}
         self.keys: int = shapes["key"][1]
@@ -73,12 +74,12 @@ class Detector:
         self._cells = np.stack((across.ravel(), down.ravel()), axis=-1)
 
     @staticmethod
-    def fits(session: Any) -> bool:  # noqa: ANN401  # the same
+    def fits(session: Session) -> bool:
         """Return whether a session is one of such a network."""
         return "expected" in {each.name for each in session.get_inputs()}
 
     @staticmethod
-    def foresees(session: Any) -> bool:  # noqa: ANN401  # the same
+    def foresees(session: Session) -> bool:
         """Return whether such a network says where targets will be that are not seen."""
         return "past" in {each.name for each in session.get_inputs()}
 

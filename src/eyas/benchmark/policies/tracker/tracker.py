@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.tracker.course import Course
-from eyas.benchmark.policies.tracker.detector import Detector, TargetDetection, TargetPrior
+from eyas.benchmark.policies.tracker.detector import Detector, Session, TargetDetection, TargetPrior
 from eyas.benchmark.policies.tracker.ground import Ground
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.motion import MotionFilter
@@ -68,7 +68,7 @@ class Tracker:
     def __init__(
         self,
         path: Path,
-        session: Any,  # noqa: ANN401  # onnxruntime has no types
+        session: Session,
         own: Mapping[str, Any],
         said: Mapping[str, Any],
         changes: Mapping[str, Any],

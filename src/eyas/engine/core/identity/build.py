@@ -51,16 +51,15 @@ class Build(Config):
     @property
     def world(self) -> str:
         """Twelve hexadecimal digits that differ where episodes may differ, see `WORLD`."""
-        return self._id_of(WORLD)
+        return self._id_of([room for room in self.rooms if _lies_in(room, WORLD)])
 
     def id_without(self, names: Collection[str]) -> str:
         """Return twelve hexadecimal digits that differ where others than these do."""
         return self._id_of([room for room in self.rooms if not _lies_in(room, names)])
 
     def _id_of(self, names: Collection[str]) -> str:
-        rooms = [room for room in sorted(self.rooms) if _lies_in(room, names)]
-        lines = "\n".join(f"{room} {self.rooms[room]}" for room in rooms)
-        return sha256(lines.encode()).hexdigest()[:12]
+        said = "\n".join(f"{room} {self.rooms[room]}" for room in sorted(names))
+        return sha256(said.encode()).hexdigest()[:12]
 
     def difference(
         self, other: "Build", *, without: Collection[str] = (), libraries: bool = False
