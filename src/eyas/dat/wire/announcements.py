@@ -115,7 +115,9 @@ class Announcements:
             self._told = now
             _LOG.warning(
                 "message %r from %s ignored: not a number of agents, 1 to %d",
-                *(message[:40], sender, MOST_AGENTS),
+                message[:40],
+                sender,
+                MOST_AGENTS,
             )
 
 

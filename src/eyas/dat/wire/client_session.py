@@ -135,7 +135,8 @@ class ClientSession:
         _LOG.warning(
             "%s: a new action while %s was not taken: a new client, or one out of order; "
             "the rest of that answer is dropped",
-            *(self.names.tracker, part.name),
+            self.names.tracker,
+            part.name,
         )
         self.withdraw()
         return True

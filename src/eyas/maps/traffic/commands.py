@@ -86,7 +86,10 @@ def record(  # noqa: PLR0913  # one parameter for each option
             run_canonical(settings.world)
             return
         run(
-            *(settings.world, settings.traffic, duration, out),
+            world=settings.world,
+            config=settings.traffic,
+            duration=duration,
+            path=out,
             seeds=many,
             workers=workers,
             overwrite=overwrite,

@@ -55,7 +55,7 @@ class FittedConstant:
     high: float
 
     @property
-    def told(self) -> bool:
+    def is_determined(self) -> bool:
         """Whether the flight tells more than the order of its size."""
         return self.low > 0.0 and self.high - self.low < self.value
 

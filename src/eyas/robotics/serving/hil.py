@@ -56,9 +56,9 @@ def bound(text: str) -> socket.socket:
 
 
 _TAKEN = {
-    *("kind", "supervised", "flight", "judged", "inertial_time_constant"),
-    *("motor_time_constant", "drag_area", "ground_contact", "wind"),
-}
+    "kind", "supervised", "flight", "judged", "inertial_time_constant", "motor_time_constant",
+    "drag_area", "ground_contact", "wind",
+}  # fmt: skip
 """Settings of the tracker that hold for a driven drone, or do nothing to any flown one."""
 
 _ALWAYS = {"start": {"velocity": "rest"}, "tracker": {"ground_contact": True}}
