@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import preset_file
 
 KINDS = ("clean", "varied")
 DECISIONS = 245_760

@@ -6,11 +6,10 @@ from itertools import pairwise
 import numpy as np
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.renderer import CpuRenderer, build_renderer
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.sim.assets import Assets, load_assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
@@ -20,6 +19,7 @@ from eyas.engine.state.draw import PartLibrary, Views
 from eyas.engine.state.mesh import Mesh, Surface
 from eyas.engine.targets.catalogue import KINDS
 from eyas.engine.targets.rig import part_library
+from eyas.maps.textures.shipped import build_textures
 
 CHUNK = 32.0
 """Side of the squares that are skipped if not in view [m]."""

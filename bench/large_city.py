@@ -23,12 +23,12 @@ from eyas.engine.render.kernels.visibility.passes import SMALLEST_DETAIL
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.pack.light import Baked, build_light
 from eyas.engine.render.renderer import CpuRenderer
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.draw import DrawList, DrawStage, PartLibrary, Picture, Views
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import Fixtures, Lamps, ObjectClass, Scene
 from eyas.engine.world.maps import MAPS
+from eyas.maps.textures.shipped import build_textures
 
 __all__ = ["horizon_views", "large_city", "street_views"]
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from eyas.engine.core.doors import houses
+
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 SOURCES = sorted([*ROOT.glob("src/eyas/**/*.py"), *ROOT.glob("examples/*.py")])
@@ -18,8 +20,9 @@ NAMING = [
 """Pages that name files of the code."""
 ELSEWHERE = {
     *(".venv/bin", "definitions/", "eyas/_src", "eyas.json", "eyas.onnx"),
-    *("eyas.steps", "eyas.formats", "eyas.writers", "eyas.weathers", "eyas.maps"),
-    *("eyas.algorithms", "eyas.policies", "eyas.protocols"),
+    "eyas.steps",
+    *("eyas.algorithms", "eyas.policies", "eyas.protocols", "eyas.sensors", "eyas.weathers"),
+    *(group for house in houses().values() for group in house.brings),
 }
 """What these texts name that is no file or name of the code: loggers, groups of entry points, what
 another build has or a user makes."""

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from eyas.engine.core.definitions import INDEX as DEFINITIONS
+from eyas.engine.core.identity.definitions import INDEX as DEFINITIONS
 from eyas.lanes.syntax import INDEX as SYNTAX
 
 ROOT = Path(__file__).parents[1]
@@ -88,7 +88,7 @@ def test_the_wheel_has_every_file_of_the_package_and_no_other(wheel):
     with zipfile.ZipFile(wheel) as archive:
         packed = {name for name in archive.namelist() if not name.endswith("/")}
     indexes = {name for name in packed if name.endswith(".eyi")}
-    assert indexes == {"eyas/core/definitions.eyi", "eyas/lanes/syntax.eyi"}
+    assert indexes == {"eyas/engine/core/identity/definitions.eyi", "eyas/lanes/syntax.eyi"}
     assert {name for name in packed - indexes if ".dist-info/" not in name} == sources
     assert any(name.endswith("/LICENSE") for name in packed - sources)
 
@@ -104,9 +104,9 @@ def test_the_wheel_brings_what_a_clone_makes(wheel):
 
 def test_from_the_wheel_nothing_is_read_from_texts(programs, tmp_path):
     program = """
-from eyas.engine.core.build import this_build
-from eyas.engine.core.definitions import INDEX as DEFINITIONS
-from eyas.engine.core.program import code_of
+from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.identity.definitions import INDEX as DEFINITIONS
+from eyas.engine.core.identity.program import code_of
 from eyas.lanes.identity import identity
 from eyas.lanes.syntax import INDEX as SYNTAX
 from eyas.engine.render.kernels.draw import draw_views

@@ -30,10 +30,9 @@ from eyas.benchmark.protocols import protocol_named
 from eyas.benchmark.record import EpisodeRecord
 from eyas.benchmark.result import RESULT, cell, load_run
 from eyas.benchmark.rows import rows_of
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.core.identity.build import this_build
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.learning.tracking import flights, lessons, training
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.pilots import Oracle

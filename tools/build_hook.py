@@ -17,7 +17,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 SOURCE = Path(__file__).resolve().parents[1] / "src"
 
 INDEXES: dict[str, Callable[[bytes], bool]] = {
-    "eyas.engine.core.definitions": lambda text: True,
+    "eyas.engine.core.identity.definitions": lambda text: True,
     "eyas.lanes.syntax": lambda text: b"kernel" in text,
 }
 """Modules that read texts, and which files of the package they are asked for."""

@@ -25,7 +25,6 @@ from eyas.engine.sim.step import step_of
 from eyas.engine.trackers.drone import DRONE
 from eyas.gpu.cuda import code as ptx
 from eyas.lanes import CompiledCall, modules
-from eyas.lanes.folder import read_trusted
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import (
@@ -36,13 +35,14 @@ from eyas.lanes.shipped import (
     archive_of,
     read_archive,
 )
+from eyas.lanes.trusted import read_trusted
 
 USES_ALL = """
 import tempfile
 import numpy as np
 import eyas
 from eyas.lanes.elementary.arrays import sin
-from eyas.engine.sensors.config import Colours
+from eyas.engine.camera.config import Colours
 from eyas.engine.sensors.stack import FrameStack
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.build import build_simulation

@@ -5,10 +5,10 @@
                                             # compares, and notes that today's code gives the same
     python tools/shipped_data.py --note     # notes it for what has just been made anew
 
-The notes, `shipped_data.json` beside this file, hold the code (`eyas.engine.core.program`) that
-made each file: all that it refers to, but for `core` and `lanes`, whose own tests hold what they
-compute to the bit. What comes out otherwise is made anew with `eyas traffic record --map NAME
---canonical`. `tests/maps/test_shipped_data.py` fails where something is stale.
+The notes, `shipped_data.json` beside this file, hold the code that made each file
+(`eyas.engine.core.identity.program`): all that it refers to, but for `core` and `lanes`, whose own
+tests hold what they compute to the bit. What comes out otherwise is made anew with `eyas traffic
+record --map NAME --canonical`. `tests/maps/test_shipped_data.py` fails where something is stale.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.engine.core.program import closure_of, definitions_of
+from eyas.engine.core.identity.program import closure_of, definitions_of
 from eyas.engine.sim.cover import cover_of
 from eyas.engine.traffic.library import _recorded
 from eyas.engine.traffic.network import build_network

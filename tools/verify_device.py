@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from eyas import EyasVectorEnv, __version__
 from eyas.cli.bench.device import on_device, seconds_of
 from eyas.cli.bench.pictures import PictureBatch
-from eyas.engine.core.build import this_build
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.core.machine import describe_machine
 from eyas.engine.render.renderer import CpuRenderer
 from eyas.engine.sim.assets import load_assets

@@ -47,10 +47,10 @@ if TYPE_CHECKING:
     from eyas.engine.core.frames import rotate as rotate
     from eyas.engine.core.frames import rotate_back as rotate_back
     from eyas.engine.custom.own import Ride as Ride
-    from eyas.engine.envs.keys import hover_action as hover_action
     from eyas.engine.envs.lerobot import make_lerobot_env as make_lerobot_env
     from eyas.engine.envs.observation import Observation as Observation
     from eyas.engine.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
+    from eyas.engine.envs.play import hover_action as hover_action
     from eyas.engine.envs.registration import register_map as register_map
     from eyas.engine.envs.sb3 import EyasVecEnv as EyasVecEnv
     from eyas.engine.envs.tracking_env import TrackingEnv as TrackingEnv
@@ -84,6 +84,7 @@ if TYPE_CHECKING:
     from eyas.engine.sensors.sensor import Sensor as Sensor
     from eyas.engine.settings.config import EyasConfig as EyasConfig
     from eyas.engine.settings.file import load_settings as load_settings
+    from eyas.engine.settings.section import Section as Section
     from eyas.engine.sim.build import build_simulation as build_simulation
     from eyas.engine.sim.config import SimConfig as SimConfig
     from eyas.engine.sim.flights.path import FlightScene as FlightScene
@@ -139,8 +140,8 @@ __version__: str
 installed. `build_id` identifies the code exactly."""
 
 build_id: str
-"""Identifies code and data of this Eyas, see `eyas.engine.core.build`: results of the same build,
-settings and seed are the same to the bit."""
+"""Identity of code and data of this Eyas, see `eyas.engine.core.identity.build`: results of the
+same build, settings and seed are the same to the bit."""
 
 _PLACES = {
     "benchmark.api": "evaluate list_policies list_protocols",
@@ -158,10 +159,10 @@ _PLACES = {
     "engine.core.files": "write_atomic",
     "engine.core.frames": "rotate rotate_back",
     "engine.custom.own": "Ride",
-    "engine.envs.keys": "hover_action",
     "engine.envs.lerobot": "make_lerobot_env",
     "engine.envs.observation": "Observation",
     "engine.envs.pettingzoo": "EyasParallelEnv",
+    "engine.envs.play": "hover_action",
     "engine.envs.registration": "register_map",
     "engine.envs.sb3": "EyasVecEnv",
     "engine.envs.tracking_env": "TrackingEnv",
@@ -178,6 +179,7 @@ _PLACES = {
     "engine.sensors.sensor": "Sensor",
     "engine.settings.config": "EyasConfig",
     "engine.settings.file": "load_settings",
+    "engine.settings.section": "Section",
     "engine.sim.build": "build_simulation",
     "engine.sim.config": "SimConfig",
     "engine.sim.flights.path": "FlightScene FlightSketch",
@@ -221,21 +223,20 @@ _register()
 
 def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
     if name == "build_id":  # reads all files of the package, so only when it is asked for
-        from eyas.engine.core.build import this_build
+        from eyas.engine.core.identity.build import this_build
 
         return this_build().id
     if name == "__version__":
-        from importlib.metadata import PackageNotFoundError, version
+        from eyas.engine.core.installed import installed_version
 
-        try:
-            found = version("eyas")
-        except PackageNotFoundError:
-            found = "0"
-        globals()[name] = found
-        return found
+        return installed_version()
     if name in _MODULE_OF:
         from importlib import import_module
+        from importlib.util import find_spec
 
+        house = ".".join(_MODULE_OF[name].split(".")[:2])
+        if find_spec(house) is None:  # a copy of the engine alone
+            raise AttributeError(f"eyas.{name} is not here: it is of the house {house}")
         value = globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
         return value
     raise AttributeError(f"module 'eyas' has no attribute {name!r}")

@@ -30,7 +30,7 @@ from eyas.benchmark.protocols.flown import FLOWN
 from eyas.benchmark.result import load_run
 from eyas.cli.app import app
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, UnknownNameError
-from eyas.engine.core.origin import origin_of
+from eyas.engine.core.own_code import origin_of
 from eyas.engine.policies.policy import Instruction, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES
 

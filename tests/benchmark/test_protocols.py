@@ -10,7 +10,7 @@ from eyas.benchmark.episode_batch import episode_groups
 from eyas.benchmark.flight import clear_shares
 from eyas.benchmark.neighbours import NEAR, with_neighbours
 from eyas.benchmark.protocols import PROTOCOLS
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
 

@@ -19,8 +19,8 @@ from eyas.benchmark.result import FEW_SEEDS, NO_INTERVALS, load_run, table
 from eyas.benchmark.rows import rows_of, thirds
 from eyas.benchmark.run import run
 from eyas.cli.app import app
-from eyas.engine.core.build import this_build
 from eyas.engine.core.errors import EyasError
+from eyas.engine.core.identity.build import this_build
 
 
 @pytest.fixture(scope="module")

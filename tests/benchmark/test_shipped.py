@@ -6,7 +6,7 @@ from eyas.benchmark.entry import entry_class
 from eyas.benchmark.policies.shipped import TRAINED, card_of, file_of, shipped_names
 from eyas.benchmark.policies.table import fingerprint, open_policy
 from eyas.engine.core.errors import EyasError
-from eyas.engine.settings.preset import PRESETS
+from eyas.engine.settings.file import PRESETS
 
 
 def test_each_was_trained_by_its_command():

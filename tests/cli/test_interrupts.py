@@ -11,7 +11,7 @@ import time
 import pytest
 from PIL import Image
 
-from eyas.lanes.folder import read_trusted
+from eyas.lanes.trusted import read_trusted
 
 PROGRAM = """
 import sys

@@ -15,7 +15,7 @@ from eyas.cli.main import main
 from eyas.dat.settings.adapter import save_original, to_original
 from eyas.dat.wire.exchange import SETTINGS_FILE
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.preset import PRESETS
+from eyas.engine.settings.file import PRESETS
 from eyas.engine.world.maps import MAPS
 from eyas.lanes import thread_count
 

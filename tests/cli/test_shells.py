@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import save_settings
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.video import run as video
-from eyas.lanes.folder import cache_folder
+from eyas.lanes.trusted import cache_folder
 
 CONFIG = EyasConfig(
     camera=CameraConfig(width=64, height=48),

@@ -10,7 +10,7 @@ import pytest
 
 from eyas.cli.verify.cases import cases
 from eyas.cli.verify.run import compared, read_manifest
-from eyas.engine.settings.preset import PRESETS
+from eyas.engine.settings.file import PRESETS
 from eyas.engine.world.maps import MAPS
 
 NEWER = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from eyas.engine.core.own_code import imported
-from eyas.engine.recordings.registry import FORMATS
+from eyas.engine.recordings.format import FORMATS
 
 OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from eyas.datasets.motion import motion_of
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.recordings.export import ExportOptions, export
 from eyas.engine.recordings.recording import load
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.video import run as video

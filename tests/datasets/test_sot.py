@@ -17,8 +17,7 @@ from eyas.datasets.formats.sot import cover_levels
 from eyas.engine.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
 from eyas.engine.exports.label import LABELS
 from eyas.engine.recordings.export import ExportOptions, export
-from eyas.engine.recordings.first_sight import from_first_sight
-from eyas.engine.recordings.recording import Recording, load
+from eyas.engine.recordings.recording import Recording, from_first_sight, load
 
 # It reads files with np.loadtxt, which warns of sequences of one frame; its report divides by 0.
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning")

@@ -136,7 +136,7 @@ def test_a_page_cannot_name_code_or_files(served, viewer):
 def test_ctrl_c_while_a_page_is_served_ends_the_loop_without_a_word():
     script = """
 import asyncio, os, signal
-from eyas.engine.core.interrupts import EndingSignals
+from eyas.engine.terminal.interrupts import EndingSignals
 from eyas.demo.run import run_until_signal
 
 async def page():

@@ -25,7 +25,7 @@ from eyas.lanes import Held, parallel
 from eyas.lanes.calls import _ENTRY
 from eyas.lanes.device import HostDevice
 from eyas.lanes.entry import entry_address
-from eyas.lanes.folder import read_trusted, write_trusted
+from eyas.lanes.trusted import read_trusted, write_trusted
 
 DRIVER = Path(__file__).parents[2] / "tools" / "emulated_card" / "driver.c"
 

@@ -608,7 +608,7 @@ def _submission(folder, chance, most):
 
 def recorded(folder: Path) -> Path:
     """Return a copy of a recording of two frames, which is made once."""
-    from eyas.engine.sensors.config import CameraConfig
+    from eyas.engine.camera.config import CameraConfig
     from eyas.engine.settings.config import EyasConfig
     from eyas.engine.video.run import run
     from eyas.engine.world.config import WorldConfig

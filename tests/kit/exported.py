@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.recordings.export import ExportOptions, export
 from eyas.engine.recordings.recording import Recording, load
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.task.config import DoneConfig, StartConfig

@@ -4,7 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import intrinsics
+from eyas.engine.camera.config import CameraConfig, FurtherCameraConfig
+from eyas.engine.camera.esim import EVENT
+from eyas.engine.camera.events import EventsConfig
+from eyas.engine.core.optics.pinhole import intrinsics
 from eyas.engine.exports.frame import (
     CameraPicture,
     CameraPose,
@@ -15,9 +18,7 @@ from eyas.engine.exports.frame import (
 )
 from eyas.engine.exports.movement import Movement
 from eyas.engine.exports.writer import Episode, Run
-from eyas.engine.sensors.camera.esim import EVENT
-from eyas.engine.sensors.camera.events import EventsConfig
-from eyas.engine.sensors.config import CameraConfig, FurtherCameraConfig, LidarConfig
+from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.state.draw import MovingParts
 from eyas.engine.state.motion import ActorState, ActorView

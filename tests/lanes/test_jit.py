@@ -120,14 +120,15 @@ DRIVERS = ("eyas.gpu.sim.", "eyas.gpu.envs.", "eyas.gpu.render.stages")
 
 def test_eyas_itself_calls_no_kernel_from_python():
     """Which would import numba and compile it at every start."""
-    functions = [
-        function
+    modules = [
+        importlib.import_module(info.name)
         for info in pkgutil.walk_packages(eyas.__path__, "eyas.")
         if not info.name.startswith(("eyas.engine.core.", "eyas.engine.traffic.sumo", *DRIVERS))
-        for function in functions_of(importlib.import_module(info.name))
     ]
+    functions = [function for module in modules for function in functions_of(module)]
     assert len(functions) > 500
     compiled = {call.function.__code__ for call in step_of(DRONE)[:3]}
+    compiled |= {code for module in modules for code in specialised_in(module)}
     for function in functions:
         hands_on = function.__annotations__.get("return") is Tracker
         hands_on |= function.__qualname__.endswith("Rig.__init__")  # to devices
@@ -136,6 +137,16 @@ def test_eyas_itself_calls_no_kernel_from_python():
             used = (function.__globals__.get(each.argval) for each in loads)
             called = [kernel.__name__ for kernel in used if isinstance(kernel, Kernel)]
             assert not called, f"{function.__module__}.{function.__qualname__} calls {called}"
+
+
+def specialised_in(module):
+    """Yield the code of functions that make kernels of others, and of those."""
+    values = [getattr(value, "__wrapped__", value) for value in vars(module).values()]
+    for maker in (value for value in values if isinstance(value, types.FunctionType)):
+        if "specialised" in maker.__code__.co_names:
+            yield maker.__code__
+            named = [maker.__globals__.get(name) for name in maker.__code__.co_names]
+            yield from (base.__code__ for base in named if isinstance(base, types.FunctionType))
 
 
 def functions_of(module):

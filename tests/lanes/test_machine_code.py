@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from eyas.lanes import CompiledCall, entry, machine_code
-from eyas.lanes.folder import made_folder, secured
 from eyas.lanes.machine_code import MachineCode, code_file, load, read_code, write_code
+from eyas.lanes.trusted import made_folder, secured
 
 
 def double(values):

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.engine.core.definitions import INDEX as DEFINITIONS
+from eyas.engine.core.identity.definitions import INDEX as DEFINITIONS
 from eyas.lanes import text_index, trusted
 from eyas.lanes.container import unpacked
 from eyas.lanes.syntax import INDEX as SYNTAX
@@ -156,7 +156,7 @@ def test_what_a_function_refuses_is_raised_and_not_kept(cache):
 
 
 BUILD = """
-from eyas.engine.core.build import this_build
+from eyas.engine.core.identity.build import this_build
 from eyas.lanes.identity import language_hash
 print(this_build().id, language_hash())
 """

@@ -22,8 +22,7 @@ from eyas.cli.app import app
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.policies.policy import env_config
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.learning.tracking import driving, flights, lessons, samples
 from eyas.learning.tracking.driving import driven
 from eyas.learning.tracking.export import export

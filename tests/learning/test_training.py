@@ -15,9 +15,9 @@ pytest.importorskip("torch")
 import torch
 
 from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.config import EyasConfig
 from eyas.learning.checkpoint import _NOT_LEARNED, RunFolder
 from eyas.learning.commands import _default_folder

@@ -16,8 +16,7 @@ from eyas.cli.app import app
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.policies.policy import env_config
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.engine.targets.colour_names import COLOUR_NAMES
 from eyas.learning.words.export import export
 from eyas.learning.words.lessons import lesson, loss_of

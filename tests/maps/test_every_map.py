@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.render.renderer import build_renderer
 from eyas.engine.sim.scenes import load_geometry, load_scene
 from eyas.engine.state.draw import DrawList, Picture, Views

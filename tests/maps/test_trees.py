@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.engine.render.textures.plants import leaves
 from eyas.engine.state.mesh import Surface
 from eyas.maps.plants.trees import VARIANTS, place_along, street_tree_levels
+from eyas.maps.textures.plants import leaves
 
 
 @pytest.fixture(scope="module", params=range(VARIANTS))

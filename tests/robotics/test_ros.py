@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.errors import MissingExtraError
-from eyas.engine.core.lens import BROWN, FISHEYE, lens_of
+from eyas.engine.core.optics.lens import BROWN, FISHEYE, lens_of
 from eyas.engine.exports.frame import CameraPose, RecordedAction, RecordedBody
 from eyas.engine.exports.label import label_of
 from eyas.engine.exports.writer import Summary
-from eyas.engine.sensors.config import LidarConfig, MountConfig, ReadingConfig, SensorsConfig
+from eyas.engine.sensors.config import LidarConfig, ReadingConfig, SensorsConfig
 from eyas.engine.sim.config import SimConfig
 
 rosbags = pytest.importorskip("rosbags")

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from eyas.benchmark.episode import EpisodeSpec, Place
 from eyas.benchmark.episode_batch import episode_groups
 from eyas.benchmark.protocol import Protocol
-from eyas.engine.core.build import this_build
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import SpawnError
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.policies.sight import visible_shares
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.world.maps import MAPS

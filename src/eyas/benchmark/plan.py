@@ -10,7 +10,6 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
-from eyas import __version__
 from eyas.benchmark.delay import Measured, delay_from
 from eyas.benchmark.entry import Entry, entry_of
 from eyas.benchmark.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
@@ -21,10 +20,11 @@ from eyas.benchmark.protocol import Protocol
 from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.record import EpisodeRecord
 from eyas.benchmark.solvable import solvable
-from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.origin import Origin, origin_of
+from eyas.engine.core.identity.build import Build, this_build
+from eyas.engine.core.installed import installed_version
+from eyas.engine.core.own_code import Origin, origin_of
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.policies.policy import Policy
 from eyas.engine.world.maps import MAPS
@@ -158,7 +158,7 @@ class Stamp(Config):
 def stamp(plan: EvaluationPlan) -> Stamp:
     """Return the stamp of a plan."""
     return Stamp(
-        version=__version__,
+        version=installed_version(),
         build=this_build(),
         protocol=plan.rules.hash,
         rules=None if (path := PROTOCOLS.path(plan.protocol)) is None else origin_of(path),

@@ -14,8 +14,7 @@ from eyas.engine.core.clock import PHYSICS_STEP, physics_steps
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.traffic.config import Demand
 
@@ -169,7 +168,7 @@ class Protocol:
     def hash(self) -> str:
         """Twelve hexadecimal digits of what the episodes mean: the settings that have an effect and
         are not at their (first) defaults. The world in which they happen has a digest of its own
-        (`eyas.engine.core.build.Build.world`).
+        (`eyas.engine.core.identity.build.Build.world`).
         """
         settings = self.settings.model_dump(mode="json", include=_FIXED, exclude_defaults=True)
         told = settings.setdefault("traffic", {})

@@ -28,11 +28,11 @@ from eyas.benchmark.plan import EvaluationPlan, Stamp, batches, check, stamp
 from eyas.benchmark.plots import draw_plots, require_matplotlib
 from eyas.benchmark.record import EpisodeRecord, RecordFile, order_records, read_records
 from eyas.benchmark.result import EPISODES, RESULT, ROWS, STAMP, load_run, table, write_result
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.errors import OutputError
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.core.machine import describe_machine
-from eyas.engine.core.pyav import pyav
 
 __all__ = ["TIMING", "run"]
 

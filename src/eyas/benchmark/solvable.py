@@ -10,9 +10,9 @@ from eyas.benchmark.episode import EpisodeSpec
 from eyas.benchmark.flight import BatchFlight
 from eyas.benchmark.policies.road_search import sighted
 from eyas.benchmark.protocol import Protocol
-from eyas.engine.core.build import this_build
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.identity.build import this_build
 
 __all__ = ["SOLVED", "solvable"]
 

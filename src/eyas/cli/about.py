@@ -41,9 +41,11 @@ def about(
     if as_json:
         typer.echo(json.dumps([part._asdict() for part in parts()], indent=1))
         return
-    from eyas import __version__
+    from eyas.engine.core.installed import installed_version
 
-    typer.echo(f"Eyas {__version__}: a simulator and benchmark for drone visual active tracking.")
+    typer.echo(
+        f"Eyas {installed_version()}: a simulator and benchmark for drone visual active tracking."
+    )
     typer.echo("MIT licence, with all maps, models, textures, recordings and policies that ship.")
     if not licences:
         return

@@ -15,7 +15,7 @@ from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
 from eyas.engine.core.registry import Registry
 from eyas.engine.core.scratch import remove_left_scratch
-from eyas.engine.terminal.said import lacks_memory, say
+from eyas.engine.terminal.stderr import lacks_memory, say
 
 __all__ = ["app", "run"]
 
@@ -58,9 +58,19 @@ _FIRST = (
 
 
 def _add_commands() -> None:
-    names = COMMANDS.names()
+    try:
+        names = COMMANDS.names()
+    except EyasError as error:  # two packages bring the same command
+        say(f"warning: {one_line(str(error))}")
+        names = COMMANDS.built_in
     for name in (*(name for name in _FIRST if name in names), *sorted({*names} - {*_FIRST})):
-        found = COMMANDS.get(name)
+        try:
+            found = COMMANDS.get(name)
+        except Exception as error:  # whatever the package of somebody else raises
+            if name in COMMANDS.built_in:
+                raise
+            say(f"warning: the command {name!r} is left out: {one_line(str(error))}")
+            continue
         if isinstance(found, typer.Typer):
             app.add_typer(found, name=name)
         else:
@@ -72,9 +82,12 @@ _add_commands()
 
 def _print_version(value: bool) -> None:  # typer's callback
     if value:
-        from eyas import __version__, build_id  # read files, so only when they are asked for
+        from eyas.engine.core.identity.build import (
+            this_build,  # reads files, so only when it is asked for
+        )
+        from eyas.engine.core.installed import installed_version
 
-        typer.echo(f"eyas {__version__} (build {build_id})")
+        typer.echo(f"eyas {installed_version()} (build {this_build().id})")
         raise typer.Exit
 
 

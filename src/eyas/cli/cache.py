@@ -19,7 +19,7 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
-from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder
+from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 from eyas.maps.gallery.run import conditions
 
 __all__ = ["run_clear", "run_info", "run_warm"]

@@ -10,13 +10,13 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from eyas import __version__
 from eyas.engine.core.errors import EyasError
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.machine import describe_machine
 from eyas.engine.render.kernels.draw import draw_views
 from eyas.gpu.cuda import gpu_line
 from eyas.lanes import thread_count
-from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder, refusal
+from eyas.lanes.folder import refusal
 from eyas.lanes.identity import identity
 from eyas.lanes.machine_code import code_name
 from eyas.lanes.shipped import (
@@ -31,6 +31,7 @@ from eyas.lanes.shipped import (
     wanted,
     wide_needed,
 )
+from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
 __all__ = ["facts", "run"]
 
@@ -62,7 +63,7 @@ def facts() -> dict[str, str]:
     packages = [f"{name} {_version(name)}" for name in _NEEDED]
     packages += [f"{name} {_version(name)}" for name in _EXTRAS if find_spec(name) is not None]
     return {
-        "Eyas": __version__,
+        "Eyas": installed_version(),
         "Python": f"{platform.python_version()} ({platform.python_implementation()})",
         "packages": ", ".join(packages),
         "machine": describe_machine(),

@@ -3,7 +3,7 @@
 import os
 import sys
 
-from eyas.engine.core.interrupts import EndingSignals
+from eyas.engine.terminal.interrupts import EndingSignals
 
 __all__ = ["main"]
 
@@ -33,7 +33,7 @@ def main() -> None:
             # After a signal, what is left of its interrupt: pydantic turns one that is raised in a
             # class under way into an error of its own, without a cause.
             if signals.first is None:
-                from eyas.engine.terminal.said import lacks_memory
+                from eyas.engine.terminal.stderr import lacks_memory
 
                 if not lacks_memory(error):
                     raise
@@ -48,7 +48,7 @@ def main() -> None:
     signals.close()  # again, if a signal came before
     if signals.first is not None:
         status = 128 + signals.first
-        from eyas.engine.terminal.said import say
+        from eyas.engine.terminal.stderr import say
 
         say(_WORDS[signals.first] + remarks)
     sys.exit(status)

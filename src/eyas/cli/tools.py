@@ -16,7 +16,7 @@ from eyas.engine.terminal.options import (
     chosen_file,
     gathered,
 )
-from eyas.engine.terminal.said import say
+from eyas.engine.terminal.stderr import say
 
 if TYPE_CHECKING:
     from eyas.engine.settings.config import EyasConfig

@@ -45,7 +45,7 @@ def _arguments(words: Sequence[str]) -> list[str]:
     """Return the arguments of `eyas` for those of the program: ours, `--`, and those of Webots."""
     from eyas.dat.serve.stand_in import serve_arguments
     from eyas.engine.core.errors import EyasError
-    from eyas.engine.terminal.said import say
+    from eyas.engine.terminal.stderr import say
 
     cut = list(words).index("--")
     fixed, theirs = list(words[:cut]), words[cut + 1 :]

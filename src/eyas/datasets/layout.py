@@ -5,15 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
 from eyas.datasets.plan import Part, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.statistics import PartFacts
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.exports.checksums import SEALED
 from eyas.engine.recordings.recording import DATASET_FILE
 
@@ -53,7 +53,7 @@ class Plan(Config):
             shard: Number of the shard, from 1, and of all shards; None: all of it.
         """
         return cls(
-            eyas=__version__,
+            eyas=installed_version(),
             build_id=this_build().id,
             source=named if named in SHIPPED else RECIPE_FILE,
             recipe=recipe,

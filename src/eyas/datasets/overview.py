@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw
 from eyas.datasets.card import range_texts
 from eyas.datasets.layout import Plan
 from eyas.datasets.statistics import UNITS
-from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.recordings.format import objects_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.behaviours.config import ExtraConfig
-from eyas.engine.core.code_names import NAMES_CODE, code_named
 from eyas.engine.core.config import Config, updated, validated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
+from eyas.engine.core.own_code import NAMES_CODE, code_named
 from eyas.engine.core.variation import Variation
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import read_settings

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.pyav import pyav
 
 __all__ = ["FACTORS", "IN_FLIGHT", "Coding", "CodingChoice", "DemoFrame", "Stream", "packed"]
 

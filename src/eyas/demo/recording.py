@@ -11,8 +11,8 @@ from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.core.config import updated
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.video.default_writers import with_writers
 from eyas.engine.video.folder import open_folder
+from eyas.engine.video.formats import with_writers
 from eyas.engine.video.recorder import Recorder
 
 __all__ = ["DemoRecording"]

@@ -21,7 +21,6 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
-from eyas import __version__
 from eyas.demo import messages as said
 from eyas.demo.flight_thread import FlightThread
 from eyas.demo.frame import DemoFrame
@@ -30,6 +29,7 @@ from eyas.demo.session import Session
 from eyas.demo.viewers import Viewer, Viewers
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.faults import FaultLog
+from eyas.engine.core.installed import installed_version
 from eyas.engine.settings.dialect import spoken
 from eyas.engine.targets.config import TargetName
 from eyas.engine.world.maps import MAPS
@@ -280,7 +280,7 @@ class DemoServer:
         policies = [*self._session.policies, BOXES]
         most = self._session.flight.config.traffic.max_vehicles
         told = {
-            "hello": __version__,
+            "hello": installed_version(),
             "maps": maps,
             "policies": policies,
             "most_vehicles": most,

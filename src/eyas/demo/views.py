@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.demo.flight import DemoFlight
-from eyas.engine.core.pinhole import field_along, project
+from eyas.engine.core.optics.pinhole import field_along, project
 from eyas.engine.overlay.marks import Marks
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT

@@ -14,7 +14,7 @@ __all__ = [
 
 def list_formats() -> tuple[str, ...]:
     """Return the names of the formats of `export`."""
-    from eyas.engine.recordings.registry import FORMATS
+    from eyas.engine.recordings.format import FORMATS
 
     return FORMATS.names()
 
@@ -46,6 +46,6 @@ def list_targets() -> tuple[str, ...]:
 
 def list_presets() -> tuple[str, ...]:
     """Return the names of the settings that Eyas brings along."""
-    from eyas.engine.settings.preset import PRESETS
+    from eyas.engine.settings.file import PRESETS
 
     return tuple(PRESETS)

@@ -2,13 +2,12 @@
 
 from eyas.engine.core.doors import House
 
-__all__ = ["HOUSE"]
-
 HOUSE = House(
     results=True,
     brings={
         "eyas.devices": {
             "cuda": "eyas.gpu.envs.envs:DeviceEnvs",
+            "host": "eyas.gpu.envs.envs:DeviceEnvs",
         },
     },
 )

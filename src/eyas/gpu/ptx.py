@@ -19,8 +19,6 @@ from eyas.lanes.targets import lanes_as_threads
 from eyas.lanes.vector import BLOCK, WIDTH
 from eyas.lanes.vector.threads import RECORD
 
-__all__ = ["ptx_of"]
-
 _TRIPLE = "nvptx64-nvidia-cuda"
 
 _REGISTERS = 128

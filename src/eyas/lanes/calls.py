@@ -17,8 +17,6 @@ from eyas.lanes.held import Held
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.jit import thread_count
 
-__all__ = ["BoundCall", "CompiledCall", "ParallelCall", "compiled", "parallel"]
-
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)
 """Addresses of the bundles, worker, workers; returns 0 unless the kernel raised an exception."""
 

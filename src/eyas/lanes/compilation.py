@@ -39,15 +39,6 @@ from eyas.lanes.modules import (
 from eyas.lanes.targets import current_context, for_threads, target_name
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
-__all__ = [
-    "KernelType",
-    "caller_from_python",
-    "entry_code",
-    "entry_module",
-    "intrinsic_type",
-    "size_of",
-]
-
 Kind = Any  # One of numba's types
 
 
@@ -61,16 +52,12 @@ class _Overload(NamedTuple):
 
 @global_compiler_lock
 def _overload(
-    function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None, made_of: str | None
+    function: Callable[..., Any],  # A plain function
+    kinds: tuple[Kind, ...],  # The types
+    inline: bool | None,  # See `eyas.lanes.jit.kernel`
+    made_of: str | None,  # Its `eyas.lanes.identity.identity`; None if it depends on more than that
 ) -> _Overload:
-    """Return a function for arguments of some types: as it is kept, or compiled.
-
-    Args:
-        function: A plain function.
-        kinds: The types.
-        inline: See `eyas.lanes.jit.kernel`.
-        made_of: Its `eyas.lanes.identity.identity`; None if it depends on more than that.
-    """
+    """Return a function for arguments of some types: as it is kept, or compiled."""
     name = module_name(function, kinds, made_of)
     kept = None if name is None else kept_module(name)
     if kept is None:

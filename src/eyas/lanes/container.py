@@ -11,8 +11,6 @@ import zlib
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-__all__ = ["Contents", "packed", "unpacked"]
-
 _ALIGNMENT = 64
 _HEAD = struct.Struct("<II")
 _SUM = struct.Struct("<I")

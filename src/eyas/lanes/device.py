@@ -14,8 +14,6 @@ from numpy.typing import DTypeLike, NDArray
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.held import Held
 
-__all__ = ["Device", "DeviceArray", "HostDevice"]
-
 
 class DeviceArray(Protocol):
     """A C-contiguous array in the memory of a device; numpy's arrays are those of `HostDevice`."""

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from eyas.lanes.folder import OWNER, kernel_folder, refusal, touch
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.held import Held
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import shielded
@@ -24,8 +24,7 @@ from eyas.lanes.machine_code import (
     write_code,
 )
 from eyas.lanes.shipped import is_shipped, shipped_code
-
-__all__ = ["LOCK", "entry_address", "nothing_compiled"]
+from eyas.lanes.trusted import OWNER, touch
 
 _LOG = logging.getLogger(OWNER)
 
@@ -33,15 +32,12 @@ LOCK = threading.RLock()  # Held while numba and LLVM compile
 
 
 def entry_address(
-    function: Callable[..., Any], bundles: tuple[Held[Any], ...], *, over_workers: bool
+    function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
+    bundles: tuple[Held[Any], ...],  # What it is called with
+    *,
+    over_workers: bool,
 ) -> int:
-    """Return the address of a kernel for bundles of these kinds.
-
-    Args:
-        function: See `eyas.lanes.calls.CompiledCall`.
-        bundles: What it is called with.
-        over_workers: See there.
-    """
+    """Return the address of a kernel for bundles of these kinds."""
     name = function.__qualname__.rpartition(".")[2]
     made_by = version("numba"), platform.python_version()
     kinds = [bundle.kind for bundle in bundles]

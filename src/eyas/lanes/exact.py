@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.lanes import small_arrays
-from eyas.lanes.small_arrays import (
+from eyas.lanes.elementary import arrays
+from eyas.lanes.elementary.arrays import (
     acos,
     asin,
     atan,
@@ -69,7 +69,7 @@ def power(base: Any, exponent: float) -> Any:  # noqa: ANN401  # as numpy's
     if isinstance(exponent, int):
         whole = _whole_power(base, abs(exponent))
         return whole if exponent >= 0 else 1.0 / whole
-    return small_arrays.power(base, exponent)
+    return arrays.power(base, exponent)
 
 
 def _whole_power(base: ArrayLike, exponent: int) -> Any:  # noqa: ANN401

@@ -1,6 +1,4 @@
-"""The folder where compiled kernels are kept, among files that are used as they are
-(`eyas.lanes.trusted`).
-"""
+"""The folder where compiled kernels are kept, among the files of `eyas.lanes.trusted`."""
 
 import errno
 import os
@@ -8,33 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from eyas.lanes.identity import language_hash
-from eyas.lanes.trusted import (
-    FOLDER_VARIABLE,
-    OWNER,
-    cache_folder,
-    made_folder,
-    not_kept,
-    open_at_once,
-    read_trusted,
-    secured,
-    touch,
-    write_trusted,
-)
-
-__all__ = [
-    "FOLDER_VARIABLE",
-    "OWNER",
-    "cache_folder",
-    "kernel_folder",
-    "made_folder",
-    "not_kept",
-    "open_at_once",
-    "read_trusted",
-    "refusal",
-    "secured",
-    "touch",
-    "write_trusted",
-]
+from eyas.lanes.trusted import cache_folder, made_folder, secured, touch
 
 
 def kernel_folder() -> Path:

@@ -18,8 +18,6 @@ from numba.core.untyped_passes import InlineClosureLikes
 
 from eyas.lanes import elementary
 
-__all__ = ["SETTINGS", "Compiler", "Library", "flags", "typing"]
-
 Kind = Any  # One of numba's types
 
 # Kernels allocate nothing, so they need no reference counting of arrays (`_nrt`). It costs two

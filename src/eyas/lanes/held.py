@@ -12,8 +12,6 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Held"]
-
 Bundle = TypeVar("Bundle")
 
 _SPARE = np.zeros(512)

@@ -17,8 +17,6 @@ import numpy as np
 
 from eyas.lanes.syntax import INDEX, syntax_of
 
-__all__ = ["LANGUAGE", "identity", "language_files", "language_hash"]
-
 LANGUAGE = (
     *("compilation.py", "elementary", "front_end.py", "held.py", "intrinsics.py"),
     *("machine_code.py", "modules.py", "operations.py", "targets.py", "vector"),

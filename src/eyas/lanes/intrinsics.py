@@ -6,8 +6,6 @@ from functools import cached_property
 from importlib import import_module
 from typing import Any
 
-__all__ = ["Intrinsic", "address_of", "bits_of_float", "claim", "float_of_bits"]
-
 
 class Intrinsic:
     """An operation for kernels, defined with parts of numba in a module of its own.

@@ -11,16 +11,6 @@ from typing import Any, TypeVar, cast, overload
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import shielded
 
-__all__ = [
-    "Kernel",
-    "VariableError",
-    "interpreted",
-    "kernel",
-    "limit_threads",
-    "specialised",
-    "thread_count",
-]
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

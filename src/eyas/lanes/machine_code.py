@@ -16,23 +16,8 @@ from typing import NamedTuple
 import llvmlite
 import llvmlite.binding as llvm
 
-from eyas.lanes.folder import read_trusted, write_trusted
 from eyas.lanes.identity import language_hash
-
-__all__ = [
-    "SUFFIX",
-    "MachineCode",
-    "code_file",
-    "code_name",
-    "cpu",
-    "digest",
-    "entry_of",
-    "improve",
-    "load",
-    "optimised",
-    "read_code",
-    "write_code",
-]
+from eyas.lanes.trusted import read_trusted, write_trusted
 
 SUFFIX = ".eyk"  # End of the names of files of machine code
 
@@ -111,16 +96,13 @@ def optimised(module: llvm.ModuleRef, entry: str) -> MachineCode:
 
 
 def improve(
-    module: llvm.ModuleRef, entry: str, machine: llvm.TargetMachine, *, loops: bool
+    module: llvm.ModuleRef,  # Changed in place
+    entry: str,  # Name of the function
+    machine: llvm.TargetMachine,  # The processor to optimise for
+    *,
+    loops: bool,  # Whether loops may do several of their turns at once
 ) -> None:
-    """Optimise a module, of which only the function `entry` is called.
-
-    Args:
-        module: Changed in place.
-        entry: Name of the function.
-        machine: The processor to optimise for.
-        loops: Whether loops may do several of their turns at once.
-    """
+    """Optimise a module, of which only the function `entry` is called."""
     for value in (*module.functions, *module.global_variables):
         if not value.is_declaration and value.name != entry:
             value.linkage = "internal"
@@ -162,25 +144,21 @@ def load(code: MachineCode) -> int | None:
     return int(loaded[code.entry])
 
 
-def code_name(name: str, made_of: str) -> str:
-    """Return the beginning of the names of a kernel's files, whatever its bundles are.
-
-    Args:
-        name: The name of the kernel, for people who look into the folder.
-        made_of: Its `eyas.lanes.identity.identity`.
-    """
+def code_name(
+    name: str,  # The name of the kernel, for people who look into the folder
+    made_of: str,  # Its `eyas.lanes.identity.identity`
+) -> str:
+    """Return the beginning of the names of a kernel's files, whatever its bundles are."""
     return f"{name}-{digest((name, made_of))}"
 
 
-def code_file(folder: Path, name: str, kinds: Iterable[str], made_by: Iterable[str]) -> Path:
-    """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`.
-
-    Args:
-        folder: The folder of kernels.
-        name: From `code_name`.
-        kinds: The kinds of its bundles, see `eyas.lanes.held.Held`.
-        made_by: What else the code depends on, except the processor and llvmlite.
-    """
+def code_file(
+    folder: Path,  # The folder of kernels
+    name: str,  # From `code_name`
+    kinds: Iterable[str],  # The kinds of its bundles, see `eyas.lanes.held.Held`
+    made_by: Iterable[str],  # What else the code depends on, except the processor and llvmlite
+) -> Path:
+    """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`."""
     by = (*cpu(), llvmlite.__version__, language_hash(), *made_by)
     return folder / f"{name}-{digest(kinds)}-{digest(by)}{SUFFIX}"
 

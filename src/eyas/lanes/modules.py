@@ -21,14 +21,13 @@ import numba
 from numba.core.codegen import JITCodeLibrary
 
 from eyas.lanes.container import Contents, packed, unpacked
-from eyas.lanes.folder import OWNER, kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import cpu, digest
 from eyas.lanes.shipped import wanted
 from eyas.lanes.targets import target_name
+from eyas.lanes.trusted import OWNER, read_trusted, touch, write_trusted
 from eyas.lanes.vector.kinds import Lanes
-
-__all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]
 
 SUFFIX = ".eym"  # End of the names of files of modules
 
@@ -71,15 +70,11 @@ class Module:
 
 
 def module_name(
-    function: Callable[..., Any], kinds: tuple[numba.types.Type, ...], made_of: str | None
+    function: Callable[..., Any],
+    kinds: tuple[numba.types.Type, ...],  # Types of its arguments
+    made_of: str | None,  # Its `eyas.lanes.identity.identity`; None if it depends on more than that
 ) -> str | None:
-    """Return the name of a function's module; None if it cannot be told from others.
-
-    Args:
-        function: The function.
-        kinds: Types of its arguments.
-        made_of: Its `eyas.lanes.identity.identity`; None if it depends on more than that.
-    """
+    """Return the name of a function's module; None if it cannot be told from others."""
     told = [_told(kind) for kind in kinds]
     if made_of is None or any(" at 0x" in text for text in told):
         return None
@@ -114,16 +109,12 @@ def kept_module(name: str) -> Module | None:
 
 
 def module_of(
-    library: JITCodeLibrary, symbol: str, returns: numba.types.Type, name: str | None
+    library: JITCodeLibrary,  # numba's library of the function
+    symbol: str,  # The function's name in it
+    returns: numba.types.Type,  # Type of what the function returns
+    name: str | None,  # From `module_name`
 ) -> Module:
-    """Return the module of a function just compiled, and keep it if it has a name.
-
-    Args:
-        library: numba's library of the function.
-        symbol: The function's name in it.
-        returns: Type of what the function returns.
-        name: From `module_name`.
-    """
+    """Return the module of a function just compiled, and keep it if it has a name."""
     whole, calls = library._final_module.clone(), {}
     left, seen = list(library._linking_libraries), set()
     while left:
@@ -214,13 +205,11 @@ def _shipped() -> dict[str, Contents]:
     }
 
 
-def archive_of(folder: Path, function: str) -> bytes:
-    """Return the content of an archive of modules.
-
-    Args:
-        folder: Where they are kept.
-        function: Name of the compiled function whose modules they are, with all that it calls.
-    """
+def archive_of(
+    folder: Path,  # Where they are kept
+    function: str,  # Name of the compiled function whose modules they are, with all that it calls
+) -> bytes:
+    """Return the content of an archive of modules."""
     left = [path.stem for path in folder.glob(f"{function}-*{SUFFIX}")]
     assert left, f"{function}: no module of it is kept in {folder}"
     found: dict[str, Contents] = {}

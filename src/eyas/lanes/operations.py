@@ -17,8 +17,6 @@ from numba.extending import intrinsic
 from eyas.lanes.vector import threads
 from eyas.lanes.vector.kinds import lanes_are_threads
 
-__all__ = ["address_of", "bits_of_float", "claim", "float_of_bits"]
-
 
 def _field_type(pointer: types.CPointer, name: str) -> types.Type | None:
     """Return the type of a field of the named tuple that a pointer points to, if it has it."""

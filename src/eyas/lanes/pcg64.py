@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = ["STATE", "begin_stream", "fraction", "whole"]
-
 Words = NDArray[np.int64]
 
 STATE: Final = 10  # Length of a state
@@ -29,16 +27,14 @@ _MULTIPLIER = (0x9FCCF645, 0x4385DF64, 0x1FC65DA4, 0x2360ED05)
 
 
 @kernel
-def begin_stream(state: Words, seed: int, room: int, tracker: int, episode: int) -> None:
-    """Begin the stream of a room in an episode, see `eyas.engine.core.rng.EpisodeKey`.
-
-    Args:
-        state: The state, shape (`STATE`,).
-        seed: Seed of the run, from 0 to 2^63 - 1.
-        room: Hash of the room's name, see `eyas.engine.core.rng.room_key`.
-        tracker: Number of the tracker, from 0 to 2^32 - 1.
-        episode: Number of the episode, the same.
-    """
+def begin_stream(
+    state: Words,  # The state, shape (`STATE`,)
+    seed: int,  # Seed of the run, from 0 to 2^63 - 1
+    room: int,  # Hash of the room's name, see `eyas.engine.core.rng.room_key`
+    tracker: int,  # Number of the tracker, from 0 to 2^32 - 1
+    episode: int,  # Number of the episode, the same
+) -> None:
+    """Begin the stream of a room in an episode, see `eyas.engine.core.rng.EpisodeKey`."""
     a, b, c, d = _pool(seed, room, tracker, episode)
     const = 0x8B51F9DD
     for word in range(8):
@@ -77,13 +73,11 @@ def fraction(state: Words) -> float:
 
 
 @kernel
-def whole(state: Words, count: int) -> int:
-    """Return the next whole number from 0 to below `count`, as `Generator.integers`.
-
-    Args:
-        state: The state.
-        count: From 1 to 2^32 - 1.
-    """
+def whole(
+    state: Words,
+    count: int,  # From 1 to 2^32 - 1
+) -> int:
+    """Return the next whole number from 0 to below `count`, as `Generator.integers`."""
     if count == 1:
         return 0
     product = _half(state) * count

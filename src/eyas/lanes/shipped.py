@@ -19,26 +19,10 @@ from pathlib import Path
 import llvmlite.binding as llvm
 
 from eyas.lanes.container import packed, unpacked
-from eyas.lanes.folder import OWNER
 from eyas.lanes.identity import language_hash
 from eyas.lanes.jit import VariableError
 from eyas.lanes.machine_code import MachineCode
-
-__all__ = [
-    "ARCHIVE",
-    "LEVEL",
-    "VARIABLE",
-    "WIDE_ARCHIVE",
-    "WIDE_LEVEL",
-    "archive_of",
-    "features",
-    "is_shipped",
-    "needed",
-    "read_archive",
-    "shipped_code",
-    "wanted",
-    "wide_needed",
-]
+from eyas.lanes.trusted import OWNER
 
 _LOG = logging.getLogger(OWNER)
 
@@ -63,12 +47,10 @@ VARIABLE = f"{OWNER.upper()}_SHIPPED_CODE"
 """Environment variable: 0 has everything compiled on this machine."""
 
 
-def archive_of(codes: Mapping[str, MachineCode]) -> bytes:
-    """Return the content of an archive of this version of the language of kernels.
-
-    Args:
-        codes: Machine code by name, see `shipped_code`.
-    """
+def archive_of(
+    codes: Mapping[str, MachineCode],  # Machine code by name, see `shipped_code`
+) -> bytes:
+    """Return the content of an archive of this version of the language of kernels."""
     names = sorted(codes)
     header = [language_hash(), [(name, codes[name].entry, codes[name].needs) for name in names]]
     return b"".join(packed(header, [codes[name].code for name in names]))
@@ -131,12 +113,10 @@ def features() -> set[str]:
     return {name for name, present in llvm.get_host_cpu_features().items() if present}
 
 
-def shipped_code(name: str) -> MachineCode | None:
-    """Return the code of a kernel; None if none is shipped that computes this, for this machine.
-
-    Args:
-        name: Name of its file without the last part, see `code_file`.
-    """
+def shipped_code(
+    name: str,  # Name of its file without the last part, see `code_file`
+) -> MachineCode | None:
+    """Return the code of a kernel; None if none is shipped that computes this, for this machine."""
     return _shipped().get(name)
 
 

@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 from eyas.lanes.text_index import TextIndex
 
-__all__ = ["INDEX", "Written", "syntax_of", "tree_of"]
-
 _LEFT_OUT = frozenset(
     ("annotation", "returns", "decorator_list", "ctx", "type_comment", "type_params", "kind")
 )

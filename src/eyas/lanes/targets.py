@@ -17,8 +17,6 @@ from numba.core.registry import cpu_target
 
 from eyas.lanes.vector.kinds import Lanes, ThreadModel
 
-__all__ = ["current_context", "for_threads", "lanes_as_threads", "target_name"]
-
 
 class _ThreadContext(CPUContext):  # type: ignore[misc]  # numba has no types
     """numba's knowledge of how to make code, where each lane is a thread."""

@@ -24,8 +24,6 @@ from eyas.lanes.trusted import (
     write_trusted,
 )
 
-__all__ = ["FOLDER", "SUFFIX", "TextIndex", "digest_of"]
-
 FOLDER = "definitions"  # Name of the folder in the cache
 
 SUFFIX = ".eyi"

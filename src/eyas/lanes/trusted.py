@@ -15,19 +15,6 @@ import platformdirs
 
 from eyas.lanes.container import Contents, packed, unpacked
 
-__all__ = [
-    "FOLDER_VARIABLE",
-    "OWNER",
-    "cache_folder",
-    "made_folder",
-    "not_kept",
-    "open_at_once",
-    "read_trusted",
-    "secured",
-    "touch",
-    "write_trusted",
-]
-
 OWNER = "eyas"
 """The program whose cache this is: the name of its folder, of its log, and in its variable."""
 

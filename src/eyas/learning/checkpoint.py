@@ -11,9 +11,9 @@ from typing import Any, Protocol
 
 import torch
 
-from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.errors import DataFileError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.identity.build import Build, this_build
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings, save_settings
 

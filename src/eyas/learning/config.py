@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
-from eyas.engine.core.allowed import Said
-from eyas.engine.core.code_names import NAMES_CODE
+from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.settings.section import Changes, Section
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.simple_maps import simple_world
@@ -34,7 +34,9 @@ LESSON = 128  # Pictures in a step of learning of a tracker
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
 DeviceName = Annotated[
-    str, Field(pattern=r"^(host|cuda(:\d{1,4})?)$"), Said("'cuda', 'cuda:1' and so on or 'host'")
+    str,
+    Field(pattern=r"^(host|cuda(:\d{1,4})?)$"),
+    TextForm("'cuda', 'cuda:1' and so on or 'host'"),
 ]
 
 

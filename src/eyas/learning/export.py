@@ -10,9 +10,9 @@ import onnx
 from onnx import TensorProto, helper, numpy_helper
 from torch import Tensor, nn
 
-from eyas import __version__
 from eyas.benchmark.policies.tracker.metadata import METADATA
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.installed import installed_version
 from eyas.engine.settings.env import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
@@ -113,7 +113,7 @@ def write_model(
         opset_imports=[helper.make_opsetid("", _OPSET)],
         ir_version=8,
         producer_name="eyas",
-        producer_version=__version__,
+        producer_version=installed_version(),
     )
     said = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
     metadata = {METADATA: said, **(further or {})}

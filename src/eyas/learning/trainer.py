@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from eyas.engine.camera.config import ColourLayout
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.origin import origin_of
+from eyas.engine.core.own_code import origin_of
 from eyas.engine.core.rng import TEST_SEEDS, stream
 from eyas.engine.envs.choice import steps_per_action
 from eyas.engine.envs.observation import observation_space
-from eyas.engine.sensors.config import ColourLayout
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import ActionKind, ObservationPart
 from eyas.learning.algorithm import Learner, phases_of

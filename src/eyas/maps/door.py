@@ -30,6 +30,7 @@ HOUSE = House(
             "openscenario": "eyas.maps.formats.openscenario:ScenarioWriter",
         },
         "eyas.planner": {"plans": "eyas.maps.plan.build:PLANNER"},
+        "eyas.textures": {"painted": "eyas.maps.textures.shipped:build_textures"},
         "eyas.map_files": {"files": "eyas.maps.files:MAP_FILES"},
         "eyas.commands": {
             "maps": "eyas.maps.commands.app:app",

@@ -18,10 +18,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from eyas.engine.core.checked import require_sum
 from eyas.engine.core.decoding import gunzipped, read_json
 from eyas.engine.core.errors import ConfigError, DataFileError
-from eyas.engine.core.files import read_limited, user_path
+from eyas.engine.core.files import read_limited, require_sum, user_path
 from eyas.engine.world.maps.recipe import PLAN_FILE, PLAN_SUFFIXES, MapRecipe
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import preset_file
 
 HERE = Path(__file__).parent
 PAGE = (HERE.parents[2] / "docs" / "coming-from-dat.md").read_text()

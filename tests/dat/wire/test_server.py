@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.settings.file import load_settings
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together as in_one_world

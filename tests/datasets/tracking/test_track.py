@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 
 from eyas.datasets.tracking.one_pass import overlaps, true_boxes
 from eyas.datasets.tracking.run import Scoring, run
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import EyasError
 from eyas.engine.recordings.export import ExportOptions, export
 from eyas.engine.recordings.recording import load
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.task.config import StartConfig

@@ -5,11 +5,11 @@ import pytest
 import shapely
 import shapely.ops
 
-from eyas.engine.behaviours import places
 from eyas.engine.behaviours.ground import Ground
 from eyas.engine.behaviours.scripted import STROLL
 from eyas.engine.behaviours.waiting import waiting_spots
 from eyas.engine.core.errors import SpawnError
+from eyas.engine.core.optics.lens import places
 from eyas.engine.core.variation import Mirrored, Uniform
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.state.motion import ActorState, Motion

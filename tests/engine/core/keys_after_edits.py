@@ -11,10 +11,9 @@ import sys
 from pathlib import Path
 
 import eyas
-from eyas.engine.core import build, program
+from eyas.engine.core.identity import build, program
 from eyas.engine.render.bake import ambient, shadows
 from eyas.engine.render.pack import light
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.sensors.obstacles import solids_of
 from eyas.engine.sim import crowd_motion, scenes
 from eyas.engine.targets.catalogue import KINDS
@@ -22,6 +21,7 @@ from eyas.engine.targets.rig import part_library
 from eyas.engine.traffic import library, recorded
 from eyas.engine.world.maps import MAPS
 from eyas.lanes import identity, syntax
+from eyas.maps.textures.shipped import build_textures
 
 PACKAGE = Path(eyas.__file__).parent
 

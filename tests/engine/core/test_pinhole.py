@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import focal_length, intrinsics, project, rays
+from eyas.engine.core.optics.pinhole import focal_length, intrinsics, project, rays
 
 WIDTH, HEIGHT, FOV = 64, 48, 1.1
 

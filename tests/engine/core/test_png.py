@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eyas.engine.core.deflate import deflated
-from eyas.engine.core.png import png_bytes
+from eyas.engine.core.codecs.deflate import deflated
+from eyas.engine.core.codecs.png import png_bytes
 
 
 def pictures():

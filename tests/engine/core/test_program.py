@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.engine.core import build as builds
-from eyas.engine.core.build import WORLD, this_build
-from eyas.engine.core.program import UnknownCodeError, closure_of, code_of, definitions_in
+from eyas.engine.core.identity import build as builds
+from eyas.engine.core.identity.build import WORLD, this_build
+from eyas.engine.core.identity.program import UnknownCodeError, closure_of, code_of, definitions_in
 from eyas.lanes import jit
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
@@ -24,26 +24,26 @@ PACKAGE = Path(eyas.__file__).parent
 SILENT = [
     ("engine/task/reward.py", '"""', '"""Says the same. '),
     ("engine/task/reward.py", "\nfrom", "\n# a comment\nfrom"),
-    ("engine/render/bake/ambient.py", "\n_LOWEST = 1.5\n", "\n_LOWEST = 1.5  # tuned\n"),
-    ("engine/render/textures/plants.py", "(46.0, 60.0, 28.0)", "( 46.0,60.0, 28.0, )"),
+    ("engine/render/bake/ambient.py", "\n_LOWEST = 1.5", "\n# Tuned.\n_LOWEST = 1.5"),
+    ("maps/textures/plants.py", "(46.0, 60.0, 28.0)", "( 46.0,60.0, 28.0, )"),
     ("engine/world/weather.py", "\nimport", "\n# light\nimport"),
     ("engine/world/maps/recipe.py", "is not allowed; allowed: words", "is wrong; allowed: words"),
-    ("engine/targets/vehicles/vehicle.py", '"""Length of the cab', '"""The length of the cab'),
+    ("engine/targets/vehicles/vehicle.py", '"""', '"""Other words: '),
     ("engine/render/kernels/surface/shade.py", "SHARP = f4(0.004)", "# a why\nSHARP = f4(0.004)"),
     ("cli/main.py", '"""', '"""Another text. '),
     ("cli/app.py", "import typer", "import typer as typer"),
-    ("sim/README.md", "", "What only people read.\n"),
+    ("engine/sim/README.md", "", "What only people read.\n"),
 ]
 EDITS = {
     "silent": SILENT,
     "demo": [("demo/server.py", "\nfrom", "\nNEW = 1\nfrom")],
     "film": [("engine/video/folder.py", "\nfrom", "\nNEW = 1\nfrom")],
-    "data": [("settings/legacy/defaults.json", "1", "2")],
+    "data": [("dat/settings/defaults.json", "1", "2")],
     "reward": [("engine/task/reward.py", "_FARTHEST = 1e12", "_FARTHEST = 1e11")],
     "ambient": [("engine/render/bake/ambient.py", "_LOWEST = 1.5", "_LOWEST = 15.0")],
-    "texture": [("engine/render/textures/plants.py", "(46.0, 60.0, 28.0)", "(47.0, 60.0, 28.0)")],
+    "texture": [("maps/textures/shipped.py", 'SHA256 = "', 'SHA256 = "0')],
     "car": [("engine/targets/vehicles/models/bus.py", "MODEL =", "MORE = 1\nMODEL =")],
-    "new car": [("targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
+    "new car": [("engine/targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
     "sun": [
         ("engine/world/weather.py", "sun_colour=(1.02, 0.96, 0.84)", "sun_colour=(1.02, 0.1, 0.1)")
     ],
@@ -88,16 +88,16 @@ VEHICLES = {f"kind {name}" for name in ("passenger", "bus", "truck", "trailer", 
         ("silent", set(), set()),
         ("demo", set(), set()),
         ("film", {"engine/video"}, set()),
-        ("data", {"settings"}, set()),
-        ("reward", {"task"}, set()),
-        ("ambient", {"render"}, {"ambient"}),
-        ("texture", {"render"}, {"textures"}),
-        ("car", {"targets"}, VEHICLES | {"people", "geometry"}),
-        ("new car", {"targets"}, VEHICLES | {"people", "geometry"}),
-        ("sun", {"world"}, set()),
-        ("shading", {"render"}, set()),
-        ("downtown", {"world"}, {"downtown"}),
-        ("recorder", {"traffic"}, {"recording"}),
+        ("data", {"dat"}, set()),
+        ("reward", {"engine/task"}, set()),
+        ("ambient", {"engine/render"}, {"ambient"}),
+        ("texture", {"maps"}, {"textures"}),
+        ("car", {"engine/targets"}, VEHICLES | {"people", "geometry"}),
+        ("new car", {"engine/targets"}, VEHICLES | {"people", "geometry"}),
+        ("sun", {"engine/world"}, set()),
+        ("shading", {"engine/render"}, set()),
+        ("downtown", {"maps"}, {"downtown"}),
+        ("recorder", {"engine/traffic"}, {"recording"}),
     ],
 )
 def test_an_edit_changes_what_it_makes_and_nothing_else(changed, edit, rooms, things):
@@ -112,8 +112,8 @@ def test_an_edit_of_the_language_of_kernels_changes_all_that_kernels_make(change
 
 
 def test_an_edit_of_a_function_changes_what_calls_it_through_others(changed):
-    assert changed["exact"] >= {"room core", "shadows", "citystreet"}
-    assert not changed["exact"] & {"room render", "recording", "textures"}
+    assert changed["exact"] >= {"room lanes", "shadows", "citystreet"}
+    assert not changed["exact"] & {"room engine/render", "recording", "textures"}
 
 
 def names_in(text):
@@ -268,16 +268,16 @@ def test_the_build_names_what_differs():
     assert build.difference(build, libraries=True) == ""
     other = build.model_copy(
         update={
-            "rooms": build.rooms | {"render": "0", "wire": "0", "new": "0"},
+            "rooms": build.rooms | {"engine/render": "0", "dat": "0", "new": "0"},
             "libraries": {"torch": "0.1"},
         }
     )
-    assert build.difference(other) == "new, render, wire"
-    assert other.difference(build, without=("wire",)) == "new, render"
+    assert build.difference(other) == "dat, engine/render, new"
+    assert other.difference(build, without=("dat",)) == "engine/render, new"
     assert "torch" in build.difference(other, libraries=True)
     assert build.id != other.id
     assert build.world != other.world
-    heard = build.model_copy(update={"rooms": build.rooms | {"wire": "0"}})
+    heard = build.model_copy(update={"rooms": build.rooms | {"dat": "0"}})
     assert (heard.id != build.id, heard.world != build.world) == (True, False)
     assert eyas.build_id == build.id
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):

@@ -8,10 +8,10 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.engine.core import program
 from eyas.engine.core.cache.cached import key_of
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import MissingExtraError, UnknownNameError
+from eyas.engine.core.identity import program
 from eyas.engine.envs.registration import register_map
 from eyas.engine.sim import scenes
 from eyas.engine.sim.assets import load_assets

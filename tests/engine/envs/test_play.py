@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.engine.envs.keys import hover_action
+from eyas.engine.envs.play import hover_action
 from eyas.engine.envs.tracking_env import TrackingEnv
 
 

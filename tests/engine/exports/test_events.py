@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.esim import EVENT
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.exports.events import EventWriter, evt2
+from eyas.engine.exports.episode_files import EventWriter, evt2
 from eyas.engine.exports.registry import chosen_writers
 from eyas.engine.exports.writer import Run
-from eyas.engine.sensors.camera.esim import EVENT
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.config import SimConfig
 
 

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.exports.capture import frame_of, moment_of
 from eyas.engine.exports.flow import FlowWriter, forward_flow
 from eyas.engine.exports.frame import Frame, RecordedAction

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.core.errors import OutputError
 from eyas.engine.core.files import write_atomic
-from eyas.engine.core.jpeg import jpeg_bytes
-from eyas.engine.exports.jpeg import JpegWriter
+from eyas.engine.exports.images import JpegWriter
 from eyas.engine.exports.writer import Summary
 
 
@@ -64,7 +64,7 @@ import numpy as np
 from eyas.engine.core.errors import OutputError
 from types import SimpleNamespace
 from eyas.engine.core.files import write_atomic
-from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.exports.mp4 import Mp4Episode
 folder = Path(sys.argv[1])
 resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))

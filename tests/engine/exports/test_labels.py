@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import DataFileError
-from eyas.engine.core.pinhole import intrinsics
+from eyas.engine.core.optics.pinhole import intrinsics
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.label import LabelWriter, label_of, read_labels
 from eyas.engine.exports.writer import Scores, Summary

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.exports.table import LidarWriter
+from eyas.engine.exports.episode_files import LidarWriter
 from eyas.engine.exports.writer import Summary
 from eyas.engine.sim.config import SimConfig
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eyas.engine.exports.episode_files import MarkWriter
 from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.exports.mark import MarkWriter
 from eyas.engine.exports.writer import EndedEpisode, Summary
 from eyas.engine.task.direction import TargetDirection
 

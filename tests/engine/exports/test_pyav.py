@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 
 from eyas.demo.frame import Stream
+from eyas.engine.core.codecs.pyav import has_pyav
 from eyas.engine.core.errors import MissingExtraError
-from eyas.engine.core.pyav import has_pyav
 from eyas.engine.exports.mp4 import Mp4Episode
 from eyas.engine.exports.registry import chosen_writers
 

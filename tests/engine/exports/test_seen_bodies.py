@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.exports.capture import Moment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.settings.config import EyasConfig

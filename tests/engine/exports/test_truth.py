@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.exports.capture import frame_of, moment_of
 from eyas.engine.exports.frame import Frame, RecordedAction, Subject
 from eyas.engine.settings.config import EyasConfig

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.overlay.marks import Marks
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig

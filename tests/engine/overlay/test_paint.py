@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import project, rays
+from eyas.engine.core.optics.pinhole import project, rays
 from eyas.engine.overlay.items import GroundArea, Label, Overlay, Solid, ThinLine
 from eyas.engine.overlay.paint import paint_overlays, with_depth
 from eyas.engine.state.draw import DrawList, Picture
@@ -203,6 +203,19 @@ def test_a_solid_at_the_camera_is_left_out(plain, painted):
     assert not changed(before, after).any()
 
 
+def test_what_is_near_the_camera_is_drawn(plain, painted):
+    views = looking([(0.0, 0.0, 5.0)], fov=FOV)
+    line = ThinLine(np.array([0.5, -0.1, 5.0]), np.array([0.5, 0.1, 5.0]), BLUE)
+    label = Label(np.array([0.5, 0.0, 5.0]), "0.8", RED)
+    for near in (
+        Overlay(solids=(octahedron((0.5, 0.0, 5.0), 0.1),)),
+        Overlay(lines=(line,)),
+        Overlay(labels=(label,)),
+    ):
+        before, after = painted(plain, views, near)
+        assert changed(before, after).any()
+
+
 def test_labels_stand_beside_their_point_or_in_the_corner(plain, painted):
     views = looking([(0.0, 0.0, 5.0)], fov=FOV)
     near = Label(np.array([20.0, 0.0, 5.0]), "0.8", RED, clear=1.0)
@@ -218,6 +231,32 @@ def test_labels_stand_beside_their_point_or_in_the_corner(plain, painted):
     rows, columns = np.nonzero(changed(before, after))
     assert rows.max() < 20
     assert columns.max() < 40
+
+
+def luminance(srgb: np.ndarray) -> np.ndarray:
+    """Return the relative luminance of colours 0 to 255 (WCAG 2.2)."""
+    share = srgb / 255.0
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return linear @ (0.2126, 0.7152, 0.0722)
+
+
+def test_labels_are_legible_on_black_and_on_white():
+    """Letters against their outline have the contrast of small text, 4.5 to 1 (WCAG 2.2, 1.4.3)."""
+    views = looking([(0.0, 0.0, 5.0)], fov=FOV)
+    overlay = Overlay(labels=(Label(np.array([20.0, 0.0, 5.0]), "reward 0.80", (1.0, 1.0, 1.0)),))
+    on = []
+    for background in (0, 255):
+        picture = with_depth(Picture.create(1, 480, 640))
+        picture.rgb[:], picture.depth[:] = background, np.inf
+        paint_overlays(views, (overlay,), picture)
+        on.append(luminance(picture.rgb[0].astype(np.float64)))
+    letters = on[0] > 0.9
+    assert letters.sum() > 100
+    around = (on[0] < 0.1) & (on[1] < 0.9)  # covered by the outline, and not by a letter's rim
+    assert around.sum() > letters.sum()
+    for drawn in on:
+        contrast = (drawn[letters].min() + 0.05) / (np.median(drawn[around]) + 0.05)
+        assert contrast > 4.5
 
 
 def test_the_same_bytes_twice_and_in_any_company(plain, painted):

@@ -15,14 +15,12 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+from eyas.engine.core.codecs.png import png_bytes
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError, UnknownNameError
-from eyas.engine.core.png import png_bytes
 from eyas.engine.exports.checksums import CHECKSUMS
 from eyas.engine.recordings.export import ExportOptions, export
-from eyas.engine.recordings.first_sight import from_first_sight
-from eyas.engine.recordings.format import objects_of
-from eyas.engine.recordings.recording import load
-from eyas.engine.recordings.registry import FORMATS
+from eyas.engine.recordings.format import FORMATS, objects_of
+from eyas.engine.recordings.recording import from_first_sight, load
 from eyas.engine.recordings.run import run
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 

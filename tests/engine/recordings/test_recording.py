@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import eyas
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import DataFileError
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.state.scene import ObjectClass

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from eyas.engine.render.textures.bodywork import bodywork
 from eyas.engine.render.textures.mipmap import linear
 from eyas.engine.world.build.bodywork import BASE, FRONT, RAISED, REAR, SIDE, STYLES, TOP
+from eyas.maps.textures.bodywork import bodywork
 
 
 def tones(style):

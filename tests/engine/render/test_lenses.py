@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from eyas.engine.core import pinhole
-from eyas.engine.core.lens import (
+from eyas.engine.core.optics import pinhole
+from eyas.engine.core.optics.lens import (
     BROWN,
     FISHEYE,
     NO_LENS,

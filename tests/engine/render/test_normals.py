@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import rays
+from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.render import jobs
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.build import build_simulation

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.core.lens import BROWN, Lens, lens_of
+from eyas.engine.core.optics.lens import BROWN, Lens, lens_of
 from eyas.engine.mesh.solids import box
 from eyas.engine.sim.views.parked import ParkedObjects
 from eyas.engine.state.draw import DrawList, Picture

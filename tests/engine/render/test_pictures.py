@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import ConfigError, UnknownNameError
-from eyas.engine.core.pinhole import project, rays
+from eyas.engine.core.optics.pinhole import project, rays
 from eyas.engine.mesh.assembly import transformed
 from eyas.engine.mesh.flat import quads
 from eyas.engine.mesh.solids import box, sphere

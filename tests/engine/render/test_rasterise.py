@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import rays
+from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.render.kernels.scalars import i4
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS, fill
 from eyas.engine.render.kernels.visibility.holes import no_holes

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from eyas.engine.core.pinhole import rays
+from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.mesh.assembly import concatenate
 from eyas.engine.mesh.solids import box
 from eyas.engine.render.bake.shadows import bake_shadows

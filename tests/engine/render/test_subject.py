@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.mesh.solids import box
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.scene import ACTOR_OBJECT

@@ -9,13 +9,13 @@ from eyas.engine.render.kernels.scalars import i4
 from eyas.engine.render.kernels.surface.shade import water_slope
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.renderer import build_renderer
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.world.build.materials import TEXTURES
 from eyas.lanes import kernel
 from eyas.lanes.vector import lane, splat
+from eyas.maps.textures.shipped import build_textures
 
 from ...kit.small_city import DAY, GROUND, looking, scene_of
 

@@ -6,9 +6,9 @@ import pytest
 from eyas.engine.mesh.flat import quads
 from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.renderer import build_renderer
-from eyas.engine.render.textures.land import sand
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Surface
+from eyas.maps.textures.land import sand
 
 from ...kit.small_city import DAY, looking, scene_of
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import together

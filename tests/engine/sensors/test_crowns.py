@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.furniture import crown_slices, furniture
-from eyas.engine.sensors.obstacles import solids_of
+from eyas.engine.sensors.obstacles import crown_slices, furniture, solids_of
 from eyas.engine.sim.scenes import load_scene, load_solids
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.weather import Season

@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.sensors.bodies import BODY
-from eyas.engine.sensors.config import LidarConfig, MountConfig
+from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.lidar import MOUNT, Lidar
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.terrain import Terrain

@@ -12,8 +12,8 @@ import pytest
 import eyas
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, UnknownNameError
+from eyas.engine.exports.episode_files import SensorWriter
 from eyas.engine.exports.label import LabelWriter
-from eyas.engine.exports.table import SensorWriter
 from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.sensors.table import SENSORS, further_sensors
 from eyas.engine.settings.config import EyasConfig
@@ -22,7 +22,7 @@ from eyas.engine.settings.schema import config_schema
 from eyas.engine.task.packets import BASIC_FIELDS
 from eyas.robotics.mavlink.equipment import FIELD, PRESSURE, equipped, part_of
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 PATH = "own_sensor:MAGNETOMETER"
 MAGNET = 0.25
 FURTHER = [{"sensor": PATH, "settings": {"magnet": MAGNET}}, "barometer"]

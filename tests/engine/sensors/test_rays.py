@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.config import LidarConfig, MountConfig
+from eyas.engine.camera.config import MountConfig
+from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.lidar import Lidar
 from eyas.engine.state.terrain import Terrain, ground_at
 

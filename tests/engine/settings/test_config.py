@@ -28,7 +28,8 @@ def test_all_settings_are_those_of_a_simulation_and_those_of_its_uses():
     config = updated(EyasConfig(), {"camera": {"width": 64}, "video": {"fps": 9}})
     assert isinstance(config, SimConfig)
     uses = EyasConfig.model_fields.keys() - SimConfig.model_fields.keys()
-    assert uses == {"mode", "verbose", "env", "video", "train", "wire", "mavlink", "original"}
+    sections = {"train", "wire", "mavlink"}
+    assert uses == {"mode", "verbose", "env", "video", "own", "original"} | sections
 
 
 def test_a_file_without_the_settings_of_a_later_version_has_their_defaults(tmp_path):

@@ -13,8 +13,7 @@ from eyas.dat.settings.layout import flat
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.envs.choice import settings_of_kinds, steps_per_action
 from eyas.engine.envs.tracking_env import TrackingEnv
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import PRESETS, preset_file
+from eyas.engine.settings.file import PRESETS, load_settings, preset_file
 
 
 @pytest.mark.slow

@@ -9,8 +9,7 @@ import pytest
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import PRESETS, preset_file
+from eyas.engine.settings.file import PRESETS, load_settings, preset_file
 from eyas.engine.settings.schema import config_schema
 
 

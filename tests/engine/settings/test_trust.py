@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from eyas.cli.main import main
-from eyas.engine.core.code_names import code_named
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.own_code import code_named
 from eyas.engine.core.registry import Registry
 from eyas.engine.custom.user_class import made
 from eyas.engine.envs.choice import chosen_settings

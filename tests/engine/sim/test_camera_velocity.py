@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import CameraConfig, MountConfig
+from eyas.engine.camera.shutter import ShutterConfig
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.sensors.camera.shutter import ShutterConfig
-from eyas.engine.sensors.config import CameraConfig, MountConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone

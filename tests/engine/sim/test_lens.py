@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.exports.capture import Moment, frame_of
 from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone, together

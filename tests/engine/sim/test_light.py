@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.dat.settings.adapter import from_original
-from eyas.engine.core.pinhole import rays
+from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.envs.tracking_env import TrackingEnv
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.camera.tone import ToneCurve
+from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import DrawStage, Picture

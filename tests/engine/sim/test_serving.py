@@ -16,7 +16,7 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Face, Loop, Orders, serve
 from eyas.engine.sim.worlds import together
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.sensors.config import MountConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import each_alone, together
 from eyas.engine.state.draw import Picture

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.config import DoneConfig, RewardConfig
 from eyas.engine.task.rules import make_rules

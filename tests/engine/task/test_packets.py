@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.task.direction import TargetDirection
 from eyas.engine.task.done import DoneReason

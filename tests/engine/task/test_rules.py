@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 from eyas.engine.task.reward import rewarded_size
 from eyas.engine.task.rules import BuiltinReward, exact, make_rules

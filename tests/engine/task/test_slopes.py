@@ -7,8 +7,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from eyas.engine.core.pinhole import project
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.state.terrain import Plane, Terrain, height_over
 from eyas.engine.task.config import RewardMode, RewardType
 from eyas.engine.task.done import DoneReason, judge

@@ -9,8 +9,7 @@ from eyas.engine.render.kernels.surface.signalling import BRAKING, LEFT, RIGHT
 from eyas.engine.sim.scenes import load_network
 from eyas.engine.state.motion import SAMPLE, Lamp, Motion, joined
 from eyas.engine.state.terrain import Terrain
-from eyas.engine.traffic.lamps import BLINKS, lamps_of, shining
-from eyas.engine.traffic.lane_map import LaneMap
+from eyas.engine.traffic.lamps import BLINKS, LaneMap, lamps_of, shining
 from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.lanes import exact, interpreted

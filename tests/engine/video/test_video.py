@@ -17,13 +17,13 @@ import pytest
 from PIL import Image
 
 from eyas.cli.main import main
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError, OutputError, SpawnError
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.exports.frame import Frame
 from eyas.engine.exports.label import Label, read_labels
 from eyas.engine.exports.registry import WRITERS
 from eyas.engine.exports.writer import Episode, Files, Gather, Summary, Writer
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.state.scene import ACTOR_OBJECT

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import OutputError
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import save_settings
 from eyas.engine.settings.video import VideoConfig

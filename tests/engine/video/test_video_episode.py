@@ -4,14 +4,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.esim import EVENT
+from eyas.engine.camera.events import EventsConfig
 from eyas.engine.core.errors import OutputError
 from eyas.engine.exports.capture import Moment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.registry import WRITERS, chosen_writers
 from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Scores, Summary, Writer
-from eyas.engine.sensors.camera.esim import EVENT
-from eyas.engine.sensors.camera.events import EventsConfig
-from eyas.engine.sensors.config import CameraConfig, LidarConfig
+from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.state.draw import MovingParts, Picture
 from eyas.engine.state.motion import ActorState, ActorView

@@ -9,7 +9,7 @@ import pytest
 from eyas.cli.app import run
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.exports.label import read_labels
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from eyas import __version__
-from eyas.engine.core.build import this_build
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.video.folder import _NOT_PICTURED, open_folder

@@ -4,8 +4,9 @@ import itertools
 
 import pytest
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.exports.label import read_labels
-from eyas.engine.sensors.config import CameraConfig, CameraErrors, LidarConfig, SensorsConfig
+from eyas.engine.sensors.config import CameraErrors, LidarConfig, SensorsConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.video import VideoConfig
 from eyas.engine.sim.config import ControlConfig

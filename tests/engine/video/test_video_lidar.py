@@ -4,7 +4,7 @@ import json
 
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
-from eyas.engine.video.default_writers import with_writers
+from eyas.engine.video.formats import with_writers
 from eyas.engine.video.run import run
 
 

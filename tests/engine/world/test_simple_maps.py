@@ -4,8 +4,7 @@ import pytest
 
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig, variants
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.simple_maps import simple_world

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import eyas.gpu.render.stages as stages
-from eyas.engine.sensors.config import CameraConfig, MountConfig
+from eyas.engine.camera.config import CameraConfig, MountConfig
 from eyas.engine.sensors.mount import CARRIED, mount_of
 from eyas.engine.sim.step import Orders, StepState, StepSurroundings, step_of
 from eyas.engine.state.draw import Picture

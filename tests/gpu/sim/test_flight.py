@@ -16,8 +16,7 @@ from eyas.engine.targets.rig import Rigs
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.engine.trackers.wind_field import WindField
 from eyas.gpu.ptx import ptx_of
-from eyas.gpu.sim.refusals import check_device
-from eyas.gpu.sim.simulation import DeviceSimulation
+from eyas.gpu.sim.simulation import DeviceSimulation, check_device
 from eyas.lanes.device import HostDevice
 
 SHORT = {"done": {"total_steps": 120, "grace_steps": 0, "no_reward_steps": 60}}

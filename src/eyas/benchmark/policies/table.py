@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eyas.benchmark.policies.shipped import file_of, shipped_names
-from eyas.engine.core.code_names import PICKLED
 from eyas.engine.core.errors import ConfigError, DataFileError, UnknownNameError
+from eyas.engine.core.own_code import PICKLED
 from eyas.engine.core.registry import Registry
 
 if TYPE_CHECKING:  # its observations know the whole simulation, and here are names

@@ -18,8 +18,8 @@ from eyas.benchmark.reproduce.tables import (
 from eyas.benchmark.result import RESULT, UNITS, cell, load_run
 from eyas.benchmark.rows import rows_of
 from eyas.benchmark.run import run as evaluate
-from eyas.engine.core.build import this_build
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.identity.build import this_build
 
 __all__ = ["listing", "made", "markdown", "run", "write_expected"]
 

@@ -78,7 +78,7 @@ class Expected(Config):
     build_id: str
     """The build of Eyas that has made it."""
     world: str
-    """The digest of its world, see `eyas.engine.core.build.Build.world`."""
+    """The digest of its world, see `eyas.engine.core.identity.build.Build.world`."""
     flown_with: dict[str, str]
     """Hashes of the protocols and of the shipped policies that have flown it, by name."""
     rows: tuple[ExpectedRow, ...]

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from eyas.cli.bench.measurement import Measurement
 from eyas.cli.bench.pictures import PictureBatch
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.render.outputs import NO_OUTPUT
 from eyas.engine.render.renderer import CpuRenderer
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.simulation import Simulation

@@ -12,7 +12,7 @@ import numpy as np
 from rich.table import Table
 
 from eyas.cli.bench.measurement import Measurement, of_pictures
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig

@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 from eyas.cli.verify.measures import flight_of, recording_of, world_of
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import PRESETS, preset_file
+from eyas.engine.settings.file import PRESETS, load_settings, preset_file
 from eyas.engine.world.maps import MAPS
 
 __all__ = ["Case", "cases"]

@@ -12,14 +12,14 @@ from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple
 
-from eyas import __version__
 from eyas.cli.verify.cases import Case, cases
 from eyas.engine.core.errors import DataFileError, UnknownNameError
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.machine import describe_machine
 from eyas.engine.core.scratch import scratch
 from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
-from eyas.lanes.folder import FOLDER_VARIABLE
+from eyas.lanes.trusted import FOLDER_VARIABLE
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
 
@@ -46,7 +46,7 @@ def read_manifest() -> Hashes:
 
 def text_of(hashes: Hashes) -> str:
     """Return the content of the file."""
-    return json.dumps({"eyas": __version__, "hashes": hashes}, indent=1) + "\n"
+    return json.dumps({"eyas": installed_version(), "hashes": hashes}, indent=1) + "\n"
 
 
 _PACKAGES = ("numpy", "numba", "llvmlite", "shapely", "pillow", "pydantic", "gymnasium")
@@ -66,7 +66,7 @@ def machine_facts() -> dict[str, str]:
     packages = [f"{name} {_version(name)}" for name in _PACKAGES]
     facts = {
         "machine": describe_machine(),
-        "Eyas": f"{__version__}, {thread_count()} threads",
+        "Eyas": f"{installed_version()}, {thread_count()} threads",
         "packages": ", ".join(packages),
         "libraries": f"{' '.join(platform.libc_ver())}, BLAS for {_blas_kernel()}",
     }

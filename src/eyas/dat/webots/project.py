@@ -23,8 +23,8 @@ from eyas.dat.webots.protos import (
 from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Node, Value, world
 from eyas.dat.webots.world import scene_nodes, sky_nodes
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.files import refusals, write_atomic
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sim.scenes import load_scene, load_textures
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from eyas.dat.wire.codec import Action, packet_line
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.core.errors import SpawnError
-from eyas.engine.core.jpeg import jpeg_bytes
 from eyas.engine.sim.serving import Orders
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture

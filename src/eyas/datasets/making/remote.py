@@ -19,7 +19,7 @@ from eyas.engine.core.errors import ConfigError, MissingExtraError, OutputError
 from eyas.engine.core.files import PART_SUFFIX
 from eyas.engine.core.folder_lock import LOCK
 from eyas.engine.recordings.recording import DATASET_FILE
-from eyas.lanes.folder import cache_folder
+from eyas.lanes.trusted import cache_folder
 
 __all__ = ["Remote"]
 

@@ -16,9 +16,9 @@ from eyas.datasets.making.make import Recorded
 from eyas.datasets.making.parts import PART_FILE, read_facts, record_part
 from eyas.datasets.plan import Part, in_order_of_work
 from eyas.datasets.statistics import PartFacts
-from eyas.engine.core.build import this_build
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import refusals
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.core.scratch import scratch
 from eyas.lanes import limit_threads
 

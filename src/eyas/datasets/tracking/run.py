@@ -24,11 +24,11 @@ from eyas.datasets.tracking.one_pass import (
     track_episode,
     true_boxes,
 )
-from eyas.engine.core.build import this_build
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, OutputError
 from eyas.engine.core.files import read_limited, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK, folder_lock
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.recordings.recording import RecordedEpisode, Recording, load
 from eyas.engine.terminal.interrupts import interrupts_held
 from eyas.engine.terminal.progress import frames_bar

@@ -15,8 +15,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.state.motion import SAMPLE, Motion
 from eyas.lanes import exact
 
-__all__ = ["AirborneConfig", "Space", "chases", "flocks"]
-
 Floats = NDArray[np.float64]
 
 _FLOCK = 6  # Most birds in a flock
@@ -95,18 +93,14 @@ def _free_way(space: Space, rng: np.random.Generator, speed: float) -> _Way:
 
 
 def flocks(
-    count: int, kind: int, space: Space, clock: SampleClock, rng: np.random.Generator, speed: float
+    count: int,  # Number of them
+    kind: int,
+    space: Space,  # The map
+    clock: SampleClock,  # The instants
+    rng: np.random.Generator,  # Random numbers
+    speed: float,  # [m/s]
 ) -> Motion:
-    """Return the motion of birds, or of drones that follow nobody, on closed ways.
-
-    Args:
-        count: Number of them.
-        kind: Their kind.
-        space: The map.
-        clock: The instants.
-        rng: Random numbers.
-        speed: [m/s]
-    """
+    """Return the motion of birds, or of drones that follow nobody, on closed ways."""
     time = np.arange(clock.samples) / clock.rate
     table = np.zeros((clock.samples, count), SAMPLE)
     way = _free_way(space, rng, speed)
@@ -125,15 +119,13 @@ def flocks(
     return Motion(table, np.full(count, kind, np.int32), clock.rate, 0.0)
 
 
-def chases(count: int, kind: int, vehicles: Motion, rng: np.random.Generator) -> Motion:
-    """Return the motion of drones that follow vehicles, each another one, from above.
-
-    Args:
-        count: Number of them; no more than vehicles.
-        kind: Their kind.
-        vehicles: The vehicles.
-        rng: Random numbers.
-    """
+def chases(
+    count: int,  # Number of them; no more than vehicles
+    kind: int,
+    vehicles: Motion,
+    rng: np.random.Generator,  # Random numbers
+) -> Motion:
+    """Return the motion of drones that follow vehicles, each another one, from above."""
     table = np.zeros((len(vehicles.table), count), SAMPLE)
     chosen = rng.permutation(len(vehicles.kind))[:count]
     lag, half = round(_LAG * vehicles.rate), round(_AVERAGE * vehicles.rate)

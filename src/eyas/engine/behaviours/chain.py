@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "Chain",
-    "Poses",
-    "chain_of",
-    "chain_through",
-    "headings",
-    "joints",
-    "outline",
-    "poses_on",
-]
-
 _SHARP: Final = 2.0  # Corners sharper than this are turned on the spot [rad]
 
 _STEP: Final = 0.2  # Largest turn between points that stand for an arc [rad]
@@ -43,25 +32,21 @@ class Poses(NamedTuple):
     yaw: Floats  # Heading, without jumps [rad]
 
 
-def chain_of(pieces: list[tuple[float, float, float]], start: tuple[float, float, float]) -> Chain:
-    """Return a path.
-
-    Args:
-        pieces: Spin [rad], length [m] and curvature [1/m] of each.
-        start: See `Chain`.
-    """
+def chain_of(
+    pieces: list[tuple[float, float, float]],  # Spin [rad], length [m] and curvature [1/m] of each
+    start: tuple[float, float, float],  # See `Chain`
+) -> Chain:
+    """Return a path."""
     spin, length, curvature = np.array(pieces, np.float64).reshape(-1, 3).T
     return Chain(start, spin, length, curvature)
 
 
-def chain_through(points: Floats, radius: float, rounds: int) -> Chain:
-    """Return a closed path past points, with rounded corners; sharp ones are turned on the spot.
-
-    Args:
-        points: Corners [m], shape (K, 2), at least 2, neighbours apart.
-        radius: Wanted radius of the corners; short sides make it smaller [m].
-        rounds: How often the path is gone round.
-    """
+def chain_through(
+    points: Floats,  # Corners [m], shape (K, 2), at least 2, neighbours apart
+    radius: float,  # Wanted radius of the corners; short sides make it smaller [m]
+    rounds: int,  # How often the path is gone round
+) -> Chain:
+    """Return a closed path past points, with rounded corners; sharp ones are turned on the spot."""
     sides = np.roll(points, -1, axis=0) - points
     lengths = exact.hypot(sides[:, 0], sides[:, 1])
     headings = exact.atan2(sides[:, 1], sides[:, 0])
@@ -105,14 +90,12 @@ def headings(chain: Chain) -> Floats:
     return np.concatenate([yaw, yaw[-1:] + turned[-1:]])
 
 
-def poses_on(chain: Chain, piece: NDArray[np.int64], along: Floats) -> Poses:
-    """Return poses on a path, after the spins of the pieces.
-
-    Args:
-        chain: The path.
-        piece: Index of the piece, shape (K,).
-        along: Walkway from its beginning [m], shape (K,).
-    """
+def poses_on(
+    chain: Chain,  # The path
+    piece: NDArray[np.int64],  # Index of the piece, shape (K,)
+    along: Floats,  # Walkway from its beginning [m], shape (K,)
+) -> Poses:
+    """Return poses on a path, after the spins of the pieces."""
     at, bend = joints(chain), chain.curvature[piece]
     yaw = at.yaw[piece]
     dx, dy = _moved(yaw, along, bend)

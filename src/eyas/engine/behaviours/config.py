@@ -9,8 +9,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.targets.config import TargetName
 from eyas.engine.targets.habit import Behaviour
 
-__all__ = ["ExtraConfig", "Rider"]
-
 
 class Rider(StrEnum):
     """Who rides, and is nobody's target."""

@@ -15,8 +15,6 @@ from eyas.engine.behaviours.timetable import TimedMotion, ride, time_of
 from eyas.engine.targets.habit import Habit
 from eyas.lanes import exact
 
-__all__ = ["CrossingWalk", "Streets", "crossing_walk", "walk_motion"]
-
 _PASSED_BY: Final = 0.4  # Share of the crossings that somebody does not take
 
 _LEAST: Final = 2.0  # Least walk between two crossings [m]
@@ -44,17 +42,13 @@ class CrossingWalk(NamedTuple):
 
 
 def crossing_walk(
-    streets: Streets, habit: Habit, enters: float, lasts: float, rng: np.random.Generator
+    streets: Streets,  # Where one can walk
+    habit: Habit,  # How one walks
+    enters: float,  # When it begins, time of the traffic [s]
+    lasts: float,  # Least duration [s]
+    rng: np.random.Generator,  # Random numbers
 ) -> CrossingWalk:
-    """Return a walk from a random place.
-
-    Args:
-        streets: Where one can walk.
-        habit: How one walks.
-        enters: When it begins, time of the traffic [s].
-        lasts: Least duration [s].
-        rng: Random numbers.
-    """
+    """Return a walk from a random place."""
     open_ = [k for k, from_here in enumerate(streets.crossings) if from_here]
     length = np.array([streets.ways[k].length for k in open_])
     way = open_[int(rng.choice(len(open_), p=length / length.sum()))]
@@ -111,17 +105,13 @@ def _time_to(away: float, habit: Habit) -> float:
 
 
 def _walk(
-    way: Walkway, along: float, crossing: Crossing, habit: Habit, heading: float | None
+    way: Walkway,
+    along: float,  # Where on it the path begins [m]
+    crossing: Crossing,  # Where it ends
+    habit: Habit,  # How one walks
+    heading: float | None,  # Heading before it [rad]; None: along the way
 ) -> Chain:
-    """Return the path on a way to a crossing, at which one turns towards it.
-
-    Args:
-        way: The way.
-        along: Where on it the path begins [m].
-        crossing: Where it ends.
-        habit: How one walks.
-        heading: Heading before it [rad]; None: along the way.
-    """
+    """Return the path on a way to a crossing, at which one turns towards it."""
     sides = np.roll(way.corners, -1, axis=0) - way.corners
     lengths = exact.hypot(sides[:, 0], sides[:, 1])
     at = np.cumsum(lengths) - lengths

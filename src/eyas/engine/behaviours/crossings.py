@@ -11,8 +11,6 @@ from eyas.engine.behaviours.pavements import LANES, Walkway
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
 
-__all__ = ["Crossing", "crossings_of"]
-
 _PAVED: Final = 9.0  # How far from the kerb pavements are sought: corners are round [m]
 
 _BEYOND_KERB: Final = 4.0  # The same on imported maps, which tell where each crossing ends [m]
@@ -41,16 +39,12 @@ class Crossing(NamedTuple):
 
 
 def crossings_of(
-    scene: Scene, ways: list[Walkway], obstacles: GroundObstacles, radius: float
+    scene: Scene,  # The map
+    ways: list[Walkway],  # The ways on its pavements
+    obstacles: GroundObstacles,  # What stands in the way, without the roads
+    radius: float,  # Distance to obstacles that is kept [m]
 ) -> list[Crossing]:
-    """Return the crossings between ways, in both directions.
-
-    Args:
-        scene: The map.
-        ways: The ways on its pavements.
-        obstacles: What stands in the way, without the roads.
-        radius: Distance to obstacles that is kept [m].
-    """
+    """Return the crossings between ways, in both directions."""
     rings = [way.line for way in ways]
     lanes = [[k for k, way in enumerate(ways) if way.lane == lane] for lane in range(len(LANES))]
     sides = [_Side(own, shapely.STRtree([rings[k] for k in own])) for own in lanes]

@@ -13,8 +13,6 @@ from eyas.engine.traffic.signals import Aspect, SignalPlan
 from eyas.engine.traffic.trailer import folded_by
 from eyas.lanes import exact, interpreted
 
-__all__ = ["GapAcceptance"]
-
 _CLEAR: Final = 1.8  # From the line that is crossed to the side of a vehicle, at least [m]
 
 _ASIDE: Final = 0.3
@@ -58,19 +56,17 @@ class GapAcceptance:
         self._rows = {} if lights is None else {name: k for k, name in enumerate(lights.edges)}
 
     def first(
-        self, line: Floats, ready: float, lasts: float, light: str = "", to_kerb: float = 0.0
+        self,
+        line: Floats,  # From the kerb at which one waits to the other one [m], shape (2, 2)
+        ready: float,  # Earliest time [s]
+        lasts: float,  # How long it takes [s]
+        light: str = "",  # Name of the crossing's light; empty: it has none
+        to_kerb: float = 0.0,  # How long after one's start one is on the road [s]
     ) -> float | None:
         """Return when a line can be crossed [s].
 
         None: patience ends before there is a gap, or a long vehicle turns over the kerb in
         between.
-
-        Args:
-            line: From the kerb at which one waits to the other one [m], shape (2, 2).
-            ready: Earliest time [s].
-            lasts: How long it takes [s].
-            light: Name of the crossing's light; empty: it has none.
-            to_kerb: How long after one's start one is on the road [s].
         """
         busy, rate = self._busy_before(line, _CLEAR), self._rate
         first = math.ceil(ready * rate)
@@ -172,14 +168,12 @@ def _sections(model: int) -> tuple[Section, ...]:
     return sections_of(model) or (Section(MODELS[model].name, 0.0, MODELS[model].size, 0, ()),)
 
 
-def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:
-    """Return points along a section of some vehicles [m], shape (2, vehicles, points).
-
-    Args:
-        own: Their samples.
-        section: The section.
-        middle: Distance of their middles ahead of their reference points [m].
-    """
+def _axis(
+    own: NDArray[np.void],  # Their samples
+    section: Section,
+    middle: float,  # Distance of their middles ahead of their reference points [m]
+) -> Floats:
+    """Return points along a section of some vehicles [m], shape (2, vehicles, points)."""
     x, y, c, s = _folded_by(exact.sin(own["hitch"]), exact.cos(own["hitch"]), section.towed)
     # Where their reference points would be if they were straight, from where they are.
     x, y = x + middle * (1.0 - c), y - middle * s

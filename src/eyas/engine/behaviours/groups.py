@@ -13,8 +13,6 @@ from eyas.engine.core.variation import Variation
 from eyas.engine.targets.config import ObjectsConfig
 from eyas.engine.targets.habit import Behaviour, Habit
 
-__all__ = ["Lifetimes", "SampleClock", "ScriptedGroup", "lasting", "recycled"]
-
 _LEAST: Final = 60.0  # Least length of a life, where that of the original is too short [s]
 
 _EPISODES: Final = 4.0

@@ -17,8 +17,6 @@ from eyas.engine.targets.catalogue import KINDS, MODELS, models_of
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.lanes import exact
 
-__all__ = ["kerb_ways"]
-
 _LANES: Final = (0.9, 1.45)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 
@@ -44,21 +42,14 @@ _TURN: Final = 0.03  # The same for headings [rad]
 
 
 def kerb_ways(
-    footways: Footways,
-    obstacles: GroundObstacles,
-    surface: WalkedSurface,
-    radius: float,
+    footways: Footways,  # The kerbs
+    obstacles: GroundObstacles,  # What stands in the way, without the roads
+    surface: WalkedSurface,  # The ground
+    radius: float,  # Distance to obstacles that is kept [m]
+    # Those that may come over kerbs, as in narrow corners; None: there are none
     vehicles: Motion | None = None,
 ) -> list[Walkway]:
-    """Return the ways along all kerbs with pavements, round what stands on these.
-
-    Args:
-        footways: The kerbs.
-        obstacles: What stands in the way, without the roads.
-        surface: The ground.
-        radius: Distance to obstacles that is kept [m].
-        vehicles: Those that may come over kerbs, as in narrow corners; None: there are none.
-    """
+    """Return the ways along all kerbs with pavements, round what stands on these."""
     swept = shapely.STRtree(_swept(vehicles) if vehicles is not None else [])
     place = _Place(obstacles, surface, swept, radius)
     found = []

@@ -11,8 +11,6 @@ from eyas.engine.state.terrain import Terrain, reliefs
 from eyas.engine.world.roads.areas import corridors, split_on_grid
 from eyas.lanes import exact
 
-__all__ = ["GroundObstacles"]
-
 _STEP: Final = 0.3  # Height above the ground up to which one can step over things [m]
 
 _HEAD: Final = 2.2  # Height above the ground over which nothing is in the way [m]

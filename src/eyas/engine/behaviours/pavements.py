@@ -14,8 +14,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.traffic.smoothing import runs
 from eyas.engine.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "Walkway", "along", "bridged", "is_hard", "paved_parts", "pavement_ways"]
-
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 
@@ -46,26 +44,17 @@ class Walkway(NamedTuple):
 
 def pavement_ways(
     network: RoadNetwork,
-    size: tuple[float, float],
-    obstacles: GroundObstacles,
-    surface: WalkedSurface,
-    radius: float,
+    size: tuple[float, float],  # Extent of the map [m]
+    obstacles: GroundObstacles,  # What stands in the way
+    surface: WalkedSurface,  # The ground
+    radius: float,  # Distance to obstacles that is kept [m]
     *,
-    verges: bool = False,
-    lanes: Sequence[float] = LANES,
+    verges: bool = False,  # Whether one walks wherever the way is near the road, on pavement or not
+    lanes: Sequence[float] = LANES,  # See `LANES`; those of the first have the road on their left
 ) -> list[Walkway]:
     """Return the ways along the pavements of all blocks, round what stands on them.
 
     Where a block has no pavement all round, they lead there and back.
-
-    Args:
-        network: The roads.
-        size: Extent of the map [m].
-        obstacles: What stands in the way.
-        surface: The ground.
-        radius: Distance to obstacles that is kept [m].
-        verges: Whether one walks wherever the way is near the road, on pavement or not.
-        lanes: See `LANES`; those of the first have the road on their left.
     """
     if not len(network.lane_width):
         return []
@@ -103,14 +92,12 @@ def _ring(
     return max(parts, key=shapely.area).exterior if parts else None
 
 
-def paved_parts(ring: shapely.LinearRing, paved: NDArray[np.bool_], lane: int) -> list[Walkway]:
-    """Return the parts of a ring that are on pavement, or all of it.
-
-    Args:
-        ring: [m]
-        paved: Whether there is pavement at each of its points, from `along`.
-        lane: Index into `LANES`.
-    """
+def paved_parts(
+    ring: shapely.LinearRing,  # [m]
+    paved: NDArray[np.bool_],  # Whether there is pavement at each of its points, from `along`
+    lane: int,  # Index into `LANES`
+) -> list[Walkway]:
+    """Return the parts of a ring that are on pavement, or all of it."""
     if paved.all():
         return [Walkway(shapely.get_coordinates(ring)[:-1], ring.length, lane)]
     made = []
@@ -130,13 +117,11 @@ def along(ring: shapely.LinearRing) -> NDArray[np.float64]:
     return np.asarray(shapely.get_coordinates(points), np.float64)
 
 
-def bridged(paved: NDArray[np.bool_], hard: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which points are paved, with the driveways that interrupt pavements.
-
-    Args:
-        paved: Which are on pavement, shape (K,).
-        hard: Which are on hard ground, shape (K,).
-    """
+def bridged(
+    paved: NDArray[np.bool_],  # Which are on pavement, shape (K,)
+    hard: NDArray[np.bool_],  # Which are on hard ground, shape (K,)
+) -> NDArray[np.bool_]:
+    """Return which points are paved, with the driveways that interrupt pavements."""
     paved = paved.copy()
     for first, last in runs(~paved):
         if last - first <= _DRIVEWAY / _EVERY and hard[first:last].all():

@@ -14,8 +14,6 @@ from eyas.engine.behaviours.timetable import time_of
 from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.lanes import exact
 
-__all__ = ["RouteTask", "legs", "polylines", "round_and_round", "stops", "wave_of"]
-
 Floats = NDArray[np.float64]
 
 Piece: TypeAlias = tuple[float, float, float]
@@ -161,17 +159,13 @@ def _reach(task: RouteTask, at: Floats, heading: Floats, far: float, radius: flo
 
 
 def _turns(
-    task: RouteTask, at: Floats, heading: Floats, span: tuple[float, float], radius: float
+    task: RouteTask,  # Where it goes on
+    at: Floats,  # Where they begin [m], shape (K, 2)
+    heading: Floats,  # Headings before the turns [rad], shape (K,)
+    span: tuple[float, float],  # The farthest, and what is enough [m]
+    radius: float,  # Distance to obstacles [m]
 ) -> tuple[Floats, Floats]:
-    """Return random turns [rad] that lead far enough, or else farthest, and how far [m].
-
-    Args:
-        task: Where it goes on.
-        at: Where they begin [m], shape (K, 2).
-        heading: Headings before the turns [rad], shape (K,).
-        span: The farthest, and what is enough [m].
-        radius: Distance to obstacles [m].
-    """
+    """Return random turns [rad] that lead far enough, or else farthest, and how far [m]."""
     far, enough = span
     count = len(at)
     turn = task.rng.uniform(-math.pi, math.pi, (count, _DIRECTIONS))

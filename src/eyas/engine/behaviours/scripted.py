@@ -32,8 +32,6 @@ from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.lanes import exact
 
-__all__ = ["scripted_table"]
-
 _SPAN: Final = 0.25  # Half the distance over which the slope of the land is taken [m]
 
 _JITTER: Final = 0.5
@@ -72,20 +70,14 @@ class _Course(NamedTuple):
 
 
 def scripted_table(
-    ground: Ground,
-    group: ScriptedGroup,
-    clock: SampleClock,
-    rng: np.random.Generator,
+    ground: Ground,  # The map
+    group: ScriptedGroup,  # Who moves
+    clock: SampleClock,  # Number of samples, and their rate
+    rng: np.random.Generator,  # Random numbers
+    # Motion, at the same instants, of the vehicles for which those wait who cross
     vehicles: Motion | None = None,
 ) -> NDArray[np.void]:
     """Return the samples of a group, of dtype `SAMPLE`, shape (samples, objects).
-
-    Args:
-        ground: The map.
-        group: Who moves.
-        clock: Number of samples, and their rate.
-        rng: Random numbers.
-        vehicles: Motion, at the same instants, of the vehicles for which those wait who cross.
 
     Raises:
         SpawnError: The map has no room for it.

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.state.terrain import reliefs
 
-__all__ = ["Footing", "WalkedSurface"]
-
 _WALKABLE: Final = (ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT)
 
 _NEAR: Final = 0.7

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.engine.behaviours.chain import Chain, Poses, poses_on
 from eyas.engine.targets.habit import Habit
 
-__all__ = ["TimedMotion", "ride", "time_of"]
-
 Floats = NDArray[np.float64]
 
 _PHASES = 4  # Phases of a piece: turn on the spot, accelerate, keep the speed, brake

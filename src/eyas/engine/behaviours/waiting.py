@@ -11,8 +11,6 @@ from eyas.engine.core.errors import SpawnError
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
 
-__all__ = ["Spot", "waiting_spots"]
-
 _SPOTS: Final = {
     "shelter": ((-1.2, 0.15), (-0.3, 0.3), (0.6, 0.2), (1.35, 0.35), (2.5, 0.2)),
     "bus stop": ((0.7, -0.15), (1.4, -0.3), (-0.8, -0.25)),
@@ -41,15 +39,12 @@ class Spot(NamedTuple):
 
 
 def waiting_spots(
-    scene: Scene, count: int, rng: np.random.Generator, setting: str = "extras"
+    scene: Scene,  # The map
+    count: int,  # How many
+    rng: np.random.Generator,  # Random numbers
+    setting: str = "extras",  # What a message names
 ) -> list[Spot]:
     """Return so many places to wait at, no two of them the same.
-
-    Args:
-        scene: The map.
-        count: How many.
-        rng: Random numbers.
-        setting: What a message names.
 
     Raises:
         SpawnError: There are fewer.

@@ -18,19 +18,19 @@ from typing import (
 import annotated_types
 from pydantic.fields import FieldInfo
 
-__all__ = ["Said", "Written", "describe", "names_of"]
+__all__ = ["JsonNotation", "TextForm", "describe", "names_of"]
 
 
 @runtime_checkable
-class Written(Protocol):
+class JsonNotation(Protocol):
     """A type that describes how its values are written in JSON."""
 
-    written: ClassVar[str]  # The notation, for example `{"uniform": [low, high]}`
+    notation: ClassVar[str]  # For example `{"uniform": [low, high]}`
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
-    """Says, in `Annotated`, which texts a pattern allows."""
+class TextForm:
+    """The texts that a pattern allows, in words; stands in `Annotated`."""
 
     words: str
 
@@ -61,8 +61,8 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
         return _list(parts)
     if isinstance(annotation, type) and issubclass(annotation, Enum):
         return _either([_quoted(member.value) for member in annotation])
-    if isinstance(annotation, type) and isinstance(annotation, Written):
-        return annotation.written
+    if isinstance(annotation, type) and isinstance(annotation, JsonNotation):
+        return annotation.notation
     simple = {bool: "true or false", str: _text(metadata), types.NoneType: "null"}
     if annotation in simple:
         return simple[annotation]
@@ -72,9 +72,9 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
 
 
 def _text(metadata: Sequence[object]) -> str:
-    said = [entry.words for entry in metadata if isinstance(entry, Said)]
+    words = [entry.words for entry in metadata if isinstance(entry, TextForm)]
     empty = any(isinstance(entry, annotated_types.MinLen) for entry in metadata)
-    return said[0] if said else "text, not empty" if empty else "text"
+    return words[0] if words else "text, not empty" if empty else "text"
 
 
 def names_of(annotation: object) -> tuple[str, ...]:
@@ -134,8 +134,8 @@ def _number(kind: object, limits: _Limits) -> str:
         ("up to", high),
         ("below", limits.below),
     )
-    said = [f"{phrase} {_digits(limit)}" for phrase, limit in bounds if limit is not None]
-    return f"{word} {' and '.join(said)}".rstrip()
+    words = [f"{phrase} {_digits(limit)}" for phrase, limit in bounds if limit is not None]
+    return f"{word} {' and '.join(words)}".rstrip()
 
 
 def _digits(limit: float) -> str:

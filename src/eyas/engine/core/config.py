@@ -91,7 +91,7 @@ class Problem:
     names: tuple[str, ...] = ()
     """Allowed values of a choice of names; for an unknown key, the known keys."""
     unknown_key: bool = False  # Whether the key is wrong, not its value
-    instead: str = ""  # What else is allowed instead of this value, in words
+    instead: str = ""  # Other allowed kinds of values, in words
     others: tuple["Problem", ...] = ()  # Further unknown keys
 
     def error(self) -> ConfigError:
@@ -253,19 +253,19 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
         if field is None:
             return Problem(path, entry["input"], "", tuple(group.model_fields), unknown_key=True)
         group, values = group_of(field), _value(values, str(part), field)
-    said = entry["msg"].removeprefix("Value error, ") if entry["type"] == "value_error" else ""
+    message = entry["msg"].removeprefix("Value error, ") if entry["type"] == "value_error" else ""
     if group is not None:
-        return _group_problem(path, group, values, said)
+        return _group_problem(path, group, values, message)
     assert field is not None
-    allowed = said or describe(field.annotation, field.metadata)
+    allowed = message or describe(field.annotation, field.metadata)
     elsewhere = getattr(field.annotation, "elsewhere", None)  # of an enumeration, see `TargetName`
     instead = elsewhere(values) if elsewhere and isinstance(values, str) else ""
     return Problem(path, values, allowed, names_of(field.annotation), instead=instead)
 
 
-def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:
+def _group_problem(path: Path, group: type[Config], values: object, message: str) -> Problem:
     """Return the problem of a whole group: it is not a group, or its fields contradict."""
-    name, _, must = said.partition(" ")
+    name, _, must = message.partition(" ")
     there, value = path, values
     inner: type[Config] | None = group
     for part in name.split("."):
@@ -275,7 +275,7 @@ def _group_problem(path: Path, group: type[Config], values: object, said: str) -
         there, value, inner = (*there, part), _value(value, part, field), group_of(field)
     else:
         return Problem(there, value, must)
-    return Problem(path, values, said or f"an object with {', '.join(group.model_fields)}")
+    return Problem(path, values, message or f"an object with {', '.join(group.model_fields)}")
 
 
 def _value(values: object, key: str, field: FieldInfo) -> object:

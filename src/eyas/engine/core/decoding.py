@@ -34,8 +34,8 @@ _LARGEST_NUMBER = 2.0**64
 _LONG = re.compile(rb"\d{19}|[eE]\+?0*(?:1[89]|[2-9]\d|[1-9]\d\d)")  # A number that may be larger
 
 _INVALID = re.compile(rb"NaN|Infinity|\\u[dD][89a-fA-F]")
-"""What JSON may not hold, and escapes of which a text cannot be written in UTF-8 if one of a pair
-is missing."""
+"""Numbers that JSON does not have, and escapes of surrogates: a text with half of a pair cannot be
+written in UTF-8."""
 
 Pairs = Callable[[list[tuple[str, Any]]], dict[str, Any]]
 

@@ -101,8 +101,9 @@ class UnknownNameError(ConfigError):
     ) -> None:
         names = sorted(known)
         refused = f"{path}: {name!r:.200} is not allowed {where}".rstrip()
+        listed = ", ".join(names) or "none"
         more = f", or {others}" if others else ""
-        super().__init__(f"{refused}{nearest(name, names)}; known: {', '.join(names)}{more}")
+        super().__init__(f"{refused}{nearest(name, names)}; known: {listed}{more}")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -72,7 +72,9 @@ def _locked(path: Path, doing: str) -> TextIO:
         except OSError as error:
             _LOG.warning(
                 "%s: no file locks here; make sure that no other process is %s: %s",
-                *(path, doing, error.strerror),
+                path,
+                doing,
+                error.strerror,
             )
             return file
         if _is_at(file, path):
@@ -84,12 +86,7 @@ def _locked(path: Path, doing: str) -> TextIO:
 
 
 def _lock(file: TextIO) -> None:
-    """Lock a file.
-
-    Raises:
-        BlockingIOError: Another process has locked it.
-        OSError: The file system has no locks.
-    """
+    """Lock a file; `BlockingIOError`: another process has, `OSError`: there are no locks here."""
     if fcntl is None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
     fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,15 +1,25 @@
-"""How Eyas was installed, to tell how what is missing is installed beside it."""
+"""The way in which Eyas was installed, from which the command for a missing extra follows."""
 
 import json
 import shlex
-from importlib.metadata import PackageNotFoundError, distribution
+from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-__all__ = ["install_command"]
+__all__ = ["install_command", "installed_version"]
 
 _CLONE = Path(__file__).parents[4]
+
+
+@cache
+def installed_version() -> str:
+    """Return the version of this Eyas; "0" in a folder that is not installed."""
+    try:
+        return version("eyas")
+    except PackageNotFoundError:
+        return "0"
 
 
 def install_command(extra: str) -> str:
@@ -23,14 +33,14 @@ def install_command(extra: str) -> str:
     if "vcs_info" in origin:
         kind = origin["vcs_info"].get("vcs", "git")
         commit = origin["vcs_info"].get("commit_id", "")
-        said = f"eyas[{extra}] @ {kind}+{origin['url']}@{commit}"
+        requirement = f"eyas[{extra}] @ {kind}+{origin['url']}@{commit}"
     elif url.scheme == "file" and path.is_dir():
-        said = f"{path}[{extra}]"
+        requirement = f"{path}[{extra}]"
     elif url.scheme in ("file", "http", "https"):
-        said = f"eyas[{extra}] @ {origin['url']}"
+        requirement = f"eyas[{extra}] @ {origin['url']}"
     else:
-        said = f"eyas[{extra}]"
-    quoted = shlex.quote(said)
+        requirement = f"eyas[{extra}]"
+    quoted = shlex.quote(requirement)
     return f"pip install {'-e ' * _editable(origin)}{quoted}"
 
 

@@ -1,4 +1,4 @@
-"""What an object remembers: everything in it that a run changes, to be put into another one that is
+"""Mementos of objects: everything that a run changes in one, to be put into another one that is
 made of the same arguments.
 
 So a copy needs neither maps nor machine code, which each process has once, nor addresses in memory.

@@ -1,17 +1,33 @@
-"""Code of a user's: found by its path `package.module:attribute`, looked at, and run."""
+"""Code of users: settings that name it by its path `package.module:attribute`, how it is found,
+looked at and run, and its identity (package, version, hash) for results that depend on it.
+"""
 
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
+from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from importlib.util import find_spec
+from pathlib import Path
 from traceback import extract_tb
 
+from eyas.engine.core.config import Config
 from eyas.engine.core.errors import ConfigError, nearest
 
-__all__ = ["ended", "imported", "left_out", "running", "takes"]
+__all__ = [
+    "NAMES_CODE",
+    "Origin",
+    "code_named",
+    "ended",
+    "imported",
+    "left_out",
+    "origin_of",
+    "running",
+    "takes",
+]
 
 
 def imported(path: str, setting: str) -> object:
@@ -82,10 +98,6 @@ def running(setting: str, name: str) -> Iterator[None]:
 
     Ordinary errors pass through with their traceback, and `KeyboardInterrupt`, which is the user's.
 
-    Args:
-        setting: The setting that names the code.
-        name: Its name.
-
     Raises:
         ConfigError: It raised `SystemExit`, or something else that is no `Exception`.
     """
@@ -100,8 +112,8 @@ def running(setting: str, name: str) -> Iterator[None]:
 def ended(error: BaseException) -> str:
     """Return in words what raised, and where; for exceptions that are no `Exception`."""
     last = extract_tb(error.__traceback__)[-1]
-    said = f"{type(error).__name__}({error})"
-    return f"tried to end the program: {said} in {last.filename}, line {last.lineno}"
+    raised = f"{type(error).__name__}({error})"
+    return f"tried to end the program: {raised} in {last.filename}, line {last.lineno}"
 
 
 def left_out(kind: object, members: Iterable[str]) -> list[str]:
@@ -123,3 +135,82 @@ def takes(what: Callable[..., object], *arguments: object) -> str | None:
     except (TypeError, ValueError) as error:
         return f"it cannot be called so: {error}"
     return None
+
+
+PICKLED = (".zip", ".pt", ".pth", ".pt2")
+"""Endings of files of networks that may run code when they are read."""
+
+
+@dataclass(frozen=True, slots=True)
+class NamesCode:
+    """Marks a field, in `Annotated`, whose texts or keys with a colon are imported and called, and
+    whose files in Python's own format run what is in them.
+    """
+
+
+NAMES_CODE = NamesCode()
+
+
+def code_named(config: Config, path: str = "") -> Iterator[tuple[str, str]]:
+    """Yield each piece of code that settings name: path of the setting, and what it names."""
+    for name, field in type(config).model_fields.items():
+        value, inner = getattr(config, name), f"{path}.{name}".lstrip(".")
+        if NAMES_CODE in field.metadata:
+            for text in _texts(value):
+                if ":" in text or text.endswith(PICKLED):
+                    yield inner, text
+        elif isinstance(value, Config):
+            yield from code_named(value, inner)
+        elif isinstance(value, tuple):
+            for number, part in enumerate(value):
+                if isinstance(part, Config):
+                    yield from code_named(part, f"{inner}.{number}")
+
+
+def _texts(value: object) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | tuple):
+        yield from (part for part in value if isinstance(part, str))
+
+
+class Origin(Config):
+    """Identity of code of a user, for results that depend on it."""
+
+    path: str
+    """`package.module:attribute`."""
+    package: str | None
+    """The installed package that has it; None: a module that belongs to none."""
+    version: str | None
+    """Version of that package."""
+    code: str
+    """Twelve hexadecimal digits of all Python files of the package, or of the one module."""
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        return " ".join(filter(None, (self.package or self.path, self.version, self.code)))
+
+
+def origin_of(path: str) -> Origin:
+    """Return what the code at a path is, which is imported."""
+    from importlib.metadata import packages_distributions, version  # slow to import
+
+    top = path.partition(":")[0].partition(".")[0]
+    module = import_module(top)
+    files = sorted(
+        file for folder in getattr(module, "__path__", ()) for file in Path(folder).rglob("*.py")
+    )
+    if not files and (alone := getattr(module, "__file__", None)) is not None:
+        files = [Path(alone)]
+    digest = sha256()
+    for file in files:
+        content = file.read_bytes()
+        digest.update(f"{file.name} {len(content)} ".encode() + content)
+    packages = packages_distributions().get(top)
+    package = packages[0] if packages else None
+    return Origin(
+        path=path,
+        package=package,
+        version=version(package) if package else None,
+        code=digest.hexdigest()[:12],
+    )

@@ -16,18 +16,18 @@ from eyas.engine.core.own_code import imported
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-__all__ = ["OWN", "Found", "Registry"]
+__all__ = ["OWN", "FileObjects", "Registry"]
 
-OWN = "package.module:attribute"  # How an object of a user's own is named
+OWN = "package.module:attribute"  # Notation of the path of an object of a user
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
-class Found(Protocol[T_co]):
+class FileObjects(Protocol[T_co]):
     """Objects that are made of files, wherever these lie."""
 
-    form: str  # How the path of such a file looks, for messages
+    form: str  # Notation of the path of such a file, for messages
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all objects."""
@@ -139,9 +139,9 @@ class Registry(Generic[T]):
         return installed[name]
 
     @cached_property
-    def _files(self) -> Found[T] | None:
-        """What is made of files; asked for late, as it may need the table itself."""
-        found: Found[T] | None = first_brought(self._file_group) if self._file_group else None
+    def _files(self) -> FileObjects[T] | None:
+        """Objects that are made of files; asked for late, as they may need the table itself."""
+        found: FileObjects[T] | None = first_brought(self._file_group) if self._file_group else None
         return found
 
     def of_files(self) -> tuple[str, ...]:
@@ -164,7 +164,7 @@ class Registry(Generic[T]):
 
     @cached_property
     def _points(self) -> "tuple[EntryPoint, ...]":
-        """What installed packages say, which takes 5 ms to find out."""
+        """Entry points of installed packages; reading them takes 5 ms."""
         from importlib.metadata import entry_points  # slow to import, and rarely needed
 
         return tuple(entry_points(group=self._group)) if self._group else ()

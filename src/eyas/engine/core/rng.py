@@ -15,7 +15,7 @@ TEST_SEEDS = 900_000_000
 
 
 def room_key(room: str) -> int:
-    """Return the number that stands for a room's name in its streams, 32 bits."""
+    """Return the number of a room's name in its streams; bytes of all results depend on it."""
     return zlib.crc32(room.encode())
 
 
@@ -52,7 +52,7 @@ def fresh_seed() -> int:
 
 
 class EpisodeKey(NamedTuple):
-    """What the random values of an episode depend on."""
+    """Numbers on which the random values of an episode depend."""
 
     seed: int  # Seed of the run
     tracker: int  # Number of the tracker among those with this seed

@@ -28,7 +28,7 @@ __all__ = [
 class Uniform(Config):
     """A value sampled uniformly between two limits: `{"uniform": [low, high]}`."""
 
-    written: ClassVar[str] = '{"uniform": [low, high]}'
+    notation: ClassVar[str] = '{"uniform": [low, high]}'
     uniform: tuple[float, float]
     """The two limits, in either order."""
 
@@ -36,7 +36,7 @@ class Uniform(Config):
 class Mirrored(Config):
     """A magnitude sampled uniformly, with a random sign: `{"mirrored": [low, high]}`."""
 
-    written: ClassVar[str] = '{"mirrored": [low, high]}'
+    notation: ClassVar[str] = '{"mirrored": [low, high]}'
     mirrored: tuple[float, float]
     """Smallest and largest magnitude, in either order."""
 
@@ -44,7 +44,7 @@ class Mirrored(Config):
 class Choice(Config):
     """One of several equally likely values: `{"choice": [a, b, ...]}`."""
 
-    written: ClassVar[str] = '{"choice": [a, b, ...]}'
+    notation: ClassVar[str] = '{"choice": [a, b, ...]}'
     choice: Annotated[tuple[float, ...], Field(min_length=1)]
     """The values."""
 
@@ -125,12 +125,7 @@ def bounds(variation: Variation) -> tuple[float, float]:
 
 
 def within(low: float, high: float) -> Callable[[Variation], Variation]:
-    """Return a check for `pydantic.AfterValidator` that all values of a variation are in range.
-
-    Args:
-        low: Smallest allowed value.
-        high: Largest allowed value.
-    """
+    """Return a check for `pydantic.AfterValidator` that all values of a variation are in range."""
 
     def check(variation: Variation) -> Variation:
         smallest, largest = bounds(variation)

@@ -4,9 +4,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
 from eyas.engine.core.doors import brought
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.targets.habit import Behaviour
 
 __all__ = ["ENDINGS", "MESHES", "CustomConfig"]
@@ -26,7 +26,7 @@ class CustomConfig(Config):
     mesh: Text | None = None
     """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`), or a Webots `.proto`."""
     path: Annotated[Text | None, NAMES_CODE] = None
-    """Its class, `package.module:Class`, see `eyas.engine.custom.own.OwnTarget`."""
+    """Class of the target, `package.module:Class`, see `eyas.engine.custom.own.OwnTarget`."""
     trajectory: Text | None = None
     """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""
     smoothing: Annotated[float, Field(ge=0, le=10)] = 0.0
@@ -43,11 +43,11 @@ class CustomConfig(Config):
     most_triangles: Annotated[int, Field(ge=12, le=200_000)] | None = None
     """Number of triangles to which a larger mesh is simplified; None: it is left as it is."""
     behaviour: Behaviour = Behaviour.WANDER
-    """How it moves, where it has no motion of its own."""
+    """Behaviour of a target that has no motion of its own."""
     speed: Annotated[float, Field(ge=0.01, le=50)] = 1.0
-    """How fast it moves with a behaviour [m/s]."""
+    """Speed of a target with a behaviour [m/s]."""
     words: Text | None = None
-    """What it is, "a delivery robot"; None: the name of its file or class."""
+    """Description of the target, "a delivery robot"; None: the name of its file or class."""
 
     @model_validator(mode="after")
     def _something(self) -> "CustomConfig":

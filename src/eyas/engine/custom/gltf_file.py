@@ -1,4 +1,4 @@
-"""What of a glTF or GLB file is checked and mended before trimesh reads it.
+"""Checks and repairs of glTF and GLB files before trimesh reads them.
 
 trimesh reads numbers as they are stored: it does not divide normalised integers, leaves sparse
 accessors at zero, and warns where an extension holds the geometry.
@@ -90,11 +90,7 @@ def _joined(header: dict[str, Any], rest: bytes) -> bytes:
 
 
 def _left_out(header: dict[str, Any]) -> str:
-    """Return what is not read, in words.
-
-    Raises:
-        ValueError: Something is that the shape cannot do without.
-    """
+    """Return what is not read, in words; `ValueError` if the shape cannot do without it."""
     primitives = [one for mesh in header.get("meshes", ()) for one in mesh["primitives"]]
     needed = {*header.get("extensionsRequired", ())}
     for part in (*primitives, *header.get("bufferViews", ())):
@@ -105,8 +101,8 @@ def _left_out(header: dict[str, Any]) -> str:
         raise ValueError(f"it needs {', '.join(unread):.200}, which is not read; save it without")
     used = [name for name in header.get("extensionsUsed", ()) if not _READ.fullmatch(name)]
     others = sum(one.get("mode", 4) not in _MODES for one in primitives)
-    told = sorted(used) + [f"{others} primitives of points, lines or fans"] * bool(others)
-    return f"left out, as not read: {', '.join(told):.300}" if told else ""
+    unread_parts = sorted(used) + [f"{others} primitives of points, lines or fans"] * bool(others)
+    return f"left out, as not read: {', '.join(unread_parts):.300}" if unread_parts else ""
 
 
 def _lacks_data(header: dict[str, Any], primitive: dict[str, Any]) -> bool:
@@ -115,14 +111,7 @@ def _lacks_data(header: dict[str, Any], primitive: dict[str, Any]) -> bool:
 
 
 class _Mender:
-    """Makes plain accessors of those that trimesh would misread.
-
-    Args:
-        path: The file.
-        header: Its JSON, which is changed.
-        binary: The content of a GLB's binary chunk.
-        largest: Largest number of bytes of all accessors.
-    """
+    """Makes plain accessors of those that trimesh would misread."""
 
     def __init__(self, path: Path, header: dict[str, Any], binary: bytes, largest: int) -> None:
         self._path, self._header, self._largest = path, header, largest

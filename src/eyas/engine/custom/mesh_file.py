@@ -51,7 +51,7 @@ class Triangles:
     points: NDArray[np.float64]  # [m], shape (V, 3)
     corners: NDArray[np.int64]  # Vertices, counter-clockwise as seen from outside, shape (T, 3)
     colours: NDArray[np.float64]  # sRGB 0 to 1, shape (T, 3)
-    left_out: str = ""  # What of the file is not read, in words
+    left_out: str = ""  # Parts of the file that are not read, in words
 
     @property
     def size(self) -> tuple[float, float, float]:
@@ -145,11 +145,7 @@ def _quiet(library: str) -> Iterator[None]:
 
 
 def _part_of(path: Path) -> Part:
-    """Return points, corners and colours of a mesh file that another file names.
-
-    Raises:
-        DataFileError: As from `read_mesh`.
-    """
+    """Return points, corners and colours of a mesh file that another file names."""
     if path.suffix.lower() not in MESHES:
         raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(MESHES)}")
     shape = read_mesh(path)
@@ -218,11 +214,7 @@ def _parts(trimesh: ModuleType, path: Path, content: bytes) -> Iterator[Triangle
 
 
 def _checked(part: Triangles) -> Triangles:
-    """Return triangles whose arrays fit to each other.
-
-    Raises:
-        ValueError: They do not.
-    """
+    """Return triangles whose arrays fit to each other; `ValueError` if they do not."""
     count = len(part.corners)
     shapes = part.points.shape[1:], part.corners.shape[1:], part.colours.shape
     if part.points.ndim != 2 or shapes != ((3,), (3,), (count, 3)):

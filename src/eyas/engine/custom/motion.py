@@ -34,11 +34,11 @@ Floats = NDArray[np.float64]
 
 
 class Places(NamedTuple):
-    """When and where targets with a behaviour begin, see `ObjectsConfig`."""
+    """Times and places at which targets with a behaviour begin, see `ObjectsConfig`."""
 
     lifetimes: Lifetimes
     offset: Variation
-    vehicles: Motion | None = None  # For which those wait who cross roads
+    vehicles: Motion | None = None  # Vehicles for which those wait who cross roads
 
 
 def custom_motion(

@@ -14,7 +14,7 @@ __all__ = ["MovesItself", "OwnTarget", "Ride", "Shaped"]
 
 
 class Ride(NamedTuple):
-    """How K bodies move now: all that their parts may depend on."""
+    """Motion of K bodies at one instant: all that their parts may depend on."""
 
     travelled: NDArray[np.float64]
     """Path length since the motion began [m], shape (K,)."""

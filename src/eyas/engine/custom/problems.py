@@ -1,4 +1,4 @@
-"""What is wrong with a shape or a trajectory, one line each."""
+"""Problems of a shape or a trajectory, one line each."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -81,12 +81,12 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
     if count > LARGEST:
         advice = f"simplify it with custom.most_triangles={LARGEST // 10}"
         yield Finding(f"{count} triangles; allowed: up to {LARGEST}; {advice}", fatal=True)
-    told = " x ".join(f"{length:.4g}" for length in size)
+    extent = " x ".join(f"{length:.4g}" for length in size)
     if min(size) < 1e-6 * max(max(size), 1e-9):
-        yield Finding(f"it has no size: {told} m", fatal=True)
+        yield Finding(f"it has no size: {extent} m", fatal=True)
         return
     if max(size) > _LARGE or max(size) < _SMALL:
-        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > LONGEST)
+        yield Finding(f"{extent} m: {_unit(max(size))}", fatal=max(size) > LONGEST)
     if count <= LARGEST:
         yield from _surface(shape)
 

@@ -60,12 +60,7 @@ def _with_stands(
 ) -> Floats | None:
     """Return points (N, D) with those of each stand in its middle; None if the body never stands.
 
-    Args:
-        time: Times, shape (N,) [s].
-        points: The points, shape (N, D) [m].
-        place: The same on the smoothed path.
-        velocity: Its velocity, shape (N, D) [m/s].
-        seconds: Time of the smoothing [s].
+    `place` and `velocity` are those of the smoothed path [m, m/s], `seconds` its time constant.
     """
     slow = exact.hypot(velocity[:, 0], velocity[:, 1]) < _SLOW
     edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))

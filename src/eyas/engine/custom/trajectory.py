@@ -37,7 +37,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """Where a body is at N times."""
+    """Places of a body at N times."""
 
     time: Floats  # Increasing, from 0 [s], shape (N,)
     position: Floats  # x, y, z [m], shape (N, 3); z is NaN where the ground tells it
@@ -45,7 +45,7 @@ class Trajectory:
     """Heading, counter-clockwise from east, without jumps at ±180° [rad], shape (N,); None: along
     the way."""
     velocity: Floats | None = None
-    """At the points, if smoothed [m/s], shape (N, 3); None: central differences."""
+    """Velocity at the points, if smoothed [m/s], shape (N, 3); None: central differences."""
 
     @classmethod
     def of_track(cls, time: Floats, track: Floats) -> "Trajectory":
@@ -148,11 +148,8 @@ def _numbers(path: Path, number: int, line: list[str], names: list[str]) -> list
 
 
 def _along(velocity: Floats, standing: float) -> Floats:
-    """Return the heading of velocities (S, 3); while standing that before, at first that after.
-
-    Args:
-        velocity: The velocities [m/s].
-        standing: Speed below which a body stands [m/s].
+    """Return the heading of velocities (S, 3); below the speed `standing` [m/s] the last one kept,
+    at first the next.
     """
     moving = exact.hypot(velocity[:, 0], velocity[:, 1]) > standing
     if not moving.any():

@@ -43,10 +43,10 @@ def made(path: str) -> OwnTarget:
     if target is None:
         raise _refused(path, "it has not all of: size, parts(), pose(ride)")
     with _asking(path, "size"):
-        said, size = target.size, _numbers(target.size)
+        answer, size = target.size, _numbers(target.size)
     if size.shape != (3,) or not (np.isfinite(size) & (size > 0.0) & (size <= LONGEST)).all():
         allowed = f"three lengths above 0 and up to {LONGEST:g} [m]"
-        raise _refused(path, f"size is {said!r}; allowed: {allowed}")
+        raise _refused(path, f"size is {answer!r}; allowed: {allowed}")
     with _asking(path, "parts()"):
         parts = target.parts()
         many = isinstance(parts, (list, tuple)) and len(parts) > 0

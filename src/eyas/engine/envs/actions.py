@@ -35,7 +35,7 @@ class Actions(Protocol):
     """A space of actions."""
 
     space: gymnasium.Space[Any]  # The actions of one agent
-    allowed: str  # Which these are, in words
+    allowed: str  # The allowed actions in words
 
     def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # whatever a learner returns
         """Return the commands of N actions.
@@ -88,9 +88,6 @@ class Discrete:
 
     Attributes:
         table: The command of each, shape (7, 4).
-
-    Args:
-        speeds: The speeds of the actions.
     """
 
     allowed = "a whole number from 0 to 6"
@@ -119,16 +116,11 @@ class FourNumbers:
         high: Largest of each, shape (4,).
         at_minus_1: Commands backward, right, down, clockwise, shape (4,).
         at_1: Their opposites, shape (4,).
-
-    Args:
-        low: As above.
-        high: As above.
-        ends: The other two.
     """
 
     allowed = "four finite numbers"
     UNITS = np.array([1.0, 1.0, 500.0, 1.0])
-    """Of velocities in commands, which have the third in m per 2 ms."""
+    """Factors on commanded velocities: the third is in m per 2 ms."""
 
     def __init__(self, low: Commands, high: Commands, ends: tuple[Commands, Commands]) -> None:
         self.space: gymnasium.Space[Any] = gymnasium.spaces.Box(
@@ -161,11 +153,7 @@ class Shares(FourNumbers):
 
 
 class Velocity(FourNumbers):
-    """Four velocities: forward, left, up [m/s], turn counter-clockwise [rad/s].
-
-    Args:
-        speeds: The largest and smallest.
-    """
+    """Four velocities: forward, left, up [m/s], turn counter-clockwise [rad/s]."""
 
     allowed = "four finite numbers: forward, left, up [m/s], turn counter-clockwise [rad/s]"
 
@@ -180,12 +168,7 @@ class Velocity(FourNumbers):
 
 
 class DiscreteGimbal(Discrete):
-    """Eleven actions: those of `Discrete`, then 7 camera down, 8 up, 9 left, 10 right.
-
-    Args:
-        speeds: The speeds of the first six.
-        gimbal: Rates and range of the camera.
-    """
+    """Eleven actions: those of `Discrete`, then 7 camera down, 8 up, 9 left, 10 right."""
 
     allowed = "a whole number from 0 to 10"
 
@@ -265,16 +248,8 @@ def _ends(speeds: EnvSpeeds) -> tuple[Commands, Commands]:
 
 
 def _clipped(actions: object, low: Commands, high: Commands, allowed: str) -> Commands:
-    """Return N actions within limits.
-
-    Args:
-        actions: K numbers for each, shape (N, K).
-        low: Smallest of each, shape (K,).
-        high: Largest of each, shape (K,).
-        allowed: Which actions are allowed, in words.
-
-    Raises:
-        ActionError: One of them is not K finite numbers.
+    """Return N actions of K numbers, shape (N, K), within limits (K,); `ActionError` if one of them
+    is not K finite numbers (`allowed` in words).
     """
     given = _array(actions)
     if given.ndim != 2 or given.shape[1] != len(low) or given.dtype.kind not in "fiu":

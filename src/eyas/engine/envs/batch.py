@@ -51,8 +51,8 @@ _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kern
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
-"""Made of the settings and the catalogue, which may have grown in this process."""
-_BOUND = (BoundCall, Held)  # To the addresses of arrays, which stay
+"""Types made of the settings and the catalogue, which may have grown in this process."""
+_BOUND = (BoundCall, Held)  # Bound to the addresses of arrays, which stay
 _SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
@@ -71,14 +71,14 @@ class Outcome(NamedTuple):
 
     reward: NDArray[np.float64]  # Sum over the control steps that the action lasted, shape (N,)
     terms: dict[str, NDArray[np.float64]]
-    """The same of each term of the reward, without its weight, shape (N,)."""
+    """Sum of each term of the reward, without its weight, shape (N,)."""
     terminated: Mask  # Whether the episode has ended before its number of steps, shape (N,)
     truncated: Mask  # Whether it has ended by its number of steps, shape (N,)
     reason: NDArray[np.int64]  # `eyas.engine.task.done.DoneReason` of its end, shape (N,).
 
 
 class Truth(NamedTuple):
-    """What is true of N agents and their targets, for teachers; later steps change it."""
+    """True state of N agents and their targets, for teachers; later steps change it."""
 
     snapshot: Snapshot  # Their state
     visible: NDArray[np.float64]

@@ -19,8 +19,7 @@ from eyas.engine.settings.env import (
     ObservationConfig,
     ObservationPart,
 )
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 
 __all__ = [
     "EnvChoices",

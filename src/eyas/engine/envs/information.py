@@ -1,4 +1,4 @@
-"""What environments tell besides observation and reward: arrays over N trackers, by name."""
+"""Information of environments besides observation and reward: arrays over N trackers, by name."""
 
 from typing import Any
 
@@ -33,7 +33,7 @@ _WORDS = {
     "done_state": [reason.original for reason in DoneReason],
     "contact_class": [*(kind.name.lower() for kind in ObjectClass), "drone", "nothing"],
 }
-"""What numbers mean."""
+"""Words for numbers, by index; the order is that of the enums, which recordings index, too."""
 
 
 def information(simulation: Simulation) -> Info:

@@ -93,13 +93,13 @@ class MixedBatch:
 
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.engine.envs.information`."""
-        told: Info = joined([batch.info() for batch, _ in self._groups], self._rows)
-        return told
+        whole: Info = joined([batch.info() for batch, _ in self._groups], self._rows)
+        return whole
 
     def truth(self) -> Truth:
         """Return what is true now of all, see `Batch.truth`."""
-        told: Truth = joined([batch.truth() for batch, _ in self._groups], self._rows)
-        return told
+        whole: Truth = joined([batch.truth() for batch, _ in self._groups], self._rows)
+        return whole
 
     @property
     def terms(self) -> tuple[str, ...]:

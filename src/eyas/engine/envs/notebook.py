@@ -1,4 +1,4 @@
-"""How environments show themselves in notebooks: a strip of pictures, and a line about them."""
+"""Environments in notebooks: a strip of pictures, and a line about them."""
 
 import base64
 import sys
@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.png import png_bytes
+from eyas.engine.core.codecs.png import png_bytes
 
 __all__ = ["LONGEST_STRIP", "show_wrapped", "strip_html"]
 

@@ -7,9 +7,9 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig, ColourLayout
 from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.envs.information import sensor_state
-from eyas.engine.sensors.config import CameraConfig, ColourLayout
 from eyas.engine.sensors.stack import FrameStack
 from eyas.engine.sensors.table import Fitted, fitted_sensors
 from eyas.engine.settings.env import ObservationConfig, ObservationPart
@@ -34,10 +34,6 @@ _Parts = ObservationPart
 
 def observation_space(config: ObservationConfig, sim: SimConfig) -> gymnasium.Space[Any]:
     """Return the space of one agent's observations.
-
-    Args:
-        config: What is observed.
-        sim: Which sensors there are.
 
     Raises:
         ConfigError: The agent is to observe a sensor that it does not have, or words alone.

@@ -21,9 +21,8 @@ from eyas.engine.envs.choice import (
     settings_of_kinds,
 )
 from eyas.engine.envs.information import Info, by_term, of_one
-from eyas.engine.envs.keys import hover_action
 from eyas.engine.envs.observation import Observation
-from eyas.engine.envs.window import Window
+from eyas.engine.envs.play import Window, hover_action
 
 try:
     from pettingzoo import ParallelEnv

@@ -1,4 +1,4 @@
-"""What `call`, `get_attr` and `set_attr` of the vector environment see of one environment."""
+"""One environment of N, as `call`, `get_attr` and `set_attr` of the vector environment see it."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -17,15 +17,14 @@ __all__ = ["SubEnv"]
 class SubEnv:
     """One of N environments. It has the attributes that libraries ask for by name, and any that
     `set_attr` gives it.
-
-    Args:
-        whole: The vector environment.
-        index: Which of its environments.
     """
 
     def __init__(self, whole: "EyasVectorEnv", index: int) -> None:
         self._whole = whole
         self.index = index
+        self.metadata, self.render_mode = whole.metadata, whole.render_mode
+        self.observation_space = whole.single_observation_space
+        self.action_space = whole.single_action_space
 
     @property
     def config(self) -> EyasConfig:
@@ -33,29 +32,9 @@ class SubEnv:
         return self._whole.config_of(self.index)
 
     @property
-    def metadata(self) -> dict[str, Any]:
-        """As Gymnasium has it."""
-        return self._whole.metadata
-
-    @property
-    def render_mode(self) -> str | None:
-        """As Gymnasium has it."""
-        return self._whole.render_mode
-
-    @property
     def spec(self) -> Any:  # noqa: ANN401  # Gymnasium's
-        """As Gymnasium has it."""
+        """The specification, which `gymnasium.make_vec` adds later."""
         return self._whole.spec
-
-    @property
-    def observation_space(self) -> Any:  # noqa: ANN401  # Gymnasium's
-        """Space of one observation."""
-        return self._whole.single_observation_space
-
-    @property
-    def action_space(self) -> Any:  # noqa: ANN401  # Gymnasium's
-        """Space of one action."""
-        return self._whole.single_action_space
 
     @property
     def _max_episode_steps(self) -> int:
@@ -79,7 +58,7 @@ class SubEnv:
 
     @property
     def unwrapped(self) -> "SubEnv":
-        """As Gymnasium has it."""
+        """This environment, which wraps none."""
         return self
 
     def render(self) -> NDArray[np.uint8] | None:

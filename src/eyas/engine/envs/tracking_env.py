@@ -19,10 +19,9 @@ from eyas.engine.envs.choice import (
     settings_of_kinds,
 )
 from eyas.engine.envs.information import Info, by_term, of_one
-from eyas.engine.envs.keys import keys_to_action
 from eyas.engine.envs.notebook import strip_html
 from eyas.engine.envs.observation import Observation
-from eyas.engine.envs.window import Window
+from eyas.engine.envs.play import Window, keys_to_action
 from eyas.engine.settings.config import EyasConfig
 
 __all__ = ["TrackingEnv"]
@@ -142,7 +141,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return picture
 
     def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
-        """Return the keys of `gymnasium.utils.play`, see `eyas.engine.envs.keys`."""
+        """Return the keys of `gymnasium.utils.play`, see `eyas.engine.envs.play`."""
         return keys_to_action(self.config.env)
 
     def close(self) -> None:

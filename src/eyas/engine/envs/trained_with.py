@@ -1,5 +1,5 @@
-"""What an environment is, written onto its space of actions: libraries save the space with a model,
-so that what a policy was trained with travels with it.
+"""Settings of an environment, written onto its space of actions: libraries save the space with a
+model, so that the settings of a policy's training travel with it.
 """
 
 from collections.abc import Mapping
@@ -29,5 +29,5 @@ def describe(space: gymnasium.Space[Any], config: EyasConfig) -> None:
 
 def trained_with(space: object) -> Mapping[str, Any]:
     """Return the settings of the environment that a space is of; none if it says nothing."""
-    told = getattr(space, _KEY, {})
-    return told if isinstance(told, Mapping) else {}
+    settings = getattr(space, _KEY, {})
+    return settings if isinstance(settings, Mapping) else {}

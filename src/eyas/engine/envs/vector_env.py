@@ -10,8 +10,8 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 from numpy.typing import NDArray
 
-from eyas.engine.core.doors import first_brought
-from eyas.engine.core.errors import ConfigError, EyasError
+from eyas.engine.core.doors import brought, brought_object, installed
+from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
 from eyas.engine.core.rng import checked_seed
 from eyas.engine.envs.batch import Outcome, Truth
 from eyas.engine.envs.choice import EnvChoices, Source, checked_options, chosen_settings, first_seed
@@ -82,9 +82,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if device is None:
             self._here = MixedBatch(self.config, num_envs, measures=measures)
         else:
-            elsewhere = first_brought("eyas.devices")
+            kind = device.partition(":")[0] if isinstance(device, str) else "host"
+            elsewhere = brought_object("eyas.devices", kind)
             if elsewhere is None:
-                raise ConfigError(f"device: '{device}': no house here computes on devices")
+                known = (*brought("eyas.devices"), *installed("eyas.devices"))
+                raise UnknownNameError("device", kind, known)
             self._there = elsewhere(self.config, num_envs, device, measures=measures)
         self.num_envs = num_envs
         self.render_mode = render_mode
@@ -206,11 +208,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     @property
     def _batch(self) -> MixedBatch:
-        """The environments, if they are on this processor.
-
-        Raises:
-            EyasError: They are on a device.
-        """
+        """The environments on this processor; `EyasError` if they are on a device."""
         if self._here is None:
             raise EyasError("device: it is not known here what only this processor knows")
         return self._here
@@ -289,8 +287,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             self._ring.reverse()
             out = self._ring[0]
         if self._there is not None:
-            told: Observation = self._there.latest(out)
-            return told
+            latest: Observation = self._there.latest(out)
+            return latest
         out = self._new_observations() if out is None else out
         self._batch.copy_to(out)
         return out
@@ -317,11 +315,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         return chosen
 
     def _seeds(self, seed: Seed, chosen: Mask) -> list[int | None]:
-        """Return the seed of each environment, None where it continues.
-
-        Raises:
-            ConfigError: One is wrong, or there is not one for each.
-        """
+        """Return the seed of each environment, None where it continues."""
         each: list[int | None] = [None] * self.num_envs
         if seed is None:
             pass

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.lens import NO_LENS, Lens
+from eyas.engine.core.optics.lens import NO_LENS, Lens
 from eyas.engine.exports.frame import (
     CameraPicture,
     CameraPose,
@@ -43,7 +43,7 @@ _target_direction = interpreted(target_direction)
 
 
 class Moment(NamedTuple):
-    """What is known of a tracker at the time of a frame."""
+    """State of a tracker at the time of a frame."""
 
     shown: Snapshot  # The state that its picture shows
     now: EpisodeState  # The episodes at the time of the frame, which is later if pictures are late
@@ -56,7 +56,7 @@ class Moment(NamedTuple):
     """Distances of its lidar [m], shape (points,), which nothing changes later; None: it has
     none."""
     sensors: Floats | None = None
-    """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
+    """Readings of its other sensors, see `Frame.sensors`; nothing changes them later."""
     parts: MovingParts | None = None  # See `Frame.parts`; nothing changes it later.
     clean: NDArray[np.uint8] | None = None  # See `Frame.clean`; nothing changes it later.
     cameras: tuple[CameraPicture, ...] = ()  # See `Frame.cameras`; nothing changes them later.
@@ -103,23 +103,35 @@ def moment_of(
         whole_box = np.zeros((simulation.actors, 4))
         whole_box[boxed] = seen.whole_boxes(tracker, actors, np.flatnonzero(boxed))
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
-    told = seen.packets()[0][tracker, SENSOR_COLUMNS]
-    moving = seen.parts(tracker, actors or seen.actors(tracker)) if "parts" in wanted else None
-    clean = seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None
-    cameras = _through_further(seen, tracker) if "cameras" in wanted else ()
     exposed = seen.exposure
-    exposure = None if exposed is None else (exposed.time[tracker], exposed.iso[tracker])
-    sensor = seen.events(np.array([tracker], np.int32)) if "events" in wanted else None
-    events = None if sensor is None else sensor.events_of(tracker)
     now = simulation.snapshot.episodes
-    lens = seen.lens_of(tracker)
-    known = (actors, whole_box, lidar, told, moving, clean, cameras, exposure, events, lens)
-    asked = simulation.told().get(ROTORS)
-    rotors = None if asked is None else asked[tracker]
-    traffic = _kept(actors or seen.actors(tracker)) if "traffic" in wanted else None
-    words = seen.words(tracker, picture.aspect, actors) if "words" in wanted else ""
-    signals = {name: values[tracker] for name, values in seen.further_readings().items()}
-    return Moment(shown, now, *known, seen.lamps(tracker), rotors, traffic, signals, words, parked)
+    rotors = simulation.told().get(ROTORS)
+    return Moment(
+        shown,
+        now,
+        actors=actors,
+        whole_box=whole_box,
+        lidar=lidar,
+        sensors=seen.packets()[0][tracker, SENSOR_COLUMNS],
+        parts=seen.parts(tracker, actors or seen.actors(tracker)) if "parts" in wanted else None,
+        clean=seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None,
+        cameras=_through_further(seen, tracker) if "cameras" in wanted else (),
+        exposure=None if exposed is None else (exposed.time[tracker], exposed.iso[tracker]),
+        events=_events(seen, tracker) if "events" in wanted else None,
+        lens=seen.lens_of(tracker),
+        lamps=seen.lamps(tracker),
+        rotors=None if rotors is None else rotors[tracker],
+        traffic=_kept(actors or seen.actors(tracker)) if "traffic" in wanted else None,
+        signals={name: values[tracker] for name, values in seen.further_readings().items()},
+        words=seen.words(tracker, picture.aspect, actors) if "words" in wanted else "",
+        parked=parked,
+    )
+
+
+def _events(seen: View, tracker: int) -> NDArray[np.void] | None:
+    """Return the events of a tracker's event camera since the last time; None if it has none."""
+    sensors = seen.events(np.array([tracker], np.int32))
+    return None if sensors is None else sensors.events_of(tracker)
 
 
 def _kept(actors: ActorView) -> ActorView:

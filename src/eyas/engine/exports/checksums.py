@@ -4,9 +4,8 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-from eyas.engine.core.checked import flushed, sum_of
 from eyas.engine.core.errors import DataFileError
-from eyas.engine.core.files import read_limited, refusals, write_atomic
+from eyas.engine.core.files import flushed, read_limited, refusals, sum_of, write_atomic
 
 __all__ = [
     "CHECKSUMS", "GROWING", "SEALED", "checksum_lines", "damaged_files", "read_checksums",

@@ -10,14 +10,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.png import png_bytes
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import refusals, write_atomic
-from eyas.engine.core.lens import NO_LENS, Lens, distorted, principal_point, undistorted
-from eyas.engine.core.pinhole import focal_length
-from eyas.engine.core.png import png_bytes
+from eyas.engine.core.optics.lens import NO_LENS, Lens, distorted, principal_point, undistorted
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.exports.frame import CameraPose, Floats, Frame
-from eyas.engine.exports.per_frame import numbered
-from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
+from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer, numbered
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.state.draw import MovingParts
 from eyas.lanes import compiled, kernel
@@ -34,9 +33,6 @@ what depths of neighbouring pixels leave open."""
 class FlowWriter(Writer):
     """`flow/NNNNNN.png`: where each pixel's point is in the next picture of the episode, as KITTI
     has it; the last picture of an episode has no valid pixel.
-
-    Args:
-        run: The recording.
 
     Raises:
         ConfigError: Rows of pictures are exposed one after the other (`camera.shutter.readout`).
@@ -63,11 +59,7 @@ class FlowWriter(Writer):
 
 
 class FlowEpisode(EpisodeWriter):
-    """The flow of one episode; that of a frame is known when the next one is.
-
-    Args:
-        episode: The episode.
-    """
+    """The flow of one episode; that of a frame is known when the next one is."""
 
     def __init__(self, episode: Episode) -> None:
         self._folder, self._size = episode.folder, (episode.height, episode.width)
@@ -102,7 +94,7 @@ class _Camera(NamedTuple):
 
 
 class _Motion(NamedTuple):
-    """How each of the I parts moves to the next frame."""
+    """Motion of each of I parts to the next frame."""
 
     known: NDArray[np.bool_]  # Whether it is in both frames, shape (I,)
     move: Floats  # World at the first frame to world at the second, shape (I, 3, 4)
@@ -114,10 +106,6 @@ def forward_flow(first: Frame, second: Frame) -> NDArray[np.uint16]:
     Red and green are the motion to the right and down [pixels], as 32768 + 64 times that; blue is 1
     where it is valid. It is not, and all is 0, where the point leaves the picture, moves farther
     than 512 pixels, or is hidden in the second frame.
-
-    Args:
-        first: A frame with its parts.
-        second: The next frame of the same episode.
     """
     assert first.parts is not None
     assert second.parts is not None
@@ -137,9 +125,7 @@ def _camera(pose: CameraPose, parts: MovingParts) -> _Camera:
 
 
 def _motion(first: MovingParts, second: MovingParts) -> _Motion:
-    """Return the motion of all parts: to the frame of the part by its first pose, and back by its
-    second one.
-    """
+    """Return the motion of all parts: by the inverse of the first pose, then by the second one."""
     known = (first.part >= 0) & (first.part == second.part)
     shown = np.unique(first.row[first.row >= 0])
     used = shown[known[shown]]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
+from eyas.engine.core.optics.lens import BROWN, NO_LENS, Lens, camera_matrix, coefficients
 from eyas.engine.exports.movement import (
     Movement,
     SectionBox,
@@ -108,7 +108,7 @@ class CameraPose:
 
     @property
     def distortion_model(self) -> str:
-        """What they belong to: `brown` or `fisheye`; empty for a pinhole."""
+        """Model of the coefficients: `brown` or `fisheye`; empty for a pinhole."""
         if self.lens.model == BROWN:
             return "brown" if any(self.distortion) else ""
         return "fisheye"
@@ -118,7 +118,7 @@ class CameraPose:
 class CameraPicture:
     """A picture of a camera that a tracker has beside its own."""
 
-    name: str  # Its name in the setting `cameras`
+    name: str  # Name in the setting `cameras`
     pose: CameraPose
     rgb: NDArray[np.uint8]  # Colours, shape (H, W, 3)
 
@@ -127,9 +127,9 @@ class CameraPicture:
 class Subject:
     """A moving or parked object and its place in the picture. World frame, east-north-up."""
 
-    object_id: int  # Its value in `Frame.object_id`; the same in all frames of an episode.
+    object_id: int  # Value in `Frame.object_id`; the same in all frames of an episode
     type: str  # Name of its model
-    object_class: ObjectClass  # Its class, the number in `Frame.class_id`.
+    object_class: ObjectClass  # The number in `Frame.class_id`
     size: Floats  # Length, width, height [m], shape (3,)
     position: Floats  # Reference point on the road [m], shape (3,)
     centre: Floats  # Middle of its visible body, the point that is rewarded [m], shape (3,)
@@ -148,11 +148,11 @@ class Subject:
     seen_pixels: int  # Pixels that show it
     covered_pixels: int  # Pixels that would show it if nothing hid it; 0 outside the picture
     words: str = ""
-    """What it looks like, "a red car". The target's words are shared by nothing else in view; empty
-    if no writer wants `words`."""
+    """Description of its looks, "a red car". The target's words are shared by nothing else in view;
+    empty if no writer wants `words`."""
     sections: tuple[Section, ...] = ()
     """The sections of an articulated vehicle; empty for all others."""
-    lamps: int = 0  # What it signals, a `Lamp`; 0: nothing, or lamps do not work
+    lamps: int = 0  # Lit lamps, a `Lamp`; 0: none, or lamps do not work
     parked: bool = False  # Whether it is part of the scene and never moves
 
     @property
@@ -230,7 +230,7 @@ class Frame:
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""
     parts: MovingParts | None = None
-    """Which moving part each pixel shows; None if no writer wants it."""
+    """The moving part that each pixel shows; None if no writer wants it."""
     clean: NDArray[np.uint8] | None = None
     """The colours as they would be without noise, blur, dirt and the like: the same instant, pose
     and lens, shape (H, W, 3); None if no writer wants them."""
@@ -238,10 +238,10 @@ class Frame:
     """Pictures of the tracker's further cameras, in the order of the setting `cameras`; empty if no
     writer wants them."""
     sensors: Floats | None = None
-    """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
+    """Readings of GPS, accelerometer, gyroscope and IMU, with their errors, see
     `eyas.engine.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
     signals: Mapping[str, Floats] = field(default_factory=dict)
-    """What further sensors tell (`sensors.further`), with their errors, by the names of
+    """Readings of further sensors (`sensors.further`), with their errors, by the names of
     `Sensor.parts`, each of shape (width,)."""
     rotors: Floats | None = None
     """Rates that the tracker asks of its rotors, front right, front left, rear left, rear right
@@ -250,7 +250,7 @@ class Frame:
     """Exposure time [s] and speed (ISO 12232) of the picture; None: its sensor is not modelled."""
     events: NDArray[np.void] | None = None
     """Events of the event camera since the last frame, in the order of time, of dtype
-    `eyas.engine.sensors.camera.esim.EVENT`; times count from the reset. None if no writer wants
+    `eyas.engine.camera.esim.EVENT`; times count from the reset. None if no writer wants
     it."""
     traffic: ActorView | None = None
     """All actors of the tracker's world, seen or not, at the instant that the picture shows; None

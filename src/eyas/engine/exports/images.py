@@ -1,20 +1,40 @@
-"""Pictures without loss: colours, masks, classes, depth, normals as PNG files, or as arrays."""
+"""Pictures, one file a frame: colours, masks, classes, depth, normals as PNG, JPEG or arrays; and
+the pictures of the cameras that trackers have beside their own, with the poses of these.
+"""
 
 import io
+import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from eyas.engine.core.png import png_bytes
-from eyas.engine.exports.frame import Frame
-from eyas.engine.exports.per_frame import PerFrameWriter
-from eyas.engine.exports.writer import Files, Run
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
+from eyas.engine.core.codecs.png import png_bytes
+from eyas.engine.core.decoding import read_json
+from eyas.engine.core.errors import DataFileError
+from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.exports.frame import CameraPose, Frame
+from eyas.engine.exports.writer import (
+    Episode,
+    EpisodeWriter,
+    Files,
+    PerFrameWriter,
+    Run,
+    Summary,
+    Writer,
+    numbered,
+)
 from eyas.engine.state.scene import ACTOR_OBJECT, LABELLED, LAST_PARKED
+from eyas.lanes import exact
 
 __all__ = [
     "ArrayWriter",
+    "CameraWriter",
     "ClassWriter",
     "CleanWriter",
     "DepthWriter",
+    "JpegWriter",
     "MaskWriter",
     "NormalWriter",
     "PngWriter",
@@ -136,3 +156,104 @@ class ArrayWriter(PerFrameWriter):
         file = io.BytesIO()
         np.savez(file, depth=frame.depth, object_id=frame.object_id, class_id=frame.class_id)
         return file.getvalue()
+
+
+class JpegWriter(PerFrameWriter):
+    """`NNNNNN.jpeg` for each frame; the same picture gives the same bytes."""
+
+    name = "{:06d}.jpeg"
+    wants = frozenset({"rgb"})
+    files = Files(frame=(name,))
+
+    def __init__(self, run: Run) -> None:
+        self._quality = run.jpeg_quality
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's picture."""
+        assert frame.rgb is not None
+        return jpeg_bytes(frame.rgb, self._quality)
+
+
+_PICTURE, _POSES = "cameras/{:02d}-{:06d}.png", "cameras.json"
+
+
+class CameraWriter(Writer):
+    """`cameras/NN-NNNNNN.png`: the picture of each further camera, by its number in the setting
+    `cameras`, in each frame; `cameras.json`: names, camera matrices, poses.
+    """
+
+    wants = frozenset({"cameras"})
+    files = Files(frame=(_PICTURE,), episode=(_POSES,))
+
+    def __init__(self, run: Run) -> None:
+        self._count = len(run.config.cameras)
+
+    def begin(self, episode: Episode) -> "_CameraFiles":
+        """Return the writer of an episode's files."""
+        with refusals(episode.folder):
+            (episode.folder / _PICTURE).parent.mkdir(exist_ok=True)
+        return _CameraFiles(episode.folder)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return the number of frames; None if a file is missing."""
+        try:
+            content = read_json(folder / _POSES, 1 << 30)
+            frames = {content["frames"], *(len(camera["poses"]) for camera in content["cameras"])}
+        except (DataFileError, KeyError, TypeError):
+            return None
+        for number in range(self._count):
+            found = numbered(folder, f"cameras/{number:02d}-{{:06d}}.png")
+            frames.add(-1 if found is None else found.frames)
+        return Summary(frames.pop()) if len(frames) == 1 and -1 not in frames else None
+
+
+class _CameraFiles(EpisodeWriter):
+    """The files of one episode."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._by_name: dict[str, dict[str, Any]] = {}
+        self._frames = 0
+
+    def add(self, frame: Frame) -> None:
+        """Write the pictures of a frame."""
+        self._frames += 1
+        for number, camera in enumerate(frame.cameras):
+            name = _PICTURE.format(number, frame.number)
+            write_atomic(self._folder / name, png_bytes(camera.rgb))
+            content = self._by_name.setdefault(
+                camera.name, _optics(camera.name, number, camera.pose)
+            )
+            content["poses"].append(_pose(camera.pose, frame.camera))
+
+    def finish(self) -> None:
+        """Write `cameras.json`."""
+        content = {"frames": self._frames, "cameras": [*self._by_name.values()]}
+        text = json.dumps(content, indent=1)
+        write_atomic(self._folder / _POSES, text.encode())
+
+
+def _optics(name: str, number: int, pose: CameraPose) -> dict[str, Any]:
+    """Return what stays the same in an episode."""
+    return {
+        "name": name,
+        "number": number,
+        "width": pose.width,
+        "height": pose.height,
+        "field_of_view": pose.field_of_view,
+        "intrinsics": pose.intrinsics.tolist(),
+        "poses": [],
+    }
+
+
+def _pose(pose: CameraPose, own: CameraPose) -> dict[str, Any]:
+    """Return a pose in the world, and relative to the tracker's own camera: forward, left, up."""
+    offset = exact.product(own.rotation.T, pose.position - own.position)
+    return {
+        "position": pose.position.tolist(),
+        "rotation": pose.rotation.tolist(),
+        "from_own": {
+            "position": offset.tolist(),
+            "rotation": exact.product(own.rotation.T, pose.rotation).tolist(),
+        },
+    }

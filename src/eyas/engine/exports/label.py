@@ -123,14 +123,14 @@ class LabelField(NamedTuple):
     of `others` for the others.
     """
 
-    key: str | None  # Its name in the label of a frame; None: the target has none
+    key: str | None  # Name in the label of a frame; None: the target has none
     type: Type
     meaning: str
     of_frame: Callable[[Frame, Episode], Any] | None = None
     """Returns its value, if it is of the frame."""
     of_object: Callable[[Frame, Subject], Any] | None = None
     """Returns its value, if it is of moving objects."""
-    others: str | None = None  # Its name in an entry of `others`; None: these have none
+    others: str | None = None  # Name in an entry of `others`; None: these have none
     unit: str = ""
     frame: str = ""  # The frame of reference
     left_out: bool = False  # Whether a label has it only where it is not empty

@@ -12,15 +12,11 @@ from eyas.engine.core.files import read_limited
 __all__ = ["labels_in", "reader_of"]
 
 _LARGEST = 1 << 30
-"""Of the labels of an episode [bytes]: a hundred thousand frames with many others."""
+"""Largest file of labels of an episode [bytes]: a hundred thousand frames with many others."""
 
 
 def labels_in(path: Path, reader: SchemaValidator) -> list[dict[str, Any]]:
     """Return the labels of an episode.
-
-    Args:
-        path: The file.
-        reader: Of one line.
 
     Raises:
         DataFileError: The file is missing, cut off, or does not hold labels; the line and the
@@ -33,11 +29,11 @@ def labels_in(path: Path, reader: SchemaValidator) -> list[dict[str, Any]]:
         except ValidationError as error:
             first = error.errors(include_url=False, include_context=False, include_input=False)[0]
             if first["type"] == "json_invalid":
-                told = "is cut off or not JSON"
+                problem = "is cut off or not JSON"
             else:
                 field = ".".join(map(str, first["loc"])) or "label"
-                told = f"is not the label of a frame: {field:.100}: {first['msg']}"
-            raise DataFileError(f"{path}: line {number + 1} {told}") from None
+                problem = f"is not the label of a frame: {field:.100}: {first['msg']}"
+            raise DataFileError(f"{path}: line {number + 1} {problem}") from None
         if label["frame"] != number:
             raise DataFileError(f"{path}: line {number + 1} is of frame {label['frame']}")
         labels.append(label)

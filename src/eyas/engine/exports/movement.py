@@ -1,4 +1,4 @@
-"""How a moving object moves, and the boxes in which it fits."""
+"""Motion of moving objects, and the boxes in which they fit."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
@@ -23,13 +23,13 @@ _folded = interpreted(folded)
 
 @dataclass(frozen=True, slots=True)
 class Movement:
-    """How a moving object moves, and stands on the ground."""
+    """Motion of a moving object, and its stance on the ground."""
 
     acceleration: Floats  # Change of the velocity, world frame [m/s^2], shape (3,)
     yaw_rate: float  # Counter-clockwise [rad/s]
     slope: float  # Pitch of the ground along its heading, positive up [rad]
     travelled: float  # Way since it entered the world [m]
-    direction: TargetDirection  # Its turn
+    direction: TargetDirection  # Turn of the target
     rise: float  # Height of its reference point above the ground [m]
     hitch: float = 0.0  # Heading of its trailer less that of its truck [rad]; 0 of all others
     upright: bool = False
@@ -45,7 +45,7 @@ class SectionBox(NamedTuple):
     name: str  # "truck" or "trailer"
     size: tuple[float, float, float]  # Length, width, height [m]
     yaw: float  # Heading, counter-clockwise from east [rad]
-    corners: Floats  # As from `box_corners` [m], shape (8, 3)
+    corners: Floats  # Corners in the order of `box_corners` [m], shape (8, 3)
 
 
 def box_corners(

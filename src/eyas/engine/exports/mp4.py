@@ -1,18 +1,15 @@
 """Pictures as one MP4 file."""
 
-import os
-from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.files import part_path, refusals
-from eyas.engine.core.pyav import pyav
-from eyas.engine.exports.frame import Frame
-from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
+from eyas.engine.core.codecs.pyav import pyav
+from eyas.engine.core.files import refusals
+from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Run, Summary, Writer
 
 if TYPE_CHECKING:
     from av.video.stream import VideoStream
@@ -60,10 +57,9 @@ class Mp4Writer(Writer):
             return None
 
 
-class Mp4Episode(EpisodeWriter):
-    """Encodes pictures one by one; the file gets its final name when it is complete.
-
-    The same pictures give the same bytes: one encoder thread, no dates, no version tags.
+class Mp4Episode(FilmEpisode):
+    """Encodes pictures by FFmpeg. The same pictures give the same bytes: one encoder thread, no
+    dates, no version tags.
 
     Args:
         path: The file.
@@ -78,12 +74,9 @@ class Mp4Episode(EpisodeWriter):
 
     def __init__(self, path: Path, height: int, width: int, fps: float) -> None:
         self._av = pyav("MP4")
-        self._path = path
-        self._part = part_path(path)
+        super().__init__(path)
         # yuv420p shares colours among 2 x 2 pixels, so sizes must be even.
         self._padding = ((0, height % 2), (0, width % 2), (0, 0))
-        with refusals(path):
-            self._file: IO[bytes] = self._part.open("wb")
         self._container = self._av.open(
             self._file, "w", format="mp4", container_options={"fflags": "+bitexact"}
         )
@@ -101,11 +94,6 @@ class Mp4Episode(EpisodeWriter):
         stream.codec_context.flags |= self._av.codec.context.Flags.bitexact
         return stream
 
-    def add(self, frame: Frame) -> None:
-        """Append the picture of a frame."""
-        assert frame.rgb is not None
-        self.add_picture(frame.rgb)
-
     def add_picture(self, rgb: NDArray[np.uint8]) -> None:
         """Append the next picture, shape (H, W, 3)."""
         padded = np.pad(rgb, self._padding, mode="edge")
@@ -113,17 +101,6 @@ class Mp4Episode(EpisodeWriter):
         with refusals(self._path):
             self._container.mux(self._stream.encode(image))
 
-    def finish(self) -> None:
-        """Write the remaining pictures, and give the file its final name."""
-        with refusals(self._path):
-            self._container.mux(self._stream.encode(None))
-            self._container.close()
-            self._file.close()
-            os.replace(self._part, self._path)
-
-    def abandon(self) -> None:
-        """Delete the unfinished file."""
-        with refusals(self._path):
-            self._part.unlink(missing_ok=True)
-        with suppress(OSError):  # writing the last buffer may fail again
-            self._file.close()
+    def _complete(self) -> None:
+        self._container.mux(self._stream.encode(None))
+        self._container.close()

@@ -5,9 +5,7 @@ memory until its end. Each picture is whole: the camera moves, so little of the 
 """
 
 import io
-import os
 import struct
-from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -16,23 +14,22 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eyas.engine.core.errors import OutputError
-from eyas.engine.core.files import part_path, refusals
-from eyas.engine.exports.frame import Frame
-from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer
+from eyas.engine.core.files import refusals
+from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Summary, Writer
 
 __all__ = ["WebpEpisode", "WebpWriter"]
 
 MOVIE = "episode.webp"
 
 _QUALITY, _EFFORT = 75, 0
-"""Of 320 x 240 pixels, a picture takes 1.8 ms and 15 kB, and is nearer to the true one than in our
+"""A picture of 320 x 240 pixels takes 1.8 ms and 15 kB, and is nearer to the true one than in our
 MP4 (1.7 ms, 5.6 kB). The default effort, 4, makes it 12 kB in 6.3 ms."""
 
 _HEAD = struct.Struct("<4sI4s")
 _CHUNK = struct.Struct("<4sI")
 _ANIMATED, _UNBLENDED = 0x02, 0x02
-_LARGEST = 0xFFFF_FFF6  # Of a file [bytes]
-_LONGEST = 0xFF_FFFF  # That a picture can stay [ms]
+_LARGEST = 0xFFFF_FFF6  # Largest file [bytes]
+_LONGEST = 0xFF_FFFF  # Longest duration of one frame [ms]
 
 
 class WebpWriter(Writer):
@@ -55,10 +52,8 @@ class WebpWriter(Writer):
             return None
 
 
-class WebpEpisode(EpisodeWriter):
-    """Encodes pictures one by one; the file gets its final name when it is complete.
-
-    No more than one picture is in memory.
+class WebpEpisode(FilmEpisode):
+    """Encodes pictures by Pillow; no more than one is in memory.
 
     Args:
         path: The file.
@@ -72,11 +67,10 @@ class WebpEpisode(EpisodeWriter):
     """
 
     def __init__(self, path: Path, height: int, width: int, fps: float) -> None:
-        self._path, self._part = path, part_path(path)
+        super().__init__(path)
         self._size = _three(width - 1) + _three(height - 1)
         self._fps, self._count, self._length = fps, 0, 0
         with refusals(path):
-            self._file: BinaryIO = self._part.open("wb")
             self._write(_HEAD.pack(b"RIFF", 0, b"WEBP"))
             self._write(_chunk(b"VP8X", struct.pack("<I", _ANIMATED) + self._size))
             self._write(_chunk(b"ANIM", bytes(6)))  # again and again
@@ -90,11 +84,6 @@ class WebpEpisode(EpisodeWriter):
             )
         self._file.write(data)
 
-    def add(self, frame: Frame) -> None:
-        """Append the picture of a frame."""
-        assert frame.rgb is not None
-        self.add_picture(frame.rgb)
-
     def add_picture(self, rgb: NDArray[np.uint8]) -> None:
         """Append the next picture, shape (H, W, 3)."""
         file = io.BytesIO()
@@ -106,20 +95,9 @@ class WebpEpisode(EpisodeWriter):
         with refusals(self._path):
             self._write(_chunk(b"ANMF", bytes(6) + self._size + shown + picture))
 
-    def finish(self) -> None:
-        """Complete the head, and give the file its final name."""
-        with refusals(self._path):
-            self._file.seek(0)
-            self._file.write(_HEAD.pack(b"RIFF", self._length - _CHUNK.size, b"WEBP"))
-            self._file.close()
-            os.replace(self._part, self._path)
-
-    def abandon(self) -> None:
-        """Delete the unfinished file."""
-        with refusals(self._path):
-            self._part.unlink(missing_ok=True)
-        with suppress(OSError):  # writing the last buffer may fail again
-            self._file.close()
+    def _complete(self) -> None:
+        self._file.seek(0)
+        self._file.write(_HEAD.pack(b"RIFF", self._length - _CHUNK.size, b"WEBP"))
 
 
 def _three(number: int) -> bytes:

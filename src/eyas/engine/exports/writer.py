@@ -12,19 +12,21 @@ method that writes may raise `OutputError`.
 """
 
 import math
+import os
 import re
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from string import Formatter
-from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
+from typing import BinaryIO, ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.files import write_atomic
+from eyas.engine.core.files import part_path, refusals, write_atomic
 from eyas.engine.exports.frame import Frame, Output
 from eyas.engine.sim.config import SimConfig
 
@@ -33,12 +35,15 @@ __all__ = [
     "Episode",
     "EpisodeWriter",
     "Files",
+    "FilmEpisode",
     "Gather",
+    "PerFrameWriter",
     "Run",
     "Scores",
     "Summary",
     "Writer",
     "joined",
+    "numbered",
     "pattern_of",
     "total",
 ]
@@ -148,9 +153,9 @@ class Run:
     target_direction: bool
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     jpeg_quality: int
-    """Of pictures in the JPEG format, 1 to 100."""
+    """Quality of pictures in the JPEG format, 1 to 100."""
     depth_unit: float
-    """Of depth as PNG files [m]."""
+    """Unit of depth in PNG files [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +163,7 @@ class Episode:
     """One episode of one tracker."""
 
     folder: Path
-    """Its folder, `<run>/<tracker>/episode<number>`."""
+    """Folder of the episode, `<run>/<tracker>/episode<number>`."""
     tracker: str
     """Name of the tracker."""
     number: int
@@ -282,3 +287,94 @@ class Gather(EpisodeWriter, Generic[Record]):
             OutputError: The file cannot be written.
         """
         write_atomic(self._path, self._encode(self._records))
+
+
+class FilmEpisode(EpisodeWriter):
+    """Encodes pictures into one file, one by one; it gets its final name when it is complete.
+
+    Args:
+        path: The file.
+
+    Raises:
+        OutputError: The file cannot be written; raised by every method.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._part = path, part_path(path)
+        with refusals(path):
+            self._file: BinaryIO = self._part.open("wb")
+
+    @abstractmethod
+    def add_picture(self, rgb: NDArray[np.uint8]) -> None:
+        """Append the next picture, shape (H, W, 3)."""
+
+    @abstractmethod
+    def _complete(self) -> None:
+        """Write what is left of the film."""
+
+    def add(self, frame: Frame) -> None:
+        """Append the picture of a frame."""
+        assert frame.rgb is not None
+        self.add_picture(frame.rgb)
+
+    def finish(self) -> None:
+        """Write the remaining pictures, and give the file its final name."""
+        with refusals(self._path):
+            self._complete()
+            self._file.close()
+            os.replace(self._part, self._path)
+
+    def abandon(self) -> None:
+        """Delete the unfinished file."""
+        with refusals(self._path):
+            self._part.unlink(missing_ok=True)
+        with suppress(OSError):  # writing the last buffer may fail again
+            self._file.close()
+
+
+class PerFrameWriter(Writer):
+    """Writes one file for each frame; `files` names it, and nothing else."""
+
+    name: ClassVar[str]
+    """Name of the file relative to the episode's folder, with the number of the frame."""
+
+    @abstractmethod
+    def encoded(self, frame: Frame) -> bytes:
+        """Return the bytes of a frame's file."""
+
+    def begin(self, episode: Episode) -> "FrameFiles":
+        """Return the writer of an episode's files."""
+        folder = (episode.folder / self.name).parent
+        with refusals(folder):
+            folder.mkdir(exist_ok=True)
+        return FrameFiles(episode.folder, self.name, self.encoded)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return the number of files; None if one is missing."""
+        return numbered(folder, self.name)
+
+
+class FrameFiles(EpisodeWriter):
+    """The files of one episode.
+
+    Args:
+        folder: The episode's folder.
+        name: See `PerFrameWriter.name`.
+        encoded: Returns the bytes of a frame's file.
+    """
+
+    def __init__(self, folder: Path, name: str, encoded: Callable[[Frame], bytes]) -> None:
+        self._folder, self._name, self._encoded = folder, name, encoded
+
+    def add(self, frame: Frame) -> None:
+        """Write the next file."""
+        write_atomic(self._folder / self._name.format(frame.number), self._encoded(frame))
+
+
+def numbered(folder: Path, name: str) -> Summary | None:
+    """Return how many files of a name there are, from number 0 on; None if one is missing."""
+    place = (folder / name).parent
+    ours = re.compile(pattern_of(Path(name).name))
+    names = {path.name for path in place.glob("*") if ours.fullmatch(path.name)}
+    whole = names == {Path(name).name.format(number) for number in range(len(names))}
+    return Summary(len(names)) if whole else None

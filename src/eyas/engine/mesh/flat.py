@@ -83,10 +83,8 @@ def flat_polygons(
 
 
 def _distinct(corners: Rows) -> tuple[Rows, NDArray[np.intp]]:
-    """Return the points of polygons in order, and the index of the point of each corner.
-
-    Args:
-        corners: Number of the polygon, east, north; shape (C, 3).
+    """Return the points of polygons in order, and the index of the point of each corner, from
+    corners (C, 3): number of the polygon, east, north.
     """
     order = np.lexsort(corners.T[::-1])
     ordered = corners[order]

@@ -21,7 +21,7 @@ _height_over = interpreted(height_over)
 RISE = 0.3
 """Tolerance in height within which a surface counts as ground [m]: roads and kerbs are higher."""
 
-WIDTH = 0.14  # Of the line [m]
+WIDTH = 0.14  # Width of the line [m]
 
 THINNEST = 1.75  # Smallest width of the line, in strokes of the canvas
 
@@ -67,12 +67,8 @@ def _on_ground(canvas: Canvas, ground: Plane, where: Window) -> NDArray[np.bool_
 
 
 def _inside(canvas: Canvas, corners: NDArray[np.float64], where: Window) -> tuple[Floats, Floats]:
-    """Return how far pixels are inside the edge, and inside the line along it [pixels].
-
-    Args:
-        canvas: The camera, above the ground.
-        corners: On the ground, counter-clockwise seen from above [m], shape (K, 3).
-        where: Rows and columns of the window.
+    """Return how far pixels are inside the edge, and inside the line along it [pixels]; corners (K,
+    3) are counter-clockwise seen from above.
     """
     outer = inner = np.full((1, 1), np.inf, np.float32)
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):

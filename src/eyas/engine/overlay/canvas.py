@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.engine.core import lens
-from eyas.engine.core.lens import Lens
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics import lens
+from eyas.engine.core.optics.lens import Lens
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.state.draw import Views
 from eyas.lanes import exact
 
@@ -20,7 +20,7 @@ Floats = NDArray[np.float32]
 CASING = (0.04, 0.05, 0.07)  # Colour of the outlines, which make marks visible on any ground
 
 
-SPARSE = 0.3  # If fewer of a window's pixels are touched, the others are left out
+SPARSE = 0.3  # Share of a window's pixels below which only those that are touched are blended
 
 
 class Canvas:

@@ -21,6 +21,8 @@ __all__ = ["paint_overlays", "with_depth"]
 SMALLEST, OF_HEIGHT = 9, 0.042
 """Size of letters: a share of the picture's height, but at least this many pixels."""
 
+OUTLINE = 0.85  # Opacity of the outline of letters: legible on black and on white (WCAG 2.2, 1.4.3)
+
 
 def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
     """Paint labels beside their points, moved if needed to be fully inside the picture."""
@@ -43,7 +45,7 @@ def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
         bottom, right = min(top + height, canvas.height), min(left + width, canvas.width)
         where = slice(top, bottom), slice(left, right)
         part = np.s_[: bottom - top, : right - left]
-        canvas.blend(where, CASING, around[part] * 0.85)
+        canvas.blend(where, CASING, around[part] * OUTLINE)
         canvas.blend(where, label.colour, letters[part])
 
 
@@ -65,9 +67,9 @@ def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float3
     return masks[0], masks[1]
 
 
-WIDTH = 1.5  # Width, in strokes of the canvas
+WIDTH = 1.5  # Width of a line, in strokes of the canvas
 
-OPACITY = 0.85
+OPACITY = 0.85  # Opacity of a line
 
 BENT_PIECES = 24  # Straight pieces of a line that is seen through a lens
 
@@ -99,7 +101,7 @@ def _paint_piece(
     depth = 1.0 / ((1.0 - share) / start[2] + share / end[2])
     seen = (depth <= canvas.depth[rows, columns]) * OPACITY
     half = 0.5 * WIDTH * canvas.unit
-    casing = seen * cover(half + 0.75 * canvas.unit - away) * 0.4
+    casing = seen * cover(half + 0.75 * canvas.unit - away) * 0.4  # our choice
     canvas.blend_pixels(rows, columns, CASING, casing)
     canvas.blend_pixels(rows, columns, line.colour, seen * cover(half - away))
 
@@ -107,13 +109,8 @@ def _paint_piece(
 def _near(
     canvas: Canvas, start: NDArray[np.float64], end: NDArray[np.float64], margin: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return rows and columns of the pixels in a box around a line that lie near it.
-
-    Args:
-        canvas: The picture.
-        start: Column and row of one end, and whatever else [pixels].
-        end: Of the other.
-        margin: How far around the ends the box reaches, and how near pixels are at least [pixels].
+    """Return rows and columns of the pixels within `margin` [pixels] of a line between two places
+    (column, row, ...).
     """
     low, high = np.minimum(start, end)[:2], np.maximum(start, end)[:2]
     where = canvas.window(low, high, margin)

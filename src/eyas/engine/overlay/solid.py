@@ -46,12 +46,8 @@ def paint_solid(canvas: Canvas, solid: Solid) -> None:
 def _sample(
     vertices: NDArray[np.float64], triangles: NDArray[np.int32], where: tuple[slice, slice]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return one over the depth, and the triangle (or -1), of each sample of a window.
-
-    Args:
-        vertices: Column, row [pixels] and depth [m], shape (V, 3).
-        triangles: Shape (T, 3).
-        where: Rows and columns.
+    """Return one over the depth [1/m], and the triangle (or -1), of each sample of a window, from
+    vertices (V, 3): column, row [pixels], depth [m].
     """
     rows, columns = where
     shape = (rows.stop - rows.start) * SIDE, (columns.stop - columns.start) * SIDE
@@ -76,13 +72,8 @@ def _sample(
 def _spans(
     corners: NDArray[np.float64], shape: tuple[int, int]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return where triangles that face the camera lie: a row of samples for each entry.
-
-    First and last column (excluded; one too many at each end), row, and triangle.
-
-    Args:
-        corners: Column and row [samples], shape (T, 3, 2).
-        shape: Number of rows and columns.
+    """Return the spans of triangles (T, 3, 2) that face the camera, one for each of their rows of
+    samples: first and last column (excluded; one too many at each end), row, and triangle.
     """
     (ax, ay), (bx, by), (cx, cy) = np.moveaxis(corners, 0, -1)
     # Rows grow downwards: the front is clockwise in the picture.
@@ -119,13 +110,9 @@ def _shares(
     count: NDArray[np.int64],
     x: NDArray[np.int64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return how much of each corner is in a sample: its barycentric coordinates.
-
-    Args:
-        corners: Of the triangle of each span, shape (K, 3, 2).
-        row: Of each span.
-        count: Number of its samples.
-        x: Column of each sample.
+    """Return the barycentric coordinates of samples, three arrays: of K spans with the corners (K,
+    3, 2) of their triangles, their rows and numbers of samples, and `x`, the columns of all
+    samples.
     """
     (ax, ay), (bx, by), (cx, cy) = np.moveaxis(corners, 0, -1)
     area = np.repeat((bx - ax) * (cy - ay) - (by - ay) * (cx - ax), count)

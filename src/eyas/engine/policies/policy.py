@@ -54,7 +54,7 @@ class Start(NamedTuple):
     right, bottom, the last two exclusive [pixels]; all 0 if it is outside, or if the protocol does
     not tell it, shape (N, 4)."""
     told: Instruction | None = None
-    """What is told in words; None where the protocol has no words."""
+    """The instruction in words; None where the protocol has none."""
     roads: Callable[[], list[RoadNetwork]] = list
     """Returns the roads around each drone, N, one object for those on the same map: for oracles."""
     is_open: Callable[[int, NDArray[np.float64]], NDArray[np.bool_]] = _all_open
@@ -63,20 +63,20 @@ class Start(NamedTuple):
 
 
 class PolicyInput(NamedTuple):
-    """What a policy sees at one instant."""
+    """Observations of a policy at one instant."""
 
     observation: Observation
     """Latest observation of each episode, shape (N, ...); not to be changed or kept."""
     deciding: NDArray[np.bool_]
-    """Whose action is asked for now, shape (N,); the observations of others may be old, and
-    memories of theirs must not change."""
+    """Mask of those whose action is asked for now, shape (N,); the observations of others may be
+    old, and memories of theirs must not change."""
     snapshot: Callable[[], Snapshot]
     """Returns the true state of all N: for oracles."""
     visible: Callable[[], NDArray[np.float64]]
     """Returns the share of each target that its camera sees now, 0 while the camera is covered,
     shape (N,): for oracles."""
     covered: NDArray[np.bool_]
-    """Whose camera shows nothing now, so that the picture is black, shape (N,)."""
+    """Mask of those whose camera is covered now: the picture is black, shape (N,)."""
     heard: NDArray[np.float64] | None = None
     """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
     None where drones fly alone."""
@@ -86,10 +86,10 @@ class PolicyInput(NamedTuple):
 
 
 class Failure(NamedTuple):
-    """What a policy has failed with."""
+    """Error of a policy."""
 
     line: str  # The error
-    traceback: str | None  # Where it was raised
+    traceback: str | None  # Lines of its traceback
 
     @classmethod
     def of(cls, error: BaseException, *, traced: bool = True) -> "Failure":
@@ -101,11 +101,7 @@ class Failure(NamedTuple):
 
 
 class PolicyFailedError(Exception):
-    """A policy has failed elsewhere, in its own process.
-
-    Args:
-        failure: What with.
-    """
+    """A policy has failed elsewhere, in its own process."""
 
     def __init__(self, failure: Failure) -> None:
         super().__init__(failure.line)
@@ -120,18 +116,18 @@ class Decision(NamedTuple):
     failed: Mapping[int, Failure] = {}  # never changed
     """Drones whose policy has failed, and how; their episodes end."""
     messages: NDArray[np.float64] | None = None
-    """What each drone tells its mates, shape (N, numbers); None: nothing new."""
+    """Messages of the drones to their mates, shape (N, numbers); None: nothing new."""
 
 
 class Policy(Protocol):
     """A policy for N episodes that begin together. An error that it raises fails all of them."""
 
     env: EnvConfig
-    """What it sees, and what its actions mean."""
+    """Its observations, and the meaning of its actions."""
     sampled: bool
     """Whether its actions are sampled at random, from the seeds of the episodes."""
     told: frozenset[str]
-    """What it is told beside its observations: `box`, the target's first box; `words` and
+    """Names of what it gets beside its observations: `box`, the target's first box; `words` and
     `attributes`; `truth`, the true state."""
 
     def begin(self, start: Start) -> None:
@@ -144,24 +140,19 @@ class Policy(Protocol):
         ...
 
 
-def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
+def settings_in(path: Path, place: str, settings: object) -> Mapping[str, Any]:
     """Return the changes of the defaults of `env` that a policy's file holds.
-
-    Args:
-        path: The file.
-        place: Where in it they stand.
-        said: What stands there.
 
     Raises:
         DataFileError: Something else stands there, or a setting is wrong.
     """
-    if not isinstance(said, Mapping) or not all(isinstance(key, str) for key in said):
-        raise DataFileError(f"{path}: {place}: {shown(said)} is not allowed: settings of env")
+    if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+        raise DataFileError(f"{path}: {place}: {shown(settings)} is not allowed: settings of env")
     try:
-        env_config(said)
+        env_config(settings)
     except ConfigError as error:
         raise DataFileError(f"{path}: {place}: {error}") from None
-    return said
+    return settings
 
 
 def env_config(settings: Mapping[str, Any], changes: Mapping[str, Any] | None = None) -> EnvConfig:

@@ -1,4 +1,4 @@
-"""What cameras see of their targets: boxes, and pixels that are visible or hidden."""
+"""Targets in pictures: boxes, and pixels that are visible or hidden."""
 
 from typing import Any
 
@@ -19,13 +19,7 @@ SIZE = 63, 84  # Height and width of the pictures in which pixels are counted
 def subjects(
     simulation: Simulation, trackers: NDArray[np.int32], size: tuple[int, int] = SIZE
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the pixels of each target, visible and all, shape (K, 2), and its box, (K, 4).
-
-    Args:
-        simulation: The trackers are in it.
-        trackers: K of them.
-        size: Height and width of the pictures.
-    """
+    """Return the pixels of each target, visible and all, shape (K, 2), and its box, (K, 4)."""
     picture = Picture.create(len(trackers), *size, rgb=False, class_id=True, subject=True)
     simulation.draw(trackers, picture, until=DrawStage.RASTERISING)
     assert picture.subject_pixels is not None

@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
-from eyas.engine.core.build import this_build
 from eyas.engine.core.config import shown
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK, folder_lock
+from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.own_code import left_out
 from eyas.engine.exports.checksums import (
     CHECKSUMS,
@@ -27,10 +27,14 @@ from eyas.engine.exports.checksums import (
     read_checksums,
     seal_folder,
 )
-from eyas.engine.recordings.first_sight import from_first_sight
-from eyas.engine.recordings.format import KEPT, Exported, Format, Job
-from eyas.engine.recordings.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
-from eyas.engine.recordings.registry import FORMATS, SETTING
+from eyas.engine.recordings.format import FORMATS, KEPT, SETTING, Exported, Format, Job
+from eyas.engine.recordings.recording import (
+    DATASET_FILE,
+    OF_EPISODES,
+    RecordedEpisode,
+    Recording,
+    from_first_sight,
+)
 
 __all__ = [
     "EXPORTS",
@@ -49,18 +53,18 @@ _LOG = logging.getLogger("eyas")
 EXPORTS = "exports"  # Folder of the exports in that of a recording or data set
 
 FINISHED, GROWING = "export.json", ".export.json"
-"""What an export is of, when it is complete, and while it is in progress."""
+"""Files with the identity of an export: when it is complete, and while it is in progress."""
 
-_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # What is no part of a finished export
+_ASIDE = (FINISHED, GROWING, KEPT, ".done", LOCK)  # Names that are no part of a finished export
 
 DONE = ".done"  # Names of the episodes that are written completely, a line each
 
-Told = Callable[[int], None]  # Is told how many frames have been exported
+Progress = Callable[[int], None]  # Gets the number of exported frames
 
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """What may be chosen of an export, see `Job`."""
+    """Options of an export, see `Job`."""
 
     copies: bool = False
     least_side: int = 1
@@ -75,7 +79,7 @@ def export(
     name: str,
     folder: Path,
     options: ExportOptions,
-    told: Told = lambda frames: None,
+    progress: Progress = lambda frames: None,
 ) -> None:
     """Export a recording or a data set in one format.
 
@@ -86,7 +90,7 @@ def export(
         name: The format: a name of `FORMATS`, or `package.module:Class`.
         folder: The folder of the export.
         options: What was chosen.
-        told: Is told the frames that are done, after each episode.
+        progress: Gets the number of frames that are done, after each episode.
 
     Raises:
         ConfigError: There is no such format.
@@ -107,10 +111,10 @@ def export(
     form = make(job)
     with folder_lock(folder, "exporting into it"):
         if _open(folder, _identity(recording, name, options), options):
-            form.finish(_add_all(form, recording, folder, told))
+            form.finish(_add_all(form, recording, folder, progress))
             _finish(folder, _identity(recording, name, options))
         else:
-            told(recording.frame_count)
+            progress(recording.frame_count)
         # Last, so that an export which is killed here has all that it needs, or is finished.
         shutil.rmtree(folder / KEPT, ignore_errors=True)
         (folder / DONE).unlink(missing_ok=True)
@@ -118,12 +122,6 @@ def export(
 
 def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[RecordedEpisode]) -> None:
     """Put episodes into the export of a data set that is being made; they are known to be whole.
-
-    Args:
-        folder: The folder of the export.
-        named: Name of the data set.
-        name: The format.
-        episodes: The episodes.
 
     Raises:
         EyasError: As `export`.
@@ -137,12 +135,6 @@ def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[Recorde
 
 def finish_export(folder: Path, named: str, name: str, recording: Recording) -> None:
     """Complete the export of a data set, all episodes of which have been added.
-
-    Args:
-        folder: The folder of the export.
-        named: Name of the data set.
-        name: The format.
-        recording: The data set.
 
     Raises:
         EyasError: As `export`.
@@ -219,16 +211,14 @@ def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[s
         "least_side": options.least_side,
         "least_visible": options.least_visible,
         "ignore_parked": options.ignore_parked,
-        "eyas": __version__,
+        "eyas": installed_version(),
         "build_id": this_build().id,
     }
 
 
 def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> bool:
-    """Prepare the folder; return whether something is left to do.
-
-    Raises:
-        OutputError: It is not empty, or not of the same export.
+    """Prepare the folder; return whether something is left to do. `OutputError` if it is not empty,
+    or not of the same export.
     """
     with refusals(folder):
         names = {inside.name for inside in folder.iterdir()} - {LOCK}
@@ -290,7 +280,9 @@ def _delete_parts(folder: Path) -> None:
             part.unlink()
 
 
-def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> list[Exported]:
+def _add_all(
+    form: Format, recording: Recording, folder: Path, progress: Progress
+) -> list[Exported]:
     """Export all episodes but those that an earlier run has written completely."""
     done, sums = _done(folder / DONE), _Checksums()
     exported, frames = [], 0
@@ -311,7 +303,7 @@ def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> li
                 exported.append(Exported(episode.name, episode.split or "train", len(shown)))
             frames += count
             episode.__dict__.pop("labels", None)  # those of one episode are in memory at a time
-            told(frames)
+            progress(frames)
     return exported
 
 
@@ -328,8 +320,8 @@ def _done(path: Path) -> set[str]:
 
 
 class _Checksums:
-    """What the recordings of the episodes say of their files; of one recording at a time, as a
-    data set may have a million files.
+    """Checksums of the files of recordings; one recording at a time, as a data set may have a
+    million files.
     """
 
     def __init__(self) -> None:

@@ -21,13 +21,16 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import atomic_path, refusals, write_atomic
+from eyas.engine.core.registry import Registry
 from eyas.engine.exports.label import FIELDS, Label
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 from eyas.engine.state.scene import ObjectClass
 
 __all__ = [
     "CLASS_NAMES",
+    "FORMATS",
     "KEPT",
+    "SETTING",
     "Exported",
     "Format",
     "Job",
@@ -68,7 +71,7 @@ class Exported(NamedTuple):
 class SeenObject(NamedTuple):
     """A moving or parked object in a frame: the target, or another one."""
 
-    label: Label  # Its fields by the names of the entries of `others`: `id`, `box`, `words`, ...
+    label: Label  # By the names of the entries of `others`: `id`, `box`, `words`, ...
     is_target: bool
 
     @property
@@ -92,7 +95,7 @@ _TARGET_KEYS = {field.others: field.key for field in FIELDS if field.others and 
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """What is exported, and how.
+    """An export: folder, name, and the options of its user.
 
     Attributes:
         folder: The folder of the export.
@@ -213,7 +216,7 @@ class Format(Protocol):
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
     job: Job
-    """What is exported, and how."""
+    """The export that is written."""
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -265,3 +268,13 @@ def split_of(episode: RecordedEpisode) -> str:
 def numbered(frame: RecordedFrame, first: int, digits: int, ending: str) -> str:
     """Return a name of a frame's picture: its number, counted from `first`."""
     return f"{frame.number + first:0{digits}d}.{ending}"
+
+
+SETTING = "--format"
+
+FORMATS: Registry[type[Any]] = Registry(
+    SETTING,
+    type,
+    group="eyas.formats",
+)
+"""All formats; a user's own is selected by its path, `my_package.module:Class`."""

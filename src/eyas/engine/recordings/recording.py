@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import decoded_arrays, decoded_picture, read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.core.folder_lock import LOCK
-from eyas.engine.core.pyav import pyav
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.engine.exports.label import LABELS, Label, read_labels
 from eyas.engine.settings.config import EyasConfig
@@ -34,17 +34,25 @@ from eyas.engine.state.scene import ACTOR_OBJECT, LAST_PARKED
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = ["DATASET_FILE", "OF_EPISODES", "RecordedEpisode", "RecordedFrame", "Recording", "load",
-           "load_part"]  # fmt: skip
+__all__ = [
+    "DATASET_FILE",
+    "OF_EPISODES",
+    "RecordedEpisode",
+    "RecordedFrame",
+    "Recording",
+    "from_first_sight",
+    "load",
+    "load_part",
+]
 
-DATASET_FILE = "dataset.json"  # What a data set holds, see `eyas.datasets.plan`.
+DATASET_FILE = "dataset.json"  # Contents of a data set, see `eyas.datasets.plan`
 
 SPLITS = ("train", "val", "test")
 
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of what moves; this less the value, of what is parked."""
 
-_LARGEST = 1 << 28  # Of a file of one frame [bytes]
+_LARGEST = 1 << 28  # Largest file of one frame [bytes]
 
 OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
 """Files of an episode by their writers; other writers write a file for each frame."""
@@ -143,8 +151,8 @@ class RecordedFrame:
                 picture = next(container.decode(video=0))
                 stored: NDArray[np.uint16] = picture.to_ndarray(format="rgb48le")
         except (av.error.FFmpegError, OSError, ValueError, EOFError, StopIteration) as error:
-            told = getattr(error, "strerror", None) or error
-            raise DataFileError(f"{path}: cannot read: {told}") from error
+            reason = getattr(error, "strerror", None) or error
+            raise DataFileError(f"{path}: cannot read: {reason}") from error
         if stored.shape[1::-1] != self.episode.size:
             raise DataFileError(f"{path}: has another size than its header tells")
         return stored
@@ -310,8 +318,8 @@ def load(folder: Path | str) -> Recording:
             return Recording(root, [each for part in _parts(root) for each in part])
         return Recording(root, _episodes(root, "", ""))
     except (OSError, ValueError) as error:  # a name that no file can have
-        told = getattr(error, "strerror", None) or error
-        raise DataFileError(f"{root!s:.300}: cannot read: {told}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise DataFileError(f"{root!s:.300}: cannot read: {reason}") from error
 
 
 def _parts(root: Path) -> Iterator[list[RecordedEpisode]]:
@@ -389,3 +397,33 @@ def _require_fitting(label: Label, size: tuple[int, int], where: str) -> None:
         left, top, right, bottom = box
         if not (left <= right <= size[0] and top <= bottom <= size[1]):
             raise DataFileError(f"{where}: the box {box} is not inside the picture")
+
+
+def from_first_sight(episode: RecordedEpisode) -> RecordedEpisode | None:
+    """Return the rest of an episode, whose frames count from 0 again; None if its target is never
+    visible.
+    """
+    for label in episode.labels:
+        if label["visible_fraction"] > 0.0:
+            return _TrimmedEpisode(episode, label["frame"]) if label["frame"] else episode
+    return None
+
+
+class _TrimmedEpisode(RecordedEpisode):
+    """An episode without its first frames."""
+
+    def __init__(self, whole: RecordedEpisode, skipped: int) -> None:
+        super().__init__(whole.name, whole.folder, whole.split, whole.config)
+        self._whole, self._skipped = whole, skipped
+
+    @cached_property
+    def labels(self) -> list[Label]:
+        left = self._whole.labels[self._skipped :]
+        return [{**label, "frame": number} for number, label in enumerate(left)]
+
+    @cached_property
+    def frame_count(self) -> int:
+        return self._whole.frame_count - self._skipped
+
+    def file(self, output: str, number: int) -> Path:
+        return self._whole.file(output, number + self._skipped)

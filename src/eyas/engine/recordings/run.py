@@ -39,9 +39,9 @@ def run(
     for name in dict.fromkeys(formats):
         target = exports_folder(folder, name, out)
         begun = time.perf_counter()
-        with frames_bar(f"exporting {name}", total, quiet=quiet) as told:
+        with frames_bar(f"exporting {name}", total, quiet=quiet) as progress:
             try:
-                export(recording, name, target, options, told)
+                export(recording, name, target, options, progress)
             except KeyboardInterrupt as interrupt:
                 interrupt.add_note(f"every file in {target} is whole; continue with --resume")
                 raise

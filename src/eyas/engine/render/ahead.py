@@ -20,9 +20,8 @@ from eyas.engine.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.lanes.entry import nothing_compiled
-from eyas.lanes.folder import kernel_folder, made_folder, not_kept, refusal
-
-__all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
+from eyas.lanes.folder import kernel_folder, refusal
+from eyas.lanes.trusted import made_folder, not_kept
 
 _log = logging.getLogger("eyas")
 

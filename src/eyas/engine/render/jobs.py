@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.bundles import Job, Task
 from eyas.engine.state.draw import Views
 from eyas.engine.state.lighting import LightState
 
-__all__ = ["Size", "new_task", "set_views"]
-
 JOBS_PER_THREAD = 6
 """Few views are cut into bands until there are this many: sky is drawn faster than streets."""
 
@@ -57,15 +55,13 @@ def new_task(size: Size) -> Task:
     return Task(size.across, size.down, size.width, size.height, int(size.falls), size.until, job)
 
 
-def set_views(task: Task, views: Views, density: float, workers: int) -> None:
-    """Write the cameras into a task, and that none of its bands is drawn.
-
-    Args:
-        task: Of the size of the views.
-        views: V cameras.
-        density: Density of the weather's fog [1/m], for views without their own.
-        workers: Number of workers that begin with a band each.
-    """
+def set_views(
+    task: Task,  # Of the size of the views
+    views: Views,  # V cameras
+    density: float,  # Density of the weather's fog [1/m], for views without their own
+    workers: int,  # Number of workers that begin with a band each
+) -> None:
+    """Write the cameras into a task, and that none of its bands is drawn."""
     job = task.job
     job.begun[0] = workers
     job.picture[:] = np.arange(len(job.picture)) if views.picture is None else views.picture

@@ -7,13 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens, principal_point
+from eyas.engine.core.optics.lens import Lens, principal_point
 from eyas.engine.render.kernels.bundles import FACES, LENS_TILE, LensTables
 from eyas.engine.render.kernels.lens.table import Survey, fill_tables, look_around, survey_faces
 from eyas.lanes import exact
 from eyas.lanes.vector import WIDTH
-
-__all__ = ["NO_TABLES", "LensBank"]
 
 Floats = NDArray[np.float64]
 

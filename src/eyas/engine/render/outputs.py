@@ -9,15 +9,6 @@ from eyas.engine.render.kernels.bundles import Job, Output
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 
-__all__ = [
-    "MEASURES",
-    "NO_OUTPUT",
-    "measured_alone",
-    "picture_size",
-    "wanted_output",
-    "write_measured",
-]
-
 MEASURES = 10  # Numbers that are measured of a thing, see `Output.subject`.
 
 NO_OUTPUT = Output(
@@ -82,14 +73,12 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     )
 
 
-def write_measured(job: Job, output: Output, picture: Picture) -> None:
-    """Write what the bands of each picture measured into it, where it is wanted.
-
-    Args:
-        job: The cameras and bands.
-        output: What they measured.
-        picture: Its boxes and pixels of subjects and actors are written.
-    """
+def write_measured(
+    job: Job,  # The cameras and bands
+    output: Output,  # What they measured
+    picture: Picture,  # Its boxes and pixels of subjects and actors are written
+) -> None:
+    """Write what the bands of each picture measured into it, where it is wanted."""
     # The jobs of a picture follow each other.
     shown = job.picture[job.band[:, 0]]
     first = np.flatnonzero(np.diff(shown, prepend=-1))
@@ -116,13 +105,11 @@ class _Measured(NamedTuple):
     visible_box: NDArray[np.int32]  # Shape (P, ..., 4).
 
 
-def _joined(by_band: NDArray[np.int32], first: NDArray[np.int64]) -> _Measured:
-    """Return what was measured in pictures.
-
-    Args:
-        by_band: What was measured in each of J bands, shape (J, ..., MEASURES).
-        first: The first band of each picture, shape (P,).
-    """
+def _joined(
+    by_band: NDArray[np.int32],  # What was measured in each of J bands, shape (J, ..., MEASURES)
+    first: NDArray[np.int64],  # The first band of each picture, shape (P,)
+) -> _Measured:
+    """Return what was measured in pictures."""
     box, pixels, visible = by_band[..., :4], by_band[..., 4:6], by_band[..., 6:]
     return _Measured(
         _around(box, pixels[..., 1:], first),

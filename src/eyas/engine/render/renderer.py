@@ -21,9 +21,9 @@ from eyas.engine.render.kernels.draw import draw_views
 from eyas.engine.render.kernels.light.casters import influence
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
 from eyas.engine.render.kernels.visibility.fill import SPAN_ROWS
-from eyas.engine.render.kernels.visibility.hidden import TILE
 from eyas.engine.render.kernels.visibility.items import ITEM_COLUMNS
 from eyas.engine.render.kernels.visibility.key import MOST_INSTANCES
+from eyas.engine.render.kernels.visibility.occlusion import TILE
 from eyas.engine.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.engine.render.lenses import NO_TABLES, LensBank
 from eyas.engine.render.outputs import (
@@ -39,8 +39,6 @@ from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import Scene
 from eyas.lanes import Held, interpreted, thread_count
 from eyas.lanes.vector import WIDTH
-
-__all__ = ["GRIDS", "CpuRenderer", "build_renderer"]
 
 
 class CpuRenderer:
@@ -217,22 +215,14 @@ class CpuRenderer:
 
 
 def build_renderer(
-    scene: Scene,
-    geometry: Geometry,
-    lighting: Lighting,
+    scene: Scene,  # The static scene
+    geometry: Geometry,  # The scene and the moving things, see `build_geometry`
+    lighting: Lighting,  # Light and air
     *,
-    cache: Path | None = None,
-    ready: Callable[[], object] | None = None,
+    cache: Path | None = None,  # Folder of the cache; None: the user's
+    ready: Callable[[], object] | None = None,  # See `Renderer`
 ) -> CpuRenderer:
-    """Return a renderer of a scene, its shadows baked.
-
-    Args:
-        scene: The static scene.
-        geometry: The scene and the moving things, see `build_geometry`.
-        lighting: Light and air.
-        cache: Folder of the cache; None: the user's.
-        ready: See `Renderer`.
-    """
+    """Return a renderer of a scene, its shadows baked."""
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)

@@ -5,8 +5,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import kernel
 
-__all__ = ["BAROMETER", "pressure"]
-
 
 @kernel
 def pressure(altitude: float) -> float:

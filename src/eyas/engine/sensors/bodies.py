@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.frames import rotate
 from eyas.lanes import kernel
 
-__all__ = ["BODY", "UprightBox", "body_box"]
-
 BODY = (0.806, 0.806, 0.366)
 """Length, width, height of the original's drone [m]; its camera, a few cm below, is neglected."""
 

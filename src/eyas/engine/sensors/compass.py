@@ -6,8 +6,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import kernel
 
-__all__ = ["COMPASS"]
-
 
 @kernel(inline=True)
 def _read(snapshot: Snapshot, terrain: Terrain, n: int, settings: Floats, reading: Floats) -> None:

@@ -5,11 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.chance import SEEDS, mixed
+from eyas.engine.core.counter_rng import SEEDS, mixed
 from eyas.engine.sensors.config import CameraErrors
 from eyas.lanes import exact, parallel, thread_count
-
-__all__ = ["Grain"]
 
 _DEVIATION = 147.8  # Standard deviation of the sum of four random bytes: (4 (256^2 - 1) / 12)^(1/2)
 
@@ -43,17 +41,11 @@ class Grain:
 
     def add(
         self,
-        rgb: NDArray[np.uint8],
-        trackers: NDArray[np.integer],
-        step: NDArray[np.int64],
+        rgb: NDArray[np.uint8],  # Pictures, shape (V, H, W, 3)
+        trackers: NDArray[np.integer],  # The tracker of each, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
     ) -> None:
-        """Add noise in place.
-
-        Args:
-            rgb: Pictures, shape (V, H, W, 3).
-            trackers: The tracker of each, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-        """
+        """Add noise in place."""
         views = len(trackers)
         work = _Work(
             rgb.reshape(views, -1),

@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = [
-    "SPACING",
-    "ObstacleGrid",
-    "Walk",
-    "cells_between",
-    "entered",
-    "grid_of",
-    "lane_cells",
-    "walk_along",
-]
-
 SPACING = 8.0  # Width of a cell [m]
 
 _BESIDE = 1e-3  # How far beside a ray cells are looked at, far more than rounding moves it [m]
@@ -58,13 +47,11 @@ class Walk(NamedTuple):
     slope: float  # Its way across lanes over that along it
 
 
-def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> ObstacleGrid:
-    """Return the grid of I items.
-
-    Args:
-        bounds: West, south, east, north of each [m], shape (I, 4).
-        top: Highest z of each [m], shape (I,).
-    """
+def grid_of(
+    bounds: NDArray[np.float64],  # West, south, east, north of each [m], shape (I, 4)
+    top: NDArray[np.float64],  # Highest z of each [m], shape (I,)
+) -> ObstacleGrid:
+    """Return the grid of I items."""
     corner = bounds[:, :2].min(axis=0) if len(bounds) else np.zeros(2)
     far = bounds[:, 2:].max(axis=0) if len(bounds) else np.zeros(2)
     columns, rows = (int(n) + 1 for n in (far - corner) // SPACING)
@@ -89,16 +76,12 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> ObstacleGr
 
 @kernel(inline=True)
 def cells_between(
-    grid: ObstacleGrid, x: tuple[float, float], y: tuple[float, float], beside: float
+    grid: ObstacleGrid,
+    x: tuple[float, float],  # Where the line begins and ends, east [m]
+    y: tuple[float, float],  # The same, north [m]
+    beside: float,  # How far cells matter beside it [m]
 ) -> tuple[int, int, int, int]:
-    """Return the first and last row, and the first and last column, of the cells around a line.
-
-    Args:
-        grid: The grid.
-        x: Where the line begins and ends, east [m].
-        y: The same, north [m].
-        beside: How far cells matter beside it [m].
-    """
+    """Return the first and last row, and the first and last column, of the cells around a line."""
     left = math.floor((min(x[0], x[1]) - beside - grid.west) / SPACING)
     right = math.floor((max(x[0], x[1]) + beside - grid.west) / SPACING)
     lower = math.floor((min(y[0], y[1]) - beside - grid.south) / SPACING)
@@ -109,20 +92,12 @@ def cells_between(
 @kernel(inline=True)
 def walk_along(
     grid: ObstacleGrid,
-    start: tuple[float, float],
-    ahead: tuple[float, float],
-    end: tuple[float, float],
-    cells: tuple[int, int, int, int],
+    start: tuple[float, float],  # Where it begins, east and north [m]
+    ahead: tuple[float, float],  # Its way east and north, per metre of its length
+    end: tuple[float, float],  # Where it ends [m]
+    cells: tuple[int, int, int, int],  # See `cells_between`: those of the rectangle around it
 ) -> Walk:
-    """Return the way of a ray.
-
-    Args:
-        grid: The grid.
-        start: Where it begins, east and north [m].
-        ahead: Its way east and north, per metre of its length.
-        end: Where it ends [m].
-        cells: See `cells_between`: those of the rectangle around it.
-    """
+    """Return the way of a ray."""
     first_row, last_row, left, right = cells
     x, y = start[0] - grid.west, start[1] - grid.south
     if abs(ahead[0]) >= abs(ahead[1]):

@@ -13,17 +13,13 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["GRAVITY", "accelerometer", "feel", "gyroscope", "rest", "smoothing_share"]
-
 GRAVITY = 9.81  # [m/s^2]
 
 
-def smoothing_share(time_constant: float) -> float:
-    """Return the share of a difference by which a low-pass closes it in a physics step.
-
-    Args:
-        time_constant: Of each of the two low-passes [s]; 0: no smoothing.
-    """
+def smoothing_share(
+    time_constant: float,  # Of each of the two low-passes [s]; 0: no smoothing
+) -> float:
+    """Return the share of a difference by which a low-pass closes it in a physics step."""
     if time_constant == 0.0:
         return 1.0
     half = exact.tanh(0.5 * PHYSICS_STEP / time_constant)

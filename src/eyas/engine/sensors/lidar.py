@@ -11,10 +11,11 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.core.counter_rng import SEEDS, normal, uniform
 from eyas.engine.core.frames import rotate
-from eyas.engine.sensors.chance import SEEDS, normal, uniform
-from eyas.engine.sensors.config import LidarConfig, MountConfig
+from eyas.engine.sensors.config import LidarConfig
 from eyas.engine.sensors.mount import turn_of
 from eyas.engine.sensors.movers import find_boxes
 from eyas.engine.sensors.obstacles import Obstacles
@@ -22,8 +23,6 @@ from eyas.engine.sensors.rays import Ray, cast_ray
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import Snapshot, TrackerState
 from eyas.lanes import compiled, exact, kernel
-
-__all__ = ["CAR_MOUNT", "MOUNT", "POINT_NUMBERS", "Lidar"]
 
 MOUNT = MountConfig(z=0.031)  # Where the original's drone has it
 

@@ -5,12 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.core.frames import rotate
-from eyas.engine.sensors.config import MountConfig
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.lanes import exact, kernel
-
-__all__ = ["CARRIED", "Mount", "left_on_gimbal", "mount_of", "turn_of"]
 
 Floats = NDArray[np.float64]
 

@@ -12,31 +12,20 @@ from eyas.engine.traffic.trailer import folded
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["find_boxes"]
-
 _SLACK = 20.0
 """Half the length of the longest actor, and more than any drives between two samples [m]."""
 
 
 @kernel(inline=True)
 def find_boxes(
-    movers: MovingObstacles,
-    n: int,
-    tick: int,
-    place: tuple[float, float, float],
-    reach: float,
-    boxes: Boxes,
+    movers: MovingObstacles,  # What moves
+    n: int,  # The tracker in whose world it is, and whose own body does not count
+    tick: int,  # Time in the traffic, in physics steps
+    place: tuple[float, float, float],  # World frame [m]
+    reach: float,  # How far from the place anything matters, along each axis [m]
+    boxes: Boxes,  # Where its boxes are written
 ) -> int:
-    """Find the boxes of what moves and may be near a place; return their number.
-
-    Args:
-        movers: What moves.
-        n: The tracker in whose world it is, and whose own body does not count.
-        tick: Time in the traffic, in physics steps.
-        place: World frame [m].
-        reach: How far from the place anything matters, along each axis [m].
-        boxes: Where its boxes are written.
-    """
+    """Find the boxes of what moves and may be near a place; return their number."""
     count, motion, time = 0, movers.motion, tick * PHYSICS_STEP
     row, world, far = sample_before(motion, time), movers.world[n], reach + _SLACK
     for actor in range(motion.table.shape[1]):
@@ -107,15 +96,13 @@ class _Place(NamedTuple):
 
 
 @kernel(inline=True)
-def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
-    """Return where a truck or its trailer is.
-
-    Args:
-        whole: Pose of both together.
-        hitch: Heading of the trailer less that of the truck [rad].
-        middle: Distance of the middle of the whole ahead of its reference point [m].
-        towed: See `folded`.
-    """
+def _carried(
+    whole: _Place,  # Pose of both together
+    hitch: float,  # Heading of the trailer less that of the truck [rad]
+    middle: float,  # Distance of the middle of the whole ahead of its reference point [m]
+    towed: int,  # See `folded`
+) -> _Place:
+    """Return where a truck or its trailer is."""
     x, y, c, s = folded(hitch, towed)
     x, y = x + middle * (1.0 - c), y - middle * s
     return _Place(

@@ -10,8 +10,6 @@ from eyas.engine.state.terrain import Terrain
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["ACCELEROMETER", "GPS_POSITION", "GPS_VELOCITY", "GYROSCOPE", "IMU", "ORIGINAL"]
-
 _EULER = 4  # column of the IMU's Euler angles, behind the quaternion
 
 

@@ -19,8 +19,6 @@ from eyas.engine.sensors.slopes import Slopes, free_way
 from eyas.engine.state.terrain import Terrain, ground_at
 from eyas.lanes import kernel
 
-__all__ = ["Ray", "cast_ray"]
-
 _HALVINGS = 24  # How often the part of a ray that enters a hill is halved
 
 _SLACK = 1e-3

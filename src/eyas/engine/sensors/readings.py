@@ -11,15 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_RATE
-from eyas.engine.sensors.chance import SEEDS, mixed, normal, uniform
+from eyas.engine.core.counter_rng import SEEDS, mixed, normal, uniform
 from eyas.engine.sensors.config import ReadingConfig
 from eyas.engine.sensors.sensor import Floats, Sensor, keep
 from eyas.engine.sensors.table import Fitted
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import CompiledCall, compiled, interpreted, kernel, specialised
-
-__all__ = ["Readings", "must_read"]
 
 Integers = NDArray[np.int64]
 

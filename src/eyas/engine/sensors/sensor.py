@@ -19,8 +19,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import Kernel, kernel
 
-__all__ = ["Floats", "Sensor", "keep"]
-
 Floats = NDArray[np.float64]
 
 _ARGUMENTS = ("snapshot", "terrain", "n", "settings", "reading")

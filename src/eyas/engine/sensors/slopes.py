@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact, kernel
 
-__all__ = ["Slopes", "free_way", "slopes_of"]
-
 _CELLS: Final = 4  # Cells of the relief along the side of a block
 
 _AROUND: Final = (1, 4)  # Blocks around each over which the steepest slope is taken
@@ -54,21 +52,13 @@ def _most_around(blocks: Floats, reach: int) -> Floats:
 
 @kernel(inline=True)
 def free_way(
-    slopes: Slopes,
-    terrain: Terrain,
-    place: tuple[float, float],
-    ahead: tuple[float, float],
-    above: float,
+    slopes: Slopes,  # Those of the terrain
+    terrain: Terrain,  # The ground, not flat
+    place: tuple[float, float],  # Where the ray is, east and north [m]
+    ahead: tuple[float, float],  # Its ways on the level, and up, per metre
+    above: float,  # Its height above the ground [m]
 ) -> float:
-    """Return how far a ray is surely above hills [m].
-
-    Args:
-        slopes: Those of the terrain.
-        terrain: The ground, not flat.
-        place: Where the ray is, east and north [m].
-        ahead: Its ways on the level, and up, per metre.
-        above: Its height above the ground [m].
-    """
+    """Return how far a ray is surely above hills [m]."""
     rows, columns = slopes.near.shape
     row = int(min(max((place[1] - terrain.south) / slopes.width, 0.0), float(rows - 1)))
     column = int(min(max((place[0] - terrain.west) / slopes.width, 0.0), float(columns - 1)))

@@ -3,10 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.config import ColourLayout, Colours
+from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.lanes import kernel, parallel, thread_count
-
-__all__ = ["FrameStack", "luma"]
 
 Bytes = NDArray[np.uint8]
 
@@ -46,16 +44,13 @@ class FrameStack:
         self._axis = 1 if first else -1
 
     def add(
-        self, rgb: Bytes, chosen: NDArray[np.integer], begun: NDArray[np.bool_] | None = None
+        self,
+        rgb: Bytes,  # Pictures, shape (V, H, W, 3)
+        chosen: NDArray[np.integer],  # The stack of each, shape (V,)
+        # Whether each is the first of an episode, which fills its stack, shape (V,); None: none is
+        begun: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Add a picture to some stacks.
-
-        Args:
-            rgb: Pictures, shape (V, H, W, 3).
-            chosen: The stack of each, shape (V,).
-            begun: Whether each is the first of an episode, which fills its stack, shape (V,); None:
-                none is.
-        """
+        """Add a picture to some stacks."""
         stacks = np.moveaxis(_lumas(rgb) if self._grey else rgb, -1, self._axis)
         if self._frames > 1:
             older = np.split(self.images[chosen], [self._channels], self._axis)[1]

@@ -9,8 +9,6 @@ from eyas.engine.sensors.config import FurtherSensorConfig, ReadingConfig, Senso
 from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.sensors.sensor import Sensor
 
-__all__ = ["SENSORS", "Fitted", "fitted_sensors", "further_sensors"]
-
 SENSORS: Registry[Sensor] = Registry(
     "sensors.further",
     Sensor,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import Field, create_model, model_validator
 
-from eyas.engine.core.config import updated
-from eyas.engine.core.doors import brought
-from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.config import updated, validated
+from eyas.engine.core.doors import brought, brought_object, installed
+from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.settings.section import Changes, Section
 from eyas.engine.settings.video import VideoConfig
@@ -39,6 +39,8 @@ class EngineConfig(SimConfig):
     `eyas.steps`."""
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
+    own: dict[str, dict[str, Any]] = {}  # noqa: RUF012  # pydantic copies it
+    """Sections of packages of others, by the names of their entry points in `eyas.settings`."""
     if TYPE_CHECKING:
         original: dict[str, Value] | None = None  # a field of the whole, below: last in files
 
@@ -48,6 +50,15 @@ class EngineConfig(SimConfig):
             raise ValueError(
                 "env.actions must be without '+gimbal': camera.mount fixes the camera to the body"
             )
+        return self
+
+    @model_validator(mode="after")
+    def _check_own(self) -> Self:
+        for name, values in self.own.items():
+            section = brought_object("eyas.settings", name)
+            if section is None or name in brought("eyas.settings"):
+                raise UnknownNameError("own", name, tuple(installed("eyas.settings")))
+            validated(section, values, f"own.{name}")
         return self
 
     @model_validator(mode="after")

@@ -92,9 +92,6 @@ def dialect() -> Dialect | None:
 def spoken(what: str) -> Dialect:
     """Return the dialect.
 
-    Args:
-        what: What is in it, for the message.
-
     Raises:
         ConfigError: No house reads it.
     """

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.engine.core.config import Config
-from eyas.engine.sensors.config import ColourLayout, Colours
 
 __all__ = [
     "ActionKind",
@@ -49,7 +49,7 @@ class EnvSpeeds(ActionSpeeds):
 
 
 class GimbalConfig(Config):
-    """How far and how fast an agent turns its camera. The defaults are those of the demo."""
+    """Range and rates at which an agent turns its camera. The defaults are those of the demo."""
 
     pitch_rate: Annotated[float, Field(gt=0, le=20)] = 1.5
     """Fastest turn up and down [rad/s]."""
@@ -70,12 +70,12 @@ class GimbalConfig(Config):
 
 
 class ActionKind(StrEnum):
-    """What an agent chooses from."""
+    """Kinds of actions of an agent."""
 
     DISCRETE = "discrete"  # Seven actions: six motions along or about one axis, and hover
     SHARES = "shares"
     """Four numbers from -1 to 1: shares of the speeds forward, left, up and of the turn rate."""
-    VELOCITY = "velocity"  # The same four in physical units: m/s and, counter-clockwise, rad/s
+    VELOCITY = "velocity"  # These four in physical units: m/s and, counter-clockwise, rad/s
     DISCRETE_GIMBAL = "discrete+gimbal"
     """Eleven actions: the seven, and four that turn the camera: down, up, left, right."""
     SHARES_GIMBAL = "shares+gimbal"
@@ -96,14 +96,14 @@ class ActionKind(StrEnum):
 
     @property
     def size(self) -> int:
-        """How many actions there are, or how many numbers an action has."""
+        """Number of actions, or of the numbers of one."""
         if self.numbered:
             return 11 if self.gimbal else 7
         return 6 if self.gimbal else 4
 
 
 class ObservationPart(StrEnum):
-    """What an observation can hold; of several, it is a dictionary by these names."""
+    """Parts of an observation; of several, it is a dictionary by these names."""
 
     IMAGE = "image"  # The camera's picture, uint8
     CAMERAS = "cameras"
@@ -115,15 +115,15 @@ class ObservationPart(StrEnum):
     LIDAR = "lidar"
     """Distance of each point of the lidar [m], its longest range where nothing is, float32."""
     EVENTS = "events"
-    """How many events of less and of more light each pixel of the event camera has had since the
+    """Numbers of events of less and of more light each pixel of the event camera has had since the
     last observation, in each part of that time (`camera.events.bins`), at most 255, uint8."""
     WORDS = "words"
     """A sentence that tells the target from all else in the first picture, text; only beside other
     parts."""
     ATTRIBUTES = "attributes"
-    """What it says as numbers, `eyas.engine.targets.grammar.attributes.ATTRIBUTES`, float32."""
+    """The instruction as numbers, `eyas.engine.targets.grammar.attributes.ATTRIBUTES`, float32."""
     PRIVILEGED = "privileged"
-    """What no sensor tells: the true motion of the target, 16 numbers, float32."""
+    """State that no sensor measures: the true motion of the target, 16 numbers, float32."""
 
 
 AnyPart = Annotated[
@@ -133,14 +133,14 @@ AnyPart = Annotated[
 
 
 class ObservationConfig(Config):
-    """What an agent sees."""
+    """Observations of an agent."""
 
     parts: Annotated[tuple[AnyPart, ...], Field(min_length=1)] = (ObservationPart.IMAGE,)
     """The parts, and names of single sensors, whose readings they are; of one, the observation is
     its array, of several, a dictionary of arrays."""
     width: Annotated[int, Field(ge=8, le=8192)] = 84
-    """Of picture, depth and classes [pixels]; they show the camera's whole view, squeezed if their
-    shape is another."""
+    """Size of picture, depth and classes [pixels]; they show the camera's whole view, squeezed if
+    their shape is another."""
     height: Annotated[int, Field(ge=8, le=8192)] = 84
     """[pixels]"""
     colours: Colours = Colours.RGB
@@ -165,7 +165,7 @@ class EnvConfig(Config):
     """Meaning of an agent's actions in the environments, and what it sees."""
 
     actions: ActionKind = ActionKind.DISCRETE
-    """What the agent chooses from."""
+    """Kind of actions of the agent."""
     action_repeat: Annotated[int, Field(ge=1, le=500)] = 1
     """Number of control steps that an action lasts; their rewards are added up, and only the last
     is observed. It ends early with the episode."""

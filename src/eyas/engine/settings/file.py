@@ -1,29 +1,39 @@
-"""Settings in files and on the command line."""
+"""Settings in files and on the command line, and those that come with Eyas, by name."""
 
 import json
 import logging
 import re
 from collections.abc import Iterator, Sequence
+from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from eyas.engine.core.clock import PHYSICS_RATE, physics_steps
 from eyas.engine.core.config import group_of, updated, validated
-from eyas.engine.core.errors import ConfigError, DataFileError
+from eyas.engine.core.doors import brought
+from eyas.engine.core.errors import ConfigError, DataFileError, UnknownNameError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import dialect, named_path, spoken
 from eyas.engine.settings.trust import refuse_code
 
-__all__ = ["SCHEMA_KEY", "load_settings", "parsed_override", "read_settings", "save_settings"]
+__all__ = [
+    "PRESETS",
+    "SCHEMA_KEY",
+    "load_settings",
+    "parsed_override",
+    "preset_file",
+    "read_settings",
+    "save_settings",
+]
 
 _LOG = logging.getLogger("eyas")
 
 Nested = dict[str, Any]
 
 SCHEMA_KEY = "$schema"
-"""By which editors find the schema of a file (`eyas config schema`); it changes nothing."""
+"""Key by which editors find the schema of a file (`eyas config schema`); it changes nothing."""
 
 _LARGEST = 16 << 20  # Largest file of settings [bytes]
 
@@ -129,7 +139,7 @@ def read_settings(path: Path) -> Nested:
 _STRING = r'"(?:\\.|[^"\\])*(?:"|\Z)'
 _COMMENT = re.compile(rf"({_STRING})|//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _LAST_COMMA = re.compile(rf"((?:{_STRING}|[^\s\[{{,:\"])\s*),(?=\s*[}}\]])|({_STRING})", re.DOTALL)
-"""What is left out; groups stay."""
+"""Comments, and the commas before closing brackets, that are left out; groups stay."""
 
 
 def _parsed(text: str, path: Path) -> Any:  # noqa: ANN401  # JSON
@@ -159,7 +169,10 @@ def _tell_surprises(config: EyasConfig) -> None:
             "%s: %g does not divide %d; an action lasts %d steps of 2 ms, "
             "so the effective rate is %.4g Hz",
             named_path(config, "control.frequency"),
-            *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
+            frequency,
+            PHYSICS_RATE,
+            steps,
+            PHYSICS_RATE / steps,
         )
 
 
@@ -211,3 +224,23 @@ def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN4
             values[key] = {}
         values = values[key]
     values[keys[-1]] = value
+
+
+PRESETS = {
+    **{name: f"{__package__}:presets/{name}.json" for name in ("easy", "flown", "lively", "noisy")},
+    **brought("eyas.presets"),
+}
+"""Files of all presets, `package:path`; docs/configuration.md says what each is for. The engine's
+own are worlds that are easier or harder than the default; in one, a flight controller flies."""
+
+
+def preset_file(name: str) -> Path:
+    """Return the file of a preset.
+
+    Raises:
+        UnknownNameError: There is no such preset.
+    """
+    if name not in PRESETS:
+        raise UnknownNameError("preset", name, tuple(PRESETS))
+    package, _, path = PRESETS[name].partition(":")
+    return Path(str(files(package))) / path

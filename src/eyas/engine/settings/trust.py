@@ -1,4 +1,4 @@
-"""Which files of settings may name code: only those that the user trusts.
+"""Trust in files of settings: only those that the user trusts may name code.
 
 Settings name code by `package.module:attribute`: terms of the reward, targets, trackers, maps and
 writers of one's own. Importing and calling these is as good as running a program of whoever wrote
@@ -10,9 +10,9 @@ import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from eyas.engine.core.code_names import code_named
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import user_path
+from eyas.engine.core.own_code import code_named
 from eyas.engine.settings.config import EyasConfig, variants
 
 __all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code", "refuse_named"]
@@ -22,7 +22,7 @@ TRUST_VARIABLE = "EYAS_TRUST"
 
 
 def code_of(config: EyasConfig) -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name, as `eyas.engine.core.code_names.code_named`.
+    """Yield each piece of code that settings name, as `eyas.engine.core.own_code.code_named`.
 
     Those of mixtures and stages are included, where they differ from the common ones.
     """
@@ -49,18 +49,18 @@ def is_trusted(path: Path) -> bool:
     return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
-def refuse_code(path: Path, config: EyasConfig, said: Collection[str] = ()) -> None:
+def refuse_code(path: Path, config: EyasConfig, typed: Collection[str] = ()) -> None:
     """Refuse code that only a file names.
 
     Args:
         path: The file.
         config: The settings that it has led to.
-        said: Texts that the user has said beside it; code that is named there is the user's.
+        typed: Texts that the user has typed beside it; code that is named there is the user's.
 
     Raises:
         ConfigError: It names code, and is not trusted: one line with all that would run.
     """
-    refuse_named(path, [(setting, name) for setting, name in code_of(config) if name not in said])
+    refuse_named(path, [(setting, name) for setting, name in code_of(config) if name not in typed])
 
 
 def refuse_named(path: Path, code: Collection[tuple[str, str]]) -> None:

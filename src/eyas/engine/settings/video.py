@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.settings.env import ActionSpeeds
 
 __all__ = ["VideoConfig"]
@@ -63,7 +63,10 @@ class VideoConfig(ActionSpeeds):
     episodes: Annotated[int, Field(ge=1, le=1_000_000)] = 1
     """Episodes of each tracker, if `episode_frames` is set."""
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
-        *("jpeg", "mp4", "labels", "mark"),
+        "jpeg",
+        "mp4",
+        "labels",
+        "mark",
     )
     """Output formats; where the extra `video` is not installed, the default has `webp` instead of
     `mp4`. `jpeg`, `png`, `mp4`, `webp`, `labels`, `mark`, `clean`, `cameras`, `masks`,

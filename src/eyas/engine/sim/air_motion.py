@@ -18,8 +18,6 @@ from eyas.engine.targets.bird import BIRD
 from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.targets.quadrotor import QUADROTOR
 
-__all__ = ["air_motions"]
-
 _TEXEL = 4.0  # Side of the squares in which heights are known [m]
 _AROUND = 2  # Squares around a place whose heights count
 

@@ -41,8 +41,6 @@ from eyas.engine.world.config import WorldConfig, WorldWindConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import SIGNALS_FILE, SIGNALS_TRAFFIC_FILE
 
-__all__ = ["Assets", "load_assets"]
-
 _FALLING = ("flakes", "rain", "leaves")
 
 _RATE = 10.0  # Samples per second of worlds without vehicles, as of a recording [Hz]

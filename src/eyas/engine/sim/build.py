@@ -18,8 +18,6 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.engine.trackers.tracker import Tracker
 
-__all__ = ["assets_of", "build_simulation", "in_one_wind", "tracker_in"]
-
 _LOG = logging.getLogger("eyas")
 
 

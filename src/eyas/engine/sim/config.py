@@ -6,17 +6,16 @@ from pydantic import AfterValidator, Field, model_validator
 
 from eyas.engine.behaviours.airborne import AirborneConfig
 from eyas.engine.behaviours.config import ExtraConfig
+from eyas.engine.camera.config import CameraConfig, FurtherCameraConfig
 from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, within
 from eyas.engine.custom.config import CustomConfig
-from eyas.engine.sensors.config import CameraConfig, FurtherCameraConfig, LidarConfig, SensorsConfig
+from eyas.engine.sensors.config import LidarConfig, SensorsConfig
 from eyas.engine.targets.config import ObjectsConfig, TargetName
 from eyas.engine.task.config import DoneConfig, RewardConfig, StartConfig
 from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.world.config import LightConfig, WorldConfig
-
-__all__ = ["ControlConfig", "SimConfig"]
 
 Latency = Annotated[Variation, AfterValidator(within(0.0, 500.0))]
 

@@ -15,8 +15,6 @@ from eyas.engine.traffic.cover import Cover, Stretch
 from eyas.engine.world.weather import Season
 from eyas.lanes import exact
 
-__all__ = ["cover_of", "hidden_stretches"]
-
 _HEIGHT = 22.0  # Height of the drone above the road, as in the protocols [m]
 
 _ASIDE = (4.5, 10.0)

@@ -12,8 +12,6 @@ from eyas.engine.targets.habit import Behaviour
 from eyas.engine.traffic.config import Source
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["NOBODY", "Crowd", "crowd_of", "extras_of", "vehicles_of"]
-
 
 class Crowd(Config):
     """Everyone in a world who is not a vehicle of SUMO's: targets that are asked for, and extras.

@@ -28,7 +28,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     from eyas.engine.behaviours.ground import Ground
 
-__all__ = ["Surroundings", "crowd_motions", "live_motions", "with_crowd"]
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
@@ -76,14 +75,11 @@ def live_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
 
 
 def with_crowd(
-    vehicles: Motion | None, crowd: Crowd, around: Surroundings
+    vehicles: Motion | None,  # The vehicles; None: there are none
+    crowd: Crowd,
+    around: Surroundings,  # Where and when it moves
 ) -> tuple[Motion, NDArray[np.bool_]]:
     """Return the motion of vehicles and, after them, of a crowd, and who may be a target.
-
-    Args:
-        vehicles: The vehicles; None: there are none.
-        crowd: The crowd.
-        around: Where and when it moves.
 
     Raises:
         SpawnError: The map has no room for all.
@@ -167,16 +163,12 @@ def _kept(
 
 
 def _numbers_of(
-    group: ScriptedGroup, number: int, around: Surroundings, ground: Callable[[], "Ground"]
+    group: ScriptedGroup,  # Who moves
+    number: int,  # Which of the crowd's groups it is
+    around: Surroundings,  # Where and when it moves
+    ground: Callable[[], "Ground"],  # Returns the ground
 ) -> NDArray[np.float32]:
-    """Return the numbers of the samples of a group's motion.
-
-    Args:
-        group: Who moves.
-        number: Which of the crowd's groups it is.
-        around: Where and when it moves.
-        ground: Returns the ground.
-    """
+    """Return the numbers of the samples of a group's motion."""
     from eyas.engine.behaviours.scripted import scripted_table  # with shapely
 
     rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))

@@ -21,16 +21,6 @@ from eyas.engine.traffic.source import Stays
 from eyas.lanes import compiled, kernel
 from eyas.lanes.pcg64 import begin_stream, whole
 
-__all__ = [
-    "Call",
-    "EpisodeSampling",
-    "ModelTable",
-    "SamplingRules",
-    "Streams",
-    "follow",
-    "sample_episodes",
-]
-
 _LOOKS, _LIGHT, _CAMERA, _EPISODE = map(room_key, ("looks", "light", "camera", "episode"))
 
 ATTEMPTS: Final = 100  # Number of start times that are tried

@@ -30,8 +30,6 @@ from eyas.engine.traffic.source import TrafficSource
 from eyas.lanes import Held, interpreted
 from eyas.lanes.pcg64 import STATE
 
-__all__ = ["Episodes", "Sampler"]
-
 Sampler = Callable[[int, EpisodeKey], None]  # Draws something for the episode of a tracker
 
 _follow = interpreted(follow)

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.core.variation import Variation, bounds, sample
 
-__all__ = ["LateCommands", "Latency", "is_always_0"]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -12,8 +12,6 @@ from eyas.engine.trackers.wind import mean_wind
 from eyas.engine.world.config import LightConfig, WorldWindConfig
 from eyas.lanes import kernel
 
-__all__ = ["LightChanges", "LightRules", "change_light"]
-
 _UNCHANGED = LightConfig()
 
 

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.doors import first_brought
+from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.ahead import other_is_ready
 from eyas.engine.render.kernels.bundles import Geometry
 from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
 from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
-from eyas.engine.render.textures.library import build_textures
 from eyas.engine.sensors.obstacles import Solids, solids_of
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.roads import RoadNetwork
@@ -31,17 +32,6 @@ from eyas.engine.world.maps.planner import planner
 from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.street.signals import lens_levels
 from eyas.engine.world.weather import Season
-
-__all__ = [
-    "Lenses",
-    "load_geometry",
-    "load_network",
-    "load_parts",
-    "load_scene",
-    "load_solids",
-    "load_textures",
-    "paint",
-]
 
 
 class Lenses(Enum):
@@ -128,26 +118,18 @@ def load_solids(map_name: str, seed: int, season: Season) -> Solids:
 @lru_cache(maxsize=4)
 def load_geometry(
     map_name: str,
-    seed: int,
-    season: Season,
-    kinds: tuple[int, ...],
+    seed: int,  # Seed of the map
+    season: Season,  # Season of the weather
+    kinds: tuple[int, ...],  # Kinds of the moving objects, indices into `KINDS`
     *,
-    lenses: Lenses = Lenses.NONE,
+    lenses: Lenses = Lenses.NONE,  # Which lights of signals are parts, too, the last ones
 ) -> Geometry:
-    """Return the geometry of a scene and of the parts of moving objects, for the kernels.
-
-    Args:
-        map_name: Name of the map.
-        seed: Seed of the map.
-        season: Season of the weather.
-        kinds: Kinds of the moving objects, indices into `KINDS`.
-        lenses: Which lights of signals are parts, too, the last ones.
-    """
+    """Return the geometry of a scene and of the parts of moving objects, for the kernels."""
     scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
     make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
     if origin is None:
         return make()
-    inputs = (*origin, part_library, _chosen(kinds), build_textures, lenses.value)
+    inputs = (*origin, part_library, _chosen(kinds), _texture_maker(), lenses.value)
     return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
 
 
@@ -183,12 +165,10 @@ def _parts_of(kind: TargetKind) -> PartLibrary:
     return cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
 
 
-def paint(kinds: Sequence[int]) -> None:
-    """Put textures, and the parts of kinds of moving objects, into the cache.
-
-    Args:
-        kinds: See `load_geometry`.
-    """
+def paint(
+    kinds: Sequence[int],  # See `load_geometry`
+) -> None:
+    """Put textures, and the parts of kinds of moving objects, into the cache."""
     load_textures()
     load_parts(tuple(kinds))
 
@@ -218,4 +198,12 @@ def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
 
 def load_textures() -> dict[str, NDArray[np.uint8]]:
     """Return all textures by name."""
-    return cached(Kind.TEXTURES, build_textures, (), of=dict[str, NDArray[np.uint8]])
+    return cached(Kind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
+
+
+def _texture_maker() -> Callable[[], dict[str, NDArray[np.uint8]]]:
+    """Return what makes the textures, which a house of makers brings."""
+    made: Callable[[], dict[str, NDArray[np.uint8]]] | None = first_brought("eyas.textures")
+    if made is None:
+        raise ConfigError("world.map: no house here makes textures (eyas.maps is not there)")
+    return made

@@ -21,7 +21,6 @@ if TYPE_CHECKING:  # slow to import, and a server listens before
 
     from eyas.engine.sim.simulation import Simulation
 
-__all__ = ["Face", "Loop", "Orders", "serve"]
 
 _LOG = logging.getLogger("eyas")
 

@@ -30,8 +30,6 @@ from eyas.engine.trackers.gimbal_command import WIDTH, WITH_GIMBAL
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import exact as elementary
 
-__all__ = ["Simulation", "StepResult", "is_judged", "rules_of"]
-
 Floats = NDArray[np.float64]
 
 

@@ -19,8 +19,6 @@ from eyas.engine.task.clearance import Margin, lifted_over
 from eyas.engine.traffic.interpolation import interpolate_actor
 from eyas.lanes import BoundCall, compiled, kernel
 
-__all__ = ["AROUND_BODY", "Starts", "starts_in"]
-
 AROUND_BODY = Margin(aside=0.3, above=0.3, ground=-0.5)
 """Around the middle of the body, which holds the camera; the ground is let off half a metre, as
 cars start on it."""

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.frames import wrap_angle
-from eyas.engine.sensors.camera.velocity import begin_at_rest, left_unknown, moved_from, pose_before
 from eyas.engine.sensors.inertial import feel, rest
 from eyas.engine.sensors.mount import Mount
 from eyas.engine.sensors.mount import left_on_gimbal as carried
@@ -33,16 +33,6 @@ from eyas.engine.trackers.tracker import stand as launch
 from eyas.engine.traffic.interpolation import interpolate_actor
 from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
-
-__all__ = [
-    "Orders",
-    "Step",
-    "StepKernels",
-    "StepState",
-    "StepSurroundings",
-    "offset_pose",
-    "step_of",
-]
 
 
 @kernel(inline=True)
@@ -144,15 +134,12 @@ class StepKernels(NamedTuple):
 
 
 def step_of(
-    tracker: Tracker, carried: Kernel = carried, *, velocities: bool = False
+    tracker: Tracker,  # The kind
+    carried: Kernel = carried,  # One of `eyas.engine.sensors.mount.CARRIED`
+    *,
+    velocities: bool = False,  # Whether the velocities of cameras are kept up
 ) -> StepKernels:
-    """Return the step of a kind of tracker.
-
-    Args:
-        tracker: The kind.
-        carried: One of `eyas.engine.sensors.mount.CARRIED`.
-        velocities: Whether the velocities of cameras are kept up.
-    """
+    """Return the step of a kind of tracker."""
     start, launch, advance, carry = tracker.start, tracker.launch, tracker.advance, tracker.carry
     return _step_of(start, launch, advance, carry, tracker.aim, carried, velocities)
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import MountConfig
+from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.bounds import FARTHEST, LARGEST, checked, limited
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.rng import EpisodeKey
-from eyas.engine.sensors.camera.vibration import Vibration
-from eyas.engine.sensors.config import MountConfig
 from eyas.engine.sensors.inertial import smoothing_share
 from eyas.engine.sensors.mount import CARRIED, mount_of
 from eyas.engine.sim.assets import Assets
@@ -30,8 +30,6 @@ from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import BoundCall, Held
-
-__all__ = ["Stepper", "step_kernels", "step_state"]
 
 Floats = NDArray[np.float64]
 
@@ -125,15 +123,13 @@ class Stepper:
         self._turning: BoundCall | None = None
 
     def begin(
-        self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
+        self,
+        chosen: NDArray[np.int64],  # The trackers, shape (K,)
+        pitch: Floats,  # Commanded pitch of their cameras [rad], shape (K,)
+        # Returns what the random numbers of a tracker's episode depend on
+        key_of: Callable[[int], EpisodeKey],
     ) -> None:
-        """Put trackers at their start poses.
-
-        Args:
-            chosen: The trackers, shape (K,).
-            pitch: Commanded pitch of their cameras [rad], shape (K,).
-            key_of: Returns what the random numbers of a tracker's episode depend on.
-        """
+        """Put trackers at their start poses."""
         count = len(chosen)
         self._orders.pitch[:count] = pitch
         self._orders.chosen[:count] = chosen

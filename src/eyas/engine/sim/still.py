@@ -10,8 +10,6 @@ from eyas.engine.targets.looks import LookSampler
 from eyas.engine.traffic.lamps import shining
 from eyas.lanes import interpreted
 
-__all__ = ["StillWorld"]
-
 _shining = interpreted(shining)
 
 

@@ -24,8 +24,6 @@ from eyas.engine.trackers.wind_field import UNIT, WindField
 from eyas.lanes import compiled, exact, kernel
 from eyas.lanes.elementary import power
 
-__all__ = ["wind_field", "winds_over"]
-
 _SPACING = 5.0  # Of the grid [m]
 
 _LEVELS, _KEPT = 20, 13  # Levels that are computed, and those that are kept: up to 65 m

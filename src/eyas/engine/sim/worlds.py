@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.sensors.camera.poses import Moving
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.views.near_lights import NearLights
@@ -18,8 +18,6 @@ from eyas.engine.targets.kind import Colour, Looks
 from eyas.engine.targets.looks import LookSampler
 from eyas.engine.traffic.interpolation import sample_before
 from eyas.lanes import interpreted
-
-__all__ = ["ALONE", "Worlds", "each_alone", "largest_world", "together"]
 
 Integers = NDArray[np.int64]
 

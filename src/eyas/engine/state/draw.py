@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.pinhole import focal_length
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.state.lighting import LightState
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass
@@ -123,8 +123,9 @@ class Views:
     falls, and the air is calm."""
     falling: bool = True  # Whether flakes, drops and leaves are drawn at that time
     lens: NDArray[np.float64] | None = None
-    """The numbers of the lens of each view, see `eyas.engine.core.lens.Lens`, shape (V, 10); None:
-    all are pinholes. Fields of view are then those of pinholes with the same focal lengths."""
+    """Numbers of the lens of each view, see `eyas.engine.core.optics.lens.Lens`, shape (V, 10);
+    None: all are pinholes. Fields of view are then those of pinholes with the same focal
+    lengths."""
     picture: NDArray[np.int32] | None = None
     """Which of the P pictures each view draws into, those of one picture next to each other,
     shape (V,); None: each into its own."""

@@ -27,7 +27,7 @@ class EpisodeState(NamedTuple):
     crash: NDArray[np.bool_]
     """Whether the tracker has crashed, as `done.crash` means it, shape (N,)."""
     contact: Floats
-    """Where the body has touched something last, world frame [m]; zeros if nowhere since the reset,
+    """Place of the last contact of the body, world frame [m]; zeros if nowhere since the reset,
     shape (N, 3)."""
     contact_object: Integers
     """Object id of what it has touched there, as in `Picture.object_id`; -1 if nothing,

@@ -86,7 +86,7 @@ class Lighting:
     stars: float = 1.0
     """Brightness of the stars, which are seen where lamps are on."""
     star_turn: float = 0.0
-    """How far the stars have turned round the pole [rad]."""
+    """Turn of the stars round the pole [rad]."""
     moon_limb: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Unit vector from the middle of the moon's disc to its bright limb; 0: it is full."""
     moon_lit: float = 1.0
@@ -101,7 +101,7 @@ class Lighting:
 
 
 class LightState(NamedTuple):
-    """What differs from the weather's light around each of N trackers, or in each of N views."""
+    """Deviations from the weather's light around each of N trackers, or in each of N views."""
 
     sky: NDArray[np.float32]
     """Factor on the sky and its light, shape (N,)."""

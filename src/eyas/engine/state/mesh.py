@@ -13,7 +13,7 @@ MARGIN = 0.275
 
 
 class Surface(IntEnum):
-    """How a material reflects or emits light."""
+    """Kinds of surfaces: the way in which a material reflects or emits light."""
 
     MATT = 0
     """Plain diffuse."""
@@ -81,7 +81,7 @@ class Material:
     """Factor on the texture, sRGB, each 0 to 1; slightly more where plain parts of the texture are
     not white."""
     surface: Surface = Surface.MATT
-    """How it reflects or emits light."""
+    """Kind of its surface."""
     emission: float = 0.0
     """Emitted light, as a factor on the colour."""
 

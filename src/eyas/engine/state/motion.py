@@ -39,9 +39,9 @@ sample [m]; present: 1 while the actor is in the world, else 0.
 
 
 class Lamp(IntFlag):
-    """What a vehicle signals."""
+    """Lamps of a vehicle that are lit, as bits."""
 
-    BRAKE = 1  # Its brake lamps are lit
+    BRAKE = 1  # Brake lamps
     LEFT = 2  # It is going to go left: its indicators on the left blink
     RIGHT = 4  # The same on the right
 
@@ -104,7 +104,7 @@ class ActorState(NamedTuple):
 class ActorView(NamedTuple):
     """All A actors of a tracker's world at the instant that its pictures show."""
 
-    state: ActorState  # Of one world
+    state: ActorState  # State of the actors of one world
     before: ActorState  # A physics step of 2 ms earlier
     model: NDArray[np.int32]  # Indices into `eyas.engine.targets.catalogue.MODELS`, shape (A,).
     colour: NDArray[np.float32]  # sRGB, 0 to 1, shape (A, 3)

@@ -67,9 +67,15 @@ class ObjectClass(IntEnum):
 
 LABELLED = frozenset(
     {
-        *(ObjectClass.CAR, ObjectClass.TRUCK, ObjectClass.BUS, ObjectClass.MOTORCYCLE),
-        *(ObjectClass.PERSON, ObjectClass.ROBOT, ObjectClass.BICYCLE),
-        *(ObjectClass.BOAT, ObjectClass.TRAIN),
+        ObjectClass.CAR,
+        ObjectClass.TRUCK,
+        ObjectClass.BUS,
+        ObjectClass.MOTORCYCLE,
+        ObjectClass.PERSON,
+        ObjectClass.ROBOT,
+        ObjectClass.BICYCLE,
+        ObjectClass.BOAT,
+        ObjectClass.TRAIN,
     }
 )
 """Classes of what labels list: whatever moves, and what of the same looks stands still."""
@@ -126,13 +132,13 @@ class Lamps:
 
 @dataclass(slots=True)
 class Footways:
-    """Where people walk, in plan view: beside R kerbs, over C crossings."""
+    """Ways of people in plan view: beside R kerbs, over C crossings."""
 
     kerb_points: NDArray[np.float64]
     """Outlines of the asphalt, which lies on their left [m], shape (K, 2); the first point of each
     is also its last. None where pavements lie along the network."""
     kerb_first: NDArray[np.int32]  # Start of each outline's points, shape (R + 1,)
-    crossings: NDArray[np.float64]  # From kerb to kerb [m], shape (C, 2, 2)
+    crossings: NDArray[np.float64]  # Ends of each, at the kerbs [m], shape (C, 2, 2)
     lights: tuple[str, ...]
     """Names of the crossings' lights in the network, C; empty where there are none."""
 
@@ -176,7 +182,7 @@ class Scene:
     horizon: Horizon = field(default_factory=Horizon)
     """Hills all around the map, far beyond its edge."""
     footways: Footways = field(default_factory=Footways.none)
-    """Where people walk."""
+    """Ways of people."""
 
     @classmethod
     def empty(cls) -> "Scene":

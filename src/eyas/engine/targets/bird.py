@@ -14,8 +14,6 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.kind import Group, Kind, Looks, Model
 from eyas.lanes import exact
 
-__all__ = ["BIRD"]
-
 _FEATHERS = Material(surface=Surface.PAINT)
 _TIPS = Material(tint=(0.20, 0.20, 0.21), surface=Surface.PAINT)
 _BILL = Material(tint=(0.55, 0.38, 0.10))

@@ -20,19 +20,6 @@ from eyas.engine.targets.quadrotor import QUADROTOR
 from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.lanes.elementary.arrays import cos
 
-__all__ = [
-    "KINDS",
-    "MODELS",
-    "extent_of",
-    "habit_of",
-    "kind_index",
-    "kind_of",
-    "model_index",
-    "models_of",
-    "register",
-    "sections_of",
-]
-
 Floats = NDArray[np.float64]
 
 KINDS: list[Kind] = []  # All kinds. In the other rooms, `kind` is the index into this table.
@@ -90,15 +77,13 @@ def models_of(kind: int) -> range:
     return range(first, first + len(KINDS[kind].models))
 
 
-def extent_of(model: int, travelled: float, speed: float, slope: float) -> Floats | None:
-    """Return the box of a model at a moment, see `Kind.extent`; None if it is that of its size.
-
-    Args:
-        model: Index in `MODELS`.
-        travelled: Horizontal way since it entered the world [m].
-        speed: [m/s]
-        slope: Pitch of the ground along its heading [rad].
-    """
+def extent_of(
+    model: int,  # Index in `MODELS`
+    travelled: float,  # Horizontal way since it entered the world [m]
+    speed: float,  # [m/s]
+    slope: float,  # Pitch of the ground along its heading [rad]
+) -> Floats | None:
+    """Return the box of a model at a moment, see `Kind.extent`; None if it is that of its size."""
     kind = kind_of(model)
     if kind.extent is None:
         return None

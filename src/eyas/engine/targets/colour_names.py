@@ -6,8 +6,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["COLOUR_NAMES", "colour_distances", "colour_name", "with_article"]
-
 COLOUR_NAMES: dict[str, tuple[float, float, float]] = {
     "black": (0.10, 0.12, 0.14),
     "dark grey": (0.30, 0.30, 0.31),

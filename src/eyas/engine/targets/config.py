@@ -9,8 +9,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.variation import Variation, within
 from eyas.engine.traffic.config import VehicleType
 
-__all__ = ["ObjectsConfig", "TargetName"]
-
 
 class TargetName(StrEnum):
     """Types of targets, with the names of the original's `Tracking_Object`."""

@@ -3,8 +3,6 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-__all__ = ["Behaviour", "Habit"]
-
 
 class Behaviour(StrEnum):
     """How a pedestrian or a robot moves. None goes through walls, trees or water."""

@@ -14,8 +14,6 @@ from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.habit import Habit
 
-__all__ = ["Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
-
 Colour = tuple[float, float, float]  # sRGB, each 0 to 1
 
 

@@ -10,8 +10,6 @@ from eyas.engine.targets.kind import Colour
 from eyas.lanes import kernel
 from eyas.lanes.pcg64 import whole
 
-__all__ = ["LookSampler", "LookTable", "sample_looks"]
-
 
 class LookTable(NamedTuple):
     """Possible looks of A actors, G kinds one after the other."""
@@ -28,19 +26,12 @@ class LookTable(NamedTuple):
 
 @kernel
 def sample_looks(
-    table: LookTable,
-    model: NDArray[np.int32],
-    colour: NDArray[np.float32],
-    state: NDArray[np.int64],
+    table: LookTable,  # The possible looks
+    model: NDArray[np.int32],  # Index of each into `MODELS`, shape (A,); written
+    colour: NDArray[np.float32],  # sRGB colour of each, shape (A, 3); written
+    state: NDArray[np.int64],  # The random stream, see `eyas.lanes.pcg64`
 ) -> None:
-    """Sample the looks of all actors, those that `LookSampler.sample` would return.
-
-    Args:
-        table: The possible looks.
-        model: Index of each into `MODELS`, shape (A,); written.
-        colour: sRGB colour of each, shape (A, 3); written.
-        state: The random stream, see `eyas.lanes.pcg64`.
-    """
+    """Sample the looks of all actors, those that `LookSampler.sample` would return."""
     actors, first = table.actors, table.first
     for kind in range(len(table.fixed)):
         begin, end = first[kind, 0], first[kind + 1, 0]

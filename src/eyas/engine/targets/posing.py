@@ -2,6 +2,7 @@
 
 import operator
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,9 +11,7 @@ from numpy.typing import NDArray
 from eyas.engine.state.draw import DrawList
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
-from eyas.lanes import BoundCall, Held, ParallelCall
-
-__all__ = ["ActorFrame", "PoseCall", "Slots"]
+from eyas.lanes import BoundCall, Held, ParallelCall, kernel, parallel, specialised
 
 _MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
@@ -44,25 +43,58 @@ class ActorFrame(NamedTuple):
     z: float
 
 
+@kernel
+def _pose_one(
+    table: Any,  # noqa: ANN401  # of the kind
+    group: Group,
+    actors: ActorState,
+    looks: Looks,
+    out: Slots,
+    w: int,
+    g: int,
+) -> None:
+    """Pose nothing: what a kind's kernel takes the place of."""
+
+
+@lru_cache(maxsize=16)
+def _pose_all_of(one: Callable[..., None]) -> ParallelCall:
+    """Return the loop over the actors of a kind whose kernel for one actor is `one`."""
+    return parallel(specialised(_pose_all, _pose_one=one))
+
+
+def _pose_all(
+    worker: int,
+    workers: int,
+    table: Any,  # noqa: ANN401  # of the kind
+    group: Group,
+    actors: ActorState,
+    looks: Looks,
+    out: Slots,
+) -> None:
+    """Write the slots of the actors of one kind in all worlds, see `Rig`."""
+    count = group.actor.shape[0]
+    total = looks.model.shape[0] * count
+    for i in range(worker * total // workers, (worker + 1) * total // workers):
+        w, g = i // count, i % count
+        if actors.present[w, group.actor[g]]:
+            _pose_one(table, group, actors, looks, out, w, g)
+        else:
+            for k in range(table.slot.shape[-1]):
+                out.part[w, group.slot[g] + k] = -1
+
+
 class PoseCall:
     """The call of a kernel that poses the actors of one kind; that of the next picture is mostly
     the same, and is kept.
 
     Attributes:
-        table: What the kernel knows of the models.
-        one: What it does for one actor: `one(table, group, actors, looks, out, w, g)`.
-
-    Args:
-        kernel: Takes the table, `Group`, `ActorState`, `Looks` and `Slots`.
-        table: As above.
-        one: As above.
+        table: What the kernel knows of the models; the last axis of its `slot` is that of slots.
+        one: The kernel for one actor: `one(table, group, actors, looks, out, w, g)`.
     """
 
-    def __init__(
-        self, kernel: ParallelCall, table: tuple[Any, ...], one: Callable[..., None]
-    ) -> None:
+    def __init__(self, table: tuple[Any, ...], one: Callable[..., None]) -> None:
         self.table, self.one = table, one
-        self._kernel, self._table = kernel, Held(table)
+        self._kernel, self._table = _pose_all_of(one), Held(table)
         self._held: tuple[Held[Any], ...] = ()
         self._bound: BoundCall | None = None
 

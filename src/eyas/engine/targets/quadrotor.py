@@ -14,8 +14,6 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.kind import Group, Kind, Looks, Model
 from eyas.lanes import exact
 
-__all__ = ["QUADROTOR", "quadrotor_levels"]
-
 _BODY = Material(tint=(0.46, 0.47, 0.49))
 _DARK = Material(tint=(0.17, 0.17, 0.18))
 _BLADE = Material(tint=(0.30, 0.30, 0.31))

@@ -12,8 +12,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.targets.catalogue import KINDS, models_of
 from eyas.engine.targets.kind import Group, Kind, Looks, Rig
 
-__all__ = ["Cast", "Rigs", "part_library"]
-
 
 class Cast(NamedTuple):
     """The actors of one kind, and the rig that poses them."""

@@ -12,8 +12,6 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import MODELS, kind_of
 from eyas.engine.targets.colour_names import colour_name, with_article
 
-__all__ = ["Seen", "looks_in_words", "phrases", "told_apart", "words_of"]
-
 _TURNING: Final = 0.15  # Yaw rate from which on something turns [rad/s]
 
 _ASIDE: Final = 0.04  # Distance in the picture from which on left and right are seen [its width]
@@ -46,13 +44,11 @@ class Seen(NamedTuple):
     distance: float  # From the camera, along its axis [m]
 
 
-def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
-    """Return descriptions of a target, from short to long.
-
-    Args:
-        model: Index into `MODELS`.
-        colour: Its colour, sRGB 0 to 1.
-    """
+def phrases(
+    model: int,  # Index into `MODELS`
+    colour: Sequence[float],  # Its colour, sRGB 0 to 1
+) -> tuple[str, ...]:
+    """Return descriptions of a target, from short to long."""
     seen = colour_name(colour)
     return tuple(
         phrase.replace("a {}", with_article(seen)).replace("{}", seen)

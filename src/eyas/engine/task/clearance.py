@@ -17,8 +17,6 @@ from eyas.engine.state.motion import Motion
 from eyas.engine.state.terrain import Terrain, ground_at
 from eyas.lanes import compiled, kernel
 
-__all__ = ["Clearance", "Margin", "lifted_over"]
-
 Floats = NDArray[np.float64]
 
 _LIFTS = 64  # Most things above each other that a column is lifted over

@@ -6,19 +6,9 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.core.variation import Uniform, Variation, within
-
-__all__ = [
-    "Crash",
-    "DoneConfig",
-    "RewardConfig",
-    "RewardMode",
-    "RewardType",
-    "StartConfig",
-    "StartVelocity",
-]
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]

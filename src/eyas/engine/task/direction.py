@@ -8,8 +8,6 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["TargetDirection", "target_centre", "target_direction"]
-
 _TURNING = 1e-4  # Change of heading in 2 ms above which the target turns [rad]
 
 
@@ -49,15 +47,13 @@ def target_direction(dx: float, dy: float, yaw: float, last_yaw: float, slowest:
 
 
 @kernel
-def target_centre(x: float, y: float, yaw: float, ahead: float) -> tuple[float, float]:
-    """Return the point that the reward uses, east and north [m].
-
-    Args:
-        x: Reference point of the target, east [m].
-        y: Reference point of the target, north [m].
-        yaw: Heading of the target [rad].
-        ahead: Distance of the point ahead of the reference point, see
-            `eyas.engine.targets.kind.Kind` [m].
-    """
+def target_centre(
+    x: float,  # Reference point of the target, east [m]
+    y: float,  # Reference point of the target, north [m]
+    yaw: float,  # Heading of the target [rad]
+    # Distance of the point ahead of the reference point, see `eyas.engine.targets.kind.Kind` [m]
+    ahead: float,
+) -> tuple[float, float]:
+    """Return the point that the reward uses, east and north [m]."""
     sine, cosine = sin_cos(yaw)
     return x + ahead * cosine, y + ahead * sine

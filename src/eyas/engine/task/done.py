@@ -9,8 +9,6 @@ from eyas.engine.state.terrain import Terrain, relief_at
 from eyas.engine.task.rules import Rules
 from eyas.lanes import kernel
 
-__all__ = ["DoneReason", "broken_limit", "is_crash", "judge"]
-
 
 class DoneReason(IntEnum):
     """Why an episode has ended."""

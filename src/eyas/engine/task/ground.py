@@ -6,26 +6,18 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.engine.state.terrain import Plane, height_over
 from eyas.lanes import exact, interpreted
 
-__all__ = ["ground_corners", "on_plane"]
-
 _height_over = interpreted(height_over)
 
 
 def ground_corners(
-    position: ArrayLike,
-    rotation: ArrayLike,
+    position: ArrayLike,  # Optical centre, world frame [m], shape (3,)
+    rotation: ArrayLike,  # Camera to world; columns forward, left, up, shape (3, 3)
+    # Half the width and height of a part of the picture, at a depth of 1 m
     half_size: tuple[float, float],
-    ground: Plane,
-    reach: float = 1000.0,
+    ground: Plane,  # The ground, approximated by a plane
+    reach: float = 1000.0,  # Depth at which the ground is cut off [m]
 ) -> NDArray[np.float64]:
     """Return the corners of the ground that the middle part of a picture covers.
-
-    Args:
-        position: Optical centre, world frame [m], shape (3,).
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        half_size: Half the width and height of a part of the picture, at a depth of 1 m.
-        ground: The ground, approximated by a plane.
-        reach: Depth at which the ground is cut off [m].
 
     Returns:
         Points on the ground [m], counter-clockwise as seen from above, shape (K, 3): upper left,

@@ -13,8 +13,6 @@ from eyas.engine.core.files import refusals
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.step_line import EpisodeLines, step_line
 
-__all__ = ["Journal"]
-
 _LOG = logging.getLogger("eyas")
 
 

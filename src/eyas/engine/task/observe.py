@@ -12,8 +12,6 @@ from eyas.engine.task.reward import axis_depth, reward_value, view_centre, view_
 from eyas.engine.task.rules import Rules
 from eyas.lanes import kernel
 
-__all__ = ["clear_episode", "observe"]
-
 
 @kernel(inline=True)
 def clear_episode(episodes: EpisodeState, n: int) -> None:

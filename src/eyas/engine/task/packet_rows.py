@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.frames import wrap_angle
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.sensors.inertial import accelerometer, gyroscope
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
@@ -23,8 +23,6 @@ from eyas.engine.task.packets import (
 )
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan
-
-__all__ = ["SENSOR_COLUMNS", "SENSOR_COUNT", "PacketRows", "fill_basic"]
 
 _STEP_COUNT = first_column(BASIC_COLUMNS, "step_count")
 _POSITION = first_column(BASIC_COLUMNS, "position")

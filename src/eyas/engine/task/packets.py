@@ -23,18 +23,6 @@ from numpy.typing import NDArray
 from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.task.direction import TargetDirection
 
-__all__ = [
-    "BASIC_COLUMNS",
-    "BASIC_FIELDS",
-    "INPUT_FIELDS",
-    "REWARD_COLUMNS",
-    "REWARD_FIELDS",
-    "BasicPacket",
-    "InputPacket",
-    "RewardPacket",
-    "first_column",
-]
-
 Numbers = tuple[float, ...]
 Columns = Mapping[str, int | slice]
 """Where the parts of a row stand: the column of a single number, the slice of several."""

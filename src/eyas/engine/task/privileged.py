@@ -9,8 +9,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["PRIVILEGED", "fill_privileged", "privileged_row"]
-
 PRIVILEGED: Final = 16  # Numbers of each tracker
 
 

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["TERMS", "d_vat", "d_vat_3d", "e2e", "effort", "speed"]
-
 Floats = NDArray[np.float64]
 
 _E2E_DISTANCE = 9.0

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.snapshot import Snapshot
 from eyas.lanes import exact
 
-__all__ = ["QUANTITIES", "Setting"]
-
 Array = NDArray[np.float64] | NDArray[np.bool_] | NDArray[np.int64]
 
 

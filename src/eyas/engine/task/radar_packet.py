@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["RADAR_FIELDS", "RADAR_POINTS", "RadarPacket", "RadarPoint"]
-
 RADAR_POINTS = 400  # Points of the original's lidar
 
 _NUMBERS = ("x", "y", "z", "layer", "time")

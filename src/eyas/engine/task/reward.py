@@ -17,18 +17,6 @@ from eyas.engine.task.rules import BuiltinReward, Rules
 from eyas.lanes import kernel
 from eyas.lanes.elementary import tan, tanh
 
-__all__ = [
-    "axis_depth",
-    "distance_continuous",
-    "distance_discrete",
-    "reward_value",
-    "rewarded_size",
-    "view_centre",
-    "view_continuous",
-    "view_discrete",
-    "view_share",
-]
-
 _FARTHEST = 1e12  # Largest depth of a ground point along the optical axis [m]
 
 _VIEW_CONTINUOUS, _VIEW_DISCRETE = (
@@ -41,15 +29,11 @@ _CONSTANT = int(BuiltinReward.CONSTANT)
 
 @kernel(inline=True)
 def axis_depth(
-    position: NDArray[np.float64], rotation: NDArray[np.float64], ground: Plane
+    position: NDArray[np.float64],  # Optical centre, world frame [m], shape (3,)
+    rotation: NDArray[np.float64],  # Camera to world; columns forward, left, up, shape (3, 3)
+    ground: Plane,  # The plane under the target
 ) -> float:
-    """Return the depth of the ground along the optical axis [m]; 0 if they do not meet.
-
-    Args:
-        position: Optical centre, world frame [m], shape (3,).
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        ground: The plane under the target.
-    """
+    """Return the depth of the ground along the optical axis [m]; 0 if they do not meet."""
     height = height_over(ground, position[0], position[1], position[2])
     sinking: float = (
         ground.rise_east * rotation[0, 0] + ground.rise_north * rotation[1, 0] - rotation[2, 0]
@@ -60,13 +44,11 @@ def axis_depth(
 
 
 @kernel(inline=True)
-def rewarded_size(field_of_view: float, rules: Rules) -> tuple[float, float]:
-    """Return half the width and height of the rewarded part of the picture, at a depth of 1 m.
-
-    Args:
-        field_of_view: Horizontal [rad].
-        rules: `view_range`, `aspect` are used.
-    """
+def rewarded_size(
+    field_of_view: float,  # Horizontal [rad]
+    rules: Rules,  # `view_range`, `aspect` are used
+) -> tuple[float, float]:
+    """Return half the width and height of the rewarded part of the picture, at a depth of 1 m."""
     half_width = rules.view_range * tan(0.5 * field_of_view)
     return half_width, half_width * rules.aspect
 
@@ -84,23 +66,16 @@ def view_centre(
 
 @kernel(inline=True)
 def view_share(
-    position: NDArray[np.float64],
-    rotation: NDArray[np.float64],
-    depth: float,
-    ground: Plane,
-    half_size: tuple[float, float],
+    position: NDArray[np.float64],  # Optical centre, world frame [m], shape (3,)
+    rotation: NDArray[np.float64],  # Camera to world; columns forward, left, up, shape (3, 3)
+    depth: float,  # Depth from `axis_depth`
+    ground: Plane,  # The plane under the target; its point is the target's place
+    half_size: tuple[float, float],  # From `rewarded_size`
 ) -> float:
     """Return the target's share: 1 in the middle of the picture, 0 on the edge and outside.
 
     If the picture shows the horizon, the quadrilateral is open there, and the share is 1 along
     the optical axis from the middle to infinity.
-
-    Args:
-        position: Optical centre, world frame [m], shape (3,).
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        depth: Depth from `axis_depth`.
-        ground: The plane under the target; its point is the target's place.
-        half_size: From `rewarded_size`.
     """
     dx, dy, dz = ground.x - position[0], ground.y - position[1], ground.z - position[2]
     forward = rotation[0, 0] * dx + rotation[1, 0] * dy + rotation[2, 0] * dz

@@ -4,10 +4,8 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
 from eyas.engine.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
-
-__all__ = ["BuiltinReward", "Rules", "exact", "lenient", "make_rules"]
 
 
 class BuiltinReward(IntEnum):
@@ -75,14 +73,12 @@ def lenient(rules: Rules) -> Rules:
     )
 
 
-def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> Rules:
-    """Return the settings as numbers.
-
-    Args:
-        reward: Settings of the reward.
-        done: Settings of the end of an episode.
-        camera: Camera whose picture the view reward uses.
-    """
+def make_rules(
+    reward: RewardConfig,  # Settings of the reward
+    done: DoneConfig,  # Settings of the end of an episode
+    camera: CameraConfig,  # Camera whose picture the view reward uses
+) -> Rules:
+    """Return the settings as numbers."""
     return Rules(
         view_range=reward.view_range,
         aspect=camera.height / camera.width,

@@ -10,8 +10,6 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.lanes import exact, interpreted, kernel
 from eyas.lanes.elementary import tan
 
-__all__ = ["StartValues", "start_distance", "start_pose"]
-
 _wrapped = interpreted(wrap_angle)
 
 

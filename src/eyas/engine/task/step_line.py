@@ -11,8 +11,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.done import DoneReason
 
-__all__ = ["EpisodeLines", "StepLine", "step_line"]
-
 _PATTERN = re.compile(
     r"id: (?P<id>\S+) done: (?P<done>\S+) reward: (?P<reward>\S+) count: (?P<count>\S+)"
     r" time: (?P<time>\S+) carDir: (?P<direction>\S+) pitchAngle: (?P<pitch>\S+)"

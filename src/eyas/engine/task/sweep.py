@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = ["NEVER", "Sweep", "Touch", "sweep_cylinder", "sweep_prism", "while_level"]
-
 NEVER = 2.0  # Share of the motion at a touch that does not happen
 
 
@@ -55,19 +53,16 @@ def while_level(sweep: Sweep, bottom: float, top: float) -> tuple[float, float]:
 
 @kernel(inline=True)
 def sweep_prism(
-    sweep: Sweep, points: NDArray[np.float64], first: int, last: int, start: float, end: float
+    sweep: Sweep,  # The motion
+    points: NDArray[np.float64],  # Corners of prisms [m], shape (K, 2)
+    first: int,  # Where those of the prism begin
+    last: int,  # Where they end
+    start: float,  # From where on the motion matters
+    end: float,  # To where it matters
 ) -> Touch:
     """Return the first touch of a prism between two shares of the motion, from `while_level`.
 
     Two outlines touch first where a corner of one meets a side of the other.
-
-    Args:
-        sweep: The motion.
-        points: Corners of prisms [m], shape (K, 2).
-        first: Where those of the prism begin.
-        last: Where they end.
-        start: From where on the motion matters.
-        end: To where it matters.
     """
     best, at_x, at_y = NEVER, 0.0, 0.0
     motion_x, motion_y = _turned(sweep, sweep.motion_x, sweep.motion_y)
@@ -152,17 +147,15 @@ def _touch(sweep: Sweep, best: float, start: float, x: float, y: float) -> Touch
 
 
 @kernel(inline=True)
-def _enters(x: float, y: float, by_x: float, by_y: float, length: float, width: float) -> float:
-    """Return the share of its path, 0 to 1, at which a point enters a box; else `NEVER`.
-
-    Args:
-        x: Where the point begins in the frame of the box, ahead [m].
-        y: The same, left [m].
-        by_x: Its path, ahead [m].
-        by_y: The same, left [m].
-        length: Half the length of the box [m].
-        width: Half its width [m].
-    """
+def _enters(
+    x: float,  # Where the point begins in the frame of the box, ahead [m]
+    y: float,  # The same, left [m]
+    by_x: float,  # Its path, ahead [m]
+    by_y: float,  # The same, left [m]
+    length: float,  # Half the length of the box [m]
+    width: float,  # Half its width [m]
+) -> float:
+    """Return the share of its path, 0 to 1, at which a point enters a box; else `NEVER`."""
     begin, end = 0.0, 1.0
     for axis in range(2):
         at, by, half = (x, by_x, length) if axis == 0 else (y, by_y, width)

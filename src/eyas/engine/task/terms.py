@@ -14,8 +14,6 @@ from eyas.engine.task.config import RewardConfig
 from eyas.engine.task.published import TERMS
 from eyas.engine.task.quantities import QUANTITIES, Setting
 
-__all__ = ["BUILTIN", "RewardTerm", "RewardTerms"]
-
 Floats = NDArray[np.float64]
 
 RewardTerm = Callable[[Snapshot, Setting], Floats]

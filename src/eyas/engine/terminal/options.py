@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.settings.preset import PRESETS
+from eyas.engine.settings.file import PRESETS
 
 __all__ = [
     "POLICIES",
@@ -85,7 +85,7 @@ def chosen_file(config: Path | None, preset: str | None) -> Path | None:
     """
     if preset is None:
         return config
-    from eyas.engine.settings.preset import preset_file
+    from eyas.engine.settings.file import preset_file
 
     if config is not None:
         raise ConfigError(
@@ -102,5 +102,7 @@ def gathered(
 ) -> list[str]:
     """Return all changes of settings as `key=value`; short options come last and so win."""
     short = {"world.map": map_name, "world.weather": weather, "seed": seed}
-    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    return [*(overrides or []), *said]
+    from_options = [
+        f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None
+    ]
+    return [*(overrides or []), *from_options]

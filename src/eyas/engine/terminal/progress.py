@@ -20,13 +20,7 @@ def sumo_progress() -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def frames_bar(doing: str, total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
-    """Show how many frames, or other things, are done, and the time left; only on a terminal.
-
-    Args:
-        doing: What is done with them.
-        total: Number of frames.
-        quiet: Whether nothing is shown.
-    """
+    """Show how many frames, or other things, are done, and the time left; only on a terminal."""
     console = Console(stderr=True)
     columns = (
         bar.TextColumn(doing),

@@ -7,8 +7,6 @@ their text names another source.
 
 from typing import NamedTuple
 
-__all__ = ["FIRM_GROUND", "ORIGINAL", "Airframe", "GimbalServo"]
-
 Vector = tuple[float, float, float]
 
 

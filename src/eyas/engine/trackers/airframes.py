@@ -10,8 +10,6 @@ from eyas.engine.trackers.airframe import ORIGINAL, Airframe
 from eyas.engine.trackers.battery import Battery
 from eyas.engine.trackers.config import AirframeName
 
-__all__ = ["AIRFRAMES", "Model"]
-
 Vector = tuple[float, float, float]
 
 
@@ -23,13 +21,11 @@ class Model(NamedTuple):
     battery: Battery
 
 
-def _airframe(frame: Airframe, frequency: float) -> Airframe:
-    """Return an airframe with gains for its mass and inertia.
-
-    Args:
-        frame: The other constants.
-        frequency: Natural frequency of its attitude [rad/s].
-    """
+def _airframe(
+    frame: Airframe,  # The other constants
+    frequency: float,  # Natural frequency of its attitude [rad/s]
+) -> Airframe:
+    """Return an airframe with gains for its mass and inertia."""
     share = frame.mass / ORIGINAL.assumed_mass
     x, y, z = ORIGINAL.position_gain
     roll, pitch, yaw = frame.inertia

@@ -17,8 +17,6 @@ from eyas.engine.trackers.rigid_body import Thrusts
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
 
-__all__ = ["Battery", "discharge", "open_voltage", "strongest_thrust", "within_power"]
-
 FULL_CELL = 4.1031  # Voltage of a full cell without a load, see `open_voltage` [V]
 
 
@@ -85,23 +83,14 @@ def within_power(thrusts: Thrusts, most: float) -> Thrusts:
 
 @kernel
 def discharge(
-    frame: Airframe,
+    frame: Airframe,  # The constants of its rotors are used
     battery: Battery,
-    charge: NDArray[np.float64],
-    voltage: NDArray[np.float64],
-    n: int,
-    thrusts: Thrusts,
+    charge: NDArray[np.float64],  # Of N batteries, of 1; updated
+    voltage: NDArray[np.float64],  # Of N batteries under their load [V]; set
+    n: int,  # Index of the drone
+    thrusts: Thrusts,  # Of the rotors, without what the ground adds [N]
 ) -> None:
-    """Take what the rotors of drone `n` need in a step of 2 ms from its battery.
-
-    Args:
-        frame: The constants of its rotors are used.
-        battery: The battery.
-        charge: Of N batteries, of 1; updated.
-        voltage: Of N batteries under their load [V]; set.
-        n: Index of the drone.
-        thrusts: Of the rotors, without what the ground adds [N].
-    """
+    """Take what the rotors of drone `n` need in a step of 2 ms from its battery."""
     power = 0.0
     for thrust in thrusts:
         power += thrust * math.sqrt(thrust / frame.thrust_constant)

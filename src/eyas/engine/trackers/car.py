@@ -12,30 +12,23 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.engine.state.terrain import Terrain, ground_at
-from eyas.engine.trackers.commands import follow_command
+from eyas.engine.trackers.commands import CommandFilters, follow_command
 from eyas.engine.trackers.drone import move_level, obey, place
 from eyas.engine.trackers.gimbal import CAR_LIMITS, advance_gimbal, camera_axes, reset_gimbal
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel
 
-__all__ = ["CAR"]
-
 
 class CarMemory(NamedTuple):
-    """States of the low-pass filters of N cars, and the ground below them."""
+    """What N cars remember: their filters, and the ground below them."""
 
-    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
-    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
-    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
-    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
+    filters: CommandFilters
     terrain: Terrain
 
     @classmethod
     def create(cls, count: int, terrain: Terrain) -> "CarMemory":
         """Return the memory of cars at rest."""
-        pair = (count, 2)
-        filters = np.zeros((count, 3, 2))
-        return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), filters, terrain)
+        return cls(CommandFilters.create(count), terrain)
 
 
 @kernel(inline=True)
@@ -51,8 +44,8 @@ def start(
 ) -> None:
     """Place car `n` at rest, see `Tracker.start`; not below the ground."""
     z = max(z, ground_at(memory.terrain, x, y))
-    place(trackers, memory, n, x, y, z, yaw)
-    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0, CAR_LIMITS)
+    place(trackers, memory.filters, n, x, y, z, yaw)
+    reset_gimbal(trackers, memory.filters.gimbal, n, pitch, 0.0, CAR_LIMITS)
 
 
 @kernel(inline=True)
@@ -62,11 +55,11 @@ def advance(
     """Move car `n` by one physics step of 2 ms, see `Tracker.advance`."""
     commanded, terrain = trackers.commanded_position[n], memory.terrain
     before = ground_at(terrain, commanded[0], commanded[1])
-    _, _, yaw_rate = follow_command(trackers, memory, n, command)
+    _, _, yaw_rate = follow_command(trackers, memory.filters, n, command)
     ground = ground_at(terrain, commanded[0], commanded[1])
     commanded[2] = max(commanded[2] + (ground - before), ground)
     obey(trackers, n, yaw_rate)
-    advance_gimbal(trackers, memory.gimbal, n, CAR_LIMITS)
+    advance_gimbal(trackers, memory.filters.gimbal, n, CAR_LIMITS)
 
 
 @kernel(inline=True)
@@ -76,7 +69,7 @@ def carry(
     """Move car `n` to a pose within one physics step of 2 ms; not below the ground."""
     z = max(z, ground_at(memory.terrain, x, y))
     move_level(trackers, n, x, y, z, yaw)
-    advance_gimbal(trackers, memory.gimbal, n, CAR_LIMITS)
+    advance_gimbal(trackers, memory.filters.gimbal, n, CAR_LIMITS)
 
 
 @kernel(inline=True)

@@ -5,11 +5,9 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, bounds, within
-
-__all__ = ["Flight", "TrackerConfig", "TrackerKind", "WindConfig"]
 
 
 class TrackerKind(StrEnum):

@@ -14,8 +14,6 @@ from eyas.engine.trackers.rigid_body import moved, spun_up
 from eyas.engine.trackers.tracker import Tracker, stand
 from eyas.lanes import kernel
 
-__all__ = ["WEIGHT", "driven_drone"]
-
 WEIGHT = ORIGINAL.mass * ORIGINAL.gravity  # Of a driven drone [N]
 
 

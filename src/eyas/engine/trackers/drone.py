@@ -1,51 +1,21 @@
 """The supervised drone: a level body that follows its low-pass filtered commands exactly."""
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.frames import wrap_angle
 from eyas.engine.state.snapshot import CameraState, TrackerState
-from eyas.engine.state.terrain import Terrain
-from eyas.engine.trackers.commands import follow_command, forget_commands
+from eyas.engine.trackers.commands import CommandFilters, follow_command, forget_commands
 from eyas.engine.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = [
-    "DRONE",
-    "DroneMemory",
-    "advance",
-    "aim",
-    "carry",
-    "move_level",
-    "obey",
-    "place",
-    "start",
-]
-
-
-class DroneMemory(NamedTuple):
-    """States of the low-pass filters of N drones."""
-
-    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
-    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
-    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
-    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
-
-    @classmethod
-    def create(cls, count: int, terrain: Terrain) -> "DroneMemory":
-        """Return the memory of drones at rest."""
-        pair = (count, 2)
-        return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros((count, 3, 2)))
-
 
 @kernel(inline=True)
 def advance(
-    trackers: TrackerState, memory: DroneMemory, n: int, command: NDArray[np.float64]
+    trackers: TrackerState, filters: CommandFilters, n: int, command: NDArray[np.float64]
 ) -> None:
     """Move drone `n` by one physics step of 2 ms, see `Tracker.advance`.
 
@@ -53,9 +23,9 @@ def advance(
     takes that pose in every step. The original intends the same, but a race condition makes it skip
     about half of the steps.
     """
-    _, _, yaw_rate = follow_command(trackers, memory, n, command)
+    _, _, yaw_rate = follow_command(trackers, filters, n, command)
     obey(trackers, n, yaw_rate)
-    advance_gimbal(trackers, memory.gimbal, n)
+    advance_gimbal(trackers, filters.gimbal, n)
 
 
 @kernel(inline=True)
@@ -69,11 +39,17 @@ def obey(trackers: TrackerState, n: int, yaw_rate: float) -> None:
 
 @kernel(inline=True)
 def carry(
-    trackers: TrackerState, memory: DroneMemory, n: int, x: float, y: float, z: float, yaw: float
+    trackers: TrackerState,
+    filters: CommandFilters,
+    n: int,
+    x: float,
+    y: float,
+    z: float,
+    yaw: float,
 ) -> None:
     """Move a level drone to a pose within one physics step of 2 ms."""
     move_level(trackers, n, x, y, z, yaw)
-    advance_gimbal(trackers, memory.gimbal, n)
+    advance_gimbal(trackers, filters.gimbal, n)
 
 
 @kernel(inline=True)
@@ -90,7 +66,7 @@ def move_level(trackers: TrackerState, n: int, x: float, y: float, z: float, yaw
 @kernel(inline=True)
 def start(
     trackers: TrackerState,
-    memory: DroneMemory,
+    filters: CommandFilters,
     n: int,
     x: float,
     y: float,
@@ -99,14 +75,14 @@ def start(
     pitch: float,
 ) -> None:
     """Place drone `n` at rest with its gimbal at a commanded pitch, see `Tracker.start`."""
-    place(trackers, memory, n, x, y, z, yaw)
-    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
+    place(trackers, filters, n, x, y, z, yaw)
+    reset_gimbal(trackers, filters.gimbal, n, pitch, 0.0)
 
 
 @kernel(inline=True)
 def place(
     trackers: TrackerState,
-    memory: Any,  # noqa: ANN401  # as for `forget_commands`
+    filters: CommandFilters,
     n: int,
     x: float,
     y: float,
@@ -114,7 +90,7 @@ def place(
     yaw: float,
 ) -> None:
     """Place a level body at rest, without commands."""
-    forget_commands(memory, n)
+    forget_commands(filters, n)
     trackers.commanded_yaw[n] = yaw
     point = (x, y, z)
     for axis in range(3):
@@ -127,7 +103,7 @@ def place(
 
 
 @kernel(inline=True)
-def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: int) -> None:
+def aim(trackers: TrackerState, filters: CommandFilters, cameras: CameraState, n: int) -> None:
     """Write the pose of the camera on the gimbal."""
     camera_pose(
         trackers.position[n],
@@ -158,4 +134,4 @@ def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
     orientation[3], orientation[0] = sin_cos(0.5 * yaw)
 
 
-DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)  # The supervised drone
+DRONE = Tracker("drone", CommandFilters.create, start, advance, carry, aim)  # The supervised drone

@@ -7,8 +7,6 @@ from eyas.engine.trackers.airframe import ORIGINAL, Airframe
 from eyas.engine.trackers.battery import Battery
 from eyas.engine.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, YAW_JOINT
 
-__all__ = ["MOUNTED", "Equipment", "Part", "Symmetric", "loaded"]
-
 Vector = tuple[float, float, float]
 
 Symmetric = tuple[float, float, float, float, float, float]
@@ -47,13 +45,11 @@ class Equipment(NamedTuple):
     battery: Battery = Battery()
 
 
-def loaded(frame: Airframe, parts: Iterable[Part]) -> Equipment:
-    """Return an airframe that carries some parts, which are points (Huygens-Steiner).
-
-    Args:
-        frame: Its mass is that of its body alone, in whose middle its centre of mass is.
-        parts: What is fixed to it.
-    """
+def loaded(
+    frame: Airframe,  # Its mass is that of its body alone, in whose middle its centre of mass is
+    parts: Iterable[Part],  # What is fixed to it
+) -> Equipment:
+    """Return an airframe that carries some parts, which are points (Huygens-Steiner)."""
     mass, first = frame.mass, [0.0, 0.0, 0.0]
     moments = [*frame.inertia, 0.0, 0.0, 0.0]
     for part in parts:

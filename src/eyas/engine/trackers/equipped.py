@@ -46,9 +46,6 @@ from eyas.engine.trackers.tracker import ROTORS, Tracker
 from eyas.engine.trackers.wind_field import OPEN, WindField, wind_among
 from eyas.lanes import kernel
 
-__all__ = ["EquippedMemory", "equipped_drone", "is_equipped"]
-
-
 Vector = tuple[float, float, float]
 
 _BATTERY = {"battery": "charge", "battery_voltage": "voltage"}
@@ -130,7 +127,7 @@ def advance(
 ) -> None:
     """Fly drone `n` for one physics step of 2 ms, see `Tracker.advance`."""
     flight, equipment = memory.flight, memory.equipment
-    east, north, _ = follow_command(trackers, flight, n, command)
+    east, north, _ = follow_command(trackers, flight.filters, n, command)
     wanted = wanted_thrusts(trackers, flight, n, east, north)
     frame, battery, before = flight.frame, equipment.battery, body_of(trackers, n)
     if battery.cells > 0.0:
@@ -154,15 +151,13 @@ def advance(
 
 
 @kernel
-def _among(memory: EquippedMemory, n: int, place: Vector, air: Vector) -> Vector:
-    """Return the wind at a place with the mean wind there [m/s].
-
-    Args:
-        memory: Wind and ground are read.
-        n: Index of the drone.
-        place: Of the drone, world frame [m].
-        air: The wind, with the same mean wind everywhere [m/s].
-    """
+def _among(
+    memory: EquippedMemory,  # Wind and ground are read
+    n: int,  # Index of the drone
+    place: Vector,  # Of the drone, world frame [m]
+    air: Vector,  # The wind, with the same mean wind everywhere [m/s]
+) -> Vector:
+    """Return the wind at a place with the mean wind there [m/s]."""
     flight, x, y = memory.flight, place[0], place[1]
     (east, north), along = flight.wind.mean[n], flight.wind.along[n]
     speed = math.sqrt(east * east + north * north)
@@ -189,13 +184,11 @@ def is_equipped(config: TrackerConfig) -> bool:
     return carries or config.tells_rotors or config.ground_effect or config.battery.enabled
 
 
-def equipped_drone(config: TrackerConfig, model: Model) -> Tracker:
-    """Return the flown drone with what it carries.
-
-    Args:
-        config: The options.
-        model: The drone with its gimbal and lidar; options replace its own constants.
-    """
+def equipped_drone(
+    config: TrackerConfig,  # The options
+    model: Model,  # The drone with its gimbal and lidar; options replace its own constants
+) -> Tracker:
+    """Return the flown drone with what it carries."""
     equipment = _equipment(config, model)
     plain = flown_drone(config, model.frame)
     draw = plain.sample

@@ -16,8 +16,6 @@ from eyas.engine.trackers.airframe import Airframe
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
-__all__ = ["attitude_torque", "body_axes", "desired_force", "mixed", "within_tilt"]
-
 Vector = tuple[float, float, float]
 Thrusts = tuple[float, float, float, float]
 Row = NDArray[np.float64]
@@ -25,21 +23,13 @@ Row = NDArray[np.float64]
 
 @kernel
 def desired_force(
-    frame: Airframe,
-    position_error: Vector,
-    velocity_error: Vector,
-    acceleration_east: float,
-    acceleration_north: float,
+    frame: Airframe,  # Its gains, assumed mass and gravity, and tilt limit are used
+    position_error: Vector,  # Commanded minus true position, world frame [m]
+    velocity_error: Vector,  # Commanded minus measured velocity, world frame [m/s]
+    acceleration_east: float,  # Change of the commanded velocity [m/s^2]
+    acceleration_north: float,  # The same towards north
 ) -> Vector:
-    """Return the force that the rotors should exert, world frame [N], within the tilt limit.
-
-    Args:
-        frame: Its gains, assumed mass and gravity, and tilt limit are used.
-        position_error: Commanded minus true position, world frame [m].
-        velocity_error: Commanded minus measured velocity, world frame [m/s].
-        acceleration_east: Change of the commanded velocity [m/s^2].
-        acceleration_north: The same towards north.
-    """
+    """Return the force that the rotors should exert, world frame [N], within the tilt limit."""
     mass, gain = frame.assumed_mass, frame.velocity_gain
     x = frame.position_gain[0] * position_error[0] + gain * velocity_error[0]
     y = frame.position_gain[1] * position_error[1] + gain * velocity_error[1]
@@ -70,16 +60,14 @@ def within_tilt(force: Vector, weight: float, limit: float) -> Vector:
 
 
 @kernel
-def attitude_torque(frame: Airframe, force: Vector, yaw: float, attitude: Row, rate: Row) -> Vector:
-    """Return the torque that turns the body towards a force and a heading, body frame [N m].
-
-    Args:
-        frame: Its gains and inertia are used.
-        force: Force that the rotors should exert, world frame [N].
-        yaw: Commanded heading [rad].
-        attitude: Body to world, shape (4,).
-        rate: Angular velocity, body frame [rad/s], shape (3,).
-    """
+def attitude_torque(
+    frame: Airframe,  # Its gains and inertia are used
+    force: Vector,  # Force that the rotors should exert, world frame [N]
+    yaw: float,  # Commanded heading [rad]
+    attitude: Row,  # Body to world, shape (4,)
+    rate: Row,  # Angular velocity, body frame [rad/s], shape (3,)
+) -> Vector:
+    """Return the torque that turns the body towards a force and a heading, body frame [N m]."""
     ahead, left, (x, y, z) = body_axes(force, yaw)
     _, x1, x2 = rotate_back(attitude, ahead[0], ahead[1], ahead[2])
     y0, _, y2 = rotate_back(attitude, left[0], left[1], left[2])
@@ -95,13 +83,11 @@ def attitude_torque(frame: Airframe, force: Vector, yaw: float, attitude: Row, r
 
 
 @kernel
-def body_axes(force: Vector, yaw: float) -> tuple[Vector, Vector, Vector]:
-    """Return the axes that the body should have, forward, left and up, world frame.
-
-    Args:
-        force: Force that the rotors should exert, world frame [N].
-        yaw: Commanded heading [rad].
-    """
+def body_axes(
+    force: Vector,  # Force that the rotors should exert, world frame [N]
+    yaw: float,  # Commanded heading [rad]
+) -> tuple[Vector, Vector, Vector]:
+    """Return the axes that the body should have, forward, left and up, world frame."""
     x, y, z = _unit(force)
     sine, cosine = sin_cos(yaw)
     left = _unit((-z * sine, z * cosine, x * sine - y * cosine))

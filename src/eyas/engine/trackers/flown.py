@@ -13,7 +13,7 @@ from eyas.engine.core.variation import bounds
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.engine.state.terrain import Terrain, ground_at
 from eyas.engine.trackers.airframe import FIRM_GROUND, ORIGINAL, Airframe
-from eyas.engine.trackers.commands import follow_command
+from eyas.engine.trackers.commands import CommandFilters, follow_command
 from eyas.engine.trackers.config import Flight, TrackerConfig
 from eyas.engine.trackers.drone import move_level, place
 from eyas.engine.trackers.flight_controller import attitude_torque, desired_force, mixed
@@ -27,29 +27,13 @@ from eyas.engine.trackers.wind import WindMemory, begin_wind, blow
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2
 
-__all__ = [
-    "FlightMemory",
-    "aim",
-    "air_around",
-    "arrive",
-    "body_of",
-    "carry",
-    "flown_drone",
-    "start",
-    "wanted_thrusts",
-    "with_options",
-]
-
 Vector = tuple[float, float, float]
 
 
 class FlightMemory(NamedTuple):
     """What N flown drones remember, and their constants."""
 
-    forward: NDArray[np.float64]  # Filter of the forward command, shape (N, 2)
-    left: NDArray[np.float64]  # Filter of the sideways command, shape (N, 2)
-    yaw_rate: NDArray[np.float64]  # Filter of the yaw rate command, shape (N, 2)
-    gimbal: NDArray[np.float64]  # Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)
+    filters: CommandFilters
     servo: ServoMemory
     last_command: NDArray[np.float64]
     """Commanded velocity of the last step, towards east and north [m/s], shape (N, 2)."""
@@ -67,14 +51,10 @@ class FlightMemory(NamedTuple):
         cls, frame: Airframe, turbulence: float, count: int, terrain: Terrain
     ) -> "FlightMemory":
         """Return the memory of drones at rest."""
-        pair = (count, 2)
         return cls(
-            forward=np.zeros(pair),
-            left=np.zeros(pair),
-            yaw_rate=np.zeros(pair),
-            gimbal=np.zeros((count, 3, 2)),
+            filters=CommandFilters.create(count),
             servo=ServoMemory.create(count),
-            last_command=np.zeros(pair),
+            last_command=np.zeros((count, 2)),
             measured=np.zeros((count, 3)),
             rotor=np.zeros((count, 4)),
             wind=WindMemory.create(count),
@@ -96,8 +76,8 @@ def start(
     pitch: float,
 ) -> None:
     """Place drone `n` at rest, level, its rotors carrying it, see `Tracker.start`."""
-    place(trackers, memory, n, x, y, z, yaw)
-    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
+    place(trackers, memory.filters, n, x, y, z, yaw)
+    reset_gimbal(trackers, memory.filters.gimbal, n, pitch, 0.0)
     _settle(trackers, memory, n)
 
 
@@ -107,7 +87,7 @@ def carry(
 ) -> None:
     """Move a level drone to a pose within one physics step, as in the supervised mode."""
     move_level(trackers, n, x, y, z, yaw)
-    advance_gimbal(trackers, memory.gimbal, n)
+    advance_gimbal(trackers, memory.filters.gimbal, n)
     _settle(trackers, memory, n)
 
 
@@ -121,7 +101,7 @@ def _settle(trackers: TrackerState, memory: FlightMemory, n: int) -> None:
     hover = math.sqrt(0.25 * frame.mass * frame.gravity / frame.thrust_constant)
     for rotor in range(4):
         memory.rotor[n, rotor] = hover
-    settle_servo(trackers, memory.gimbal, memory.servo, n)
+    settle_servo(trackers, memory.filters.gimbal, memory.servo, n)
 
 
 @kernel(inline=True)
@@ -133,7 +113,7 @@ def advance(
     The controller acts at the beginning of the step. As in the original, the commanded velocity
     has no part upwards: a command to climb moves only the commanded position.
     """
-    east, north, _ = follow_command(trackers, memory, n, command)
+    east, north, _ = follow_command(trackers, memory.filters, n, command)
     wanted = wanted_thrusts(trackers, memory, n, east, north)
     frame, before = memory.frame, body_of(trackers, n)
     air = air_around(memory, n, before)
@@ -162,7 +142,7 @@ def arrive(
     _write(trackers, memory, n, before, after)
     a, b = before.rate, after.rate
     change = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
-    advance_servo(trackers, memory.gimbal, memory.servo, memory.frame, n, change)
+    advance_servo(trackers, memory.filters.gimbal, memory.servo, memory.frame, n, change)
 
 
 @kernel(inline=True)

@@ -11,21 +11,6 @@ from eyas.engine.trackers.lowpass import low_pass, settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import atan2, sin_cos
 
-__all__ = [
-    "CAR_LIMITS",
-    "PITCH_JOINT",
-    "ROLL_JOINT",
-    "SIDEWAYS_LIMIT",
-    "YAW_JOINT",
-    "advance_gimbal",
-    "camera_axes",
-    "camera_pose",
-    "desired_angles",
-    "held_pitch",
-    "reset_gimbal",
-    "set_column",
-]
-
 SIDEWAYS_LIMIT = 1.7  # Largest roll and yaw of the joints [rad]
 
 Limits = tuple[float, float, float, float]
@@ -49,16 +34,14 @@ def held_pitch(pitch: float, limits: Limits = DRONE_LIMITS) -> float:
 
 @kernel(inline=True)
 def advance_gimbal(
-    trackers: TrackerState, memory: NDArray[np.float64], n: int, limits: Limits = DRONE_LIMITS
+    # Source of the body's attitude and the commanded angles; its joint angles are set
+    trackers: TrackerState,
+    # Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); updated
+    memory: NDArray[np.float64],
+    n: int,  # Index of the tracker
+    limits: Limits = DRONE_LIMITS,  # Of the pitch
 ) -> None:
-    """Move gimbal `n` by one physics step of 2 ms.
-
-    Args:
-        trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
-        memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); updated.
-        n: Index of the tracker.
-        limits: Of the pitch.
-    """
+    """Move gimbal `n` by one physics step of 2 ms."""
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     roll, pitch, yaw = desired_angles(commanded[0], commanded[1], euler[0], euler[1], limits)
     gimbal[0] = low_pass(memory[n, 0], roll)
@@ -68,25 +51,18 @@ def advance_gimbal(
 
 @kernel(inline=True)
 def reset_gimbal(
+    # Source of the body's attitude; its commanded angles and joint angles are set
     trackers: TrackerState,
-    memory: NDArray[np.float64],
-    n: int,
-    pitch: float,
-    yaw: float,
-    limits: Limits = DRONE_LIMITS,
+    memory: NDArray[np.float64],  # Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set
+    n: int,  # Index of the tracker
+    pitch: float,  # Commanded pitch, positive down [rad]
+    yaw: float,  # Commanded yaw relative to the body [rad]
+    limits: Limits = DRONE_LIMITS,  # Of the pitch
 ) -> None:
     """Command new angles and move the joints there at once.
 
     In the original, the filters start at zero, so the camera swings down from the horizon during
     the first pictures of an episode.
-
-    Args:
-        trackers: Source of the body's attitude; its commanded angles and joint angles are set.
-        memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set.
-        n: Index of the tracker.
-        pitch: Commanded pitch, positive down [rad].
-        yaw: Commanded yaw relative to the body [rad].
-        limits: Of the pitch.
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     commanded[0], commanded[1] = held_pitch(pitch, limits), yaw
@@ -97,21 +73,14 @@ def reset_gimbal(
 
 @kernel
 def camera_pose(
-    position: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    gimbal: NDArray[np.float64],
-    camera_position: NDArray[np.float64],
+    position: NDArray[np.float64],  # Centre of the body, world frame [m], shape (3,)
+    orientation: NDArray[np.float64],  # Body to world, shape (4,)
+    gimbal: NDArray[np.float64],  # Roll, pitch, yaw of the joints [rad], shape (3,)
+    camera_position: NDArray[np.float64],  # Optical centre, world frame [m], shape (3,); set
+    # Camera to world; columns forward, left, up, shape (3, 3); set
     camera_rotation: NDArray[np.float64],
 ) -> None:
-    """Compute the pose of the camera through body, yaw link, pitch link and roll link.
-
-    Args:
-        position: Centre of the body, world frame [m], shape (3,).
-        orientation: Body to world, shape (4,).
-        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,).
-        camera_position: Optical centre, world frame [m], shape (3,); set.
-        camera_rotation: Camera to world; columns forward, left, up, shape (3, 3); set.
-    """
+    """Compute the pose of the camera through body, yaw link, pitch link and roll link."""
     sp, cp = sin_cos(gimbal[1])
     sy, cy = sin_cos(gimbal[2])
     x = PITCH_JOINT[0] + cp * ROLL_JOINT[0] + sp * ROLL_JOINT[2]

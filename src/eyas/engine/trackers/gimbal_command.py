@@ -14,8 +14,6 @@ from eyas.engine.trackers.drone import advance
 from eyas.engine.trackers.tracker import Tracker
 from eyas.lanes import kernel, specialised
 
-__all__ = ["WIDTH", "WITH_GIMBAL", "turn_gimbal", "with_gimbal"]
-
 WIDTH = 4  # Numbers of a command that only flies, see `Tracker.advance`.
 WITH_GIMBAL = 8
 """Numbers of one that also turns the camera: behind the four come the pitch and the yaw to turn to
@@ -23,14 +21,12 @@ WITH_GIMBAL = 8
 
 
 @kernel(inline=True)
-def turn_gimbal(trackers: TrackerState, n: int, command: NDArray[np.float64]) -> None:
-    """Move the commanded angles of gimbal `n` by one physics step of 2 ms.
-
-    Args:
-        trackers: Its commanded angles are updated.
-        n: Index of the tracker.
-        command: Shape (8,), see `WITH_GIMBAL`.
-    """
+def turn_gimbal(
+    trackers: TrackerState,  # Its commanded angles are updated
+    n: int,  # Index of the tracker
+    command: NDArray[np.float64],  # Shape (8,), see `WITH_GIMBAL`
+) -> None:
+    """Move the commanded angles of gimbal `n` by one physics step of 2 ms."""
     commanded = trackers.commanded_gimbal[n]
     for axis in range(2):
         most = command[6 + axis] * PHYSICS_STEP

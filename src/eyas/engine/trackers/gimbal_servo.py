@@ -14,8 +14,6 @@ from eyas.engine.trackers.lowpass import low_pass, settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = ["ServoMemory", "advance_servo", "settle_servo"]
-
 Vector = tuple[float, float, float]
 
 
@@ -33,26 +31,20 @@ class ServoMemory(NamedTuple):
 
 @kernel(inline=True)
 def advance_servo(
+    # Source of the body's attitude and the commanded angles; its joint angles are set
     trackers: TrackerState,
+    # Low-pass filters of the desired roll, pitch and yaw, shape (N, 3, 2); updated
     filters: NDArray[np.float64],
-    memory: ServoMemory,
-    frame: Airframe,
-    n: int,
-    change: Vector,
+    memory: ServoMemory,  # Updated
+    frame: Airframe,  # Its servo and its way at the limits are used
+    n: int,  # Index of the tracker
+    change: Vector,  # Change of the body's angular velocity in this step, body frame [rad/s]
 ) -> None:
     """Move gimbal `n` by one physics step of 2 ms.
 
     The joints are taken as independent. What a joint carries keeps its motion while the body turns
     faster or slower, unless the motor acts on it. The step is the semi-implicit one of Euler,
     which keeps such oscillators stable; the motors' forces on the body are neglected.
-
-    Args:
-        trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
-        filters: Low-pass filters of the desired roll, pitch and yaw, shape (N, 3, 2); updated.
-        memory: Updated.
-        frame: Its servo and its way at the limits are used.
-        n: Index of the tracker.
-        change: Change of the body's angular velocity in this step, body frame [rad/s].
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     servo = frame.servo

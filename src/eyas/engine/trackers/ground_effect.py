@@ -5,8 +5,6 @@ import math
 from eyas.engine.trackers.airframe import Airframe
 from eyas.lanes import kernel
 
-__all__ = ["ROTOR_HEIGHT", "ground_effect"]
-
 ROTOR_HEIGHT = 0.02305
 """Height of the rotors over the body's middle, as in the original's `M100` [m]."""
 

@@ -14,8 +14,6 @@ from eyas.engine.trackers.equipped import equipped_drone, is_equipped
 from eyas.engine.trackers.flown import flown_drone
 from eyas.engine.trackers.tracker import Tracker
 
-__all__ = ["TRACKERS", "car", "drone", "tracker_of"]
-
 
 def drone(config: TrackerConfig) -> Tracker:
     """Return the drone: supervised, or flown by its controller."""

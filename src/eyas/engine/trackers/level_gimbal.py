@@ -21,8 +21,6 @@ from eyas.engine.trackers.lowpass import settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2, sin_cos
 
-__all__ = ["carried_along", "level_angles", "level_pose", "reset_level"]
-
 Vector = tuple[float, float, float]
 
 _LEAST, _MOST = -0.5, 2.2
@@ -69,13 +67,11 @@ def reset_level(trackers: TrackerState, filters: NDArray[np.float64], n: int) ->
 
 
 @kernel
-def carried_along(gimbal: NDArray[np.float64], change: Vector) -> Vector:
-    """Return what the body's turn is about the axes of roll, pitch and yaw joint.
-
-    Args:
-        gimbal: Angles of the joints [rad], shape (3,).
-        change: Change of the body's angular velocity, body frame [rad/s].
-    """
+def carried_along(
+    gimbal: NDArray[np.float64],  # Angles of the joints [rad], shape (3,)
+    change: Vector,  # Change of the body's angular velocity, body frame [rad/s]
+) -> Vector:
+    """Return what the body's turn is about the axes of roll, pitch and yaw joint."""
     sy, cy = sin_cos(gimbal[2])
     sr, cr = sin_cos(gimbal[0])
     left = cy * change[1] - sy * change[0]

@@ -23,8 +23,6 @@ from eyas.engine.trackers.rigid_body import (
 )
 from eyas.lanes import kernel, specialised
 
-__all__ = ["moved_with_load"]
-
 Vector = tuple[float, float, float]
 
 

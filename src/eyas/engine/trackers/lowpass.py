@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.lanes import kernel
 
-__all__ = ["low_pass", "settle"]
-
 # A second-order Butterworth filter by the bilinear transform, as in the original. Its _K for 20 Hz
 # is twice pi * 20 Hz * step, so the -3 dB frequency is 39 Hz.
 _K = 2.0 * math.pi * 20.0 * PHYSICS_STEP
@@ -22,13 +20,11 @@ _A2 = (_K * _K - math.sqrt(2.0) * _K + 1.0) / _D
 
 
 @kernel(inline=True)
-def low_pass(memory: NDArray[np.float64], value: float) -> float:
-    """Return the filtered value of one 2 ms step.
-
-    Args:
-        memory: State of one filter, shape (2,); updated.
-        value: Input value.
-    """
+def low_pass(
+    memory: NDArray[np.float64],  # State of one filter, shape (2,); updated
+    value: float,  # Input value
+) -> float:
+    """Return the filtered value of one 2 ms step."""
     # Transposed direct form II: the same response as direct form I with half the state.
     result: float = _B0 * value + memory[0]
     memory[0] = _B1 * value - _A1 * result + memory[1]

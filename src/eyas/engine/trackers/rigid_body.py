@@ -13,20 +13,6 @@ from eyas.engine.trackers.airframe import Airframe
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp, sin_cos
 
-__all__ = [
-    "Change",
-    "RigidBody",
-    "Thrusts",
-    "cross",
-    "loads",
-    "moved",
-    "plus",
-    "rotation_rate",
-    "spun_up",
-    "stage",
-    "turned",
-]
-
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Thrusts = tuple[float, float, float, float]
@@ -56,26 +42,19 @@ class Change(NamedTuple):
 
 @kernel
 def moved(
-    frame: Airframe,
-    body: RigidBody,
+    frame: Airframe,  # Constants of the body
+    body: RigidBody,  # State at the beginning
+    # Of the rotors at the beginning, in the middle and at the end of the step [N]
     thrusts: tuple[Thrusts, Thrusts, Thrusts],
-    wind: Vector,
-    terrain: Terrain,
-    step: float,
+    wind: Vector,  # Velocity of the air, world frame [m/s]
+    terrain: Terrain,  # The ground
+    step: float,  # Length of the time step [s]
 ) -> RigidBody:
     """Return a body after a time step.
 
     The step is the Runge-Kutta method of order 4 in the form of Munthe-Kaas ("High order
     Runge-Kutta methods on manifolds", Applied Numerical Mathematics 29, 1999): each stage turns the
     first attitude by a rotation vector, so that it stays a rotation.
-
-    Args:
-        frame: Constants of the body.
-        body: State at the beginning.
-        thrusts: Of the rotors at the beginning, in the middle and at the end of the step [N].
-        wind: Velocity of the air, world frame [m/s].
-        terrain: The ground.
-        step: Length of the time step [s].
     """
     first, middle, last = thrusts
     still = (0.0, 0.0, 0.0)
@@ -173,17 +152,14 @@ def rotation_rate(rate: Vector, rotation: Vector) -> Vector:
 
 @kernel
 def loads(
-    frame: Airframe, body: RigidBody, thrusts: Thrusts, wind: Vector, terrain: Terrain
+    frame: Airframe,  # Constants of the body
+    body: RigidBody,  # State of its origin
+    thrusts: Thrusts,  # Of the rotors [N]
+    wind: Vector,  # Velocity of the air, world frame [m/s]
+    terrain: Terrain,  # The ground
 ) -> tuple[Vector, Vector]:
     """Return what acts on a body but its weight: force, world frame [N], and torque about its
     origin, body frame [N m].
-
-    Args:
-        frame: Constants of the body.
-        body: State of its origin.
-        thrusts: Of the rotors [N].
-        wind: Velocity of the air, world frame [m/s].
-        terrain: The ground.
     """
     front_right, front_left, rear_left, rear_right = thrusts
     right, left = front_right + rear_right, front_left + rear_left
@@ -273,16 +249,13 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 @kernel
 def spun_up(
-    frame: Airframe, rotor: NDArray[np.float64], wanted: Thrusts
+    frame: Airframe,  # Its motors' constants are used
+    rotor: NDArray[np.float64],  # Rates of the rotors [rad/s], shape (4,); updated
+    wanted: Thrusts,  # Thrusts that the controller asks for [N]
 ) -> tuple[Thrusts, Thrusts, Thrusts]:
     """Return the thrusts at the beginning, in the middle and at the end of a step [N].
 
     Each rotor's rate approaches the one for its wanted thrust by a low-pass of first order.
-
-    Args:
-        frame: Its motors' constants are used.
-        rotor: Rates of the rotors [rad/s], shape (4,); updated.
-        wanted: Thrusts that the controller asks for [N].
     """
     if frame.motor_time_constant <= 0.0:
         return wanted, wanted, wanted

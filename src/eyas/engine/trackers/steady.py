@@ -15,8 +15,6 @@ from eyas.engine.trackers.lowpass import settle
 from eyas.lanes import kernel
 from eyas.lanes.elementary import asin, atan2, sin_cos
 
-__all__ = ["launch"]
-
 Vector = tuple[float, float, float]
 
 
@@ -49,14 +47,14 @@ def launch(
     for rotor in range(4):
         memory.rotor[n, rotor] = math.sqrt(0.25 * math.sqrt(square) / frame.thrust_constant)
     cosine, sine = heading(trackers.orientation[n])
-    settle(memory.forward[n], cosine * east + sine * north)
-    settle(memory.left[n], cosine * north - sine * east)
+    settle(memory.filters.forward[n], cosine * east + sine * north)
+    settle(memory.filters.left[n], cosine * north - sine * east)
     if frame.as_original:
         pitch, yaw = trackers.commanded_gimbal[n, 0], trackers.commanded_gimbal[n, 1]
-        reset_gimbal(trackers, memory.gimbal, n, pitch, yaw)
+        reset_gimbal(trackers, memory.filters.gimbal, n, pitch, yaw)
     else:
-        reset_level(trackers, memory.gimbal, n)
-    settle_servo(trackers, memory.gimbal, memory.servo, n)
+        reset_level(trackers, memory.filters.gimbal, n)
+    settle_servo(trackers, memory.filters.gimbal, memory.servo, n)
 
 
 @kernel(inline=True)

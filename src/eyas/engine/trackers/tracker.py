@@ -9,8 +9,6 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import kernel
 
-__all__ = ["ROTORS", "Tracker", "stand"]
-
 ROTORS = "rotor_command"
 """Name under which trackers tell what they ask of their rotors, see `Tracker.told`."""
 

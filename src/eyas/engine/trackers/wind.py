@@ -18,8 +18,6 @@ from eyas.engine.core.variation import Variation, sample
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import exp, power
 
-__all__ = ["WindMemory", "begin_wind", "blow", "mean_wind"]
-
 _FOOT = 0.3048  # [m]
 _LOWEST, _HIGHEST = 10.0 * _FOOT, 1000.0 * _FOOT
 """Heights for which the model is made; others count as the nearest [m]."""
@@ -53,31 +51,23 @@ class WindMemory(NamedTuple):
 
 
 def mean_wind(
-    speed: Variation, direction: Variation, rng: np.random.Generator
+    speed: Variation,  # Of the mean wind [m/s]
+    direction: Variation,  # Towards which it blows, counter-clockwise from east [rad]
+    rng: np.random.Generator,  # The episode's random numbers for the wind: its first ones
 ) -> tuple[float, tuple[float, float]]:
-    """Return speed [m/s] and direction, cosine and sine from east, of an episode's wind.
-
-    Args:
-        speed: Of the mean wind [m/s].
-        direction: Towards which it blows, counter-clockwise from east [rad].
-        rng: The episode's random numbers for the wind: its first ones.
-    """
+    """Return speed [m/s] and direction, cosine and sine from east, of an episode's wind."""
     angle = sample(direction, rng)
     return sample(speed, rng), (float(exact.cos(angle)), float(exact.sin(angle)))
 
 
 def begin_wind(
-    memory: WindMemory, n: int, speed: Variation, direction: Variation, key: EpisodeKey
+    memory: WindMemory,  # The wind of tracker `n` is set
+    n: int,  # Index of the tracker
+    speed: Variation,  # Of the mean wind [m/s]
+    direction: Variation,  # Towards which it blows, counter-clockwise from east [rad]
+    key: EpisodeKey,
 ) -> None:
-    """Draw the wind of an episode, with gusts as if it had blown for long.
-
-    Args:
-        memory: The wind of tracker `n` is set.
-        n: Index of the tracker.
-        speed: Of the mean wind [m/s].
-        direction: Towards which it blows, counter-clockwise from east [rad].
-        key: The episode.
-    """
+    """Draw the wind of an episode, with gusts as if it had blown for long."""
     rng = key.stream("wind")
     mean, memory.along[n] = mean_wind(speed, direction, rng)
     memory.mean[n] = mean * memory.along[n]
@@ -93,21 +83,13 @@ def begin_wind(
 
 @kernel
 def blow(
-    memory: WindMemory,
-    n: int,
-    turbulence: float,
-    height: float,
-    velocity: tuple[float, float, float],
+    memory: WindMemory,  # The wind of tracker `n`; its gusts are advanced
+    n: int,  # Index of the tracker
+    turbulence: float,  # Wind 20 ft above the ground that makes the gusts [m/s]; 0: none
+    height: float,  # Of the drone above the ground [m]
+    velocity: tuple[float, float, float],  # Of the drone, world frame [m/s]
 ) -> tuple[float, float, float]:
-    """Return the wind in the next physics step of 2 ms, world frame [m/s].
-
-    Args:
-        memory: The wind of tracker `n`; its gusts are advanced.
-        n: Index of the tracker.
-        turbulence: Wind 20 ft above the ground that makes the gusts [m/s]; 0: none.
-        height: Of the drone above the ground [m].
-        velocity: Of the drone, world frame [m/s].
-    """
+    """Return the wind in the next physics step of 2 ms, world frame [m/s]."""
     mean, gust = memory.mean[n], memory.gust[n]
     if turbulence <= 0.0:
         return mean[0], mean[1], 0.0

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.lanes.elementary import atan2
 
-__all__ = ["OPEN", "UNIT", "WindField", "wind_among"]
-
 Vector = tuple[float, float, float]
 
 UNIT = 0.001  # Unit of the numbers of a table [m/s]
@@ -36,19 +34,16 @@ OPEN = WindField(np.zeros((1, 1, 1, 1, 3), np.int16), 0.0, 0.0, 1.0, 0)
 
 @kernel
 def wind_among(
-    field: WindField, east: float, north: float, x: float, y: float, height: float
+    field: WindField,
+    east: float,  # Direction towards which the wind blows, cosine from east
+    north: float,  # Its sine
+    x: float,  # East coordinate [m]
+    y: float,  # North coordinate [m]
+    height: float,  # Over the ground [m]
 ) -> Vector:
     """Return the mean wind at a place in a wind of 1 m/s [m/s].
 
     Between the points of the grid it changes evenly; beyond them it is that of the nearest.
-
-    Args:
-        field: The field.
-        east: Direction towards which the wind blows, cosine from east.
-        north: Its sine.
-        x: East coordinate [m].
-        y: North coordinate [m].
-        height: Over the ground [m].
     """
     directions, levels, rows, columns, _ = field.table.shape
     turn = atan2(north, east) * (0.5 / math.pi) * directions

@@ -7,8 +7,6 @@ from pydantic import Field, model_validator
 
 from eyas.engine.core.config import Config
 
-__all__ = ["Demand", "Drivers", "Lamps", "Mix", "Signals", "Source", "TrafficConfig", "VehicleType"]
-
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
 Most = Annotated[float, Field(gt=0, le=1e9)]
@@ -28,7 +26,7 @@ class VehicleType(StrEnum):
 class Mix(Config):
     """Classes of vehicles that share the roads, each with its share of them."""
 
-    written: ClassVar[str] = '{"passenger": 0.8, "bus": 0.2}'
+    notation: ClassVar[str] = '{"passenger": 0.8, "bus": 0.2}'
     passenger: Share = 0.0
     bus: Share = 0.0
     truck: Share = 0.0

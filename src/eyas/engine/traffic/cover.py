@@ -4,8 +4,6 @@ import hashlib
 import json
 from typing import NamedTuple
 
-__all__ = ["Cover", "Stretch", "cover_hash"]
-
 
 class Stretch(NamedTuple):
     """A part of a lane from end to end of which a car is out of sight."""

@@ -9,17 +9,6 @@ import numpy as np
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.traffic.config import TrafficConfig
 
-__all__ = [
-    "RoadLinks",
-    "Route",
-    "departures",
-    "endless_walk",
-    "lasting_edges",
-    "random_trips",
-    "walk_from",
-    "without_turnarounds",
-]
-
 Route = tuple[str, ...]  # Names of the edges, in driving order
 
 TRIES = 1000  # Number of edge pairs tried for one route before giving up
@@ -69,16 +58,12 @@ def lasting_edges(links: RoadLinks) -> Route:
 
 
 def endless_walk(
-    links: RoadLinks, edges: Route, distance: float, rng: np.random.Generator
+    links: RoadLinks,
+    edges: Route,  # The edges to stay on
+    distance: float,  # A distance longer than any vehicle can drive in the recording [m]
+    rng: np.random.Generator,  # Generator for the start and the turns
 ) -> Route:
-    """Return a random walk of at least `distance` [m].
-
-    Args:
-        links: The roads.
-        edges: The edges to stay on.
-        distance: A distance longer than any vehicle can drive in the recording [m].
-        rng: Generator for the start and the turns.
-    """
+    """Return a random walk of at least `distance` [m]."""
     return walk_from(edges[int(rng.integers(len(edges)))], links, edges, distance, rng)
 
 
@@ -126,13 +111,11 @@ def random_trips(
         yield route
 
 
-def departures(config: TrafficConfig, duration: float) -> Iterator[tuple[float, int]]:
-    """Yield the entry time [s] and the number of vehicles of each group.
-
-    Args:
-        config: Settings with a number as `group_size`.
-        duration: Time since the first group within which groups enter [s].
-    """
+def departures(
+    config: TrafficConfig,  # Settings with a number as `group_size`
+    duration: float,  # Time since the first group within which groups enter [s]
+) -> Iterator[tuple[float, int]]:
+    """Yield the entry time [s] and the number of vehicles of each group."""
     size = config.group_size
     assert size is not None
     left = config.route_count

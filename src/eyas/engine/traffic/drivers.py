@@ -18,8 +18,6 @@ from eyas.engine.traffic.cover import Cover, Stretch
 from eyas.engine.traffic.demand import RoadLinks, Route, lasting_edges, walk_from
 from eyas.lanes import exact
 
-__all__ = ["Manoeuvres"]
-
 _AHEAD = (15.0, 40.0)
 """Drivers decide to hide where a stretch begins so far ahead: nearer, SUMO could not stop in it
 [m]."""

@@ -8,8 +8,6 @@ from typing import Final
 from eyas.engine.traffic.config import Demand, VehicleType
 from eyas.engine.traffic.fleet import Departure
 
-__all__ = ["ActorSlots", "Entrance"]
-
 
 class Entrance:
     """Adds vehicles when they are due and there is room for one more of their class.

@@ -17,8 +17,6 @@ from eyas.engine.traffic.demand import (
     random_trips,
 )
 
-__all__ = ["Departure", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
-
 Links = Mapping[VehicleType, RoadLinks]  # The roads, as each class of vehicles may use them
 
 
@@ -63,13 +61,11 @@ def vehicle_types(config: TrafficConfig) -> tuple[VehicleType, ...]:
     return tuple(name for name, number in numbers.items() for _ in range(number))
 
 
-def fleet_of(config: TrafficConfig, duration: float) -> Fleet:
-    """Return the vehicles that settings ask for.
-
-    Args:
-        config: Settings from `eyas.engine.traffic.record.resolved`.
-        duration: Time until which they enter and drive [s].
-    """
+def fleet_of(
+    config: TrafficConfig,  # Settings from `eyas.engine.traffic.record.resolved`
+    duration: float,  # Time until which they enter and drive [s]
+) -> Fleet:
+    """Return the vehicles that settings ask for."""
     assert config.seed is not None
     rng = stream(config.seed, "traffic")
     actors = vehicle_types(config)

@@ -9,14 +9,6 @@ from eyas.engine.state.motion import ActorState, Motion
 from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import hypot
 
-__all__ = [
-    "ActorPose",
-    "interpolate_actor",
-    "interpolate_actors",
-    "sample_before",
-    "write_actor",
-]
-
 
 class ActorPose(NamedTuple):
     """One actor at one time; fields as in `eyas.engine.state.motion.ActorState`."""
@@ -51,14 +43,12 @@ def sample_before(motion: Motion, time: float) -> int:
 
 
 @kernel(inline=True)
-def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
-    """Return one actor at one time; times outside the samples are clamped to their ends.
-
-    Args:
-        motion: Motion of all actors.
-        actor: Index of the actor.
-        time: Time [s].
-    """
+def interpolate_actor(
+    motion: Motion,  # Motion of all actors
+    actor: int,  # Index of the actor
+    time: float,  # Time [s]
+) -> ActorPose:
+    """Return one actor at one time; times outside the samples are clamped to their ends."""
     row = sample_before(motion, time)
     f = _place(motion, time) - row
     a = motion.table[row, actor]

@@ -13,7 +13,7 @@ from eyas.engine.core.cache.folder import Kind, cache_limit
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import user_path
-from eyas.engine.core.program import code_of
+from eyas.engine.core.identity.program import code_of
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.state.roads import RoadGraph
 from eyas.engine.traffic.config import Demand, Drivers, Mix, Signals, TrafficConfig
@@ -24,23 +24,7 @@ from eyas.engine.traffic.recording import Provenance, Recording, check_map
 from eyas.engine.traffic.recording_file import RecordingFile, save, to_bytes
 from eyas.engine.traffic.sumo import options
 from eyas.engine.traffic.sumo_install import sumo_version
-from eyas.lanes.folder import cache_folder, touch
-
-__all__ = [
-    "CANONICAL_MIX",
-    "CANONICAL_SEED",
-    "DENSE_DURATION",
-    "DENSE_VEHICLES",
-    "EVADING_MIX",
-    "RESPAWN_GROUPS",
-    "STANDARD_DURATION",
-    "TEST_DURATION",
-    "TEST_TRAFFIC",
-    "find_file",
-    "find_recording",
-    "obeys_signals",
-    "record_canonical",
-]
+from eyas.lanes.trusted import cache_folder, touch
 
 _LOG = logging.getLogger("eyas")
 
@@ -164,15 +148,13 @@ def find_recording(
 
 
 def obeys_signals(
-    graph: RoadGraph, config: TrafficConfig, shipped: Traversable | None = None
+    graph: RoadGraph,  # Roads to drive on
+    config: TrafficConfig,  # Settings of the traffic
+    # File of the recording of drivers who do; None: none is shipped
+    shipped: Traversable | None = None,
 ) -> bool:
     """Return whether the recording of settings that leave signals open is one whose drivers obey
     them: that which the user names, or the shipped one if all other settings are its.
-
-    Args:
-        graph: Roads to drive on.
-        config: Settings of the traffic.
-        shipped: File of the recording of drivers who do; None: none is shipped.
 
     Raises:
         DataFileError: A recording cannot be read.
@@ -189,25 +171,17 @@ def obeys_signals(
 
 
 def record_canonical(
-    graph: RoadGraph,
-    path: Path,
-    config: TrafficConfig | None = None,
-    progress: Callable[[float], None] | None = None,
+    graph: RoadGraph,  # Roads of the map
+    path: Path,  # The file
+    config: TrafficConfig | None = None,  # Settings of the traffic; None: the default
+    progress: Callable[[float], None] | None = None,  # Called with the completed share, 0 to 1
     *,
-    cover: Cover = (),
-    duration: float = STANDARD_DURATION,
+    cover: Cover = (),  # The stretches of lanes in which drivers hide
+    duration: float = STANDARD_DURATION,  # Its length [s]
 ) -> None:
     """Record traffic of a map, to be shipped with it.
 
     For developers of a map, after a change in its roads.
-
-    Args:
-        graph: Roads of the map.
-        path: The file.
-        config: Settings of the traffic; None: the default.
-        progress: Called with the completed share, 0 to 1.
-        duration: Its length [s].
-        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.

@@ -29,8 +29,6 @@ from eyas.engine.traffic.smoothing import runs
 from eyas.engine.traffic.source import Stays
 from eyas.engine.traffic.sumo import RATE, SumoRun, no_room
 
-__all__ = ["LiveSumo", "Reaction"]
-
 Reaction = Callable[[SumoRun, float], None]
 """Called before each of SUMO's steps, with the time of the traffic [s]: it may change anything in
 the running simulation through `SumoRun.sumo`, for example the speed of a vehicle."""

@@ -23,8 +23,6 @@ from eyas.engine.traffic.sumo import RATE, Drive, SumoRun
 from eyas.engine.traffic.trailer import Links, tow
 from eyas.lanes import exact
 
-__all__ = ["LiveTracks"]
-
 _FILTER = round(REACH * SIGMA * RATE)
 """Samples before and after one that its filtered position depends on."""
 

@@ -14,20 +14,6 @@ from eyas.engine.state.roads import RoadNetwork, network_problems
 if TYPE_CHECKING:
     import shapely
 
-__all__ = [
-    "NetConnection",
-    "NetEdge",
-    "NetLane",
-    "NetPhase",
-    "NetProgram",
-    "SumoNet",
-    "crossing_lines",
-    "joined",
-    "pavement_area",
-    "points_of",
-    "road_network",
-    "signalled_edges",
-]
 
 _SHORTEST = 0.05  # Points nearer to each other are one [m]
 

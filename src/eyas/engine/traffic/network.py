@@ -14,16 +14,6 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
 from eyas.engine.traffic.net_file import SumoNet, joined, points_of, road_network
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
-__all__ = [
-    "OPTIONS",
-    "STRAIGHT_FIRST",
-    "build_network",
-    "crossings",
-    "graph_hash",
-    "network_xml",
-    "without_comments",
-]
-
 OPTIONS = (
     # Keep the world coordinates of the map.
     *("--offset.disable-normalization", "true"),

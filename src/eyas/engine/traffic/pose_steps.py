@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["Arrays", "packed", "unpacked", "unpacked_differences"]
-
 Arrays = dict[str, NDArray[np.generic]]
 
 _TURN = 6_283_185  # A full turn [microradians]
@@ -28,13 +26,11 @@ _GRAIN = 500
 _SLOPE_BITS = 20  # Binary places of a slope
 
 
-def packed(position: NDArray[np.int64], yaw: NDArray[np.int64]) -> Arrays:
-    """Return the arrays from which `unpacked` makes these poses again.
-
-    Args:
-        position: East and north [cm], shape (A, 2, S), S > 1.
-        yaw: Heading without jumps at ±180° [mrad], shape (A, S).
-    """
+def packed(
+    position: NDArray[np.int64],  # East and north [cm], shape (A, 2, S), S > 1
+    yaw: NDArray[np.int64],  # Heading without jumps at ±180° [mrad], shape (A, S)
+) -> Arrays:
+    """Return the arrays from which `unpacked` makes these poses again."""
     northward, sign, slope = _directions(yaw)
     step = np.diff(position, axis=-1)
     east, north = step[:, 0], step[:, 1]

@@ -22,8 +22,6 @@ from eyas.engine.traffic.smoothing import held
 from eyas.engine.traffic.sumo import RATE, Drive, drive, options
 from eyas.engine.traffic.sumo_install import sumo_version
 
-__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved", "roads_for"]
-
 WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
 
@@ -33,25 +31,15 @@ GROUP_SHARE = 3  # Least number of vehicles in a group for each tracker, as in t
 def record(
     map_name: str,
     map_seed: int,
-    graph: RoadGraph,
-    config: TrafficConfig,
-    duration: float,
-    seed: int,
-    progress: Callable[[float], None] | None = None,
+    graph: RoadGraph,  # Roads of the map
+    config: TrafficConfig,  # Settings of the traffic
+    duration: float,  # Length of the recording [s]
+    seed: int,  # Seed of SUMO and of the routes
+    progress: Callable[[float], None] | None = None,  # Called with the completed share, 0 to 1
     *,
-    cover: Cover = (),
+    cover: Cover = (),  # The stretches of lanes in which drivers hide, where they do
 ) -> Recording:
     """Return a new recording, the same for the same arguments and SUMO version.
-
-    Args:
-        map_name: Name of the map.
-        map_seed: Seed of the map.
-        graph: Roads of the map.
-        config: Settings of the traffic.
-        duration: Length of the recording [s].
-        seed: Seed of SUMO and of the routes.
-        progress: Called with the completed share, 0 to 1.
-        cover: The stretches of lanes in which drivers hide, where they do.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -80,14 +68,12 @@ def roads_for(config: TrafficConfig, graph: RoadGraph) -> bytes:
     )
 
 
-def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConfig:
-    """Return the settings that affect SUMO, with all values filled in; others at their defaults.
-
-    Args:
-        config: The user's settings. Where they leave signals open, nobody obeys any.
-        seed: Seed of SUMO and of the routes.
-        trackers: Number of trackers in a world, which determines the least size of a group.
-    """
+def resolved(
+    config: TrafficConfig,  # The user's settings. Where they leave signals open, nobody obeys any
+    seed: int,  # Seed of SUMO and of the routes
+    trackers: int = 0,  # Number of trackers in a world, which determines the least size of a group
+) -> TrafficConfig:
+    """Return the settings that affect SUMO, with all values filled in; others at their defaults."""
     seen: dict[str, object] = {
         name: getattr(config, name) for name in ("demand", "drivers", "max_vehicles", "max_speed")
     }
@@ -111,20 +97,12 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
 def provenance(
     map_name: str,
     map_seed: int,
-    roads: str,
-    config: TrafficConfig,
-    duration: float,
-    cover: Cover = (),
+    roads: str,  # Hash of its road graph
+    config: TrafficConfig,  # Settings from `resolved`
+    duration: float,  # Length of the recording [s]
+    cover: Cover = (),  # The stretches of lanes in which drivers hide
 ) -> Provenance:
     """Return the provenance of a recording made by this version.
-
-    Args:
-        map_name: Name of the map.
-        map_seed: Seed of the map.
-        roads: Hash of its road graph.
-        config: Settings from `resolved`.
-        duration: Length of the recording [s].
-        cover: The stretches of lanes in which drivers hide.
 
     Raises:
         MissingExtraError: SUMO is not installed.

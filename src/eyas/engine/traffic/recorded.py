@@ -17,8 +17,6 @@ from eyas.engine.traffic.smoothing import Tracks, smooth
 from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 
-__all__ = ["kept_lamps", "kept_motion", "recorded_motion", "table_of"]
-
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
     """Return `recorded_motion`, kept in the cache.
@@ -35,14 +33,12 @@ def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) 
     return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
 
 
-def kept_lamps(file: RecordingFile, motion: Motion, network: RoadNetwork) -> NDArray[np.uint8]:
-    """Return `Motion.lamps` of the motion of a file, kept in the cache.
-
-    Args:
-        file: The file of the recording.
-        motion: Its motion.
-        network: The roads of its map.
-    """
+def kept_lamps(
+    file: RecordingFile,
+    motion: Motion,
+    network: RoadNetwork,  # The roads of its map
+) -> NDArray[np.uint8]:
+    """Return `Motion.lamps` of the motion of a file, kept in the cache."""
     return cached(
         Kind.MOTION,
         partial(lamps_of, motion.table, motion.rate, network),
@@ -57,14 +53,12 @@ def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:
     return table.view(np.float32).reshape(*table.shape, -1)
 
 
-def recorded_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
-    """Return the smoothed motion of a recording, on the ground of its map.
-
-    Args:
-        recording: The recording.
-        terrain: The ground; roads follow its relief.
-        kind: Kind of each actor, see `Motion`, shape (A,).
-    """
+def recorded_motion(
+    recording: Recording,
+    terrain: Terrain,  # The ground; roads follow its relief
+    kind: NDArray[np.int32],  # Kind of each actor, see `Motion`, shape (A,)
+) -> Motion:
+    """Return the smoothed motion of a recording, on the ground of its map."""
     assert kind.shape == (recording.actors,), f"kind: shape {kind.shape}"
     return Motion(table_of(smooth(recording), terrain), kind, float(recording.rate), 0.0)
 

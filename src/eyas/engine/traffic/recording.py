@@ -8,17 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.traffic.config import TrafficConfig, VehicleType
 
-__all__ = [
-    "ANGLE_UNIT",
-    "POSITION_UNIT",
-    "Provenance",
-    "Recording",
-    "check_map",
-    "problem_of",
-    "quantised",
-    "restored",
-]
-
 POSITION_UNIT = 0.01  # Positions are whole multiples of this [m]
 
 ANGLE_UNIT = 0.001  # Yaws are whole multiples of this [rad]
@@ -111,16 +100,13 @@ def problem_of(recording: Recording) -> str:
 
 
 def check_map(
-    origin: Provenance, map_name: str, map_seed: int, graph_hash: str, source: str
+    origin: Provenance,  # Where the recording comes from
+    map_name: str,  # Name of the map in use
+    map_seed: int,
+    graph_hash: str,  # Hash of its road graph
+    source: str,  # Name of the recording for the message, for example its path
 ) -> None:
     """Reject a recording of other roads.
-
-    Args:
-        origin: Where the recording comes from.
-        map_name: Name of the map in use.
-        map_seed: Seed of that map.
-        graph_hash: Hash of its road graph.
-        source: Name of the recording for the message, for example its path.
 
     Raises:
         DataFileError: The recording was made on other roads.

@@ -34,8 +34,6 @@ from eyas.engine.traffic.recording import (
     restored,
 )
 
-__all__ = ["FORMAT", "Outline", "RecordingFile", "from_bytes", "load", "save", "to_bytes"]
-
 FORMAT = "eyas traffic recording 3"
 """Format in the header of a file; another layout gets another number."""
 

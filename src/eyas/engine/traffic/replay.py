@@ -12,8 +12,6 @@ from eyas.engine.traffic.interpolation import interpolate_actors
 from eyas.engine.traffic.smoothing import runs
 from eyas.engine.traffic.source import Stays
 
-__all__ = ["Replay", "check_time"]
-
 ROUNDING: Final = 1e-9  # Tolerance for rounding errors in times that are multiples of 2 ms [s]
 
 

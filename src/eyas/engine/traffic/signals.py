@@ -17,8 +17,6 @@ from eyas.engine.traffic.net_file import NetConnection, NetProgram, SumoNet
 from eyas.engine.traffic.network import STRAIGHT_FIRST
 from eyas.engine.traffic.record import WARM_UP
 
-__all__ = ["Aspect", "SignalPlan", "load_plan", "save_plan", "signal_plan", "walk_plan"]
-
 
 class Aspect(IntEnum):
     """What a traffic light shows."""
@@ -170,14 +168,12 @@ def _phases(logic: NetProgram, index: int) -> list[tuple[float, Aspect]]:
     return phases if _is_known(logic) else [(1.0, Aspect.AMBER)]
 
 
-def _walked(logic: NetProgram, own: int, held: list[int]) -> list[tuple[float, Aspect]]:
-    """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`.
-
-    Args:
-        logic: The program.
-        own: Its link.
-        held: The links of those who drive on the crossed street towards the junction.
-    """
+def _walked(
+    logic: NetProgram,
+    own: int,  # Its link
+    held: list[int],  # The links of those who drive on the crossed street towards the junction
+) -> list[tuple[float, Aspect]]:
+    """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`."""
     phases = []
     for one in logic.phases:
         state = one.state

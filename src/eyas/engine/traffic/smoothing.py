@@ -19,21 +19,6 @@ from eyas.engine.traffic.tractrix import follow_headings
 from eyas.engine.traffic.trailer import Links, tow
 from eyas.lanes import exact
 
-__all__ = [
-    "REACH",
-    "SIGMA",
-    "Tracks",
-    "as_far",
-    "filtered",
-    "follow",
-    "front_path",
-    "held",
-    "lead_of",
-    "rate_of",
-    "runs",
-    "smooth",
-]
-
 SIGMA = 0.3
 """Width of the Gaussian [s]: removes SUMO's 0.1 s steps and moves the path by centimetres only."""
 
@@ -97,12 +82,10 @@ def lead_of(length: float, *, articulated: bool) -> float:
     return 0.5 * (length if articulated else min(WHEELBASE * length, LONGEST_WHEELBASE))
 
 
-def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the first sample and one past the last sample of each stay in the world.
-
-    Args:
-        present: Whether the actor is in the world, shape (S,).
-    """
+def runs(
+    present: NDArray[np.bool_],  # Whether the actor is in the world, shape (S,)
+) -> list[tuple[int, int]]:
+    """Return the first sample and one past the last sample of each stay in the world."""
     edges = np.diff(np.concatenate([[False], present, [False]]).astype(np.int8))
     return list(
         zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
@@ -153,15 +136,11 @@ def front_path(
 
 
 def follow(
-    front: NDArray[np.float64], yaw: float, wheelbase: float
+    front: NDArray[np.float64],  # Path of the front axle [m], shape (S, 2)
+    yaw: float,  # Heading at its first point [rad]
+    wheelbase: float,  # Distance between the axles [m]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return middle (S, 2) and heading (S,) of a vehicle that is pulled along a path.
-
-    Args:
-        front: Path of the front axle [m], shape (S, 2).
-        yaw: Heading at its first point [rad].
-        wheelbase: Distance between the axles [m].
-    """
+    """Return middle (S, 2) and heading (S,) of a vehicle that is pulled along a path."""
     heading = follow_headings(front, yaw, wheelbase)
     centre = front - 0.5 * wheelbase * np.stack([exact.cos(heading), exact.sin(heading)], axis=-1)
     return centre, heading

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.motion import ActorState, Motion
 
-__all__ = ["Stays", "TrafficSource"]
-
 
 class Stays(NamedTuple):
     """When actors that may be targets are in the world; an actor may come and go several times."""

@@ -20,8 +20,6 @@ from eyas.engine.traffic.fleet import Departure, Fleet, vehicle_types
 from eyas.engine.traffic.sumo_install import import_libsumo
 from eyas.lanes import exact
 
-__all__ = ["RATE", "Drive", "SumoRun", "departures_and_types", "drive", "no_room", "options"]
-
 RATE = 10  # SUMO's steps and Eyas's samples per second [Hz], as in the original
 
 _SELDOM = ("--default.action-step-length", "0.5")
@@ -82,22 +80,15 @@ def options(config: TrafficConfig) -> tuple[str, ...]:
 
 
 def drive(
-    network: bytes,
-    config: TrafficConfig,
-    fleet: Fleet,
-    cover: Cover,
-    span: tuple[float, float],
+    network: bytes,  # SUMO's network file
+    config: TrafficConfig,  # Settings of the traffic; the seed is a number
+    fleet: Fleet,  # The vehicles
+    cover: Cover,  # The stretches of lanes in which drivers hide
+    span: tuple[float, float],  # First and last time of the samples [s]
+    # Called with the completed share, 0 to 1, each simulated second
     progress: Callable[[float], None] | None,
 ) -> Drive:
     """Run SUMO and return the poses of its vehicles.
-
-    Args:
-        network: SUMO's network file.
-        config: Settings of the traffic; the seed is a number.
-        fleet: The vehicles.
-        cover: The stretches of lanes in which drivers hide.
-        span: First and last time of the samples [s].
-        progress: Called with the completed share, 0 to 1, each simulated second.
 
     Raises:
         MissingExtraError: SUMO is not installed.

@@ -9,8 +9,6 @@ from types import ModuleType
 
 from eyas.engine.core.errors import MissingExtraError
 
-__all__ = ["SYSTEM_PACKAGES", "import_libsumo", "sumo_binary", "sumo_environment", "sumo_version"]
-
 SYSTEM_PACKAGES = "libgl1 libx11-6 libxext6 libxrender1 libexpat1 libatomic1"
 """Packages of Debian and Ubuntu that SUMO's wheels need."""
 

@@ -8,19 +8,13 @@ from numpy.typing import NDArray
 from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, atan2, exp, hypot, tan
 
-__all__ = ["follow_headings"]
-
 
 def follow_headings(
-    front: NDArray[np.float64], yaw: float, wheelbase: float
+    front: NDArray[np.float64],  # Path of its front [m], shape (S, 2)
+    yaw: float,  # Heading at its first point [rad]
+    wheelbase: float,  # Distance from the front to the axle that does not slide [m]
 ) -> NDArray[np.float64]:
-    """Return the headings (S,) of a body whose front is pulled along a path [rad].
-
-    Args:
-        front: Path of its front [m], shape (S, 2).
-        yaw: Heading at its first point [rad].
-        wheelbase: Distance from the front to the axle that does not slide [m].
-    """
+    """Return the headings (S,) of a body whose front is pulled along a path [rad]."""
     heading = np.empty(len(front))
     _follow(front, float(yaw), float(wheelbase), heading)
     return heading

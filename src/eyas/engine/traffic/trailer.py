@@ -17,18 +17,6 @@ from eyas.engine.traffic.tractrix import follow_headings
 from eyas.lanes import exact, kernel
 from eyas.lanes.elementary import sin_cos
 
-__all__ = [
-    "AXLES_BEHIND",
-    "BUMPER_AHEAD",
-    "REAR_AXLE",
-    "TAIL_BEHIND",
-    "Articulated",
-    "Links",
-    "folded",
-    "folded_by",
-    "tow",
-]
-
 BUMPER_AHEAD = 4.75  # From the kingpin to the front bumper [m]
 
 TAIL_BEHIND = 9.55  # From the kingpin to the end of the trailer [m]
@@ -77,14 +65,12 @@ class Articulated(NamedTuple):
     hitch: Floats  # Heading of the trailer less that of the truck [rad], shape (S,)
 
 
-def tow(front: Floats, length: float, links: Links) -> Articulated:
-    """Return the motion of a truck whose front is pulled along a path.
-
-    Args:
-        front: Path of SUMO's front [m], shape (S, 2).
-        length: SUMO's length of the vehicle [m]; its middle is the reference point.
-        links: Headings at the first point.
-    """
+def tow(
+    front: Floats,  # Path of SUMO's front [m], shape (S, 2)
+    length: float,  # SUMO's length of the vehicle [m]; its middle is the reference point
+    links: Links,  # Headings at the first point
+) -> Articulated:
+    """Return the motion of a truck whose front is pulled along a path."""
     ahead = 0.5 * (BUMPER_AHEAD + TAIL_BEHIND) - _REFERENCE
     lead = max(0.5 * length - ahead, _SHORTEST_LEAD)
     bumper = front - lead * _directions(follow_headings(front, links.lead, lead))

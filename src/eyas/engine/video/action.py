@@ -1,4 +1,4 @@
-"""How the trackers of a recording move: with their targets, at random, on paths, by a policy."""
+"""Motion of the trackers of a recording: with their targets, at random, on paths, by a policy."""
 
 from typing import Protocol
 
@@ -42,11 +42,7 @@ class Mover(Protocol):
 
 
 class Exact:
-    """Each tracker keeps its place relative to its target.
-
-    Args:
-        sim: The trackers.
-    """
+    """Each tracker keeps its place relative to its target."""
 
     def __init__(self, sim: Simulation) -> None:
         self._sim = sim
@@ -64,12 +60,7 @@ class Exact:
 
 
 class RandomActions:
-    """One of six actions, sampled at the start of each control period and held during it.
-
-    Args:
-        sim: The trackers.
-        config: Seed, control frequency and the six speeds.
-    """
+    """One of six actions, sampled at the start of each control period and held during it."""
 
     def __init__(self, sim: Simulation, config: EyasConfig) -> None:
         self._sim, self._seed = sim, config.seed

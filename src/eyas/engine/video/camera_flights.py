@@ -45,13 +45,7 @@ class _Flown(NamedTuple):
 
 
 class CameraFlights:
-    """Trackers on camera paths, each planned at the start of its episode.
-
-    Args:
-        sim: The trackers.
-        config: What is asked of the flights.
-        path: The path of all.
-    """
+    """Trackers on camera paths, each planned at the start of its episode."""
 
     def __init__(self, sim: Simulation, config: EyasConfig, path: CameraPath) -> None:
         video, camera = config.video, config.camera

@@ -8,14 +8,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from eyas import __version__
-from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.engine.core.folder_lock import LOCK
-from eyas.engine.core.lens import NO_LENS, Lens, camera_matrix
+from eyas.engine.core.identity.build import Build, this_build
+from eyas.engine.core.installed import installed_version
+from eyas.engine.core.optics.lens import NO_LENS, Lens, camera_matrix
 from eyas.engine.exports.checksums import CHECKSUMS, GROWING
 from eyas.engine.exports.registry import WRITERS, chosen_writers
 from eyas.engine.exports.writer import Episode, Files, Run, joined
@@ -58,10 +58,6 @@ class VideoFolder:
         path: The recording's folder.
         trackers: Names of the trackers and of their folders.
         writers: One for each format.
-
-    Args:
-        path: The recording's folder.
-        config: The settings.
     """
 
     def __init__(self, path: Path, config: EyasConfig) -> None:
@@ -168,7 +164,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     files = joined(writer.files for writer in folder.writers)
     build = this_build()
     origin = {
-        **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
+        **{"eyas": installed_version(), "build_id": build.id, "build": build.model_dump()},
         "files": asdict(files),
         "seed": config.seed,
     }
@@ -243,14 +239,14 @@ def _require_same_build(path: Path) -> None:
         origin = _origin(path)
         version, build = origin["eyas"], Build(**origin["build"])
     except (DataFileError, ConfigError, ValueError, TypeError, LookupError):
-        told = "of an unknown version"
+        by = "of an unknown version"
     else:
         differs = build.difference(this_build(), without=_NOT_PICTURED)
         if not differs:
             return
-        told = f"{version!s:.40}, build {build.id}, which differs from this one in {differs}"
+        by = f"{version!s:.40}, build {build.id}, which differs from this one in {differs}"
     raise OutputError(
-        f"{path}: recorded by Eyas {told}; pictures may differ, so continue with that build, or "
+        f"{path}: recorded by Eyas {by}; pictures may differ, so continue with that build, or "
         "start again with --overwrite"
     )
 

@@ -1,16 +1,24 @@
-"""Formats of `eyas export` among `video.writers`: written of the recording, when it is complete."""
+"""Writers of a recording: those that are chosen, the default, and formats of `eyas export` among
+`video.writers`, which are written of the recording when it is complete.
+"""
 
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 
+from eyas.engine.core.codecs.pyav import has_pyav
 from eyas.engine.core.errors import UnknownNameError
+from eyas.engine.core.installed import install_command
 from eyas.engine.exports.registry import SETTING, WRITERS
 from eyas.engine.recordings.export import ExportOptions, export, exports_folder, formats_needs
+from eyas.engine.recordings.format import FORMATS
 from eyas.engine.recordings.recording import load
-from eyas.engine.recordings.registry import FORMATS
+from eyas.engine.settings.config import EyasConfig
 from eyas.engine.terminal.progress import frames_bar
 
-__all__ = ["formats_in", "write_formats", "writers_in"]
+__all__ = ["formats_in", "with_writers", "write_formats", "writers_in"]
+
+_LOG = logging.getLogger("eyas")
 
 
 def formats_in(names: Sequence[str]) -> tuple[str, ...]:
@@ -48,12 +56,28 @@ def write_formats(names: Sequence[str], folder: Path, *, quiet: bool) -> None:
         return
     recording = load(folder)
     for name in formats:
-        with frames_bar(f"writing {name}", recording.frame_count, quiet=quiet) as told:
+        with frames_bar(f"writing {name}", recording.frame_count, quiet=quiet) as progress:
             target = exports_folder(folder, name, None)
-            export(recording, name, target, ExportOptions(resume=True), told)
+            export(recording, name, target, ExportOptions(resume=True), progress)
 
 
 def _is_format(name: str) -> bool:
     if ":" in name:
         return hasattr(WRITERS.get(name), "needs")
     return name in FORMATS.names()
+
+
+def with_writers(config: EyasConfig, *, quiet: bool) -> EyasConfig:
+    """Return settings whose writers, if none are chosen, write what there is: the lidar's file, if
+    it is on, and an animated WebP, if PyAV is not installed, which a line says unless `quiet`.
+    """
+    video = config.video
+    writers = type(video)().writers
+    if video.writers != writers:
+        return config
+    if not has_pyav():
+        writers = tuple("webp" if name == "mp4" else name for name in writers)
+        if not quiet:
+            _LOG.info("films are animated WebP; for MP4: %s", install_command("video"))
+    writers += ("lidar",) if config.lidar.enabled else ()
+    return config.model_copy(update={"video": video.model_copy(update={"writers": writers})})

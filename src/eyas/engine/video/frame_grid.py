@@ -1,4 +1,4 @@
-"""When a recording has frames, and when its episodes and it itself end."""
+"""Times of the frames of a recording, of the ends of its episodes, and of its own end."""
 
 import math
 
@@ -21,10 +21,6 @@ class FrameGrid:
     The original compares with the time of the last frame, which it does not set at the start of
     later episodes, so that their second frame follows 2 ms after the first. Here each episode has
     its own grid.
-
-    Args:
-        video: When to record.
-        count: Number of trackers.
     """
 
     first_tick: int

@@ -88,7 +88,8 @@ class PolicyPilot:
 
     def _decide(self, tracker: int) -> None:
         sight = PolicyInput(
-            *(self._observed(tracker), np.ones(1, np.bool_)),
+            self._observed(tracker),
+            deciding=np.ones(1, np.bool_),
             snapshot=lambda: self._of(tracker),
             visible=lambda: self._visible(tracker),
             covered=np.zeros(1, np.bool_),

@@ -1,30 +1,162 @@
-"""Draws and writes the frames of a recording, and counts them."""
+"""Draws and writes the frames of a recording, counts them, and keeps checksums of its episodes.
 
+By its checksums an episode that is damaged is known and drawn again. `checksums.sha256` has the
+files of all episodes:
+
+    0f3a...  DRONE0/episode0/000000.jpeg
+
+Those of an episode are appended to `.checksums` when it ends; the file is made of them when all
+have ended.
+"""
+
+import hashlib
 import os
+import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.errors import OutputError
-from eyas.engine.core.lens import NO_LENS
+from eyas.engine.core.errors import DataFileError, OutputError
+from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.optics.lens import NO_LENS
 from eyas.engine.exports.capture import frame_of, moment_of
-from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.exports.writer import EndedEpisode, Episode, Scores, Summary
+from eyas.engine.exports.checksums import CHECKSUMS, GROWING, checksum_lines, read_checksums
+from eyas.engine.exports.frame import Frame, RecordedAction
+from eyas.engine.exports.writer import EndedEpisode, Episode, Scores, Summary, Writer, joined
 from eyas.engine.settings.config import EyasConfig
+from eyas.engine.settings.video import VideoConfig
+from eyas.engine.sim.flights.shares import SMALL
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import Picture
-from eyas.engine.video.checksums import Checksums
-from eyas.engine.video.episode import EpisodeFiles, read_complete
+from eyas.engine.video.episode import EpisodeFiles, RecordedPaths, paths_below, read_complete
 from eyas.engine.video.folder import VideoFolder
-from eyas.engine.video.reached import ReachedShares
 
-__all__ = ["Recorder", "WriterThreads"]
+__all__ = ["ReachedShares", "Recorder", "WriterThreads", "missed"]
+
+_NEAR = 0.05  # A share that differs by no more from what was asked is reached
+
+
+@dataclass(slots=True)
+class ReachedShares:
+    """Numbers of frames, of those that were drawn."""
+
+    frames: int = 0
+    in_view: int = 0
+    hidden: int = 0
+    cut: int = 0
+    small: int = 0
+
+    def add(self, frame: Frame) -> None:
+        """Count a frame."""
+        target = frame.target
+        left, top, right, bottom = target.box.tolist()
+        pixels = (right - left) * (bottom - top)
+        self.frames += 1
+        if not pixels:
+            return
+        self.in_view += 1
+        self.hidden += target.visible_fraction <= 0.5
+        self.cut += target.truncated(frame.camera) > 0.0
+        self.small += pixels < SMALL
+
+    def shares(self) -> dict[str, float]:
+        """Return the shares by their settings."""
+        names = ("in_view", "hidden", "cut", "small")
+        return {name: getattr(self, name) / max(self.frames, 1) for name in names}
+
+    def plus(self, other: "ReachedShares") -> "ReachedShares":
+        """Return both together."""
+        return ReachedShares(
+            self.frames + other.frames,
+            self.in_view + other.in_view,
+            self.hidden + other.hidden,
+            self.cut + other.cut,
+            self.small + other.small,
+        )
+
+
+def missed(reached: ReachedShares, video: VideoConfig) -> Iterator[str]:
+    """Yield a line for each share that was asked of camera paths and is not reached."""
+    for name, share in reached.shares().items():
+        asked = getattr(video, name)
+        if reached.frames and asked is not None and abs(share - asked) > _NEAR:
+            yield (
+                f"note: video.{name}: {asked:.0%} of the frames were asked, the flights came to "
+                f"{share:.0%}; other heights, pitches, maps or longer episodes may come nearer"
+            )
+
+
+class Checksums:
+    """The checksums of the episodes that have ended. Its methods may be called in any thread."""
+
+    def __init__(self, run: Path, writers: Sequence[Writer]) -> None:
+        self._run, self._growing = run, run / GROWING
+        self._contents = RecordedPaths(joined(writer.files for writer in writers))
+        self._lock = threading.Lock()
+        self._known = _read(run / CHECKSUMS) | _read(self._growing)
+
+    def add(self, episode: Path) -> None:
+        """Add those of an episode that has ended.
+
+        Raises:
+            OutputError: They cannot be written, or a file not be read.
+        """
+        sums = self._of(episode)
+        with self._lock, refusals(self._growing):
+            self._forget(episode)
+            self._known |= sums
+            with self._growing.open("ab") as file:
+                # A line that a kill has cut off must not spoil the next one.
+                file.write(b"\n" * bool(file.tell()) + checksum_lines(sums))
+
+    def match(self, episode: Path) -> bool:
+        """Return whether the files of an episode are those that were written when it ended."""
+        inside = self._inside(episode)
+        known = {name: digest for name, digest in self._known.items() if name.startswith(inside)}
+        return bool(known) and known == self._of(episode)
+
+    def finish(self) -> None:
+        """Write all of them in order, so that a recording that was continued is the same.
+
+        Raises:
+            OutputError: They cannot be written.
+        """
+        write_atomic(self._run / CHECKSUMS, checksum_lines(self._known))
+        with refusals(self._growing):
+            self._growing.unlink(missing_ok=True)
+
+    def _forget(self, episode: Path) -> None:
+        inside = self._inside(episode)
+        self._known = {
+            name: own for name, own in self._known.items() if not name.startswith(inside)
+        }
+
+    def _inside(self, episode: Path) -> str:
+        return f"{episode.relative_to(self._run).as_posix()}/"
+
+    def _of(self, episode: Path) -> dict[str, str]:
+        inside, sums = self._inside(episode), {}
+        with refusals(episode):
+            for name, path in paths_below(episode):
+                if self._contents.in_episode(name) and not path.is_dir():
+                    sums[inside + name] = hashlib.sha256(path.read_bytes()).hexdigest()
+        return sums
+
+
+def _read(path: Path) -> dict[str, str]:
+    """Return what an earlier run has written; nothing if there was none."""
+    try:
+        return read_checksums(path)
+    except DataFileError:
+        return {}
+
 
 Arguments = ParamSpec("Arguments")
 
@@ -37,9 +169,6 @@ class WriterThreads:
     Drawing, video encoding and writing release Python's global lock, so that they use cores that
     others leave idle: with one such core, four pictures of 320 x 240 took 22 ms instead of 31.
     Pillow's JPEG encoder does not release it.
-
-    Args:
-        count: Largest number of keys.
     """
 
     def __init__(self, count: int) -> None:
@@ -90,12 +219,12 @@ class WriterThreads:
 
 
 @dataclass(slots=True)
-class _Going:
+class _OpenEpisode:
     """An episode in progress."""
 
     episode: Episode
     files: EpisodeFiles | None  # None: an earlier run has recorded it completely
-    summary: Summary  # Of the frames up to now, or of all frames of an earlier run
+    summary: Summary  # Summary of the frames up to now, or of all frames of an earlier run
 
 
 class Recorder:
@@ -103,11 +232,6 @@ class Recorder:
 
     An episode that an earlier run has recorded completely is kept and not drawn again, if its files
     are what they were.
-
-    Args:
-        sim: What is recorded.
-        config: Its settings.
-        folder: The folder of the recording.
     """
 
     episodes: list[list[EndedEpisode]]
@@ -140,7 +264,7 @@ class Recorder:
             subject=True,
             actors=sim.actors if "others" in wanted else 0,
         )
-        self._going: list[_Going | None] = [None] * count
+        self._open: list[_OpenEpisode | None] = [None] * count
         self._begun: list[EpisodeFiles] = []
         self.episodes = [[] for _ in range(count)]
         self.drawn = 0
@@ -166,27 +290,27 @@ class Recorder:
             self._write(tracker, picture, view, action_of(tracker))
         self.drawn += len(drawn)
 
-    def _begin(self, tracker: int) -> _Going:
+    def _begin(self, tracker: int) -> _OpenEpisode:
         """Return the episode of a tracker, after beginning it if needed."""
-        going = self._going[tracker]
+        going = self._open[tracker]
         if going is None:
-            going = self._going[tracker] = self._found_or_new(tracker)
+            going = self._open[tracker] = self._found_or_new(tracker)
         return going
 
-    def _found_or_new(self, tracker: int) -> _Going:
+    def _found_or_new(self, tracker: int) -> _OpenEpisode:
         writers = self._folder.writers
         field = float(self._sim.snapshot.cameras.field_of_view[tracker])
         lens = self._sim.view.lens_of(tracker) or NO_LENS
         episode = self._folder.episode(tracker, len(self.episodes[tracker]), field, lens)
         found = read_complete(writers, episode.folder)
         if found is not None and self._checksums.match(episode.folder):
-            return _Going(episode, None, found)
+            return _OpenEpisode(episode, None, found)
         files = EpisodeFiles(writers, episode)
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
-        return _Going(episode, files, Summary(0, Scores()))
+        return _OpenEpisode(episode, files, Summary(0, Scores()))
 
     def _write(self, tracker: int, picture: Picture, view: int, action: RecordedAction) -> None:
-        going = self._going[tracker]
+        going = self._open[tracker]
         assert going is not None
         assert going.files is not None
         number = going.summary.frames
@@ -203,13 +327,13 @@ class Recorder:
             OutputError: Writing failed.
         """
         for tracker in np.flatnonzero(trackers).tolist():
-            going = self._going[tracker]
+            going = self._open[tracker]
             if going is not None:
                 if going.files is not None:
                     self._threads.submit(tracker, going.files.finish)
                     self._threads.submit(tracker, self._checksums.add, going.episode.folder)
                 self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
-            self._going[tracker] = None
+            self._open[tracker] = None
 
     def finish(self) -> None:
         """End all episodes, and describe the whole recording.
@@ -217,7 +341,7 @@ class Recorder:
         Raises:
             OutputError: Writing failed.
         """
-        self.end(np.ones(len(self._going), np.bool_))
+        self.end(np.ones(len(self._open), np.bool_))
         self._threads.finish()
         for writer in self._folder.writers:
             writer.finish([ended for own in self.episodes for ended in own])

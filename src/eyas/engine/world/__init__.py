@@ -1,5 +1,6 @@
-"""The static world: maps, roads, buildings, plants, land, weather, and files of OpenStreetMap.
+"""The static world: recipes of maps, roads, bodies of cars, signals, weather. The makers of maps
+are in the house `maps`.
 
-May import: `mesh`, `state`, `core`, `lanes`.
-Begin with `maps/recipe.py` and `plan/plan.py`. Private: `eyas` offers what is public.
+May import: `mesh` and all rooms below.
+Begin with `maps/recipe.py`, then `weather.py`, `roads/areas.py`.
 """

@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, model_validator
 
-from eyas.engine.core.code_names import NAMES_CODE
 from eyas.engine.core.config import Config
+from eyas.engine.core.own_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, within
 
 __all__ = ["LightConfig", "WorldConfig", "WorldWindConfig", "world_of"]
@@ -57,7 +57,7 @@ class WorldConfig(Config):
     hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
     """Time of day, which moves the sun and its shadows; None: the weather's own sun or moon."""
     precipitation: Annotated[float, Field(ge=0.0, le=4.0)] = 1.0
-    """How much snow, rain or leaves fall, times as much as the weather's own."""
+    """Factor on the snow, rain or leaves that fall in the weather."""
     wind: WorldWindConfig | None = None
     """Wind that sways plants and carries what falls; a flown drone with a `drag_area` feels it,
     too. None: plants are still, and what falls drifts by itself."""

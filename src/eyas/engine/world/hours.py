@@ -14,7 +14,7 @@ Colour = tuple[float, float, float]  # Linear red, green and blue; also a direct
 _LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)
 """A day in May at 45 degrees north; the sun stands in the south at 12."""
 _DIMMING = (0.06, 0.12, 0.26)
-"""How much of red, green and blue a vertical way through the air takes; a low sun is orange."""
+"""Optical depth of a vertical way through the air for red, green and blue: a low sun is orange."""
 
 
 def sun_at(hour: float) -> Colour:
@@ -39,12 +39,21 @@ def _seen_at(turn: float, declination: float) -> Colour:
 _LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
 """Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
 the third it is night."""
+
+_MIXED = tuple(
+    "zenith_colour horizon_colour fog_colour ambient_up ambient_down fog_density exposure "
+    "luminosity clouds snow flakes rain leaves wet litter mist mist_depth glare "
+    "longest_shadow".split()
+)
+"""Fields of a `Lighting` that are mixed by share in twilight."""
+
 _LAMPS = ("lamps", "windows", "daytime_lamps")
-"""What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
+"""Lights that are switched on as the sun sinks, from the horizon to as far below it as
+`_LOW_SUN`."""
 _LOWEST = 1.5  # Height of the sun below which the formulas of daylight would go on to black [deg]
 
 
-_SIDEREAL = math.radians(15.041)  # How far the stars turn in an hour [rad]
+_SIDEREAL = math.radians(15.041)  # Turn of the stars in an hour [rad]
 _MOONRISE = 3.0  # Height of the moon below which it throws no light [deg]
 _STARLIGHT = 0.35
 """Share of the night's ambient light that is not the moon's, but the stars' and the town's."""
@@ -110,14 +119,7 @@ def at_hour(by_day: Lighting, by_night: Lighting, hour: float) -> Lighting:
         return by_night
     day = _by_day(by_day, _lifted(direction, max(height, _LOWEST)))
     night, share = by_night, (_LOW_SUN - height) / (_LOW_SUN - _DARK)
-    mixed = {
-        name: _mixed(getattr(day, name), getattr(night, name), share)
-        for name in (
-            *("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down"),
-            *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
-            *("rain", "leaves", "wet", "litter", "mist", "mist_depth", "glare", "longest_shadow"),
-        )
-    }
+    mixed = {name: _mixed(getattr(day, name), getattr(night, name), share) for name in _MIXED}
     (mixed["luminance"],) = _mixed((day.luminance,), (night.luminance,), share)
     mixed["stars"] = day.stars if height > _MOONLIGHT else night.stars
     for name in ("star_turn", "moon_limb", "moon_lit"):

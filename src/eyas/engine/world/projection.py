@@ -32,8 +32,8 @@ _Some = Any  # A number, or as many as there are places
 class Projection:
     """Metres around a place; exact to a millimetre within 10 km."""
 
-    longitude: float  # Of the origin, in degrees
-    latitude: float  # Of the origin, in degrees
+    longitude: float  # Longitude of the origin [degrees]
+    latitude: float  # Latitude of the origin [degrees]
 
     @property
     def text(self) -> str:

@@ -39,7 +39,7 @@ class Season(StrEnum):
     SUMMER = "summer"
     WINTER = "winter"
     AUTUMN = "autumn"
-    """As in summer, but the leaves of trees have turned, and some have fallen."""
+    """Autumn: summer, but the leaves of trees have turned, and some have fallen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ class Weather:
     day: Lighting
     """Light and air while the sun is up: what falls and lies, too."""
     night: Lighting
-    """The same while the sun is deep below the horizon; its `sun_direction` is the moon's."""
+    """Light and air while the sun is deep below the horizon; its `sun_direction` is the moon's."""
     dark: bool = False
     """Whether it is night unless an hour is given."""
     hour: float | None = None
@@ -182,7 +182,7 @@ _WINTER_NIGHT = replace(
     flakes=WINTER_DAY.flakes,
 )
 
-# What the original does not have.
+# Weathers that the original does not have.
 
 # Grey light without shadows from a closed sky that is brighter above (CIE's overcast sky).
 _OVERCAST_DAY = replace(

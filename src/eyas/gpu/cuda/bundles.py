@@ -11,8 +11,6 @@ from eyas.gpu.cuda.context import Context
 from eyas.gpu.cuda.memory import CudaArray
 from eyas.lanes.held import _NOTHING, _flatten, _layout, _layouts
 
-__all__ = ["Blocks", "CudaBundle"]
-
 _SLAB = 1 << 20
 """Memory for bundles is allocated in pieces of this size [bytes]; a bundle takes some kilobytes."""
 

@@ -8,8 +8,6 @@ from typing import NamedTuple
 from eyas.gpu.cuda.code import OLDEST
 from eyas.gpu.cuda.driver import CudaError, driver
 
-__all__ = ["Card", "card", "gib", "gpu_line"]
-
 _MAJOR, _MINOR = 75, 76  # CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR
 
 _VERSION = Path("/sys/module/nvidia/version")

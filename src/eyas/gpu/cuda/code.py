@@ -14,28 +14,26 @@ from typing import Any, NamedTuple
 
 import llvmlite
 
-import eyas.lanes
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.entry import LOCK
-from eyas.lanes.folder import kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import identity, language_hash
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import code_name, digest, entry_of
 from eyas.lanes.shipped import wanted
 from eyas.lanes.syntax import syntax_of
-
-__all__ = ["ARCHIVE", "OLDEST", "SUFFIX", "Ptx", "archive_of", "ptx_code"]
+from eyas.lanes.trusted import read_trusted, touch, write_trusted
 
 OLDEST = (8, 0)  # The least compute capability of cards that are served: that of the A100, of 2020
 
 SUFFIX = ".eyp"  # End of the names of files of PTX
 
-_ROOM = Path(eyas.lanes.__file__).parent
+_HOUSE = Path(__file__).parents[1]
 
 _MAKERS = ("ptx.py",)  # Files that decide what kernels become, beside the language of kernels
 
-ARCHIVE = _ROOM / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
+ARCHIVE = _HOUSE / "shipped" / f"sm_{OLDEST[0]}{OLDEST[1]}{SUFFIX}"
 """PTX that comes with the package: one file serves all cards from the oldest on."""
 
 
@@ -47,16 +45,12 @@ class Ptx(NamedTuple):
 
 
 def ptx_code(
-    call: CompiledCall, types: tuple[Any, ...], kinds: tuple[str, ...], threads: int
+    call: CompiledCall,  # The kernel
+    types: tuple[Any, ...],  # Bundles of these kinds
+    kinds: tuple[str, ...],  # The kinds, see `eyas.lanes.held.Held`
+    threads: int,  # See `eyas.lanes.device.Device.launch`
 ) -> Ptx:
-    """Return the PTX of a kernel for bundles of some kinds.
-
-    Args:
-        call: The kernel.
-        types: Bundles of these kinds.
-        kinds: The kinds, see `eyas.lanes.held.Held`.
-        threads: See `eyas.lanes.device.Device.launch`.
-    """
+    """Return the PTX of a kernel for bundles of some kinds."""
     function = call.function
     name = code_name(function.__qualname__.rpartition(".")[2], identity(function))
     stem = f"{name}-{digest((*kinds, str(threads)))}"
@@ -80,7 +74,7 @@ def ptx_code(
 @cache
 def _made_of() -> str:
     """Return a digest of what turns kernels into PTX."""
-    return digest((language_hash(), *(syntax_of(_ROOM / name)[""].digest for name in _MAKERS)))
+    return digest((language_hash(), *(syntax_of(_HOUSE / name)[""].digest for name in _MAKERS)))
 
 
 def _made_by() -> tuple[str, ...]:

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from eyas.gpu.cuda.cards import card, gib
 from eyas.gpu.cuda.driver import OUT_OF_MEMORY, CudaError, driver
 
-__all__ = ["Context", "Memory"]
-
 
 class Context:
     """The primary context of a graphics processor, which PyTorch uses too.

@@ -25,8 +25,6 @@ from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
 
-__all__ = ["CudaDevice", "cuda_device"]
-
 _SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.held`.
 
 
@@ -135,13 +133,6 @@ class CudaDevice:
         block: int | None = None,
     ) -> None:
         """See `Device`.
-
-        Args:
-            call: See there.
-            workers: See there.
-            bundles: See there.
-            threads: See there.
-            block: See there.
 
         Raises:
             CudaError: The driver refuses the kernel, or an earlier one has failed.

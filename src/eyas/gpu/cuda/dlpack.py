@@ -22,7 +22,6 @@ import numpy as np
 if TYPE_CHECKING:
     from eyas.gpu.cuda.memory import CudaArray
 
-__all__ = ["capsule_of"]
 
 _NAME = b"dltensor"
 

@@ -10,9 +10,7 @@ from ctypes import POINTER, c_char_p, c_float, c_int, c_size_t, c_ubyte, c_uint,
 from functools import cache
 from typing import Any
 
-from eyas.lanes.folder import OWNER
-
-__all__ = ["OUT_OF_MEMORY", "VARIABLE", "CudaError", "Driver", "driver"]
+from eyas.lanes.trusted import OWNER
 
 VARIABLE = f"{OWNER.upper()}_LIBCUDA"
 """Environment variable: path of the driver's library, instead of the system's `libcuda.so.1`."""

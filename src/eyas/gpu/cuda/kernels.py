@@ -12,8 +12,6 @@ from eyas.gpu.cuda.context import Context
 from eyas.gpu.cuda.driver import CudaError
 from eyas.lanes.calls import ParallelCall
 
-__all__ = ["Function", "Functions", "function_of"]
-
 _LOCAL_BYTES, _REGISTERS = 3, 4  # CU_FUNC_ATTRIBUTE_LOCAL_SIZE_BYTES and _NUM_REGS
 
 _ERROR_LOG, _ERROR_LOG_SIZE = 5, 6  # CU_JIT_ERROR_LOG_BUFFER and _SIZE_BYTES

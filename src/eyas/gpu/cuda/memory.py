@@ -11,8 +11,6 @@ from eyas.gpu.cuda.context import Context, Memory
 from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.order import CudaEvent
 
-__all__ = ["CudaArray"]
-
 _LEGACY_STREAM = 1  # The legacy default stream, as `__cuda_array_interface__` and DLPack number it
 
 
@@ -116,18 +114,14 @@ class CudaArray:
     def __dlpack__(
         self,
         *,
+        # Where the receiver will work: that waits for what is being done here
         stream: int | None = None,
+        # The latest version that the receiver reads; all read the first
         max_version: tuple[int, int] | None = None,
-        dl_device: tuple[int, int] | None = None,
-        copy: bool | None = None,
+        dl_device: tuple[int, int] | None = None,  # Where it wants the array
+        copy: bool | None = None,  # Whether it wants a copy
     ) -> Any:  # noqa: ANN401  # a PyCapsule
         """Return a capsule with a `DLManagedTensor`, see `dmlc/dlpack`.
-
-        Args:
-            stream: Where the receiver will work: that waits for what is being done here.
-            max_version: The latest version that the receiver reads; all read the first.
-            dl_device: Where it wants the array.
-            copy: Whether it wants a copy.
 
         Raises:
             BufferError: It wants what cannot be had.

@@ -5,8 +5,6 @@ from ctypes import byref, c_float, c_uint64, c_void_p
 
 from eyas.gpu.cuda.context import Context
 
-__all__ = ["LEGACY", "CudaEvent", "Graph", "recorded"]
-
 LEGACY = c_void_p(None)  # The legacy default stream
 
 _NON_BLOCKING = 1  # CU_STREAM_NON_BLOCKING: not ordered with the legacy default stream

@@ -21,8 +21,6 @@ from eyas.gpu.envs.tensors import is_tensor, torch_of
 from eyas.lanes import parallel
 from eyas.lanes.device import Device
 
-__all__ = ["DeviceActions"]
-
 
 class Numbers(NamedTuple):
     """Actions that are numbers of a table."""

@@ -9,8 +9,6 @@ from eyas.gpu.render.device_views import DeviceDrawer, StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
 from eyas.lanes.device import Device, HostDevice
 
-__all__ = ["device_of", "drawer_of"]
-
 
 def device_of(wanted: Device | str) -> Device:
     """Return a device.
@@ -40,14 +38,12 @@ def device_of(wanted: Device | str) -> Device:
         raise ConfigError(f"device: '{wanted}' cannot be used: {error}") from error
 
 
-def drawer_of(device: Device, renderer: Renderer, samples: int) -> DeviceDrawer:
-    """Return what draws on a device.
-
-    Args:
-        device: The device.
-        renderer: What draws the same on this processor.
-        samples: Samples per pixel.
-    """
+def drawer_of(
+    device: Device,
+    renderer: Renderer,  # What draws the same on this processor
+    samples: int,  # Samples per pixel
+) -> DeviceDrawer:
+    """Return what draws on a device."""
     if isinstance(device, HostDevice):
         return HostRenderer(renderer, samples)
     assert isinstance(renderer, CpuRenderer)

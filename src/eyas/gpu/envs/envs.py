@@ -24,8 +24,6 @@ from eyas.gpu.sim.simulation import DeviceSimulation
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes.device import Device
 
-__all__ = ["DeviceEnvs"]
-
 Mask = NDArray[np.bool_]
 
 

@@ -7,10 +7,10 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.envs.observation import observation_space
 from eyas.engine.render.outputs import MEASURES
-from eyas.engine.sensors.config import ColourLayout, Colours
 from eyas.engine.sensors.stack import luma
 from eyas.engine.settings.env import ObservationConfig, ObservationPart
 from eyas.engine.state.snapshot import Snapshot
@@ -21,8 +21,6 @@ from eyas.gpu.sim.records import Mirrored
 from eyas.gpu.sim.simulation import DeviceSimulation
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes import kernel, parallel
-
-__all__ = ["DeviceObserver"]
 
 _IMAGE, _SENSORS = ObservationPart.IMAGE, ObservationPart.SENSORS
 _PARTS = (_IMAGE, _SENSORS, ObservationPart.PRIVILEGED)

@@ -5,8 +5,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["as_bool", "copied", "is_tensor", "tensor_of", "torch_of"]
-
 Shared = Any  # An array of numpy, or a tensor of PyTorch that shares the memory of a device's array
 
 

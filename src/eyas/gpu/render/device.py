@@ -25,8 +25,6 @@ from eyas.lanes import ParallelCall
 from eyas.lanes.device import Device
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["DeviceRenderer", "PictureSize"]
-
 MEMBERS, MOST_MEMBERS = 4, 128
 """Workers that share a view at least and at most: a warp of a graphics processor is four times
 `WIDTH` threads."""
@@ -86,24 +84,15 @@ class DeviceRenderer:
 
     def draw(
         self,
-        size: PictureSize,
-        job: Job,
-        movers: Movers,
-        output: Output,
+        size: PictureSize,  # Size and number of the pictures
+        job: Job,  # The cameras; `band` is `whole_views`
+        movers: Movers,  # The moving things
+        output: Output,  # Where to
         *,
-        falls: int = 0,
-        until: DrawStage = DrawStage.SHADING,
+        falls: int = 0,  # See `Task`
+        until: DrawStage = DrawStage.SHADING,  # Last stage to run, to measure the cost of each
     ) -> None:
-        """Draw views into the arrays of `output` that are not empty, all on the device.
-
-        Args:
-            size: Size and number of the pictures.
-            job: The cameras; `band` is `whole_views`.
-            movers: The moving things.
-            output: Where to.
-            falls: See `Task`.
-            until: Last stage to run, to measure the cost of each.
-        """
+        """Draw views into the arrays of `output` that are not empty, all on the device."""
         device, slots = self._device, movers.part.shape[1]
         key = size, slots
         if key not in self._scratch:

@@ -13,8 +13,6 @@ from eyas.engine.state.lighting import LightState
 from eyas.gpu.render.device import DeviceRenderer, PictureSize
 from eyas.lanes.device import Device
 
-__all__ = ["DeviceDrawer", "DeviceViews", "StagedDrawer"]
-
 Array = Any  # An `eyas.lanes.device.DeviceArray`.
 
 

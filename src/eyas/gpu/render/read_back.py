@@ -22,8 +22,6 @@ from eyas.engine.state.lighting import LightState
 from eyas.gpu.render.device import DeviceRenderer, PictureSize
 from eyas.lanes.device import Device
 
-__all__ = ["ReadBackRenderer", "UploadedViews"]
-
 
 class UploadedViews(NamedTuple):
     """Cameras and moving things on a device, and what is to be drawn of them there."""
@@ -98,21 +96,13 @@ class ReadBackRenderer:
 
     def uploaded(
         self,
-        views: Views,
-        draw_list: DrawList,
-        size: tuple[int, int],
-        output: Output,
-        samples: int = 1,
+        views: Views,  # V cameras
+        draw_list: DrawList,  # The moving things
+        size: tuple[int, int],  # Height and width of the pictures [pixels]
+        output: Output,  # What is wanted: arrays of these shapes and types are made on the device
+        samples: int = 1,  # Colour samples per pixel, 1, 2 or 4
     ) -> UploadedViews:
-        """Return views and moving things on the device, to be drawn there.
-
-        Args:
-            views: V cameras.
-            draw_list: The moving things.
-            size: Height and width of the pictures [pixels].
-            output: What is wanted: arrays of these shapes and types are made on the device.
-            samples: Colour samples per pixel, 1, 2 or 4.
-        """
+        """Return views and moving things on the device, to be drawn there."""
         if samples not in GRIDS:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
         if views.lens is not None or views.rows is not None or views.picture is not None:

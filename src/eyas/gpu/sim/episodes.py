@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.pinhole import field_along, focal_length
+from eyas.engine.core.optics.pinhole import field_along, focal_length
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.episodes import Episodes, Sampler
@@ -18,8 +18,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.trackers.tracker import Tracker
 from eyas.gpu.sim.flight import START
 from eyas.gpu.sim.records import arrays_of
-
-__all__ = ["HostEpisodes"]
 
 Chosen = NDArray[np.int64]
 

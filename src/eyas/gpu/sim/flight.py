@@ -13,8 +13,6 @@ from eyas.engine.targets.kind import Looks
 from eyas.engine.task.done import DoneReason
 from eyas.lanes import ParallelCall, parallel, specialised
 
-__all__ = ["FEW", "START", "FlightCalls", "Flown", "Focal", "Starts", "flight_calls"]
-
 _STEP_LIMIT: Final = int(DoneReason.STEP_LIMIT)
 
 FEW: Final = 32

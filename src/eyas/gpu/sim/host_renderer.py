@@ -11,8 +11,6 @@ from eyas.engine.state.draw import DrawList, Picture, Renderer, Views
 from eyas.engine.state.lighting import LightState
 from eyas.gpu.render.device_views import DeviceViews
 
-__all__ = ["HostRenderer"]
-
 
 @dataclass(slots=True)
 class _Cameras(Views):

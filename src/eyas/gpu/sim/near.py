@@ -34,16 +34,6 @@ from eyas.gpu.sim.flight import Focal
 from eyas.gpu.sim.signals import SignalTimes, shown_part
 from eyas.lanes import ParallelCall, kernel, parallel, specialised
 
-__all__ = [
-    "Cast",
-    "Counts",
-    "Shown",
-    "Surroundings",
-    "empty_slots",
-    "list_actors",
-    "pose_call",
-]
-
 
 class Shown(NamedTuple):
     """Cameras as the renderer reads them, see `eyas.gpu.render.device_views.DeviceViews`; where

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes.device import Device
 
-__all__ = ["Mirrored", "arrays_of", "downloaded", "uploaded"]
-
 
 def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, an array or a number
     """Return a record, a tuple of arrays, of numbers and of other such tuples, with copies of its

@@ -10,8 +10,6 @@ from eyas.engine.sim.views.additions import SignalLights
 from eyas.engine.traffic.signals import SignalPlan
 from eyas.lanes import kernel
 
-__all__ = ["SignalTimes", "shown_part", "signal_times"]
-
 _AROUND = np.arange(-2, 3)
 """Physics steps around the end of a phase in one of which it ends: times are rounded."""
 

@@ -37,8 +37,6 @@ from eyas.gpu.sim.records import Mirrored, uploaded
 from eyas.gpu.sim.signals import signal_times
 from eyas.gpu.sim.simulation import DeviceSimulation
 
-__all__ = ["DeviceView"]
-
 _ENTRIES, _SLOTS = 8, 64  # Actors, and slots, for which there is room at first
 
 

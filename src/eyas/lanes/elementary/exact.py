@@ -6,8 +6,6 @@ Mathematik 18, 1971). It needs no fused operations, which not all processors hav
 
 from eyas.lanes.jit import kernel
 
-__all__ = ["leading", "product_error"]
-
 
 @kernel(inline=True)
 def leading(x: float) -> float:

@@ -11,8 +11,6 @@ from eyas.lanes.elementary.exact import product_error
 from eyas.lanes.intrinsics import bits_of_float, float_of_bits
 from eyas.lanes.jit import kernel
 
-__all__ = ["exp", "log", "power", "tanh"]
-
 _LN2, _LN2_REST = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 _BY_LN2 = 1.44269504088896338700e00
 _ROUND = 6755399441055744.0  # 1.5 * 2^52: added and taken off again, it leaves a whole number

@@ -8,8 +8,6 @@ import math
 from eyas.lanes.elementary.exact import leading, product_error
 from eyas.lanes.jit import kernel
 
-__all__ = ["acos", "asin", "atan", "atan2"]
-
 _QUARTER, _QUARTER_REST = 1.57079632679489655800e00, 6.12323399573676603587e-17
 _EIGHTH, _EIGHTH_REST = 7.85398163397448278999e-01, 3.06161699786838301793e-17
 _HALF, _HALF_REST = 3.14159265358979311600e00, 1.22464679914735317723e-16

@@ -5,8 +5,6 @@ import math
 from eyas.lanes.elementary.exact import leading
 from eyas.lanes.jit import kernel
 
-__all__ = ["hypot"]
-
 
 @kernel(inline=True)
 def _square(x: float) -> tuple[float, float]:

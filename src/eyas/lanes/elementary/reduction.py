@@ -14,8 +14,6 @@ from eyas.lanes.elementary.exact import product_error
 from eyas.lanes.intrinsics import bits_of_float
 from eyas.lanes.jit import kernel
 
-__all__ = ["reduced"]
-
 _EIGHTH = 0.25 * math.pi
 _TO_QUARTERS = 6.36619772367581382433e-01
 _ROUND = 6755399441055744.0  # 1.5 * 2^52: added and taken off again, it leaves a whole number

@@ -13,20 +13,6 @@ from numba.extending import models, register_model
 
 from eyas.lanes.vector import WIDTH
 
-__all__ = [
-    "F4",
-    "I4",
-    "I8",
-    "MASK",
-    "U4",
-    "Lanes",
-    "ThreadModel",
-    "as_lanes",
-    "element_of",
-    "ir_type",
-    "lanes_are_threads",
-]
-
 
 class Lanes(types.Type):
     """The numba type of `WIDTH` numbers of an element type; `<8 x float>` in LLVM.

@@ -19,20 +19,6 @@ from eyas.lanes.vector.places import (
     pointer_to,
 )
 
-__all__ = [
-    "gather",
-    "gather_column",
-    "gather_pair",
-    "gather_pair_after",
-    "gather_square",
-    "load",
-    "load_two",
-    "load_words",
-    "load_words_two",
-    "prefetch",
-    "transposed",
-]
-
 
 def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:
     if len(items) == 1:

@@ -9,17 +9,6 @@ from numba.core import types
 from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import Lanes, lanes_are_threads
 
-__all__ = [
-    "I32",
-    "I64",
-    "each_index",
-    "loaded",
-    "order_of",
-    "place_of_half",
-    "place_of_lanes",
-    "pointer_to",
-]
-
 I32, I64 = ir.IntType(32), ir.IntType(64)
 
 
@@ -48,18 +37,14 @@ def each_index(context: Any, builder: Any, kind: types.Type, index: ir.Value) ->
 
 
 def place_of_lanes(
-    context: Any, builder: Any, sig: Any, args: Any, kind: ir.Type, size: int
+    context: Any,  # numba's
+    builder: Any,  # numba's
+    sig: Any,  # Signature of an operation on an array and an index
+    args: Any,  # Its arguments
+    kind: ir.Type,  # LLVM's type of what lies there
+    size: int,  # That of one lane, and of an element of the array if that is smaller [bytes]
 ) -> tuple[ir.Value, int]:
-    """Return where lanes of a type are read or written, and how that is aligned [bytes].
-
-    Args:
-        context: numba's.
-        builder: numba's.
-        sig: Signature of an operation on an array and an index.
-        args: Its arguments.
-        kind: LLVM's type of what lies there.
-        size: That of one lane, and of an element of the array if that is smaller [bytes].
-    """
+    """Return where lanes of a type are read or written, and how that is aligned [bytes]."""
     at = context.cast(builder, args[1], sig.args[1], types.int64)
     element = sig.args[0].dtype.bitwidth // 8
     if lanes_are_threads(context):
@@ -71,18 +56,14 @@ def place_of_lanes(
 
 
 def place_of_half(
-    context: Any, builder: Any, sig: Any, args: Any, size: int, half: int
+    context: Any,  # numba's
+    builder: Any,  # numba's
+    sig: Any,  # Signature of an operation on an array, an index, and where the second half begins
+    args: Any,  # Its arguments
+    size: int,  # Elements of the array that a lane takes
+    half: int,  # 0 or 1
 ) -> ir.Value:
-    """Return the pointer to the first element of a half of the lanes; a thread's own element.
-
-    Args:
-        context: numba's.
-        builder: numba's.
-        sig: Signature of an operation on an array, an index, and where the second half begins.
-        args: Its arguments.
-        size: Elements of the array that a lane takes.
-        half: 0 or 1.
-    """
+    """Return the pointer to the first element of a half of the lanes; a thread's own element."""
     at, step = (context.cast(builder, args[k], sig.args[k], types.int64) for k in (1, 2))
     if lanes_are_threads(context):
         lane = builder.zext(threads.lane_number(builder), I64)

@@ -19,19 +19,6 @@ from eyas.lanes.vector.places import (
     pointer_to,
 )
 
-__all__ = [
-    "agree",
-    "claim_some",
-    "scatter",
-    "store",
-    "store_greater",
-    "store_largest",
-    "store_triples",
-    "store_triples_two",
-    "store_where",
-    "store_words",
-]
-
 
 def _store(context: Any, builder: Any, value: ir.Value, pointer: ir.Value, align: int) -> ir.Value:
     """Write lanes; where they are threads, all see it, and none before it is done with the old."""

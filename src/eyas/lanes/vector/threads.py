@@ -11,8 +11,6 @@ from numba.core import cgutils
 
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["RECORD", "agree", "ballot", "from_lane", "lane_number"]
-
 _I1, _I32, _I64, _VOID = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.VoidType()
 
 RECORD = "worker_record"

@@ -11,13 +11,6 @@ from numba.extending import intrinsic
 from eyas.lanes.vector import WIDTH, threads
 from eyas.lanes.vector.kinds import I4, Lanes, as_lanes, element_of, ir_type, lanes_are_threads
 
-__all__ = [
-    "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "count_bits",
-    "first_bit", "from_bits", "greater",
-    "lane", "lane_numbers", "lesser", "like", "magnitude", "own", "root", "select", "splat",
-    "to_f4", "to_f8", "to_i4", "to_i8", "to_u4", "whole",
-]  # fmt: skip
-
 Generate = Callable[..., ir.Value]
 
 

@@ -18,14 +18,13 @@ import torch
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.settings import FLOWN, TrackerSettings
 from eyas.benchmark.policies.tracker.tracker import Tracker
-from eyas.engine.core.build import Build, this_build
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.identity.build import Build, this_build
 from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.learning.checkpoint import RunFolder, readable
 from eyas.learning.config import TrackerTraining, TrainConfig
 from eyas.learning.tracking.driving import Drives, driven

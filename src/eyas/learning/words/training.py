@@ -12,8 +12,7 @@ from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.rng import stream
 from eyas.engine.settings.config import EyasConfig
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
 from eyas.learning.config import TrainConfig, WordsTraining
 from eyas.learning.words.export import export

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from eyas import __version__
+from eyas.engine.core.installed import installed_version
 from eyas.maps.gallery.still import Viewpoint
 
 __all__ = ["MARK", "PageEntry", "contact_sheet", "page", "png"]
@@ -74,7 +74,7 @@ def page(shown: Sequence[PageEntry], sheet: str) -> str:
 </head>
 <body>
 <h1>Gallery of the maps</h1>
-<p>Drawn by Eyas {escape(__version__)} from fixed viewpoints.
+<p>Drawn by Eyas {escape(installed_version())} from fixed viewpoints.
 <a href="{escape(sheet)}">All of them in one picture</a></p>
 <p>{what}</p>
 {sections}

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.still import StillWorld
 from eyas.engine.state.draw import Picture, Views

@@ -26,9 +26,8 @@ import numpy as np
 import shapely
 from rich.console import Console
 
-from eyas.engine.core.checked import flushed, sum_of
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, OutputError
-from eyas.engine.core.files import refusals, write_atomic
+from eyas.engine.core.files import flushed, refusals, sum_of, write_atomic
 from eyas.engine.core.rng import stream
 from eyas.engine.envs.registration import register_map
 from eyas.engine.state.roads import RoadGraph, RoadNetwork

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
-from eyas.engine.exports.table import ROTOR_COLUMNS, SensorWriter
+from eyas.engine.exports.episode_files import ROTOR_COLUMNS, SensorWriter
 
 __all__ = ["FlightLog", "read_log"]
 

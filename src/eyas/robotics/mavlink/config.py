@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from eyas.engine.core.allowed import Said
+from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config
 from eyas.engine.settings.section import Section
 
@@ -39,7 +39,7 @@ class MavlinkConfig(Section):
     """Height of the origin of the world above mean sea level [m]."""
     lockstep: bool = False
     """Whether time stands still until each vehicle in offboard mode has got another set point."""
-    video: Annotated[str, Field(pattern=r"^(\S+:\d{1,5})?$"), Said("HOST:PORT, or empty")] = ""
+    video: Annotated[str, Field(pattern=r"^(\S+:\d{1,5})?$"), TextForm("HOST:PORT, or empty")] = ""
     """Address `HOST:PORT` to which the first vehicle sends its pictures, as H.264 in RTP; each
     further vehicle takes a port that is higher by 2. Empty: no pictures are sent."""
     picture_rate: Annotated[float, Field(gt=0, le=100)] = 30.0

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.pyav import pyav
 
 __all__ = ["RtpPacker", "Stream", "VideoSender"]
 

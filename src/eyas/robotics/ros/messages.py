@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.engine.core.clock import PHYSICS_RATE
-from eyas.engine.core.jpeg import jpeg_bytes
+from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.exports.frame import Frame, Subject
 from eyas.engine.exports.writer import Run
 from eyas.engine.sensors.config import ReadingConfig

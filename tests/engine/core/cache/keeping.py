@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
-from eyas.engine.core.program import code_of
+from eyas.engine.core.identity.program import code_of
 
 
 def make() -> NDArray[np.int64]:

@@ -13,8 +13,8 @@ import pytest
 
 from eyas.engine.core.cache.array_file import map_arrays
 from eyas.engine.core.cache.folder import Kind
-from eyas.lanes.folder import cache_folder
 from eyas.lanes.machine_code import read_code
+from eyas.lanes.trusted import cache_folder
 
 PROGRAM = """
 import json, sys

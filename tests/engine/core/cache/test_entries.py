@@ -15,7 +15,7 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.entries import clear, entries, prune, write_entry
 from eyas.engine.core.cache.folder import Kind, cache_limit
 from eyas.engine.core.errors import ConfigError
-from eyas.lanes.folder import cache_folder
+from eyas.lanes.trusted import cache_folder
 
 DAY = 86_400.0
 KEY = "0123456789abcdef" * 2

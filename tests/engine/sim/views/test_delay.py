@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from eyas.engine.camera.config import MountConfig
 from eyas.engine.envs.observation import Observer
-from eyas.engine.sensors.config import CameraErrors, LidarConfig, MountConfig, SensorsConfig
+from eyas.engine.sensors.config import CameraErrors, LidarConfig, SensorsConfig
 from eyas.engine.settings.env import ObservationConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import ControlConfig

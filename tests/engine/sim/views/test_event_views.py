@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.camera.esim import EVENT
-from eyas.engine.sensors.camera.events import EventsConfig
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.esim import EVENT
+from eyas.engine.camera.events import EventsConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from eyas.engine.sensors.camera.shutter import ShutterConfig
-from eyas.engine.sensors.camera.vibration import VibrationConfig
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.shutter import ShutterConfig
+from eyas.engine.camera.vibration import VibrationConfig
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.views.exposures import Moment, exposure_of

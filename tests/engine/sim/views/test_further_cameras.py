@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.core.pinhole import project
+from eyas.engine.core.optics.pinhole import project
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.worlds import each_alone

@@ -4,12 +4,12 @@ import cv2
 import numpy as np
 import pytest
 
-from eyas.engine.core.lens import BROWN, FISHEYE, project, rays
+from eyas.engine.camera.lens import LensConfig
+from eyas.engine.core.optics.lens import BROWN, FISHEYE, project, rays
 from eyas.engine.core.variation import Uniform
 from eyas.engine.exports.capture import frame_of, moment_of
 from eyas.engine.exports.flow import forward_flow
 from eyas.engine.exports.frame import RecordedAction
-from eyas.engine.sensors.camera.lens import LensConfig
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import DrawStage, Picture

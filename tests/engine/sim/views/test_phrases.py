@@ -4,8 +4,7 @@ import pytest
 
 from eyas.engine.core.config import updated
 from eyas.engine.core.rng import stream
-from eyas.engine.settings.file import load_settings
-from eyas.engine.settings.preset import preset_file
+from eyas.engine.settings.file import load_settings, preset_file
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES, claim_of

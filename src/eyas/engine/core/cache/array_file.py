@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.cache.flat import Array, Json
 from eyas.lanes.container import packed, unpacked
-from eyas.lanes.folder import open_at_once
+from eyas.lanes.trusted import open_at_once
 
 __all__ = ["Content", "array_file", "let_go", "map_arrays"]
 

@@ -18,8 +18,8 @@ from eyas.engine.core.cache.array_file import Content, array_file, map_arrays
 from eyas.engine.core.cache.entries import write_entry
 from eyas.engine.core.cache.flat import flatten, restore
 from eyas.engine.core.cache.folder import Kind, cache_limit
-from eyas.engine.core.program import UnknownCodeError, code_of
-from eyas.lanes.folder import cache_folder, not_kept, touch
+from eyas.engine.core.identity.program import UnknownCodeError, code_of
+from eyas.lanes.trusted import cache_folder, not_kept, touch
 
 __all__ = ["cached", "key_of"]
 
@@ -45,7 +45,7 @@ def cached(
     Args:
         kind: Kind of the value.
         make: Returns the value: a function of a module, or a `partial` of one. Its code and all
-            that this calls are part of the key (`eyas.engine.core.program`); its arguments are not.
+            that this calls are part of the key (`identity/program.py`); its arguments are not.
         inputs: What the value depends on: see `key_of`.
         of: Type of the value; `eyas.engine.core.cache.flat` must be able to flatten it.
         folder: The cache; None: the user's. The cache only saves time: one that cannot be written

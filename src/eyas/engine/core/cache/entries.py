@@ -18,8 +18,9 @@ from stat import S_ISDIR, S_ISREG
 
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.files import PART_SUFFIX
-from eyas.lanes.folder import kernel_folder, made_folder
+from eyas.lanes.folder import kernel_folder
 from eyas.lanes.text_index import FOLDER, SUFFIX
+from eyas.lanes.trusted import made_folder
 
 __all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 

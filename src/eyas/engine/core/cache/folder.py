@@ -1,4 +1,4 @@
-"""The layout and size limit of the cache, which lies in `eyas.lanes.folder.cache_folder`.
+"""The layout and size limit of the cache, which lies in `eyas.lanes.trusted.cache_folder`.
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.engine.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic

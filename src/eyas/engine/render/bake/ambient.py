@@ -24,7 +24,6 @@ from eyas.lanes import Held, exact, thread_count
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
 
 TEXEL = 1.0  # Side of a texel [m]
 
@@ -46,13 +45,11 @@ class AmbientMap:
     frame: NDArray[np.float64]  # West and south edge [m], texels per metre, z of the ground [m]
 
 
-def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
-    """Return the map of a scene; computed only if the cache lacks it.
-
-    Args:
-        scene: The static scene. Structures lower than `_DECK` hide little and are left out.
-        folder: Folder of the cache; None: the user's.
-    """
+def bake_ambient(
+    scene: Scene,  # The static scene. Structures lower than `_DECK` hide little and are left out
+    folder: Path | None = None,  # Folder of the cache; None: the user's
+) -> AmbientMap:
+    """Return the map of a scene; computed only if the cache lacks it."""
     extent = np.array(scene.size)
     texel = max(TEXEL, float(extent.max()) / LARGEST)
     columns, rows = np.ceil(extent / texel).astype(int)
@@ -84,21 +81,13 @@ def _bake(
 
 
 def openness_of(
-    solid: NDArray[np.float32],
-    crowns: NDArray[np.float32],
-    decks: NDArray[np.float32],
-    texel: float,
-    workers: int,
+    solid: NDArray[np.float32],  # Height of buildings above the ground [m], shape (rows, columns)
+    crowns: NDArray[np.float32],  # The same of trees
+    decks: NDArray[np.float32],  # The same of elevated roads
+    texel: float,  # Side of a texel [m]
+    workers: int,  # Number of threads
 ) -> NDArray[np.uint16]:
-    """Return `AmbientMap.openness`.
-
-    Args:
-        solid: Height of buildings above the ground [m], shape (rows, columns).
-        crowns: The same of trees.
-        decks: The same of elevated roads.
-        texel: Side of a texel [m].
-        workers: Number of threads.
-    """
+    """Return `AmbientMap.openness`."""
     openness = np.empty(solid.shape, np.uint16)
     way, distance = _ways(texel), np.array(DISTANCES)
     square = math.ceil(DISTANCES[-1] / texel) + 1

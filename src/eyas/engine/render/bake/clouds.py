@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.sky.radiance import CLOUD_BEND, CLOUDS_FROM
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.lanes import Held, exact, thread_count
 
-__all__ = ["build_clouds", "plan_directions"]
-
 _ROWS, _COLUMNS = 208, 2048
 _SEEN = 0.65  # Correction of the cover: clouds hide more when seen from the side than from below
 _TEXEL = 9.0 / SIZE  # Side of a texel of the cloud heights [km]

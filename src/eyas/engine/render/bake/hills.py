@@ -15,8 +15,6 @@ from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, so
 from eyas.engine.state.lighting import Horizon
 from eyas.lanes import exact
 
-__all__ = ["build_hills", "far_ground"]
-
 _ROWS, _COLUMNS = 96, 4096
 _STEPS = 96
 _TEXEL = 9.0 / SIZE  # Side of a texel of the land [km]

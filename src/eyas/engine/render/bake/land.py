@@ -12,8 +12,6 @@ from eyas.engine.render.bake.ambient import AmbientMap, canopy_map, height_map
 from eyas.engine.render.bake.tracks import blurred
 from eyas.engine.state.scene import ObjectClass, Scene
 
-__all__ = ["land_map", "no_land"]
-
 _BUILT = 1.5  # Height from which a building keeps mist away [m]
 
 _OPEN = 0.72  # How open to mist fields are, where water is 1

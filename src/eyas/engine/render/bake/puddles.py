@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.textures.fields import fractal, source
 
-__all__ = ["hollows", "no_hollows"]
-
 
 @cache
 def hollows() -> NDArray[np.uint16]:

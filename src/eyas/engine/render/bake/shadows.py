@@ -24,8 +24,6 @@ from eyas.engine.state.mesh import Surface
 from eyas.lanes import Held, exact, thread_count
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["ShadowMap", "bake_shadows"]
-
 TEXEL = 0.2  # Side of a texel, unless the tiles would become too many [m]
 
 MOST_TILES = 40_000  # Largest number of tiles: 83 MiB
@@ -60,19 +58,12 @@ class ShadowMap:
 
 
 def bake_shadows(
-    geometry: Geometry,
-    sun: tuple[float, float, float],
-    ground: float,
-    folder: Path | None = None,
+    geometry: Geometry,  # The scene
+    sun: tuple[float, float, float],  # Unit vector towards the sun
+    ground: float,  # z of the floor [m]
+    folder: Path | None = None,  # Folder of the cache; None: the user's
 ) -> ShadowMap:
-    """Return the shadow map; computed only if the cache lacks it.
-
-    Args:
-        geometry: The scene.
-        sun: Unit vector towards the sun.
-        ground: z of the floor [m].
-        folder: Folder of the cache; None: the user's.
-    """
+    """Return the shadow map; computed only if the cache lacks it."""
     return cached(
         Kind.SHADOWS,
         partial(_bake, geometry, sun, ground),
@@ -99,15 +90,13 @@ def _bake(geometry: Geometry, sun: tuple[float, float, float], ground: float) ->
 
 
 def _frame(
-    casting: NDArray[np.float64], axes: NDArray[np.float64], texel: float
+    # Bounds of all that casts shadows, along the axes [m], shape (N, 6)
+    casting: NDArray[np.float64],
+    # Directions of the map's columns and lines, and towards the sun, shape (3, 3)
+    axes: NDArray[np.float64],
+    texel: float,  # Side of a texel [m]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Return the rows of a map and the numbers of its tiles.
-
-    Args:
-        casting: Bounds of all that casts shadows, along the axes [m], shape (N, 6).
-        axes: Directions of the map's columns and lines, and towards the sun, shape (3, 3).
-        texel: Side of a texel [m].
-    """
+    """Return the rows of a map and the numbers of its tiles."""
     # Rounded, because last bits differ between processors.
     low = np.round(casting[:, :3].min(axis=0, initial=np.inf), 3) - 1.0
     top = np.round(casting[:, 3:].max(axis=0, initial=-np.inf), 3) + 1.0
@@ -133,13 +122,11 @@ def _frame(
     return rows, np.where(shaded, np.cumsum(shaded).reshape(shaded.shape), 0).astype(np.int32)
 
 
-def _bounds(things: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the bounds of things along axes: three least values, three largest, shape (N, 6).
-
-    Args:
-        things: Corners of each thing [m], shape (N, K, 3).
-        axes: Shape (3, 3), or (3, 4) with an offset.
-    """
+def _bounds(
+    things: NDArray[np.float64],  # Corners of each thing [m], shape (N, K, 3)
+    axes: NDArray[np.float64],  # Shape (3, 3), or (3, 4) with an offset
+) -> NDArray[np.float64]:
+    """Return the bounds of things along axes: three least values, three largest, shape (N, 6)."""
     places = exact.product(things, axes[:, :3].T) + (axes[:, 3] if axes.shape[1] == 4 else 0.0)
     return np.concatenate([places.min(axis=1), places.max(axis=1)], axis=1)
 

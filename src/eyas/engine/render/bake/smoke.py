@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.rng import stream
 from eyas.engine.state.scene import ObjectClass, Scene
 
-__all__ = ["chimneys"]
-
 _HIGHEST = 45.0  # Buildings that are higher have no chimney [m]
 
 

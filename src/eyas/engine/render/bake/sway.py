@@ -10,8 +10,6 @@ from eyas.engine.render.pack.boxes import columns_of, group_boxes, posed_boxes
 from eyas.engine.state.mesh import Mesh, Surface
 from eyas.engine.state.scene import Scene
 
-__all__ = ["calm", "sway_of", "with_room"]
-
 _ONE_METRE = 1.3
 """Own frequency of a plant of 1 m [1/s]; it falls with the root of the height. So a tree of 16 m
 sways at 0.33 Hz, and those of 10 to 25 m that were measured at 0.2 to 0.5 (de Langre, Annual Review

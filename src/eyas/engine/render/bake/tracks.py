@@ -11,8 +11,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
 
-__all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "blurred", "track_map"]
-
 TEXEL = 0.3  # Side of a texel, unless there would be too many [m]
 
 MOST_TEXELS = 30_000_000  # Largest number of texels: 57 MiB

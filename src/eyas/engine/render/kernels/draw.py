@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.render.kernels.bundles import (
     Air,
     Band,
@@ -21,8 +21,8 @@ from eyas.engine.render.kernels.bundles import (
     Task,
     View,
 )
-from eyas.engine.render.kernels.lens.look import face_rows, face_view, glass_of, look_through
 from eyas.engine.render.kernels.lens.outputs import darken, write_bent_depth
+from eyas.engine.render.kernels.lens.resampling import face_rows, face_view, glass_of, look_through
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.light.sunlight import sunlit
 from eyas.engine.render.kernels.scalars import f4, i8
@@ -40,17 +40,6 @@ from eyas.engine.render.kernels.wind import in_wind
 from eyas.engine.state.draw import DrawStage
 from eyas.engine.state.lighting import LightState
 from eyas.lanes import address_of, claim, kernel, parallel
-
-__all__ = [
-    "band_of",
-    "draw_views",
-    "light_at",
-    "no_glass",
-    "view_light",
-    "with_veil",
-    "write_colours",
-    "write_facts",
-]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
@@ -170,18 +159,14 @@ def _coloured(output: Output) -> bool:
 
 @kernel(inline=True)
 def write_facts(
-    band: Band, shown: Band, count: int, output: Output, task: Task, index: int
+    band: Band,  # What was drawn, with `count` rows of `Band.drawn`
+    shown: Band,  # What the picture shows: the same, or the picture of which it is a face
+    count: int,
+    output: Output,  # Where to
+    task: Task,  # The views
+    index: int,  # The job
 ) -> None:
-    """Write what is wanted of job `index` but colours.
-
-    Args:
-        band: What was drawn, with `count` rows of `Band.drawn`.
-        shown: What the picture shows: the same, or the picture of which it is a face.
-        count: As above.
-        output: Where to.
-        task: The views.
-        index: The job.
-    """
+    """Write what is wanted of job `index` but colours."""
     job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     into = job.picture[number]
@@ -280,18 +265,14 @@ def no_glass(scratch: Scratch, worker: int) -> Glass:
 
 @kernel(inline=True)
 def bent_band(
-    face: Band, glass: Glass, scratch: Scratch, worker: int, columns: int, lines: int
+    face: Band,  # The face, whose places are those of the camera
+    glass: Glass,  # The lens
+    scratch: Scratch,  # The working memory
+    worker: int,  # Whose
+    columns: int,  # Width of the picture [pixels]
+    lines: int,  # Rows of the band [pixels]
 ) -> Band:
-    """Return a band of a picture through a lens, of one of its faces.
-
-    Args:
-        face: The face, whose places are those of the camera.
-        glass: The lens.
-        scratch: The working memory.
-        worker: Whose.
-        columns: Width of the picture [pixels].
-        lines: Rows of the band [pixels].
-    """
+    """Return a band of a picture through a lens, of one of its faces."""
     rows = lines * face.camera.down
     return Band(
         face.geometry, face.light, face.lit, face.movers, face.world, face.camera, face.until,

@@ -28,18 +28,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = [
-    "ACROSS",
-    "keys_of",
-    "keys_of_tile",
-    "pack",
-    "write_colours",
-    "write_pixels",
-    "write_plane",
-    "write_tile",
-    "written",
-]
-
 ACROSS = 4
 """Pixels in each of the two rows of a tile. What eight pixels show that lie together is more often
 one thing than in a row, and pictures are more often a multiple of four wide than of eight."""
@@ -124,25 +112,15 @@ def write_plane(
 
 @kernel(inline=True)
 def write_colours(
-    canvas: Canvas,
-    light: Light,
-    exposure: float,
-    row: int,
-    first: int,
-    chosen: int,
-    colour: tuple[float, float, float],
+    canvas: Canvas,  # Where to
+    light: Light,  # Has the table of tones
+    exposure: float,  # See `Air`
+    row: int,  # Row of the band
+    first: int,  # Column of the first pixel
+    chosen: int,  # A bit for each pixel
+    colour: tuple[float, float, float],  # Linear radiance
 ) -> None:
-    """Write the colours of those of eight pixels, from column `first` on, whose bit is set.
-
-    Args:
-        canvas: Where to.
-        light: Has the table of tones.
-        exposure: See `Air`.
-        row: Row of the band.
-        first: Column of the first pixel.
-        chosen: A bit for each pixel.
-        colour: Linear radiance.
-    """
+    """Write the colours of those of eight pixels, from column `first` on, whose bit is set."""
     if len(canvas.red) > 0:
         write_plane(canvas.red, row, first, chosen, colour[0])
         write_plane(canvas.green, row, first, chosen, colour[1])

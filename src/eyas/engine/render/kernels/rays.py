@@ -7,8 +7,6 @@ from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather, lane_numbers, load, load_two
 
-__all__ = ["Rays", "camera_axes", "place_in_face", "place_in_tile", "ray_of", "rays_of"]
-
 
 class Rays(NamedTuple):
     """A camera, of float32."""

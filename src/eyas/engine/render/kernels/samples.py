@@ -7,19 +7,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import to_f4
 
-__all__ = [
-    "LocalCamera",
-    "ScreenBox",
-    "around",
-    "empty_box",
-    "local_camera",
-    "own_row",
-    "own_rows",
-    "pixel_row",
-    "point_of",
-    "ray_of_row",
-]
-
 
 class ScreenBox(NamedTuple):
     """A box on the screen [samples], of float64; empty if its left is beyond its right."""
@@ -131,14 +118,12 @@ def local_camera(view: View, origin: Direction, along_x: float, along_y: float) 
 
 
 @kernel(inline=True)
-def ray_of_row(camera: LocalCamera, view: View, line: int) -> Direction:
-    """Return the ray, of length 1 along the optical axis, to the middle of a row of samples.
-
-    Args:
-        camera: The camera in any frame.
-        view: The samples.
-        line: Row of the band.
-    """
+def ray_of_row(
+    camera: LocalCamera,  # The camera in any frame
+    view: View,  # The samples
+    line: int,  # Row of the band
+) -> Direction:
+    """Return the ray, of length 1 along the optical axis, to the middle of a row of samples."""
     rise = f4(0.5 * view.height - (line + view.top + 0.5))
     ahead, up = camera.ahead, camera.up
     return Direction(ahead.x + rise * up.x, ahead.y + rise * up.y, ahead.z + rise * up.z)
@@ -146,17 +131,13 @@ def ray_of_row(camera: LocalCamera, view: View, line: int) -> Direction:
 
 @kernel(inline=True)
 def point_of(
-    camera: LocalCamera, view: View, ray: Direction, column: int, inverse: float
+    camera: LocalCamera,  # The camera in any frame
+    view: View,  # The samples
+    ray: Direction,  # From `ray_of_row`
+    column: int,  # Columns of the samples
+    inverse: float,  # 1/distance of what they show [1/m]; not 0
 ) -> tuple[float, float, float]:
-    """Return the points that samples show, in the frame of the camera [m].
-
-    Args:
-        camera: The camera in any frame.
-        view: The samples.
-        ray: From `ray_of_row`.
-        column: Columns of the samples.
-        inverse: 1/distance of what they show [1/m]; not 0.
-    """
+    """Return the points that samples show, in the frame of the camera [m]."""
     w = f4(1.0) / inverse
     shift = f4(0.5 * view.width - 0.5) - to_f4(column)
     eye, left = camera.eye, camera.left

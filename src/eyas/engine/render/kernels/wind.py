@@ -14,8 +14,6 @@ from eyas.engine.render.kernels.surface.texture import fraction
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser, like, magnitude, root
 
-__all__ = ["FARTHEST_LEAN", "in_wind", "leaned", "shimmer", "sways", "wave"]
-
 FARTHEST_LEAN = 0.08  # More than a plant ever leans, as the sine of the angle
 
 _MOST = 0.06
@@ -81,17 +79,13 @@ def sways(light: Light, fixture: int) -> bool:
 
 @kernel
 def leaned(
-    light: Light, wind: Wind, fixture: int, pose: NDArray[np.float32], output: NDArray[np.float32]
+    light: Light,  # How fast and how far fixtures sway
+    wind: Wind,
+    fixture: int,  # Which of them it is
+    pose: NDArray[np.float32],  # Its pose when it stands upright, shape (3, 4)
+    output: NDArray[np.float32],  # Written, shape (3, 4)
 ) -> None:
-    """Write the pose of a plant that leans about its foot, a rotation and a scale as before.
-
-    Args:
-        light: How fast and how far fixtures sway.
-        wind: The wind.
-        fixture: Which of them it is.
-        pose: Its pose when it stands upright, shape (3, 4).
-        output: Written, shape (3, 4).
-    """
+    """Write the pose of a plant that leans about its foot, a rotation and a scale as before."""
     rate, gain = float(light.sway[fixture, 0]), float(light.sway[fixture, 1])
     a, b = _lean(wind, float(pose[0, 3]), float(pose[1, 3]), rate, gain)
     c = math.sqrt(1.0 - a * a - b * b)
@@ -114,15 +108,13 @@ def _ripple(turn: float) -> float:
 
 
 @kernel(inline=True)
-def shimmer(wind: Wind, point: Vector, normal: Vector, size: float) -> Vector:
-    """Return the normal of leaves that flutter.
-
-    Args:
-        wind: The wind.
-        point: Where [m].
-        normal: Unit normal in calm air.
-        size: Width of a pixel there [m]; if it shows many leaves, they look still.
-    """
+def shimmer(
+    wind: Wind,
+    point: Vector,  # Where [m]
+    normal: Vector,  # Unit normal in calm air
+    size: float,  # Width of a pixel there [m]; if it shows many leaves, they look still
+) -> Vector:
+    """Return the normal of leaves that flutter."""
     one, time = f4(1.0), wind.instant
     sharp = lesser(greater(f4(1.5) - size, f4(0.0)), one)
     strength = f4(0.035) * lesser(like(size, wind.speed), f4(10.0)) * sharp

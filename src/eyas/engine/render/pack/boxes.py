@@ -11,8 +11,6 @@ from eyas.engine.render.pack.clusters import NOWHERE
 from eyas.engine.state.mesh import Mesh
 from eyas.lanes import exact
 
-__all__ = ["box_of", "columns_of", "group_boxes", "posed_boxes", "silhouette", "sphere_of"]
-
 WAIST = 0.6  # Upper end of the lower box, as a share of the height
 
 CHEST = 0.75

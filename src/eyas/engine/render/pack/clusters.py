@@ -18,16 +18,6 @@ from eyas.engine.render.kernels.visibility.clusters import (
 )
 from eyas.lanes import exact
 
-__all__ = [
-    "NOWHERE",
-    "bounds_of",
-    "by_clusters",
-    "cluster_order",
-    "clusters_of",
-    "corners_of",
-    "filled_up",
-]
-
 NOWHERE = 1e9  # Boxes from this to minus this in all directions [m] are inside no plane
 
 _WIDEST = 0.2  # Cosine of the largest angle between the axis of a cone and a normal
@@ -47,16 +37,13 @@ def filled_up(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def cluster_order(
-    corners: NDArray[np.float32], sizes: NDArray[np.float32], leafy: NDArray[np.bool_]
+    corners: NDArray[np.float32],  # [m], shape (T, 3, 3)
+    sizes: NDArray[np.float32],  # See `SIZE`, shape (T,)
+    leafy: NDArray[np.bool_],  # Whether they are leaves, shape (T,)
 ) -> NDArray[np.intp]:
     """Return an order in which each eight triangles in a row lie together and face alike.
 
     Leaves come last, in the order in which they are given.
-
-    Args:
-        corners: [m], shape (T, 3, 3).
-        sizes: See `SIZE`, shape (T,).
-        leafy: Whether they are leaves, shape (T,).
     """
     solid = np.flatnonzero(~leafy)
     points = corners[solid].astype(np.float64)
@@ -92,15 +79,11 @@ def by_clusters(values: NDArray[Number]) -> NDArray[Number]:
 
 
 def clusters_of(
-    corners: NDArray[np.float32], sizes: NDArray[np.float32], tiles: NDArray[np.float32]
+    corners: NDArray[np.float32],  # [m], shape (T, 3, 3)
+    sizes: NDArray[np.float32],  # Row `SIZE`, shape (T,)
+    tiles: NDArray[np.float32],  # Row `LEAVES`, shape (T,)
 ) -> NDArray[np.float32]:
-    """Return clusters of T triangles in their order, see `Geometry.cluster`.
-
-    Args:
-        corners: [m], shape (T, 3, 3).
-        sizes: Row `SIZE`, shape (T,).
-        tiles: Row `LEAVES`, shape (T,).
-    """
+    """Return clusters of T triangles in their order, see `Geometry.cluster`."""
     missing = -len(corners) % CLUSTER
     rows = np.empty((len(corners) + missing, CLUSTER_ROWS), np.float32)
     rows[: len(corners), :SIZE] = corners.reshape(-1, 9)

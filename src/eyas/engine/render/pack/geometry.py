@@ -18,8 +18,6 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
 
-__all__ = ["CHUNK", "PackedScene", "build_geometry", "packed_scene"]
-
 CHUNK = 32.0  # Side of the squares into which static triangles are sorted [m]
 
 _FIXTURE_CELL = 6.0
@@ -44,18 +42,13 @@ def packed_scene(scene: Scene) -> PackedScene:
 
 
 def build_geometry(
-    scene: Scene,
-    parts: PartLibrary,
-    textures: Mapping[str, NDArray[np.uint8]],
+    scene: Scene,  # The static scene
+    parts: PartLibrary,  # Parts of the moving things
+    textures: Mapping[str, NDArray[np.uint8]],  # sRGB and alpha by name, shape (256, 256, 4) each
+    # The scene, and all parts in their order, where they are packed already
     packed: tuple[PackedScene, Sequence[Prototypes]] | None = None,
 ) -> Geometry:
     """Return everything that can be drawn.
-
-    Args:
-        scene: The static scene.
-        parts: Parts of the moving things.
-        textures: sRGB and alpha by name, shape (256, 256, 4) each.
-        packed: The scene, and all parts in their order, where they are packed already.
 
     Raises:
         UnknownNameError: A material names a missing texture.

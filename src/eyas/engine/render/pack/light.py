@@ -33,8 +33,6 @@ from eyas.engine.state.lighting import Horizon, Lighting
 from eyas.engine.state.scene import Lamps, Scene
 from eyas.lanes import exact
 
-__all__ = ["Baked", "build_light", "encoded_tone", "lamp_grid", "tile_starts", "tone_table"]
-
 CELL = 8.0  # Side of a square of the grid of street lamps [m]
 
 _WALLS = np.array((1.03, 1.0, 0.95))
@@ -181,13 +179,11 @@ def tone_table() -> NDArray[np.uint8]:
     return encoded_tone(TONE_TOP)
 
 
-def encoded_tone(top: float, white: float = 1.0) -> NDArray[np.uint8]:
-    """Return the byte for each step of exposed radiance by that curve.
-
-    Args:
-        top: Radiance of the last step.
-        white: Value of the curve that is shown as white.
-    """
+def encoded_tone(
+    top: float,  # Radiance of the last step
+    white: float = 1.0,  # Value of the curve that is shown as white
+) -> NDArray[np.uint8]:
+    """Return the byte for each step of exposed radiance by that curve."""
     radiance = (np.arange(TONE_STEPS) + 0.5) * (top / TONE_STEPS)
     tone = (1.0 - exact.exp(-1.35 * radiance)) / white
     encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
@@ -209,14 +205,10 @@ def _direction(values: ArrayLike) -> Direction:
 
 
 def lamp_grid(
-    lamps: Lamps, cell: float = CELL
+    lamps: Lamps,  # L lamps
+    cell: float = CELL,  # Side of a square [m]
 ) -> tuple[NDArray[np.float32], NDArray[np.int32], LampFrame]:
-    """Return `Light.lamp`, `Light.lamp_cell` and `Light.lamp_frame`.
-
-    Args:
-        lamps: L lamps.
-        cell: Side of a square [m].
-    """
+    """Return `Light.lamp`, `Light.lamp_cell` and `Light.lamp_frame`."""
     count = len(lamps.position)
     strength = np.full((count, 1), lamps.intensity / PAPER, np.float32)
     nothing = np.zeros((count, 1), np.float32)  # eight numbers, so that lanes can be loaded

@@ -12,8 +12,6 @@ from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.scene import ObjectClass, Scene
 
-__all__ = ["MaterialTable", "crown_middles", "material_table", "snow_beds"]
-
 _POROUS = {"lawn", "lawn_mown", "soil", "sand", "dry_leaves"}
 """Textures of ground into which rain soaks; crops let none be seen."""
 

@@ -23,8 +23,6 @@ from eyas.engine.render.pack.clusters import (
 from eyas.engine.render.pack.triangles import gradients, solid_triangles
 from eyas.engine.state.mesh import Material, Mesh, Surface
 
-__all__ = ["PackedMeshes", "Pool", "Prototypes", "joined", "packed_prototypes"]
-
 _Palette = tuple[tuple[Material, ...], NDArray[np.int32], NDArray[np.bool_]]
 """Materials, their indices in the palette of the pool, and whether they are of leaves."""
 

@@ -8,8 +8,6 @@ from eyas.engine.render.pack.materials import MaterialTable
 from eyas.engine.state.mesh import Mesh
 from eyas.lanes import exact
 
-__all__ = ["gradients", "shading_rows", "solid_triangles"]
-
 _SLIVER = 1e-12
 """Squared sine of the least angle between sides: thousands of times the rounding of a float64."""
 
@@ -27,10 +25,10 @@ def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
 
 
 def gradients(
-    positions: NDArray[np.float32],
-    normals: NDArray[np.float32],
-    uvs: NDArray[np.float32],
-    triangles: NDArray[np.int32],
+    positions: NDArray[np.float32],  # Vertices [m], shape (V, 3)
+    normals: NDArray[np.float32],  # Unit normals, shape (V, 3)
+    uvs: NDArray[np.float32],  # Texture coordinates [tiles], shape (V, 2)
+    triangles: NDArray[np.int32],  # Corners of triangles with an area, shape (T, 3)
 ) -> NDArray[np.float32]:
     """Return how texture coordinates and normals change on triangles, shape (T, 24): a corner;
     then gradient and value at that corner of u and of v; normal at the corner; gradients of the
@@ -38,12 +36,6 @@ def gradients(
 
     A linear quantity on a triangle is `value + gradient @ (point - corner)`, with a gradient in
     the triangle's plane.
-
-    Args:
-        positions: Vertices [m], shape (V, 3).
-        normals: Unit normals, shape (V, 3).
-        uvs: Texture coordinates [tiles], shape (V, 2).
-        triangles: Corners of triangles with an area, shape (T, 3).
     """
     corner, b, c = np.moveaxis(positions[triangles].astype(np.float64), 1, 0)
     e1, e2 = b - corner, c - corner
@@ -76,15 +68,11 @@ def gradients(
 
 
 def shading_rows(
-    slopes: NDArray[np.float32], objects: NDArray[np.int32], materials: MaterialTable
+    slopes: NDArray[np.float32],  # From `gradients`
+    objects: NDArray[np.int32],  # Object ids, shape (T,)
+    materials: MaterialTable,  # Of each triangle
 ) -> NDArray[np.float32]:
-    """Return `Geometry.shading`: all that shading needs of a triangle, in two cache lines.
-
-    Args:
-        slopes: From `gradients`.
-        objects: Object ids, shape (T,).
-        materials: Of each triangle.
-    """
+    """Return `Geometry.shading`: all that shading needs of a triangle, in two cache lines."""
     rows = np.empty((len(slopes), SHADING_COLUMNS), np.float32)
     whole = rows.view(np.int32)
     rows[:, :14] = slopes[:, :14]

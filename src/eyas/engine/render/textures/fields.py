@@ -11,22 +11,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "SIZE",
-    "Field",
-    "Masonry",
-    "Picture",
-    "blurred",
-    "cracks",
-    "fractal",
-    "masonry",
-    "mixed",
-    "opaque",
-    "painted",
-    "source",
-    "white",
-]
-
 SIZE = 256  # Pixels on each side of a texture
 
 Field = NDArray[np.float64]
@@ -46,20 +30,13 @@ def white(rng: np.random.Generator) -> Field:
 
 
 def fractal(
-    rng: np.random.Generator,
-    slope: float,
+    rng: np.random.Generator,  # Random numbers of the texture
+    slope: float,  # 0 is white noise, 1 is cloudy, 2 is smooth
     *,
-    longest: float = 256.0,
-    stretch: tuple[float, float] = (1.0, 1.0),
+    longest: float = 256.0,  # Longest wave [pixels]; a short limit hides that the texture repeats
+    stretch: tuple[float, float] = (1.0, 1.0),  # Factors on the length of features in y and x
 ) -> Field:
-    """Return cloudy noise, mean 0, deviation 1: amplitude falls as frequency to the minus `slope`.
-
-    Args:
-        rng: Random numbers of the texture.
-        slope: 0 is white noise, 1 is cloudy, 2 is smooth.
-        longest: Longest wave [pixels]; a short limit hides that the texture repeats.
-        stretch: Factors on the length of features in y and x.
-    """
+    """Return cloudy noise, mean 0, deviation 1, amplitude proportional to frequency^-`slope`."""
     frequency, gain = _fall(slope, stretch)
     gain = gain * (1.0 / (1.0 + exact.power(1.0 / (frequency * longest), 6)))
     gain[0, 0] = 0.0
@@ -84,14 +61,12 @@ def blurred(field: Field, radius: float) -> Field:
     return np.fft.irfft2(np.fft.rfft2(field) * gain, (SIZE, SIZE))
 
 
-def cracks(rng: np.random.Generator, width: float, share: float) -> Field:
-    """Return thin wandering lines, 0 to 1.
-
-    Args:
-        rng: Random numbers of the texture.
-        width: About half the width of a line [pixels].
-        share: Share of the area that has lines, 0 to 1.
-    """
+def cracks(
+    rng: np.random.Generator,  # Random numbers of the texture
+    width: float,  # About half the width of a line [pixels]
+    share: float,  # Share of the area that has lines, 0 to 1
+) -> Field:
+    """Return thin wandering lines, 0 to 1."""
     hills = fractal(rng, 1.7, longest=140.0)
     steep = exact.hypot(hills - np.roll(hills, 1, 0), hills - np.roll(hills, 1, 1)) + 1e-3
     line = np.clip(1.3 - np.abs(hills) / steep / width, 0.0, 1.0)
@@ -111,17 +86,14 @@ class Masonry:
 
 
 def masonry(
-    rng: np.random.Generator, rows: int, columns: int, *, joint: float, bond: float = 0.5
+    rng: np.random.Generator,  # Random numbers of the texture
+    rows: int,  # Rows in the tile; even if `bond` is not 0
+    columns: int,  # Pieces in a row
+    *,
+    joint: float,  # Width of the joints [pixels]
+    bond: float = 0.5,  # Shift of every other row, in pieces
 ) -> Masonry:
-    """Return rows of pieces.
-
-    Args:
-        rng: Random numbers of the texture.
-        rows: Rows in the tile; even if `bond` is not 0.
-        columns: Pieces in a row.
-        joint: Width of the joints [pixels].
-        bond: Shift of every other row, in pieces.
-    """
+    """Return rows of pieces."""
     y = (np.arange(SIZE) + 0.5) * rows / SIZE
     row = np.floor(y).astype(np.int64)
     x = (np.arange(SIZE)[None] + 0.5) * columns / SIZE + bond * (row[:, None] % 2)

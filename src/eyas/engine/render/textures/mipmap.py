@@ -9,8 +9,6 @@ from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.render.kernels.surface.texture import LEVELS, TEXELS, TEXELS_IN_ROW
 from eyas.lanes import exact
 
-__all__ = ["SIDE", "linear", "packed_layers"]
-
 SIDE = 256  # Texels along a side of a texture
 
 
@@ -24,16 +22,14 @@ _LINEAR = linear(np.arange(256) / 255.0)  # Linear value of each byte of sRGB
 
 
 def packed_layers(
-    textures: Mapping[str, NDArray[np.uint8]], names: Sequence[str]
+    # sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each
+    textures: Mapping[str, NDArray[np.uint8]],
+    names: Sequence[str],  # Names of the textures, one for each layer
 ) -> NDArray[np.uint32]:
     """Return the named textures with their mip levels, see `Geometry.texture`.
 
     Colours are stored as square roots of linear light: eight bits then suffice in the dark, and
     one multiplication restores the light.
-
-    Args:
-        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
-        names: Names of the textures, one for each layer.
 
     Raises:
         UnknownNameError: There is no texture of that name.

@@ -6,11 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.sim.flights.signals import STEP, averaged, steps_in
 from eyas.lanes import exact
-
-__all__ = ["STEEPEST", "Aside", "Glances", "aimed", "glances", "held", "turned_aside"]
 
 Floats = NDArray[np.float64]
 
@@ -42,17 +40,14 @@ class Aside(NamedTuple):
 
 
 def glances(
-    count: int, cut: float, away: float, rng: np.random.Generator, *, away_first: bool
+    count: int,  # M
+    cut: float,  # Share of the time in which the target is at the border
+    away: float,  # Share of the time in which it is outside
+    rng: np.random.Generator,  # Samples how often and when
+    *,
+    away_first: bool,  # Whether it is outside at the beginning, if ever
 ) -> Glances:
-    """Return at random when the camera looks past the target.
-
-    Args:
-        count: M.
-        cut: Share of the time in which the target is at the border.
-        away: Share of the time in which it is outside.
-        rng: Samples how often and when.
-        away_first: Whether it is outside at the beginning, if ever.
-    """
+    """Return at random when the camera looks past the target."""
     parts: list[tuple[int, int]] = []
     for kind, share in ((0, cut), (1, away)):
         total = round(min(max(share, 0.0), 1.0) * count)
@@ -88,17 +83,14 @@ def aimed(place: Floats, look: Floats) -> tuple[Floats, Floats]:
 
 
 def turned_aside(
-    view: tuple[Floats, Floats], field: Floats, aspect: float, when: Glances, how: Aside
+    # Yaw and pitch at which that is in the middle [rad], shape (M,) each
+    view: tuple[Floats, Floats],
+    field: Floats,  # Horizontal field of view [rad], shape (M,)
+    aspect: float,  # Height of the picture over its width
+    when: Glances,  # When it looks past it
+    how: Aside,
 ) -> tuple[Floats, Floats]:
-    """Return yaw and pitch with which the camera looks past what is in its middle.
-
-    Args:
-        view: Yaw and pitch at which that is in the middle [rad], shape (M,) each.
-        field: Horizontal field of view [rad], shape (M,).
-        aspect: Height of the picture over its width.
-        when: When it looks past it.
-        how: How.
-    """
+    """Return yaw and pitch with which the camera looks past what is in its middle."""
     yaw, pitch = view
     cut, away = averaged(when.cut, 0.4), averaged(when.away, 0.45)
     # 1 brings it to the border; while searching, the sweep alone takes it out of the picture.

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["CameraPath", "FlightScene", "FlightSketch"]
-
 Floats = NDArray[np.float64]
 
 

@@ -9,8 +9,6 @@ from eyas.engine.sim.flights.path import FlightScene, FlightSketch
 from eyas.engine.sim.flights.signals import STEP, averaged, later, steps_in, trailing, tremor
 from eyas.lanes import exact
 
-__all__ = ["FlyBy", "Follow", "HoverAndPan", "Orbit", "Rise", "Search", "Zoom"]
-
 Floats = NDArray[np.float64]
 
 
@@ -21,16 +19,13 @@ class _Path:
     searches = False
 
     def glance(
-        self, scene: FlightScene, rng: np.random.Generator, haste: float = 1.0, unrest: float = 1.0
+        self,
+        scene: FlightScene,  # The episode
+        rng: np.random.Generator,  # Samples reaction, quickness, overshoot and unrest
+        haste: float = 1.0,  # Factor on the quickness
+        unrest: float = 1.0,  # Factor on how far the target wanders from the middle
     ) -> Floats:
-        """Return the point that a pilot looks at: the target, late and not quite held, (M, 3).
-
-        Args:
-            scene: The episode.
-            rng: Samples reaction, quickness, overshoot and unrest.
-            haste: Factor on the quickness.
-            unrest: Factor on how far the target wanders from the middle.
-        """
+        """Return the point that a pilot looks at: the target, late and not quite held, (M, 3)."""
         reaction = float(rng.uniform(0.12, 0.35))
         frequency, damping = float(rng.uniform(2.0, 4.5)) * haste, float(rng.uniform(0.4, 0.8))
         # People lead what they have seen moving: part of the delay is made up for.

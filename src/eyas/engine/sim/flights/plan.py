@@ -27,8 +27,6 @@ from eyas.engine.sim.flights.shares import SMALL, Asked, Shares, foreseen
 from eyas.engine.sim.flights.signals import STEP, averaged, highest, rates_of
 from eyas.engine.task.clearance import Clearance, Margin
 
-__all__ = ["LIMITS", "Limits", "Plan", "Surroundings", "Wishes", "plan_flight"]
-
 Floats = NDArray[np.float64]
 
 
@@ -124,14 +122,12 @@ class _Aimed(NamedTuple):
         return _Aimed(cut, away, small)
 
 
-def plan_flight(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Plan:
-    """Return the best of some flights that are sampled at random.
-
-    Args:
-        around: The episode.
-        wishes: What is asked.
-        rng: Samples everything.
-    """
+def plan_flight(
+    around: Surroundings,  # The episode
+    wishes: Wishes,  # What is asked
+    rng: np.random.Generator,  # Samples everything
+) -> Plan:
+    """Return the best of some flights that are sampled at random."""
     path, asked = wishes.path, wishes.shares
     in_view = path.in_view if asked.in_view is None else asked.in_view
     # What is asked for is not what is reached: while the camera turns, the target is neither here

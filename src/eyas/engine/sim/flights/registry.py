@@ -7,8 +7,6 @@ from eyas.engine.core.own_code import left_out, running, takes
 from eyas.engine.core.registry import Registry
 from eyas.engine.sim.flights.path import CameraPath
 
-__all__ = ["PATHS", "SETTING", "path_named"]
-
 SETTING = "video.flight"
 
 _HERE = "eyas.engine.sim.flights.paths"

@@ -9,8 +9,6 @@ from eyas.engine.sim.flights.path import FlightScene
 from eyas.engine.task.clearance import Clearance
 from eyas.lanes import exact
 
-__all__ = ["SMALL", "Asked", "Shares", "foreseen", "mean"]
-
 Floats = NDArray[np.float64]
 
 SMALL = 32 * 32  # A box with fewer pixels is small, as COCO has it
@@ -48,24 +46,16 @@ def mean(flags: NDArray[np.bool_]) -> float:
 
 
 def foreseen(
-    flight: Floats,
-    scene: FlightScene,
-    size: Floats,
-    picture: tuple[int, int],
-    clearance: Clearance,
-    unseen: int,
+    flight: Floats,  # x, y, z, yaw, pitch, field of view, shape (M, 6)
+    scene: FlightScene,  # The episode
+    size: Floats,  # Length, width, height of the target [m], shape (3,)
+    picture: tuple[int, int],  # Its width and height [pixels]
+    clearance: Clearance,  # What stands around
+    unseen: int,  # Samples before the first picture
 ) -> Shares:
     """Return the shares of a flight.
 
     What moves hides nothing here, so the recording may have some more hidden frames.
-
-    Args:
-        flight: x, y, z, yaw, pitch, field of view, shape (M, 6).
-        scene: The episode.
-        size: Length, width, height of the target [m], shape (3,).
-        picture: Its width and height [pixels].
-        clearance: What stands around.
-        unseen: Samples before the first picture.
     """
     across, up, ahead = _seen(flight, _points(scene, size, _SHAPE), picture)
     left, right = across.min(axis=1), across.max(axis=1)

@@ -13,19 +13,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "STEP",
-    "Rates",
-    "averaged",
-    "highest",
-    "later",
-    "rates_of",
-    "sampled_at",
-    "steps_in",
-    "trailing",
-    "tremor",
-]
-
 Floats = NDArray[np.float64]
 
 STEP = 0.04  # Time between two control points [s]
@@ -99,14 +86,12 @@ def later(signal: Floats, seconds: float) -> Floats:
     return np.concatenate([before, signal[:-by]])[: len(signal)]
 
 
-def trailing(signal: Floats, frequency: float, damping: float) -> Floats:
-    """Return how something with inertia goes after a signal: late, and over it when it turns.
-
-    Args:
-        signal: Shape (M, K).
-        frequency: Undamped natural frequency [rad/s].
-        damping: Damping ratio; below 1 it overshoots.
-    """
+def trailing(
+    signal: Floats,  # Shape (M, K)
+    frequency: float,  # Undamped natural frequency [rad/s]
+    damping: float,  # Damping ratio; below 1 it overshoots
+) -> Floats:
+    """Return how something with inertia goes after a signal: late, and over it when it turns."""
     speed = (signal[1] - signal[0]) / STEP
     place = signal[0] - speed * (2.0 * damping / frequency)
     trailed = np.empty_like(signal)

@@ -12,8 +12,6 @@ from eyas.engine.state.motion import Motion
 from eyas.lanes import compiled, kernel
 from eyas.lanes.vector import WIDTH
 
-__all__ = ["ActorBounds", "bounds_of", "made_row", "make_rows"]
-
 NOWHERE = -1e30  # Radius around actors that are absent: it reaches no view
 
 

@@ -14,8 +14,6 @@ from eyas.engine.state.snapshot import TrackerState
 from eyas.engine.traffic.signals import SignalPlan
 from eyas.lanes import interpreted
 
-__all__ = ["SignalLights", "TrackerBodies", "lights_of", "signal_poles"]
-
 _SAME = 0.01  # Poles nearer to each other are one [m]
 
 _rotate = interpreted(rotate)  # of scalars, but arrays do as well
@@ -148,14 +146,12 @@ def signal_poles(scene: Scene) -> dict[str, int]:
     return found
 
 
-def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights | None:
-    """Return the lights on the poles of a scene; None if there are none.
-
-    Args:
-        scene: The scene, on the network of the plan.
-        plan: Programs of the lights.
-        first_part: See `SignalLights`.
-    """
+def lights_of(
+    scene: Scene,  # The scene, on the network of the plan
+    plan: SignalPlan,  # Programs of the lights
+    first_part: int,  # See `SignalLights`
+) -> SignalLights | None:
+    """Return the lights on the poles of a scene; None if there are none."""
     rows, fixtures = {name: row for row, name in enumerate(plan.edges)}, scene.fixtures
     found = [(rows[name], pole) for name, pole in signal_poles(scene).items() if name in rows]
     if not found:

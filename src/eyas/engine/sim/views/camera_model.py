@@ -6,23 +6,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.defocus import defocused
+from eyas.engine.camera.development import Development
+from eyas.engine.camera.dirt import Dirt
+from eyas.engine.camera.glass import change_light
+from eyas.engine.camera.imager import Spectrum
+from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.link import Link
+from eyas.engine.camera.near_infrared import near_infrared
+from eyas.engine.camera.shutter import Shutter
+from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.core.variation import sample
 from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.defocus import defocused
-from eyas.engine.sensors.camera.development import Development
-from eyas.engine.sensors.camera.dirt import Dirt
-from eyas.engine.sensors.camera.glass import change_light
-from eyas.engine.sensors.camera.imager import Spectrum
-from eyas.engine.sensors.camera.lens import Lenses
-from eyas.engine.sensors.camera.link import Link
-from eyas.engine.sensors.camera.near_infrared import near_infrared
-from eyas.engine.sensors.camera.shutter import Shutter
-from eyas.engine.sensors.camera.tone import ToneCurve
-from eyas.engine.sensors.config import CameraConfig
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.lighting import Lighting
-
-__all__ = ["CameraModel"]
 
 
 class CameraModel:
@@ -93,19 +91,13 @@ class CameraModel:
 
     def draw(
         self,
+        # Draws the views of these trackers into the arrays of a picture
         draw: Callable[[Picture], None],
-        trackers: NDArray[np.int32],
-        step: NDArray[np.int64],
-        picture: Picture,
+        trackers: NDArray[np.int32],  # The tracker of each of V views, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
+        picture: Picture,  # V pictures, with colours
     ) -> None:
-        """Draw the pictures of some trackers.
-
-        Args:
-            draw: Draws the views of these trackers into the arrays of a picture.
-            trackers: The tracker of each of V views, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-            picture: V pictures, with colours.
-        """
+        """Draw the pictures of some trackers."""
         assert picture.rgb is not None
         if self.development is not None:
             self.development.expose(trackers, step)

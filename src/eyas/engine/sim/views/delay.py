@@ -5,17 +5,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.clock import PHYSICS_RATE
+from eyas.engine.core.counter_rng import SEEDS, uniform
 from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.core.variation import Variation
-from eyas.engine.sensors.camera.vibration import Vibration
-from eyas.engine.sensors.chance import SEEDS, uniform
 from eyas.engine.sensors.config import ReadingConfig
 from eyas.engine.sim.latency import Latency, is_always_0
 from eyas.engine.state.snapshot import Snapshot
 from eyas.lanes import interpreted
-
-__all__ = ["SeenState", "ShownState"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

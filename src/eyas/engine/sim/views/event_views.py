@@ -3,17 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.event_sensor import EventSensors
+from eyas.engine.camera.events import EventsConfig
+from eyas.engine.camera.paths import Ways, poses_between, speeds_between
+from eyas.engine.camera.poses import Exposure, Moments
+from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.sensors.camera.event_sensor import EventSensors
-from eyas.engine.sensors.camera.events import EventsConfig
-from eyas.engine.sensors.camera.paths import Ways, poses_between, speeds_between
-from eyas.engine.sensors.camera.poses import Exposure, Moments
-from eyas.engine.sensors.camera.vibration import Vibration
 from eyas.engine.sim.views.exposures import Chosen, Moment, Stage, exposure_of, ways_of
 from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.snapshot import CameraState, Snapshot
-
-__all__ = ["EventViews"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

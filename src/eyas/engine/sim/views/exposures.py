@@ -10,10 +10,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.passes import Pieces, add_passes, pieces_of
-from eyas.engine.sensors.camera.poses import (
+from eyas.engine.camera.passes import Pieces, add_passes, pieces_of
+from eyas.engine.camera.poses import (
     INSTANTS,
     Exposure,
     Moments,
@@ -22,12 +20,12 @@ from eyas.engine.sensors.camera.poses import (
     motion_in_pixels,
     poses_at,
 )
-from eyas.engine.sensors.camera.shutter import Shutter
-from eyas.engine.sensors.camera.vibration import Shake, Vibration, no_shake
+from eyas.engine.camera.shutter import Shutter
+from eyas.engine.camera.vibration import Shake, Vibration, no_shake
+from eyas.engine.core.clock import PHYSICS_STEP
+from eyas.engine.render.outputs import picture_size
 from eyas.engine.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.engine.state.snapshot import CameraState, Snapshot
-
-__all__ = ["Chosen", "Exposures", "Moment", "Stage", "exposure_of", "ways_of"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -65,14 +63,12 @@ class Stage(Protocol):
         ...
 
 
-def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -> Exposure:
-    """Return the exposures of some trackers.
-
-    Args:
-        chosen: The trackers, shape (V,).
-        steady: The state that the pictures show, without vibration.
-        vibration: That of the cameras.
-    """
+def exposure_of(
+    chosen: Chosen,  # The trackers, shape (V,)
+    steady: Snapshot,  # The state that the pictures show, without vibration
+    vibration: Vibration | None,  # That of the cameras
+) -> Exposure:
+    """Return the exposures of some trackers."""
     cameras = CameraState(*(array[chosen] for array in steady.cameras))
     shake = no_shake(len(chosen))
     if vibration is not None:
@@ -82,17 +78,13 @@ def exposure_of(chosen: Chosen, steady: Snapshot, vibration: Vibration | None) -
 
 
 def ways_of(
-    exposure: Exposure, window: Floats, floor: Floats, frame: Floats, moving: Moving
+    exposure: Exposure,  # V cameras
+    window: Floats,  # The time around the instant of each [s], shape (V,)
+    floor: Floats,  # Height of the ground that each sees [m], shape (V,)
+    frame: Floats,  # See `Seen.frame`
+    moving: Moving,  # Things that move
 ) -> Floats:
-    """Return how far what cameras see moves through their pictures in a time [pixels], shape (V,).
-
-    Args:
-        exposure: V cameras.
-        window: The time around the instant of each [s], shape (V,).
-        floor: Height of the ground that each sees [m], shape (V,).
-        frame: See `Seen.frame`.
-        moving: Things that move.
-    """
+    """Return the largest motion through each picture in a given time [pixels], shape (V,)."""
     place, axes = np.zeros((INSTANTS, 3)), np.zeros((INSTANTS, 3, 3))
     seen = Seen(window, floor, frame, moving, place, axes, np.zeros(len(window)))
     motion_in_pixels(exposure, seen)

@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.config import FurtherCameraConfig, MountConfig
+from eyas.engine.camera.vibration import Vibration
 from eyas.engine.core.frames import rotate
-from eyas.engine.core.lens import Lens
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.core.variation import sample
-from eyas.engine.sensors.camera.vibration import Vibration
-from eyas.engine.sensors.config import FurtherCameraConfig, MountConfig
 from eyas.engine.sensors.mount import mount_of
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
@@ -22,8 +22,6 @@ from eyas.engine.sim.worlds import Worlds
 from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.lanes import exact, interpreted
-
-__all__ = ["FurtherCamera", "FurtherOptics"]
 
 Chosen = NDArray[np.int32]
 Floats = NDArray[np.float64]

@@ -20,22 +20,6 @@ from eyas.lanes import kernel
 from eyas.lanes.elementary import tan
 from eyas.lanes.vector import bits_of, load, magnitude
 
-__all__ = [
-    "CAMERA",
-    "SLACK",
-    "Entry",
-    "KindTable",
-    "Listed",
-    "ViewQuery",
-    "column_actors",
-    "eight_may_matter",
-    "kind_table",
-    "may_show",
-    "one_may_matter",
-    "set_camera",
-    "write_entry",
-]
-
 SLACK = 0.05  # Distance outside a view at which actors are still posed: more than roundings [m]
 
 CAMERA: Final = np.dtype(

@@ -15,8 +15,6 @@ from eyas.engine.state.draw import DrawList
 from eyas.lanes import Held, compiled
 from eyas.lanes.vector import WIDTH, first_bit
 
-__all__ = ["NearLights"]
-
 
 class _Poles(NamedTuple):
     """P poles, and more that nobody sees, so that their number is a multiple of eight."""

@@ -4,15 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eyas.engine.sensors.camera.imager import Spectrum
-from eyas.engine.sensors.camera.lens import Lenses
-from eyas.engine.sensors.camera.shutter import Shutter
-from eyas.engine.sensors.config import CameraConfig
+from eyas.engine.camera.config import CameraConfig
+from eyas.engine.camera.imager import Spectrum
+from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.shutter import Shutter
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.views.camera_model import CameraModel
 from eyas.engine.sim.views.thermal_views import ThermalViews
-
-__all__ = ["Optics"]
 
 
 class Optics:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import NO_LENS, Lens, distorted, principal_point
-from eyas.engine.core.pinhole import focal_length
+from eyas.engine.core.optics.lens import NO_LENS, Lens, distorted, principal_point
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.sim.scenes import load_parts
 from eyas.engine.state.draw import DrawList
@@ -16,8 +16,6 @@ from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 from eyas.lanes import Held, compiled
-
-__all__ = ["Outlines"]
 
 Floats = NDArray[np.float64]
 
@@ -67,20 +65,13 @@ class Outlines:
 
     def of(
         self,
-        actors: ActorView,
-        wanted: NDArray[np.integer],
-        cameras: CameraState,
-        tracker: int,
-        lens: Lens | None = None,
+        actors: ActorView,  # The actors around the tracker
+        wanted: NDArray[np.integer],  # Which of them, shape (B,)
+        cameras: CameraState,  # The cameras of all trackers
+        tracker: int,  # Whose camera it is
+        lens: Lens | None = None,  # Its lens; None: a pinhole
     ) -> Floats:
         """Return the boxes around all vertices of some actors, in their poses at this moment.
-
-        Args:
-            actors: The actors around the tracker.
-            wanted: Which of them, shape (B,).
-            cameras: The cameras of all trackers.
-            tracker: Whose camera it is.
-            lens: Its lens; None: a pinhole.
 
         Returns:
             Left, top, right, bottom [pixels], not clipped to the picture. Vertices nearer to the

@@ -5,15 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import NO_LENS, Lens, distorted, principal_point
-from eyas.engine.core.pinhole import focal_length
+from eyas.engine.core.optics.lens import NO_LENS, Lens, distorted, principal_point
+from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.render.kernels.scalars import i8
 from eyas.engine.state.scene import LABELLED, LAST_PARKED, ObjectClass, Scene
 from eyas.engine.state.snapshot import CameraState
 from eyas.lanes import Held, compiled, exact, kernel
-
-__all__ = ["ParkedObject", "ParkedObjects", "SeenParked"]
 
 Floats = NDArray[np.float64]
 
@@ -131,21 +129,14 @@ class ParkedObjects:
 
     def seen(
         self,
-        shown: NDArray[np.int32],
+        shown: NDArray[np.int32],  # Object of each pixel, shape (H, W)
+        # Distance of each pixel along the optical axis [m], shape (H, W)
         depth: NDArray[np.float32],
-        cameras: CameraState,
-        tracker: int,
-        lens: Lens | None = None,
+        cameras: CameraState,  # The cameras of all trackers
+        tracker: int,  # Whose picture it is
+        lens: Lens | None = None,  # Its lens; None: a pinhole
     ) -> list[SeenParked]:
-        """Return the objects of which a picture shows a pixel, in the order of their ids.
-
-        Args:
-            shown: Object of each pixel, shape (H, W).
-            depth: Distance of each pixel along the optical axis [m], shape (H, W).
-            cameras: The cameras of all trackers.
-            tracker: Whose picture it is.
-            lens: Its lens; None: a pinhole.
-        """
+        """Return the objects of which a picture shows a pixel, in the order of their ids."""
         if not self.objects:
             return []
         height, width = shown.shape

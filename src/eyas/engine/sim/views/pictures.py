@@ -6,13 +6,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
-from eyas.engine.core.pinhole import field_along
+from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.overlay.marks import Marks
 from eyas.engine.overlay.paint import paint_overlays, with_depth
 from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.lens import Lenses
-from eyas.engine.sensors.camera.poses import Moving
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.light import LightChanges
@@ -25,8 +25,6 @@ from eyas.engine.state.draw import DrawList, DrawStage, MovingParts, Picture, Vi
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.task.rules import Rules
-
-__all__ = ["PictureDrawer", "is_timed"]
 
 Chosen = NDArray[np.int32]
 Floats = NDArray[np.float64]
@@ -145,19 +143,14 @@ class PictureDrawer:
 
     def draw_from(
         self,
+        # The tracker whose world each view shows, shape (V,); the subject is its target
         chosen: Chosen,
-        cameras: CameraState,
-        picture: Picture,
+        cameras: CameraState,  # V cameras
+        picture: Picture,  # V pictures with colours, of any size; pixels are square
+        # Rules for the overlay of all trackers of that world; None: no overlay
         rules: Rules | None,
     ) -> None:
-        """Draw the worlds of trackers from other cameras.
-
-        Args:
-            chosen: The tracker whose world each view shows, shape (V,); the subject is its target.
-            cameras: V cameras.
-            picture: V pictures with colours, of any size; pixels are square.
-            rules: Rules for the overlay of all trackers of that world; None: no overlay.
-        """
+        """Draw the worlds of trackers from other cameras."""
         height, width = picture_size(picture)
         views, movers = self._views(chosen, cameras, height / width)
         deep = picture if rules is None else with_depth(picture)
@@ -208,21 +201,14 @@ class PictureDrawer:
 
     def _views(
         self,
-        chosen: Chosen,
-        cameras: CameraState,
-        aspect: float,
-        lenses: Lenses | None = None,
+        chosen: Chosen,  # The trackers, shape (V,)
+        cameras: CameraState,  # V cameras
+        aspect: float,  # Height of what they show over its width
+        lenses: Lenses | None = None,  # The lenses of all trackers, if the cameras are theirs
+        # How long after what is seen each looks [s], shape (V,); None: then
         later: Floats | None = None,
     ) -> tuple[Views, DrawList]:
-        """Return views of the worlds of trackers: cameras, with square pixels, and movers.
-
-        Args:
-            chosen: The trackers, shape (V,).
-            cameras: V cameras.
-            aspect: Height of what they show over its width.
-            lenses: The lenses of all trackers, if the cameras are theirs.
-            later: How long after what is seen each looks [s], shape (V,); None: then.
-        """
+        """Return views of the worlds of trackers: cameras, with square pixels, and movers."""
         ticks, seeing = self._snapshot.episodes.tick, cameras
         if lenses is not None:
             seeing = lenses.seeing(chosen, cameras, aspect)

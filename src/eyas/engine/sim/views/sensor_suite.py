@@ -9,9 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.camera.event_sensor import EventSensors
 from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.core.variation import bounds
-from eyas.engine.sensors.camera.event_sensor import EventSensors
 from eyas.engine.sensors.grain import Grain
 from eyas.engine.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.engine.sensors.obstacles import Obstacles, obstacles_of
@@ -26,8 +26,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.config import Crash
 from eyas.engine.task.contact import Contacts
 from eyas.engine.trackers.config import TrackerKind
-
-__all__ = ["SensorSuite"]
 
 
 class _Sensor(Protocol):

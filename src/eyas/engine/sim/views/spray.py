@@ -14,7 +14,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     from eyas.engine.sim.views.near_actors import Listed
 
-__all__ = ["SPRAY_REACH", "spray_of", "throwing"]
 
 SPRAY_REACH = 14.0
 """Distance from a vehicle beyond which its spray is not seen [m], see `sky.plumes`."""
@@ -31,14 +30,12 @@ def throwing(kinds: Sequence[Kind]) -> NDArray[np.bool_]:
     return np.array([kind.object_class in _VEHICLES for kind in kinds], np.bool_)
 
 
-def spray_of(listed: "Listed", kinds: NDArray[np.bool_], worlds: int) -> NDArray[np.float32]:
-    """Return `DrawList.spray` of listed actors.
-
-    Args:
-        listed: The actors.
-        kinds: Which kinds throw up water, see `throwing`.
-        worlds: Number of worlds.
-    """
+def spray_of(
+    listed: "Listed",  # The actors
+    kinds: NDArray[np.bool_],  # Which kinds throw up water, see `throwing`
+    worlds: int,  # Number of worlds
+) -> NDArray[np.float32]:
+    """Return `DrawList.spray` of listed actors."""
     actors, model = listed.state, listed.looks.model[0]
     throws = np.repeat(kinds, np.diff(listed.end, prepend=0))
     slot = listed.slot[: len(throws)]

@@ -5,20 +5,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.outputs import picture_size
-from eyas.engine.sensors.camera.temperature import SurfaceTemperatures
-from eyas.engine.sensors.camera.thermal import (
+from eyas.engine.camera.temperature import SurfaceTemperatures
+from eyas.engine.camera.thermal import (
     ThermalConfig,
     ThermalFrames,
     ThermalImager,
     slot_heat,
 )
-from eyas.engine.sensors.chance import SEEDS
+from eyas.engine.core.counter_rng import SEEDS
+from eyas.engine.render.outputs import picture_size
 from eyas.engine.sim.assets import Assets
 from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.scene import ACTOR_OBJECT
-
-__all__ = ["ThermalViews"]
 
 
 class ThermalViews:
@@ -47,21 +45,13 @@ class ThermalViews:
 
     def draw(
         self,
-        views: Views,
-        movers: DrawList,
-        trackers: NDArray[np.integer],
-        step: NDArray[np.int64],
-        rgb: NDArray[np.uint8],
+        views: Views,  # V views
+        movers: DrawList,  # The moving things
+        trackers: NDArray[np.integer],  # The tracker of each view, shape (V,)
+        step: NDArray[np.int64],  # Physics steps of each tracker since its reset, shape (N,)
+        rgb: NDArray[np.uint8],  # Written, shape (V, H, W, 3)
     ) -> None:
-        """Write the pictures of some trackers, grey.
-
-        Args:
-            views: V views.
-            movers: The moving things.
-            trackers: The tracker of each view, shape (V,).
-            step: Physics steps of each tracker since its reset, shape (N,).
-            rgb: Written, shape (V, H, W, 3).
-        """
+        """Write the pictures of some trackers, grey."""
         slots = np.arange(movers.part.shape[1], dtype=np.int32)
         numbered = np.broadcast_to(ACTOR_OBJECT + slots, movers.part.shape)
         shown = Picture.create(

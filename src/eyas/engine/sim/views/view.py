@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens
-from eyas.engine.sensors.camera.event_sensor import EventSensors
-from eyas.engine.sensors.camera.exposure import ExposureState
+from eyas.engine.camera.event_sensor import EventSensors
+from eyas.engine.camera.exposure import ExposureState
+from eyas.engine.core.optics.lens import Lens
 from eyas.engine.sensors.lidar import Lidar
 from eyas.engine.sensors.original import ORIGINAL
 from eyas.engine.sensors.table import Fitted
@@ -28,8 +28,6 @@ from eyas.engine.state.motion import ActorView
 from eyas.engine.targets.grammar.in_view import InView
 from eyas.engine.task.packet_rows import SENSOR_COLUMNS, SENSOR_COUNT, PacketRows
 from eyas.engine.task.rules import Rules
-
-__all__ = ["View"]
 
 Floats = NDArray[np.float64]
 
@@ -88,19 +86,13 @@ class View:
 
     def draw(
         self,
-        trackers: NDArray[np.int32],
-        picture: Picture,
-        until: DrawStage = DrawStage.SHADING,
+        trackers: NDArray[np.int32],  # The trackers, shape (V,)
+        picture: Picture,  # V pictures to draw into
+        until: DrawStage = DrawStage.SHADING,  # Last stage to run, see `Renderer.draw`
+        # Rules whose overlay is drawn over the colours; None: no overlay
         overlaid: Rules | None = None,
     ) -> None:
-        """Draw what the cameras of some trackers see.
-
-        Args:
-            trackers: The trackers, shape (V,).
-            picture: V pictures to draw into.
-            until: Last stage to run, see `Renderer.draw`.
-            overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
-        """
+        """Draw what the cameras of some trackers see."""
         self.pictures.draw(trackers, picture, until, overlaid)
         grain = self._sensors.grain
         if grain is not None and picture.rgb is not None:
@@ -188,15 +180,13 @@ class View:
         return ParkedObjects(self._assets.scene)
 
     def parked(
-        self, tracker: int, shown: NDArray[np.int32], depth: NDArray[np.float32]
+        self,
+        tracker: int,
+        shown: NDArray[np.int32],  # Object of each pixel of its picture, shape (H, W)
+        # Distance of each pixel along the optical axis [m], shape (H, W)
+        depth: NDArray[np.float32],
     ) -> list[SeenParked]:
-        """Return the parked objects that a tracker's picture shows, see `ParkedObjects.seen`.
-
-        Args:
-            tracker: The tracker.
-            shown: Object of each pixel of its picture, shape (H, W).
-            depth: Distance of each pixel along the optical axis [m], shape (H, W).
-        """
+        """Return the parked objects that a tracker's picture shows, see `ParkedObjects.seen`."""
         cameras, lens = self.state.shown.cameras, self.lens_of(tracker)
         return self._parked.seen(shown, depth, cameras, tracker, lens)
 

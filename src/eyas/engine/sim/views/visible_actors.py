@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.sensors.camera.poses import Moving
+from eyas.engine.camera.poses import Moving
 from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, made_row
 from eyas.engine.sim.views.near_actors import (
     CAMERA,
@@ -35,8 +35,6 @@ from eyas.engine.targets.rig import Rigs
 from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
 from eyas.lanes import Held, compiled
 from eyas.lanes.vector import WIDTH, first_bit
-
-__all__ = ["VisibleActors"]
 
 _LONGEST = 3.0
 """Reach of a thing beyond which it is not said to move in a picture: half a long car [m]."""
@@ -129,21 +127,14 @@ class VisibleActors:
 
     def of(
         self,
-        worlds: NDArray[np.integer],
-        time: NDArray[np.float64],
+        worlds: NDArray[np.integer],  # The worlds, shape (W,)
+        time: NDArray[np.float64],  # Time of each [s], shape (W,)
+        # Row of `worlds` that each view shows, shape (V,); None: views and worlds are pairs
         row: NDArray[np.integer] | None,
-        cameras: CameraState,
-        aspect: float,
+        cameras: CameraState,  # The V cameras
+        aspect: float,  # Height of what they show over its width
     ) -> DrawList:
-        """Return a draw list of W worlds; the next call overwrites it.
-
-        Args:
-            worlds: The worlds, shape (W,).
-            time: Time of each [s], shape (W,).
-            row: Row of `worlds` that each view shows, shape (V,); None: views and worlds are pairs.
-            cameras: The V cameras.
-            aspect: Height of what they show over its width.
-        """
+        """Return a draw list of W worlds; the next call overwrites it."""
         self._list_for(worlds, time, row, cameras, aspect)
         self._pose()
         count = len(worlds)

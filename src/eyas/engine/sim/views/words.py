@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens, places, principal_point, widest
+from eyas.engine.core.optics.lens import Lens, places, principal_point, widest
 from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of
@@ -14,24 +14,19 @@ from eyas.engine.targets.grammar.in_view import InView
 from eyas.engine.targets.words import Seen, told_apart
 from eyas.lanes import exact
 
-__all__ = ["in_view", "target_in_words"]
-
 Floats = NDArray[np.float64]
 
 
 def target_in_words(
-    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+    shown: Snapshot,  # The state that the picture shows
+    around: ActorView,  # The actors around the tracker at that time
+    tracker: int,
+    aspect: float,  # Height of the camera's picture over its width
+    lens: Lens | None = None,  # Its lens; None: a pinhole
 ) -> str:
     """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
 
     No other actor of which a part is in the camera's view shares it, hidden or not.
-
-    Args:
-        shown: The state that the picture shows.
-        around: The actors around the tracker at that time.
-        tracker: The tracker.
-        aspect: Height of the camera's picture over its width.
-        lens: Its lens; None: a pinhole.
     """
     chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
     target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
@@ -57,17 +52,13 @@ def target_in_words(
 
 
 def in_view(
-    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None = None
+    shown: Snapshot,  # The state that the picture shows
+    around: ActorView,  # The actors around the tracker at that time
+    tracker: int,
+    aspect: float,  # Height of the camera's picture over its width
+    lens: Lens | None = None,  # Its lens; None: a pinhole
 ) -> InView:
-    """Return the moving objects of which a part is in a tracker's view, and its target in any case.
-
-    Args:
-        shown: The state that the picture shows.
-        around: The actors around the tracker at that time.
-        tracker: The tracker.
-        aspect: Height of the camera's picture over its width.
-        lens: Its lens; None: a pinhole.
-    """
+    """Return the moving objects, and the target, of which a part is in a tracker's view."""
     chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
     inside |= chosen == shown.targets.actor[tracker]
     actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
@@ -88,15 +79,13 @@ def in_view(
     )
 
 
-def _placed(points: Floats, wide: float, aspect: float, lens: Lens | None) -> Floats:
-    """Return where points are in a picture, in shares of its sides, also if they are behind it.
-
-    Args:
-        points: Forward, left and up of the camera [m], shape (..., 3).
-        wide: Tangent of half the horizontal field of view.
-        aspect: Height of the picture over its width.
-        lens: The lens; None: a pinhole.
-    """
+def _placed(
+    points: Floats,  # Forward, left and up of the camera [m], shape (..., 3)
+    wide: float,  # Tangent of half the horizontal field of view
+    aspect: float,  # Height of the picture over its width
+    lens: Lens | None,  # The lens; None: a pinhole
+) -> Floats:
+    """Return where points are in a picture, in shares of its sides, also if they are behind it."""
     forward, left, up = np.moveaxis(points, -1, 0)
     before = np.maximum(forward, 1e-3)
     if lens is not None:
@@ -215,14 +204,12 @@ def _in_bent_view(corners: Floats, wide: float, aspect: float, lens: Lens) -> ND
     return inside
 
 
-def _in_view(corners: Floats, wide: float, high: float) -> NDArray[np.bool_]:
-    """Return whether any part of boxes may be in a view: none is outside of one of its planes.
-
-    Args:
-        corners: Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3).
-        wide: Tangent of half the horizontal field of view.
-        high: Tangent of half the vertical field of view.
-    """
+def _in_view(
+    corners: Floats,  # Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3)
+    wide: float,  # Tangent of half the horizontal field of view
+    high: float,  # Tangent of half the vertical field of view
+) -> NDArray[np.bool_]:
+    """Return whether any part of boxes may be in a view: none is outside of one of its planes."""
     forward, left, up = np.moveaxis(corners, -1, 0)
     planes = [forward, forward * wide - left, forward * wide + left]
     planes += [forward * high - up, forward * high + up]

@@ -9,8 +9,6 @@ from eyas.engine.targets.colour_names import COLOUR_NAMES
 from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 
-__all__ = ["ATTRIBUTES", "attributes_of", "claim_of"]
-
 Vector = NDArray[np.float32]
 Word = TypeVar("Word", BodyWord, Doing, PicturePlace, Bearing)
 

@@ -17,8 +17,6 @@ from eyas.engine.targets.colour_names import COLOUR_NAMES, colour_distances
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, InView, body_of
 from eyas.lanes import exact
 
-__all__ = ["Bearing", "Claim", "Doing", "PicturePlace", "fits", "holds", "tells_apart"]
-
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import MODELS, kind_of
 
-__all__ = ["CAN_BE_CALLED", "BodyWord", "InView", "body_of"]
-
 Floats = NDArray[np.float64]
 
 

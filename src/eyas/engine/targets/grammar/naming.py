@@ -22,16 +22,6 @@ from eyas.engine.targets.grammar.claims import (
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord, InView, body_of
 from eyas.engine.targets.grammar.wording import Wording, in_words
 
-__all__ = [
-    "NO_PHRASE",
-    "Phrase",
-    "PhraseKind",
-    "claims_about",
-    "contradictory",
-    "descriptions",
-    "phrase_about",
-]
-
 Item = TypeVar("Item")
 
 
@@ -62,22 +52,15 @@ NO_PHRASE: Final = Phrase("", None, None)  # No words
 
 
 def phrase_about(
-    view: InView,
-    row: int,
-    rng: np.random.Generator,
-    wording: Wording = Wording.TRAINING,
-    kinds: Sequence[PhraseKind] = tuple(PhraseKind),
+    view: InView,  # What is in view
+    row: int,  # Which of it the phrase is about
+    rng: np.random.Generator,  # Samples what is said, and how
+    wording: Wording = Wording.TRAINING,  # Set of wordings
+    kinds: Sequence[PhraseKind] = tuple(PhraseKind),  # Kinds that are allowed
 ) -> Phrase:
     """Return a sampled phrase that tells one of those in view apart.
 
     Kinds are tried in random order, and of each all that is true of the target.
-
-    Args:
-        view: What is in view.
-        row: Which of it the phrase is about.
-        rng: Samples what is said, and how.
-        wording: Set of wordings.
-        kinds: Kinds that are allowed.
 
     Returns:
         `NO_PHRASE` if every phrase fits something else, too.

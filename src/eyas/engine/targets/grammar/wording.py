@@ -14,8 +14,6 @@ import numpy as np
 from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
 from eyas.engine.targets.grammar.in_view import BodyWord
 
-__all__ = ["CHARACTERS", "LONGEST", "WORDINGS", "Wording", "in_words"]
-
 CHARACTERS: Final = "abcdefghijklmnopqrstuvwxyz ,'"  # All characters of phrases
 
 LONGEST: Final = 192  # No phrase is longer [characters]

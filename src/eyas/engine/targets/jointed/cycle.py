@@ -15,8 +15,6 @@ from eyas.engine.mesh.shell import Shape, Shell
 from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg
 from eyas.lanes import exact
 
-__all__ = ["frames_of", "shapes_of", "skeleton_of", "table_of"]
-
 _FLAT = (0.15, 0.5)  # Part of the time on the ground during which the sole lies flat
 
 _SLACK = 0.999

@@ -11,8 +11,6 @@ from eyas.engine.mesh.shell import DETAILS, Shape, shell_of
 from eyas.engine.targets.jointed.cycle import frames_of, shapes_of
 from eyas.engine.targets.jointed.figure import Figure
 
-__all__ = ["Extents", "extents_of"]
-
 _INTERVALS = 32  # Moments of a cycle; between two of them, parts move along straight lines
 
 Floats = NDArray[np.float64]
@@ -91,13 +89,11 @@ def _swept(points: Floats, a: int, b: int) -> Floats:
     return corners.reshape(-1, 3)
 
 
-def _boxes(points: list[Floats], frames: Floats) -> Floats:
-    """Return the boxes around all parts, shape (K, 2, 3).
-
-    Args:
-        points: The points of each of S parts.
-        frames: Frames of the parts, shape (K, S, 3, 4).
-    """
+def _boxes(
+    points: list[Floats],  # The points of each of S parts
+    frames: Floats,  # Frames of the parts, shape (K, S, 3, 4)
+) -> Floats:
+    """Return the boxes around all parts, shape (K, 2, 3)."""
     low = np.full((len(frames), 3), np.inf)
     high = -low
     for part, own in enumerate(points):

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from eyas.engine.mesh.shell import Shape
 from eyas.lanes import exact
 
-__all__ = ["STILL", "Figure", "Gait", "Joint", "Leg", "Point", "Swing"]
-
 Point = tuple[float, float, float]
 
 

@@ -14,8 +14,6 @@ from eyas.engine.targets.jointed.rig import JointedRig, layout_of
 from eyas.engine.targets.jointed.robots import ROBOTS
 from eyas.engine.targets.kind import Kind
 
-__all__ = ["CYCLIST", "JOINTED_KINDS"]
-
 
 def _kind(models: tuple[JointedModel, ...], object_class: ObjectClass) -> Kind:
     figures = {model.name: model.figure for model in models}

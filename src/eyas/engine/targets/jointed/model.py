@@ -11,8 +11,6 @@ from eyas.engine.targets.habit import Habit
 from eyas.engine.targets.jointed.figure import Figure
 from eyas.engine.targets.kind import Colour, Model
 
-__all__ = ["JointedModel", "robot"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointedModel(Model):
@@ -27,26 +25,16 @@ class JointedModel(Model):
 
 
 def robot(
-    name: TargetName,
+    name: TargetName,  # The original's name
     *,
-    size: tuple[float, float, float],
-    colour: Colour,
-    words: str,
-    motion: str,
-    habit: Habit,
-    figure: Figure,
+    size: tuple[float, float, float],  # Length, width and height without antennas [m]
+    colour: Colour,  # Its main colour
+    words: str,  # What it is, "a white robot dog"
+    motion: str,  # What its habit is, in words
+    habit: Habit,  # How it moves by itself
+    figure: Figure,  # How it is built
 ) -> JointedModel:
-    """Return a robot; its reference point is in the middle of its height.
-
-    Args:
-        name: The original's name.
-        size: Length, width and height without antennas [m].
-        colour: Its main colour.
-        words: What it is, "a white robot dog".
-        motion: What its habit is, in words.
-        habit: How it moves by itself.
-        figure: How it is built.
-    """
+    """Return a robot; its reference point is in the middle of its height."""
     return JointedModel(
         name=name.value,
         typename=name.value,

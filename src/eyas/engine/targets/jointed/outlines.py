@@ -9,8 +9,6 @@ from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Surface
 from eyas.lanes import exact
 
-__all__ = ["bar", "block", "cylinder", "limb", "matt", "oval", "stack", "wheel"]
-
 
 def matt(red: float, green: float, blue: float) -> Material:
     """Return a matt material, sRGB 0 to 1."""
@@ -18,22 +16,14 @@ def matt(red: float, green: float, blue: float) -> Material:
 
 
 def oval(
-    z: float,
-    half: tuple[float, float],
-    middle: tuple[float, float],
-    sides: int,
+    z: float,  # Its height [m]
+    half: tuple[float, float],  # Half its extent along x and y [m]
+    middle: tuple[float, float],  # x and y of its middle [m]
+    sides: int,  # Number of corners; one side faces forward
     *,
-    box: float = 0.0,
+    box: float = 0.0,  # 0 for an ellipse, 1 for almost a rectangle
 ) -> NDArray[np.float64]:
-    """Return a level oval, counter-clockwise as seen from above, shape (sides, 3).
-
-    Args:
-        z: Its height [m].
-        half: Half its extent along x and y [m].
-        middle: x and y of its middle [m].
-        sides: Number of corners; one side faces forward.
-        box: 0 for an ellipse, 1 for almost a rectangle.
-    """
+    """Return a level oval, counter-clockwise as seen from above, shape (sides, 3)."""
     angle = (np.arange(sides) + 0.5) * (2 * np.pi / sides)
     c, s = exact.cos(angle), exact.sin(angle)
     power = 1.0 - 0.7 * box
@@ -43,40 +33,28 @@ def oval(
 
 
 def stack(
-    shell: Shell,
+    shell: Shell,  # Shell to add it to
+    # z, half its extent along x and along y, and x of the middle, of each oval [m]
     rows: Sequence[tuple[float, float, float, float]],
-    material: Material,
-    sides: int,
+    material: Material,  # Material of all faces
+    sides: int,  # Corners of each oval
     *,
-    box: float = 0.0,
-    caps: bool = True,
+    box: float = 0.0,  # See `oval`
+    caps: bool = True,  # Whether bottom and top are closed
 ) -> None:
-    """Add a body of level ovals, from the bottom up.
-
-    Args:
-        shell: Shell to add it to.
-        rows: z, half its extent along x and along y, and x of the middle, of each oval [m].
-        material: Material of all faces.
-        sides: Corners of each oval.
-        box: See `oval`.
-        caps: Whether bottom and top are closed.
-    """
+    """Add a body of level ovals, from the bottom up."""
     rings = [oval(z, (x, y), (ahead, 0.0), sides, box=box) for z, x, y, ahead in rows]
     shell.rings(rings, material, caps=caps)
 
 
 def limb(
-    shell: Shell, length: float, radii: Sequence[float], material: Material, sides: int
+    shell: Shell,  # Shell to add it to
+    length: float,  # Its length, without the ends [m]
+    radii: Sequence[float],  # Radii at even distances along it [m]
+    material: Material,  # Material of all faces
+    sides: int,  # Number of sides; with fewer than five, the ends are flat
 ) -> None:
-    """Add a rod with round ends that hangs from the origin.
-
-    Args:
-        shell: Shell to add it to.
-        length: Its length, without the ends [m].
-        radii: Radii at even distances along it [m].
-        material: Material of all faces.
-        sides: Number of sides; with fewer than five, the ends are flat.
-    """
+    """Add a rod with round ends that hangs from the origin."""
     heights, sizes = np.linspace(0.0, -length, len(radii)).tolist(), list(radii)
     if sides >= 5:
         heights = [0.75 * sizes[0], *heights, -length - 0.75 * sizes[-1]]
@@ -85,23 +63,15 @@ def limb(
 
 
 def wheel(
-    shell: Shell,
-    radius: float,
-    width: float,
-    places: Sequence[float],
+    shell: Shell,  # Shell to add them to
+    radius: float,  # [m]
+    width: float,  # [m]
+    places: Sequence[float],  # y of the middle of each [m]
+    # Of the tread, and of the hub, which has a bar that shows how it turns
     materials: tuple[Material, Material],
-    detail: int,
+    detail: int,  # See `Shape`
 ) -> None:
-    """Add wheels that turn about the y axis.
-
-    Args:
-        shell: Shell to add them to.
-        radius: [m]
-        width: [m]
-        places: y of the middle of each [m].
-        materials: Of the tread, and of the hub, which has a bar that shows how it turns.
-        detail: See `Shape`.
-    """
+    """Add wheels that turn about the y axis."""
     sides = (6, 9, 14)[detail]
     for y in places:
         cylinder(shell, (0.0, y, 0.0), radius, width, materials[0], sides)

@@ -1,4 +1,4 @@
-"""Poses of the parts of people and robots: the loop over all actors of a kind in all worlds.
+"""Poses of the parts of people and robots.
 
 The frames of the parts through a cycle are in a table (`eyas.engine.targets.jointed.cycle`), so an
 actor costs the same however it walks: each part is read, put into the world, and perhaps rolled.
@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.posing import ActorFrame, Slots
-from eyas.lanes import kernel, parallel
+from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
-
-__all__ = ["BODY", "PART", "CycleTable", "pose_figure", "pose_jointed"]
 
 _TIGHTEST = 0.3  # Radius of the tightest curve that wheels steer [m]
 
@@ -58,7 +56,7 @@ of what spins [m], 0 if nothing does; upright: whether it stays upright on slope
 class CycleTable(NamedTuple):
     """Data of M models with S slots each, for the kernel."""
 
-    part: NDArray[np.void]  # Parts of dtype `PART`, shape (M, S)
+    slot: NDArray[np.void]  # Parts of dtype `PART`, shape (M, S)
     body: NDArray[np.void]  # Models of dtype `BODY`, shape (M,)
     rest: NDArray[np.float32]
     """Frames of the parts of a standing model: x, y and z axis and origin, shape (M, S, 4, 3)."""
@@ -92,21 +90,14 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> ActorFrame:
 
 @kernel
 def _place_part(
-    pose: NDArray[np.float32],
+    pose: NDArray[np.float32],  # Pose to write, shape (3, 4)
     base: ActorFrame,
+    # Its frame at the beginning of an interval of the cycle, shape (4, 3)
     first: NDArray[np.float32],
-    second: NDArray[np.float32],
-    later: float,
+    second: NDArray[np.float32],  # Its frame at the end of the interval
+    later: float,  # Share of the interval that is over
 ) -> None:
-    """Write the pose of one part.
-
-    Args:
-        pose: Pose to write, shape (3, 4).
-        base: Frame of the actor.
-        first: Its frame at the beginning of an interval of the cycle, shape (4, 3).
-        second: Its frame at the end of the interval.
-        later: Share of the interval that is over.
-    """
+    """Write the pose of one part."""
     for axis in range(4):
         x = first[axis, 0] + later * (second[axis, 0] - first[axis, 0])
         y = first[axis, 1] + later * (second[axis, 1] - first[axis, 1])
@@ -174,8 +165,8 @@ def pose_figure(
     if body.wheel_radius > 0.0:
         angle = travelled / body.wheel_radius
         sine, cosine = sin_cos(angle)
-    for k in range(table.part.shape[1]):
-        slot, part = first + k, table.part[model, k]
+    for k in range(table.slot.shape[1]):
+        slot, part = first + k, table.slot[model, k]
         if part.part < 0:
             out.part[w, slot] = -1
             continue
@@ -197,26 +188,3 @@ def pose_figure(
         else:
             for channel in range(3):
                 out.colour[w, slot, channel] = looks.colour[w, a, channel]
-
-
-@parallel
-def pose_jointed(
-    worker: int,
-    workers: int,
-    table: CycleTable,
-    group: Group,
-    actors: ActorState,
-    looks: Looks,
-    out: Slots,
-) -> None:
-    """Write the slots of the actors of one kind in all worlds, see `Rig`."""
-    count = group.actor.shape[0]
-    total = looks.model.shape[0] * count
-    for i in range(worker * total // workers, (worker + 1) * total // workers):
-        w, g = i // count, i % count
-        a, first = group.actor[g], group.slot[g]
-        if actors.present[w, a]:
-            pose_figure(table, group, actors, looks, out, w, g)
-        else:
-            for k in range(table.part.shape[1]):
-                out.part[w, first + k] = -1

@@ -10,11 +10,9 @@ from eyas.engine.mesh.shell import Shape, levels_of
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.targets.jointed.cycle import frames_of, shapes_of, skeleton_of, table_of
 from eyas.engine.targets.jointed.model import JointedModel
-from eyas.engine.targets.jointed.pose import BODY, PART, CycleTable, pose_figure, pose_jointed
+from eyas.engine.targets.jointed.pose import BODY, PART, CycleTable, pose_figure
 from eyas.engine.targets.posing import PoseCall
 from eyas.lanes import exact
-
-__all__ = ["JointedRig", "Layout", "layout_of"]
 
 _INTERVALS = 32  # Intervals of a cycle; within one, parts move along straight lines
 
@@ -53,11 +51,11 @@ class JointedRig:
     def __init__(self, models: Sequence[JointedModel], layout: Layout | None = None) -> None:
         self._models = models
         self._place, table = layout or layout_of(models)
-        self.slots = table.part.shape[1]
+        self.slots = table.slot.shape[1]
         self._far = _farthest(table)
         self._scale = np.linalg.norm(table.rest[:, :, 0].astype(np.float64), axis=-1)
-        self._parts = table.part["part"]
-        self.pose = PoseCall(pose_jointed, table, pose_figure)
+        self._parts = table.slot["part"]
+        self.pose = PoseCall(table, pose_figure)
 
     @property
     def part_count(self) -> int:
@@ -94,25 +92,25 @@ def _tabulate(
 ) -> CycleTable:
     count = len(models)
     table = CycleTable(
-        part=np.zeros((count, slots), PART),
+        slot=np.zeros((count, slots), PART),
         body=np.zeros(count, BODY),
         rest=np.zeros((count, slots, 4, 3), np.float32),
         cycle=np.zeros((count, _INTERVALS + 1, slots, 4, 3), np.float32),
     )
-    table.part["part"] = -1
+    table.slot["part"] = -1
     for m, (model, own) in enumerate(zip(models, drawn, strict=True)):
         figure, count = model.figure, len(own)
         gait, scale = figure.gait, figure.scale
-        table.part["part"][m, :count] = [place[shape] for shape in own]
+        table.slot["part"][m, :count] = [place[shape] for shape in own]
         for k, colour in enumerate(model.part_colours):
             if colour is not None:
-                table.part["own"][m, k] = True
-                table.part["red"][m, k], table.part["green"][m, k], table.part["blue"][m, k] = (
+                table.slot["own"][m, k] = True
+                table.slot["red"][m, k], table.slot["green"][m, k], table.slot["blue"][m, k] = (
                     colour
                 )
         joints = [joint for joint in figure.joints if joint.shape is not None]
-        table.part["spins"][m, : len(joints)] = [joint.spins for joint in joints]
-        table.part["steers"][m, : len(joints)] = [joint.steers for joint in joints]
+        table.slot["spins"][m, : len(joints)] = [joint.spins for joint in joints]
+        table.slot["steers"][m, : len(joints)] = [joint.steers for joint in joints]
         table.body[m] = (
             1.0 / (scale * gait.stride), gait.slowest, scale * figure.wheel_radius, figure.upright,
         )  # fmt: skip

@@ -33,8 +33,6 @@ from eyas.engine.world.cars.finishes import (
 from eyas.engine.world.cars.frame import Axle
 from eyas.lanes import exact
 
-__all__ = ["HALF", "TRACTOR_BASE", "facing", "trailer_frame", "truck"]
-
 HALF = 1.25  # Half the width of cab and trailer [m]
 _OVERHANG = 1.35  # From the front axle of a truck to its bumper [m]
 _TRAILER_AXLES = (-3.4, -4.7, -6.0)

@@ -7,8 +7,6 @@ from eyas.engine.targets.vehicles.rig import VehicleRig, trailers_of
 from eyas.engine.targets.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS, VEHICLE_AHEAD
 from eyas.engine.traffic.config import VehicleType
 
-__all__ = ["VEHICLE_KINDS"]
-
 _TWO_WHEELED = VehicleType.MOTORCYCLE
 
 

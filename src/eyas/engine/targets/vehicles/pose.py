@@ -1,4 +1,4 @@
-"""Poses of the parts of vehicles: the loop over all vehicles of a kind in all worlds."""
+"""Poses of the parts of vehicles."""
 
 from typing import Final, NamedTuple
 
@@ -10,10 +10,8 @@ from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.posing import ActorFrame, Slots
 from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.engine.traffic.trailer import folded
-from eyas.lanes import kernel, parallel
+from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
-
-__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicle", "pose_vehicles"]
 
 STEER_LIMIT = 0.6  # Largest steering angle [rad]
 
@@ -85,21 +83,14 @@ def _carried(base: ActorFrame, hitch: float, towed: int) -> ActorFrame:
 
 @kernel
 def _pose_slot(
-    pose: NDArray[np.float32],
-    base: ActorFrame,
-    offset: tuple[float, float, float],
-    steer: tuple[float, float],
+    pose: NDArray[np.float32],  # Pose to write, shape (3, 4)
+    base: ActorFrame,  # Pose of the vehicle
+    offset: tuple[float, float, float],  # Position of the part in the model's frame [m]
+    steer: tuple[float, float],  # Cosine and sine of the rotation about the part's upward axis
+    # Cosine and sine of the rotation about the part's left axis, as turned by `steer`
     spin: tuple[float, float],
 ) -> None:
-    """Write the pose of one part.
-
-    Args:
-        pose: Pose to write, shape (3, 4).
-        base: Pose of the vehicle.
-        offset: Position of the part in the model's frame [m].
-        steer: Cosine and sine of the rotation about the part's upward axis.
-        spin: Cosine and sine of the rotation about the part's left axis, as turned by `steer`.
-    """
+    """Write the pose of one part."""
     w00, w01, w02 = steer[0] * spin[0], -steer[1], steer[0] * spin[1]
     w10, w11, w12 = steer[1] * spin[0], steer[0], steer[1] * spin[1]
     w20, w22 = -spin[1], spin[0]
@@ -160,25 +151,3 @@ def pose_vehicle(
         _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
         for channel in range(3):
             out.colour[w, slot, channel] = looks.colour[w, a, channel]
-
-
-@parallel
-def pose_vehicles(
-    worker: int,
-    workers: int,
-    table: RigTable,
-    group: Group,
-    actors: ActorState,
-    looks: Looks,
-    out: Slots,
-) -> None:
-    """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
-    count = group.actor.shape[0]
-    total = looks.model.shape[0] * count
-    for i in range(worker * total // workers, (worker + 1) * total // workers):
-        w, g = i // count, i % count
-        if actors.present[w, group.actor[g]]:
-            pose_vehicle(table, group, actors, looks, out, w, g)
-        else:
-            for k in range(table.slot.shape[2]):
-                out.part[w, group.slot[g] + k] = -1

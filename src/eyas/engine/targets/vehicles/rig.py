@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.targets.posing import PoseCall
-from eyas.engine.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicle, pose_vehicles
+from eyas.engine.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicle
 from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD, Trailer, VehicleModel
 from eyas.engine.world.cars.frame import Axle
 from eyas.engine.world.cars.wheels import DESIGNS, wheel_levels
-
-__all__ = ["VehicleRig", "trailers_of"]
 
 
 class VehicleRig:
@@ -37,7 +35,7 @@ class VehicleRig:
         self.slots = max(len(layout) for variants in layouts for layout in variants)
         table = _tabulate(models, layouts, self.slots)
         self._slots = table.slot
-        self.pose = PoseCall(pose_vehicles, table, pose_vehicle)
+        self.pose = PoseCall(table, pose_vehicle)
 
     @property
     def part_count(self) -> int:

@@ -19,8 +19,6 @@ from eyas.engine.world.cars.finishes import (
 )
 from eyas.engine.world.cars.frame import Axle
 
-__all__ = ["LEAN_LIMIT", "SEAT", "Posture", "lamp", "two_wheeler"]
-
 LEAN_LIMIT = 0.2
 """Largest lean of two-wheelers in a curve [rad]; the original's limit of the yaw rate [rad/s]."""
 

@@ -11,17 +11,6 @@ from eyas.engine.targets.kind import Block, Colour, Model, Section
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.world.cars.frame import Axle
 
-__all__ = [
-    "BODY_COLOURS",
-    "CAB",
-    "CHASSIS_BEHIND",
-    "MOTORCYCLE_COLOURS",
-    "VEHICLE_AHEAD",
-    "Trailer",
-    "VehicleModel",
-    "vehicle",
-]
-
 VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it; kernels read it."""

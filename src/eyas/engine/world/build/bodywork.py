@@ -1,4 +1,4 @@
-"""Where the surfaces of a vehicle lie in the textures of its paint and of its panes.
+"""Places of the surfaces of a vehicle in the textures of its paint and of its panes.
 
 All vehicles share a few textures: each point of a body has its place relative to landmarks
 (bumpers, wheel arches, doors, windows), and the texture shows these landmarks at fixed shares of
@@ -83,8 +83,8 @@ BOX_SIDE = Region(4, 4, 252, 92)
 """A side of a box on wheels from its rear end forward, and upwards; this and those that follow are
 in the texture `freight`."""
 BOX_ROOF = Region(4, 98, 180, 150)
-"""Its roof from the rear end forward, and from the middle to the edge."""
-BOX_DOORS = Region(4, 158, 124, 252)  # Its doors from left to right, and upwards
+"""Roof of the box, from the rear end forward, and from the middle to the edge."""
+BOX_DOORS = Region(4, 158, 124, 252)  # Doors of the box, from left to right, and upwards
 CAB_SIDE = Region(132, 158, 252, 252)  # A side of a truck's cab forward, and upwards
 COOLER = Region(188, 98, 252, 150)  # An air conditioner from above
 
@@ -102,8 +102,15 @@ BEAMS = (0.03, 0.5, 0.97)
 """Beginning of the side windows, pillar between the doors, end of the side windows."""
 
 STYLES = (
-    *("saloon", "saloon_sunroof", "saloon_worn", "hatch", "hatch_sunroof", "hatch_worn"),
-    *("van", "van_worn", "bus"),
+    "saloon",
+    "saloon_sunroof",
+    "saloon_worn",
+    "hatch",
+    "hatch_sunroof",
+    "hatch_worn",
+    "van",
+    "van_worn",
+    "bus",
 )
 """Kinds of bodywork."""
 

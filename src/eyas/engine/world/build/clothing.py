@@ -1,4 +1,4 @@
-"""Where clothes, skin and hair lie in the textures of people, see
+"""Places of clothes, skin and hair in the textures of people, see
 `eyas.engine.world.build.bodywork`.
 
 Folds, seams, pockets and faces are painted, so they cost no triangles at any level of detail. What

@@ -17,7 +17,7 @@ class Placed(NamedTuple):
     kind: str  # Name of the kind
     x: float
     y: float
-    z: float  # Its foot [m]
+    z: float  # Height of its foot [m]
     turn: float = 0.0  # Angle, counter-clockwise about z [rad]
     scale: float = 1.0  # Factor on its size
 

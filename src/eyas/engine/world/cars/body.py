@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.world.build.bodywork import BODYWORK, body_paint
-from eyas.engine.world.cars.bumpers import AHEAD, add_bumpers
 from eyas.engine.world.cars.finishes import (
     GLASS,
     HEAD_LAMP,
@@ -28,7 +27,7 @@ from eyas.engine.world.cars.shape import (
     middle_stations,
     sections,
 )
-from eyas.engine.world.cars.trim import add_trimmings
+from eyas.engine.world.cars.trim import AHEAD, add_bumpers, add_trimmings
 from eyas.engine.world.cars.wrap import Wrap
 
 __all__ = ["TRACK", "body_levels"]
@@ -119,13 +118,8 @@ def _panel(
 ) -> None:
     """Add a panel between two sections, on both sides, with the texture that belongs there.
 
-    Args:
-        shell: Shell to add it to.
-        wrap: Texture coordinates of the car.
-        pair: All points of both sections [m], shape (2, 8, 3).
-        strip: Lower and upper point of the sections that it lies between.
-        skin: `PAINT`, `GLASS`, `PANE` or another material.
-        paint: The car's own paint.
+    `pair` has all points of both sections [m], shape (2, 8, 3); `strip` are the lower and the upper
+    one between which it lies.
     """
     low, high = strip
     quad = np.array([pair[0, low], pair[0, high], pair[1, high], pair[1, low]])
@@ -159,15 +153,8 @@ def _skin(
     rise: float,
     strip: tuple[int, int],
 ) -> Material:
-    """Return the material of a panel.
-
-    Args:
-        frame: The car without its body.
-        shape: Shape of the car.
-        detail: Resolution of the body.
-        x: Position of the panel's middle [m].
-        rise: Height of the roof above the belt line there [m].
-        strip: Lower and upper point of the section that the panel lies between.
+    """Return the material of a panel whose middle is at x [m], where the roof is `rise` above the
+    belt line [m]; `strip` are the lower and the upper point of the section.
     """
     low = strip[0]
     tail, nose = shape.top[0][0], shape.top[-1][0]
@@ -211,15 +198,9 @@ def _end(
     half: NDArray[np.float64],
     look: tuple[float, bool, Material],
 ) -> None:
-    """Close one end with rows of panels between the points of its section.
+    """Close one end with rows of panels between the points `half` of its section [m].
 
-    Args:
-        shell: Shell to add them to.
-        shape: Shape of the car.
-        detail: Resolution of the body.
-        wrap: Texture coordinates of the car.
-        half: Points of the section that are used [m].
-        look: Half the width of the end [m], whether it is the front, and the car's paint.
+    `look`: half the width of the end [m], whether it is the front, and the car's paint.
     """
     wide, front, paint = look
     for k in range(len(half) - 1):
@@ -246,13 +227,8 @@ def _end(
 
 
 def _end_skin(shape: CarShape, strip: tuple[int, ...], across: float, *, front: bool) -> Material:
-    """Return the material of a piece of an end between two points of the section.
-
-    Args:
-        shape: Shape of the car.
-        strip: Lower and upper point of the section.
-        across: Its place from right to left, -1 to 1.
-        front: Whether it is the front.
+    """Return the material of a piece of an end between two points of the section (`strip`), at a
+    place from right to left, -1 to 1.
     """
     window = shape.nose_window if front else shape.tail_window
     low, outer = strip[0], abs(across) > _LAMPS
@@ -270,13 +246,8 @@ def _lamp_panels(
 ) -> None:
     """Add panels for the lamps, 1.5 cm off the body and around its corner, to a coarse end.
 
-    The coarsest sections have no points for lamps.
-
-    Args:
-        shell: Shell to add them to.
-        shape: Shape of the car.
-        before: All points of the section next to the end [m].
-        end: All points of the section at the end [m].
+    The coarsest sections have no points for lamps. `before` and `end` are all points of the section
+    next to the end and of that at it [m].
     """
     front = end[0, 0] > before[0, 0]
     material, reach = (HEAD_LAMP, shape.head_lamps) if front else (TAIL_LAMP, shape.tail_lamps)

@@ -1,4 +1,4 @@
-"""What the body of a car must know of the car: its width and its wheels."""
+"""The frame of a car, on which its body is built: its width and its wheels."""
 
 from dataclasses import dataclass
 from typing import Protocol

@@ -52,10 +52,10 @@ class CarShape:
     roof: Material = PAINT  # Material of the roof
     rails: Material = PAINT  # Material of the edges of the roof and the pillars at its corners
     sill: Material = PAINT  # Material of the lowest part of the sides
-    bodywork: str = "hatch"  # Its paint, see `eyas.engine.world.build.bodywork.BODYWORK`.
+    bodywork: str = "hatch"  # Texture of its paint, see `build/bodywork.py`
     dark_bumpers: bool = False  # Whether the bumpers are not painted
     rack: bool = False  # Whether it has rails on the roof
-    bed: Range | None = None  # Where it has an open bed behind the cab, under a dark cover (x)
+    bed: Range | None = None  # Extent in x of an open bed behind the cab, under a dark cover
     pods: tuple[tuple[float, float, float], ...] = ()
     """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 

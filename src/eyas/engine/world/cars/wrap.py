@@ -51,12 +51,7 @@ def _marks(frame: Frame, shape: CarShape) -> _Marks:
 
 
 class Wrap:
-    """Finds texture coordinates of points on the left half of a body or on either side of it.
-
-    Args:
-        frame: The car without its body.
-        shape: Its lines.
-    """
+    """Finds texture coordinates of points on the left half of a body or on either side of it."""
 
     def __init__(self, frame: Frame, shape: CarShape) -> None:
         self._shape = shape

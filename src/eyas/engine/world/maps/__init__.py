@@ -1,4 +1,4 @@
-"""The maps: one folder and one line in this table each.
+"""The table of maps, which houses and packages fill, and the recipe of one.
 
 A user's own map is a `MapRecipe` in another package. It is found by its path
 (`my_package.field:FIELD`), by the name given to `MAPS.register`, or by the name of an entry point

@@ -1,4 +1,4 @@
-"""Where maps lie on the earth."""
+"""Places of maps on the earth."""
 
 from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.projection import Projection

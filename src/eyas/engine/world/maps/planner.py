@@ -1,4 +1,4 @@
-"""What makes a scene of a map's plan: a house of makers has a `Planner` at its door.
+"""The maker of scenes from the plans of maps: a house of makers has a `Planner` at its door.
 
 The engine knows plans as texts and as objects that it hands on; what is in them, the makers know.
 """

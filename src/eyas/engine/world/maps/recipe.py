@@ -8,9 +8,9 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from eyas.engine.core.checked import require_sum
 from eyas.engine.core.errors import ConfigError, UnknownNameError
-from eyas.engine.core.program import definitions_in
+from eyas.engine.core.files import require_sum
+from eyas.engine.core.identity.program import definitions_in
 from eyas.engine.core.registry import OWN
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.state.lighting import Lighting
@@ -136,7 +136,7 @@ class MapRecipe:
     file: Path | None = None
     """File with the plan of a map that has neither."""
     notice: str = ""
-    """What must be said wherever the map is shown, unless a file beside it says so."""
+    """Attribution wherever the map is shown, unless a file beside it has it."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0

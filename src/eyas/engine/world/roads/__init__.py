@@ -1,1 +1,1 @@
-"""Roads: networks, areas, paint, wear, and the elevated road."""
+"""Roads: networks, their areas in plan view, curves."""

@@ -38,7 +38,7 @@ GRID = 32.0
 _FEW, _AT_ONCE = 400, 8.0
 """Shapes with more corners than this are first cut into squares larger by this factor."""
 
-_AT_CORNER = 5.0  # From the centre of the asphalt that a round corner adds, to buildings [m]
+_AT_CORNER = 5.0  # Distance of buildings from the centre of the asphalt of a round corner [m]
 
 Line = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class Street:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Its lines from left to right."""
+        """Lines of the road from left to right."""
         return (self.left, *self.dividers[::-1], self.right)
 
 

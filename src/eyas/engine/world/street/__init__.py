@@ -1,1 +1,1 @@
-"""Street furniture: signals, lamps, benches, car parks and parked cars."""
+"""Street furniture that moves or signals: traffic lights, bicycles."""

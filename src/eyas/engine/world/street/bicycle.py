@@ -24,7 +24,7 @@ __all__ = [
     "bicycle_levels",
 ]
 
-WHEEL_RADIUS: Final = 0.34  # Of a 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]
+WHEEL_RADIUS: Final = 0.34  # 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]
 
 AXLES: Final = (0.52, -0.52)  # x of the front and of the rear axle: a wheelbase of 1.04 m [m].
 

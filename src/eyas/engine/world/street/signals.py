@@ -43,7 +43,7 @@ _HEADS = (2.6, 5.3)  # Distances of the heads along the arm [m]
 _CENTRES = (*((x, 0.16, _ARM_HEIGHT - 0.35) for x in _HEADS), (0.0, 0.24, 3.1))
 """Middles of the heads; the last is on the pole [m]."""
 _BEYOND_KERB = 0.9
-_BEFORE_LINE = 0.6  # From the stop line back to the pole [m]
+_BEFORE_LINE = 0.6  # Distance of the pole before the stop line [m]
 _STEEL = material("plain", (0.55, 0.56, 0.57))
 _CASE = material("plain", (0.13, 0.14, 0.14))
 _DARK = (
@@ -100,9 +100,6 @@ def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     """Return a traffic light, the finest level of detail first.
 
     The foot is at the origin, the arm along x; the lights face along y.
-
-    Args:
-        amber: Whether the amber lenses shine.
     """
     lenses = (_DARK[_RED], _SHINING[_AMBER] if amber else _DARK[_AMBER], _DARK[_GREEN])
     heads = [_head(centre, lenses) for centre in _CENTRES]

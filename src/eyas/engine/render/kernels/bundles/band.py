@@ -10,8 +10,6 @@ from eyas.engine.render.kernels.bundles.lens import Glass
 from eyas.engine.render.kernels.bundles.light import Illumination, Light
 from eyas.engine.render.kernels.bundles.view import View
 
-__all__ = ["Band"]
-
 
 class Band(NamedTuple):
     """A band of a view, and the memory of the worker that draws it.

@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GROUP", "SHADING_COLUMNS", "Geometry", "Movers"]
-
 GROUP = 16  # Chunks, or fixtures, that are culled together first
 
 SHADING_COLUMNS = 32

@@ -5,9 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens
-
-__all__ = ["DARK", "ELSEWHERE", "FACES", "LENS_TILE", "Glass", "LensTables"]
+from eyas.engine.core.optics.lens import Lens
 
 FACES = 5  # Most pictures of a pinhole, its faces, that are drawn for one through a lens
 
@@ -45,7 +43,7 @@ class LensTables(NamedTuple):
     tile: NDArray[np.int32]
     """Left, top, right, bottom [samples], the last two exclusive, of the part of the picture that
     each `LENS_TILE` x `LENS_TILE` samples of a face are seen in, shape (L, F, rows, columns, 4)."""
-    lens: NDArray[np.float64]  # The numbers of `eyas.engine.core.lens.Lens`, shape (L, 10).
+    lens: NDArray[np.float64]  # The numbers of `eyas.engine.core.optics.lens.Lens`, shape (L, 10).
     camera: NDArray[np.float64]
     """Focal length along rows and columns, column and row of the principal point [pixels],
     shape (L, 4)."""

@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TILE", "Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame", "Wind"]
-
 TILE = 32  # Texels of the shadow map from one tile to the next
 
 

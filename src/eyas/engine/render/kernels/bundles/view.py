@@ -2,8 +2,6 @@
 
 from typing import NamedTuple
 
-__all__ = ["NEAR", "Plane", "Planes", "Point", "Projection", "Row", "View"]
-
 NEAR = 0.08  # Distance of the near plane [m]
 
 

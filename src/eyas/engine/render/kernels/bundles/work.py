@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.lighting import LightState
 
-__all__ = ["Canvas", "Job", "Output", "Scratch", "Task"]
-
 
 class Job(NamedTuple):
     """The cameras, and which rows of which view each job draws."""
@@ -48,7 +46,7 @@ class Scratch(NamedTuple):
     mesh: NDArray[np.int32]  # Mesh of each of them, shape (K, I)
     tiles: NDArray[np.float32]
     """Farthest 1/distance in each 8 x 8 samples, see
-    `eyas.engine.render.kernels.visibility.hidden`, shape (K, rows / 8, columns / 8)."""
+    `eyas.engine.render.kernels.visibility.occlusion`, shape (K, rows / 8, columns / 8)."""
     order: NDArray[np.int64]
     """What to draw, the nearest first: sort keys of visible chunks and instances,
     shape (K, C + I)."""

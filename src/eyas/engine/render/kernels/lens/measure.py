@@ -7,7 +7,7 @@ from eyas.engine.render.kernels.bundles import LENS_TILE, Band
 from eyas.engine.render.kernels.samples import ScreenBox
 from eyas.engine.render.kernels.scalars import f4, i4, i8
 from eyas.engine.render.kernels.visibility.key import tag_of
-from eyas.engine.render.kernels.visibility.things import belongs_to
+from eyas.engine.render.kernels.visibility.scene_iterator import belongs_to
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
@@ -22,8 +22,6 @@ from eyas.lanes.vector import (
     store,
     to_i4,
 )
-
-__all__ = ["count_bent"]
 
 _FAR = 1 << 30
 
@@ -88,23 +86,14 @@ def _add(result: NDArray[np.int32], box: int, count: int, row: int, place: int, 
 
 @kernel
 def count_bent(
-    source: Band,
-    bent: Band,
-    box: ScreenBox,
-    margin: int,
-    things: tuple[int, int],
-    result: NDArray[np.int32],
+    source: Band,  # The face, one sample for each pixel
+    bent: Band,  # The picture
+    box: ScreenBox,  # Where the thing is in the face
+    margin: int,  # Width of the border around it that is searched, too
+    things: tuple[int, int],  # First instance, and last + 1
+    result: NDArray[np.int32],  # See `Output.actor`, with what other faces show of it; shape (10,)
 ) -> None:
-    """Add boxes and pixels of instances from `Band.alone` of a face; clear it afterwards.
-
-    Args:
-        source: The face, one sample for each pixel.
-        bent: The picture.
-        box: Where the thing is in the face.
-        margin: Width of the border around it that is searched, too.
-        things: First instance, and last + 1.
-        result: See `Output.actor`, with what other faces show of it; shape (10,).
-    """
+    """Add boxes and pixels of instances from `Band.alone` of a face; clear it afterwards."""
     view, alone = source.camera, source.alone
     begin = max(int(box.left) - margin, 0)
     end = min(int(box.right) + 1 + margin, view.width)

@@ -4,13 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import DARK, Band, LensTables, Output, Task
-from eyas.engine.render.kernels.lens.look import to_camera
+from eyas.engine.render.kernels.lens.resampling import to_camera
 from eyas.engine.render.kernels.scalars import f4, i8
 from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.engine.state.scene import SKY_OBJECT, ObjectClass
 from eyas.lanes import kernel
-
-__all__ = ["darken", "write_bent_depth"]
 
 _SKY = int(ObjectClass.SKY)
 

@@ -10,11 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.lens import Lens, undistorted
+from eyas.engine.core.optics.lens import Lens, undistorted
 from eyas.engine.render.kernels.bundles import DARK, LENS_TILE, LensTables
 from eyas.lanes import compiled, kernel
-
-__all__ = ["Survey", "fill_tables", "look_around", "survey_faces"]
 
 Floats = NDArray[np.float64]
 

@@ -20,16 +20,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = [
-    "BOUNCED",
-    "DIRECTIONS",
-    "DISTANCES",
-    "LEAVES",
-    "OpennessBake",
-    "bake_openness",
-    "openness",
-]
-
 DIRECTIONS = 16  # Number of directions in which the horizon is searched
 
 STEPS = 14  # Number of points examined in each direction
@@ -182,17 +172,15 @@ def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, in
 
 
 @kernel(inline=True)
-def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal_y: float) -> float:
-    """Return the share of the sky's light that reaches a point, 0 to 1.
-
-    Args:
-        light: Its map.
-        x: The point [m].
-        y: The point [m].
-        z: The point [m].
-        normal_x: Eastward component of the normal: walls see the sky in front of them.
-        normal_y: Northward component of the normal.
-    """
+def openness(
+    light: Light,  # Its map
+    x: float,  # The point [m]
+    y: float,  # The point [m]
+    z: float,  # The point [m]
+    normal_x: float,  # Eastward component of the normal: walls see the sky in front of them
+    normal_y: float,  # Northward component of the normal
+) -> float:
+    """Return the share of the sky's light that reaches a point, 0 to 1."""
     frame, shares = light.ambient_frame, light.ambient
     column = (x + _ASIDE * normal_x - frame.west) * frame.per_metre - f4(0.5)
     row = (y + _ASIDE * normal_y - frame.south) * frame.per_metre - f4(0.5)

@@ -28,8 +28,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["BEAM_REACH", "cast_beam"]
-
 _REACH = 34.0  # Distance ahead of a vehicle up to which its lamps light the road [m]
 
 _BEHIND = 5.0  # The same for its tail lamps, behind it [m]

@@ -9,17 +9,6 @@ from eyas.engine.render.kernels.samples import LocalCamera, local_camera
 from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 
-__all__ = [
-    "CORNER",
-    "Caster",
-    "beyond",
-    "boxes_of",
-    "camera_of",
-    "caster_of",
-    "has_lamps",
-    "reach_of",
-]
-
 _UPRIGHT = 4.0  # What is higher than so many times half its width stands on two feet
 
 _HIPS, _LEGS, _TRUNK = 0.5, 0.6, 0.82

@@ -31,7 +31,11 @@ from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.surface.signalling import BRAKING
 from eyas.engine.render.kernels.visibility.cull import sphere_is_visible
 from eyas.engine.render.kernels.visibility.key import distance_inverse, tag_of
-from eyas.engine.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
+from eyas.engine.render.kernels.visibility.scene_iterator import (
+    belongs_to,
+    end_of_thing,
+    next_thing,
+)
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (
@@ -46,8 +50,6 @@ from eyas.lanes.vector import (
     store_words,
     to_u4,
 )
-
-__all__ = ["cast_light", "influence"]
 
 SMALLEST = 1.0  # Things whose half diagonal is smaller cast no shadow [pixels]
 
@@ -64,15 +66,13 @@ def _throw(sun: Direction, longest: float) -> float:
 
 
 @kernel
-def influence(reach: float, sun: Direction, longest: float, lamps_on: bool) -> float:
-    """Return the distance up to which a thing, its shadow and its light may be in a picture [m].
-
-    Args:
-        reach: How far the corners of its parts are from any point of it, at most [m].
-        sun: Unit vector to the sun.
-        longest: Longest shadow, in heights.
-        lamps_on: Whether the lamps of vehicles are on.
-    """
+def influence(
+    reach: float,  # How far the corners of its parts are from any point of it, at most [m]
+    sun: Direction,  # Unit vector to the sun
+    longest: float,  # Longest shadow, in heights
+    lamps_on: bool,  # Whether the lamps of vehicles are on
+) -> float:
+    """Return the distance up to which a thing, its shadow and its light may be in a picture [m]."""
     height = 2.0 * reach
     length = _throw(sun, longest) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
     most = CORNER * (reach + beyond(height)) + _BELOW + length

@@ -1,7 +1,7 @@
 """Light of street lamps, windows and other sources."""
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import hashed
+from eyas.engine.render.kernels.hash_noise import hashed
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
@@ -18,8 +18,6 @@ from eyas.lanes.vector import (
     transposed,
 )
 
-__all__ = ["lamp_gloss", "night_light", "window_light"]
-
 _HEAD = f4(0.95 / 255.0)  # Brightest light of head lamps, for each step of `Scratch.shade`.
 
 _TAIL = f4(0.16 / 255.0)  # The same for tail lamps
@@ -31,23 +29,14 @@ _BAYS = f4(4.0)  # Windows along a side of one repeat of a facade's texture
 
 @kernel(inline=True)
 def night_light(
-    light: Light,
-    on: float,
-    point: tuple[float, float, float],
-    normal: tuple[float, float, float],
-    head: float,
-    tail: float,
+    light: Light,  # Its lamps
+    on: float,  # Their strength, 0 to 1
+    point: tuple[float, float, float],  # The point [m]
+    normal: tuple[float, float, float],  # Unit normal of the surface
+    head: float,  # Light of vehicles' head lamps there, see `Scratch.shade`
+    tail: float,  # Light of their tail lamps
 ) -> tuple[float, float, float]:
-    """Return the light of street lamps and vehicles on a surface; paper in the sun gets 1.
-
-    Args:
-        light: Its lamps.
-        on: Their strength, 0 to 1.
-        point: The point [m].
-        normal: Unit normal of the surface.
-        head: Light of vehicles' head lamps there, see `Scratch.shade`.
-        tail: Light of their tail lamps.
-    """
+    """Return the light of street lamps and vehicles on a surface; paper in the sun gets 1."""
     street = on * _street_light(light, point, normal)
     head, tail = head * (on * _HEAD), tail * (on * _TAIL)
     return (
@@ -96,24 +85,16 @@ def _street_light(
 
 @kernel(inline=True)
 def lamp_gloss(
-    light: Light,
-    on: float,
-    point: tuple[float, float, float],
-    normal: tuple[float, float, float],
-    way: tuple[float, float, float],
-    share: float,
+    light: Light,  # Its lamps
+    on: float,  # Their strength, 0 to 1
+    point: tuple[float, float, float],  # The point [m]
+    normal: tuple[float, float, float],  # Unit normal of the surface
+    way: tuple[float, float, float],  # Unit vector from the eye
+    share: float,  # Share of light that the surface mirrors; 0: it is dry
 ) -> tuple[float, float, float]:
     """Return the radiance of street lamps that a wet surface mirrors, drawn out by its roughness.
 
     Blinn's lobe of half vectors, which is long towards the eye where it is grazed.
-
-    Args:
-        light: Its lamps.
-        on: Their strength, 0 to 1.
-        point: The point [m].
-        normal: Unit normal of the surface.
-        way: Unit vector from the eye.
-        share: Share of light that the surface mirrors; 0: it is dry.
     """
     frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
     x, y, z = point
@@ -147,19 +128,16 @@ def lamp_gloss(
 
 @kernel(inline=True)
 def window_light(
-    share: float, building: int, detail: int, u: float, v: float
+    share: float,  # Share of lit windows
+    building: int,  # Object id
+    detail: int,  # See `detail_of`; a bay of windows has 64 texels along a side
+    u: float,  # Texture coordinates [tiles]
+    v: float,  # Texture coordinates [tiles]
 ) -> tuple[float, float, float]:
     """Return the light behind the window at (u, v) of a facade: dark, or one of a few lights.
 
     The building and the position of the window determine which rooms are lit, so the result is
     the same in every picture. For windows smaller than a pixel, their mean is returned.
-
-    Args:
-        share: Share of lit windows.
-        building: Object id.
-        detail: See `detail_of`; a bay of windows has 64 texels along a side.
-        u: Texture coordinates [tiles].
-        v: Texture coordinates [tiles].
     """
     # Moved so that cells have numbers above 0: 64 whole repeats, see `gradients`.
     column = to_u4(to_i4(_BAYS * u + f4(1024.0))) & u4(255)

@@ -5,8 +5,6 @@ from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather, select, to_f4, to_i4
 
-__all__ = ["land_at"]
-
 _OUTSIDE = f4(0.72)
 """How open to mist land beyond the map is: as fields on it, see `eyas.engine.render.bake.land`."""
 

@@ -7,8 +7,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser, magnitude, root, select
 
-__all__ = ["Box", "ShadowBoxes", "darken", "may_darken", "shadow_boxes"]
-
 _UNDER = 0.88  # Share of the sky's light that a car blocks on the ground under it
 
 _INSET = 0.3  # Distance from the edge of a body inwards at which the blocking begins [m]
@@ -61,18 +59,15 @@ def _inverse(step: float) -> float:
 
 @kernel(inline=True)
 def shadow_boxes(
-    lower: Box, upper: Box, sun: Direction, width: float, beyond: float, upright: bool
+    lower: Box,  # See `ShadowBoxes`
+    upper: Box,  # See `ShadowBoxes`
+    sun: Direction,  # Unit vector to it, in the thing's frame
+    width: float,  # Half the width of the thing [m]
+    # Distance from the thing up to which it blocks the sky's light on the ground [m]
+    beyond: float,
+    upright: bool,  # Whether it stands on two feet
 ) -> ShadowBoxes:
-    """Return what blocks light.
-
-    Args:
-        lower: See `ShadowBoxes`.
-        upper: See `ShadowBoxes`.
-        sun: Unit vector to it, in the thing's frame.
-        width: Half the width of the thing [m].
-        beyond: Distance from the thing up to which it blocks the sky's light on the ground [m].
-        upright: Whether it stands on two feet.
-    """
+    """Return what blocks light."""
     half, rise = 0.5 * (lower.left - lower.right), max(sun.z, 1e-3)
     return ShadowBoxes(
         lower,

@@ -21,8 +21,6 @@ from eyas.engine.render.kernels.visibility.triangles import Corners, set_up, set
 from eyas.lanes import kernel, parallel
 from eyas.lanes.vector import any_of, bits_of, first_bit, greater, lane_numbers, load, to_f8
 
-__all__ = ["BLOCK", "BLOCK_TEXELS", "ShadowBake", "bake_tiles"]
-
 BLOCK = 8  # Tiles along a side of what is drawn at a time: 257 x 257 keys fit into a core's cache
 
 BLOCK_TEXELS = BLOCK * TILE + 1

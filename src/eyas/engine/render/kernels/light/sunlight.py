@@ -16,8 +16,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["sunlight", "sunlit"]
-
 TILE_BITS = i4(TILE.bit_length() - 1)
 
 
@@ -57,25 +55,15 @@ def sunlit(light: Light, x: float, y: float, z: float) -> float:
 
 @kernel(inline=True)
 def sunlight(
-    light: Light,
-    sun: Direction,
-    offset: float,
-    point: tuple[float, float, float],
-    normal: tuple[float, float, float],
-    sun_share: float,
-    leafy: bool,
+    light: Light,  # Its shadow map
+    sun: Direction,  # Unit vector towards the sun
+    offset: float,  # See `Air.offset` [m]
+    point: tuple[float, float, float],  # The point [m]
+    normal: tuple[float, float, float],  # Unit normal of the surface
+    sun_share: float,  # Sunlight that moving things let through, 0 to 1
+    leafy: bool,  # Whether light goes through the surface
 ) -> tuple[float, float]:
-    """Return the sunlight on a surface, and the share of the sun's light that reaches it.
-
-    Args:
-        light: Its shadow map.
-        sun: Unit vector towards the sun.
-        offset: See `Air.offset` [m].
-        point: The point [m].
-        normal: Unit normal of the surface.
-        sun_share: Sunlight that moving things let through, 0 to 1.
-        leafy: Whether light goes through the surface.
-    """
+    """Return the sunlight on a surface, and the share of the sun's light that reaches it."""
     zero, one = f4(0.0), f4(1.0)
     lean = normal[0] * sun.x + normal[1] * sun.y + normal[2] * sun.z
     away, through = like(lean, offset), like(lean, zero)

@@ -5,9 +5,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather, greater, lesser, to_i4
 
-__all__ = ["TONE_STEPS", "TONE_TOP", "tone_byte", "tone_bytes"]
-
-
 TONE_STEPS = 16384  # Length of `Light.tone`.
 
 TONE_TOP = 4.0  # Exposed radiance at the end of that table

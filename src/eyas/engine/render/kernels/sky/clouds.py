@@ -10,8 +10,6 @@ from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import exp
 
-__all__ = ["DEEPEST", "CloudRays", "cloud_rays"]
-
 DEEPEST = 0.9  # Height of the highest heaps over their base [km]
 
 _BASE = f4(1.1)  # Height of all bases [km]

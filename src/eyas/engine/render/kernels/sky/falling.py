@@ -9,37 +9,24 @@ from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 
-__all__ = [
-    "Falling",
-    "drift",
-    "drop_lit",
-    "leaf_colour",
-    "leaves",
-    "lit_by_lamps",
-    "rain",
-    "sky_lit",
-    "snow",
-    "under_trees",
-]
-
 Colour = tuple[float, float, float]
 
 _CROWN = 16.0  # Height above the ground up to which leaves fall [m]
 
 
-class Falling(NamedTuple):
-    """How something falls and looks."""
+class FallingKind(NamedTuple):
+    """How one kind of thing falls and looks."""
 
     shells: int  # Shells around the camera; each reaches `GROWTH` times as far as the one before
     cells: float  # Cells from the camera to the end of a shell
-    most: int  # Largest number of flakes in a cell
-    wind_x: float  # Velocity eastwards [m/s]
-    wind_y: float
-    sinking: float
+    flakes: float  # Largest number of flakes in a cell where they are densest
+    calm_x: float  # Velocity eastwards in calm air [m/s]
+    calm_y: float  # Velocity northwards in calm air [m/s]
+    sinking: float  # Velocity downwards [m/s]
     sway: float  # Amplitude [m]
     exposed: float  # Exposure time of the picture, which turns flakes into streaks [s]
-    radius: float  # Of the largest flake at the camera [m]
-    growth: float  # By how much that grows with distance: a distant flake represents several
+    radius: float  # Radius of the largest flake at the camera [m]
+    growth: float  # Growth of that with distance: a distant flake represents several
     smallest: float  # Radius below which flakes are invisible [pixels]
     cover: float  # Opacity of a flake that covers its pixels
     thin: bool  # Whether it is a streak however small it is: half as wide hides half as much
@@ -47,88 +34,86 @@ class Falling(NamedTuple):
     coloured: bool  # Whether each has a colour of its own
 
 
+SNOW = FallingKind(
+    shells=3,
+    cells=6.0,
+    flakes=10.0,
+    calm_x=0.55,
+    calm_y=0.3,
+    sinking=1.25,
+    sway=0.06,
+    exposed=1.0 / 110.0,
+    radius=0.0035,
+    growth=0.0007,
+    smallest=0.35,
+    cover=0.9,
+    thin=False,
+    lit=False,
+    coloured=False,
+)
+
+# Drops of 2 to 3 mm fall at 6.5 to 8 m/s (Gunn and Kinzer, Journal of Meteorology 6, 1949).
+RAIN = FallingKind(
+    shells=3,
+    cells=4.0,
+    flakes=13.0,
+    calm_x=1.3,
+    calm_y=0.7,
+    sinking=7.5,
+    sway=0.0,
+    exposed=1.0 / 60.0,
+    radius=0.0018,
+    growth=0.0008,
+    smallest=0.24,
+    cover=0.8,
+    thin=True,
+    lit=True,
+    coloured=False,
+)
+
+LEAVES = FallingKind(
+    shells=3,
+    cells=4.0,
+    flakes=3.0,
+    calm_x=1.5,
+    calm_y=0.8,
+    sinking=0.85,
+    sway=0.22,
+    exposed=1.0 / 110.0,
+    radius=0.026,
+    growth=0.0,
+    smallest=0.4,
+    cover=1.0,
+    thin=False,
+    lit=False,
+    coloured=True,
+)
+
+
+class Falling(NamedTuple):
+    """What falls in a picture."""
+
+    kind: FallingKind
+    most: int  # Largest number of flakes in a cell
+    wind_x: float  # Velocity eastwards [m/s]
+    wind_y: float  # Velocity northwards [m/s]
+
+
 @kernel(inline=True)
-def drift(lit: Illumination, own_x: float, own_y: float) -> tuple[float, float]:
+def drift(lit: Illumination, calm_x: float, calm_y: float) -> tuple[float, float]:
     """Return the horizontal velocity of what falls [m/s]: the wind's, or its own in calm air."""
-    x, y = own_x, own_y
+    x, y = calm_x, calm_y
     if lit.air.windy > f4(0.0):
         x, y = float(lit.wind.x), float(lit.wind.y)
     return x, y
 
 
 @kernel(inline=True)
-def snow(density: float, lit: Illumination) -> Falling:
-    """Return how snow of a density, 0 to 1, falls."""
-    most = math.ceil(10.0 * density)
-    wind_x, wind_y = drift(lit, 0.55, 0.3)
-    return Falling(
-        shells=3,
-        cells=6.0,
-        most=most,
-        wind_x=wind_x,
-        wind_y=wind_y,
-        sinking=1.25,
-        sway=0.06,
-        exposed=1.0 / 110.0,
-        radius=0.0035,
-        growth=0.0007,
-        smallest=0.35,
-        cover=0.9,
-        thin=False,
-        lit=False,
-        coloured=False,
-    )
-
-
-@kernel(inline=True)
-def rain(density: float, lit: Illumination) -> Falling:
-    """Return how rain of a density, 0 to 1, falls.
-
-    Drops of 2 to 3 mm fall at 6.5 to 8 m/s (Gunn and Kinzer, Journal of Meteorology 6, 1949).
-    """
-    most = math.ceil(13.0 * density)
-    wind_x, wind_y = drift(lit, 1.3, 0.7)
-    return Falling(
-        shells=3,
-        cells=4.0,
-        most=most,
-        wind_x=wind_x,
-        wind_y=wind_y,
-        sinking=7.5,
-        sway=0.0,
-        exposed=1.0 / 60.0,
-        radius=0.0018,
-        growth=0.0008,
-        smallest=0.24,
-        cover=0.8,
-        thin=True,
-        lit=True,
-        coloured=False,
-    )
-
-
-@kernel(inline=True)
-def leaves(density: float, lit: Illumination) -> Falling:
-    """Return how leaves of a density, 0 to 1, fall."""
-    most = math.ceil(3.0 * density)
-    wind_x, wind_y = drift(lit, 1.5, 0.8)
-    return Falling(
-        shells=3,
-        cells=4.0,
-        most=most,
-        wind_x=wind_x,
-        wind_y=wind_y,
-        sinking=0.85,
-        sway=0.22,
-        exposed=1.0 / 110.0,
-        radius=0.026,
-        growth=0.0,
-        smallest=0.4,
-        cover=1.0,
-        thin=False,
-        lit=False,
-        coloured=True,
-    )
+def falling_of(kind: FallingKind, density: float, lit: Illumination) -> Falling:
+    """Return how a kind of thing falls at a density, 0 to 1."""
+    most = math.ceil(kind.flakes * density)
+    wind_x, wind_y = drift(lit, kind.calm_x, kind.calm_y)
+    return Falling(kind, most, wind_x, wind_y)
 
 
 @kernel(inline=True)
@@ -156,16 +141,14 @@ def drop_lit(lit: Illumination) -> tuple[float, float, float]:
 
 
 @kernel(inline=True)
-def under_trees(light: Light, x: float, y: float, z: float, chance: float) -> bool:
-    """Return whether a leaf falls at a point: near trees, or now and then where wind blows it.
-
-    Args:
-        light: Says where trees are.
-        x: The point [m].
-        y: The point [m].
-        z: The point [m].
-        chance: Of the leaf, 0 to 1.
-    """
+def under_trees(
+    light: Light,  # Says where trees are
+    x: float,  # The point [m]
+    y: float,  # The point [m]
+    z: float,  # The point [m]
+    chance: float,  # Of the leaf, 0 to 1
+) -> bool:
+    """Return whether a leaf falls at a point: near trees, or now and then where wind blows it."""
     if z > light.ambient_frame.ground + _CROWN:
         return False
     under, _ = land_at(light, f4(x), f4(y))

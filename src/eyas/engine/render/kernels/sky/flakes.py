@@ -10,27 +10,26 @@ import math
 from typing import NamedTuple
 
 from eyas.engine.render.kernels.bundles import Band, Canvas, Light, View
-from eyas.engine.render.kernels.chance import scrambled, tenth
-from eyas.engine.render.kernels.lens.look import shown_at
+from eyas.engine.render.kernels.hash_noise import scrambled, tenth
+from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.light.tone import tone_bytes
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
 from eyas.engine.render.kernels.scalars import f4, i8, u4
 from eyas.engine.render.kernels.sky.falling import (
+    LEAVES,
+    RAIN,
+    SNOW,
     Falling,
     drop_lit,
+    falling_of,
     leaf_colour,
-    leaves,
     lit_by_lamps,
-    rain,
     sky_lit,
-    snow,
     under_trees,
 )
 from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.engine.render.kernels.wind import wave
 from eyas.lanes import address_of, kernel
-
-__all__ = ["bytes_of", "let_flakes_fall", "seen_from"]
 
 Colour = tuple[float, float, float]
 
@@ -64,21 +63,19 @@ def bytes_of(
 
 
 @kernel
-def let_flakes_fall(band: Band, instant: float, canvas: Canvas) -> None:
-    """Draw what falls into a band.
-
-    Args:
-        band: The band.
-        instant: Time [s].
-        canvas: Its colours.
-    """
+def let_flakes_fall(
+    band: Band,
+    instant: float,  # Time [s]
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Draw what falls into a band."""
     lit, none = band.lit, f4(0.0)
     if lit.air.flakes > none:
-        _let_fall(band, instant, snow(lit.air.flakes, lit), sky_lit(lit), canvas)
+        _let_fall(band, instant, falling_of(SNOW, lit.air.flakes, lit), sky_lit(lit), canvas)
     if lit.air.rain > none:
-        _let_fall(band, instant, rain(lit.air.rain, lit), drop_lit(lit), canvas)
+        _let_fall(band, instant, falling_of(RAIN, lit.air.rain, lit), drop_lit(lit), canvas)
     if lit.air.leaves > none:
-        _let_fall(band, instant, leaves(lit.air.leaves, lit), sky_lit(lit), canvas)
+        _let_fall(band, instant, falling_of(LEAVES, lit.air.leaves, lit), sky_lit(lit), canvas)
 
 
 @kernel
@@ -93,9 +90,9 @@ def _let_fall(
     pale = bytes_of(band.light, band.lit.air.exposure, white)
     snowfall = Snowfall(band, instant, falling, white, pale, canvas)
     begin, focal = NEAREST, band.camera.focal
-    for shell in range(falling.shells):
+    for shell in range(falling.kind.shells):
         end = begin * GROWTH
-        if _radius(falling, 1.0, begin) * focal / begin > falling.smallest:
+        if _radius(falling, 1.0, begin) * focal / begin > falling.kind.smallest:
             _fill_shell(shell, begin, end, address_of(snowfall))
         begin = end
 
@@ -103,24 +100,20 @@ def _let_fall(
 @kernel(inline=True)
 def _radius(falling: Falling, size: float, distance: float) -> float:
     """Return the radius of a flake [m]; a distant flake represents several."""
-    return (0.4 + 0.6 * size) * (falling.radius + falling.growth * distance)
+    return (0.4 + 0.6 * size) * (falling.kind.radius + falling.kind.growth * distance)
 
 
 @kernel(inline=True)
 def _cells(
-    ahead: float, left: float, up: float, end: float, side: float, origin: float, view: View
+    ahead: float,  # How far the camera's optical axis goes along that axis; then left and up
+    left: float,
+    up: float,
+    end: float,  # Distance up to which the view reaches [m]
+    side: float,  # Side of a cell [m]
+    origin: float,  # The eye in the lattice [m]
+    view: View,  # Says where the camera looks
 ) -> tuple[int, int]:
-    """Return the first cell along an axis of the world that the view reaches, and after the last.
-
-    Args:
-        ahead: How far the camera's optical axis goes along that axis; then left and up.
-        left: The same.
-        up: The same.
-        end: Distance up to which the view reaches [m].
-        side: Side of a cell [m].
-        origin: The eye in the lattice [m].
-        view: Says where the camera looks.
-    """
+    """Return the first cell along a world axis that the view reaches, and that after the last."""
     aside = abs(left) * 0.5 * view.width / view.focal_x
     aside += abs(up) * 0.5 * view.height / view.focal_y
     first = math.floor((origin + end * min(ahead - aside, 0.0)) / side)
@@ -131,14 +124,14 @@ def _cells(
 @kernel
 def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> None:
     """Draw the flakes of all cells that the band may show."""
-    view, instant, side = snowfall.band.camera, snowfall.instant, end / snowfall.falling.cells
+    view, instant, side = snowfall.band.camera, snowfall.instant, end / snowfall.falling.kind.cells
     ahead, left, up, falling = view.ahead, view.left, view.up, snowfall.falling
     x = view.eye.x - falling.wind_x * instant
     y = view.eye.y - falling.wind_y * instant
-    z = view.eye.z + falling.sinking * instant
+    z = view.eye.z + falling.kind.sinking * instant
     high = (0.5 * view.height - view.top) / view.focal_y
     low = high - view.rows / view.focal_y
-    ball = 0.87 * end / falling.cells + max(0.1, 1.5 * falling.sway)
+    ball = 0.87 * end / falling.kind.cells + max(0.1, 1.5 * falling.kind.sway)
     first_x, last_x = _cells(ahead.x, left.x, up.x, end, side, x, view)
     first_y, last_y = _cells(ahead.y, left.y, up.y, end, side, y, view)
     first_z, last_z = _cells(ahead.z, left.z, up.z, end, side, z, view)
@@ -205,34 +198,34 @@ def _draw_flake(
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
     view, instant, falling = snowfall.band.camera, snowfall.instant, snowfall.falling
-    other, side = scrambled(number), end / falling.cells
+    other, side = scrambled(number), end / falling.kind.cells
     size = tenth(other, 20) ** 2
-    if _radius(falling, size, begin) * view.focal < falling.smallest * begin:
+    if _radius(falling, size, begin) * view.focal < falling.kind.smallest * begin:
         return
     turn = tenth(other, 0) + instant * (0.22 + 0.25 * tenth(other, 10))
     eye = view.eye
-    if falling.coloured and not under_trees(
+    if falling.kind.coloured and not under_trees(
         snowfall.band.light, eye.x + middle[0], eye.y + middle[1], eye.z + middle[2],
         tenth(other, 5),
     ):  # fmt: skip
         return
-    x = middle[0] + (tenth(number, 0) - 0.5) * side + falling.sway * wave(turn)
-    y = middle[1] + (tenth(number, 10) - 0.5) * side + falling.sway * wave(turn + 0.25)
+    x = middle[0] + (tenth(number, 0) - 0.5) * side + falling.kind.sway * wave(turn)
+    y = middle[1] + (tenth(number, 10) - 0.5) * side + falling.kind.sway * wave(turn + 0.25)
     z = middle[2] + (tenth(number, 20) - 0.5) * side
     ahead, left, up = seen_from(view, x, y, z)
     if ahead < begin or ahead > end:
         return
     # From its position at the start of the exposure.
-    exposed = falling.exposed
+    exposed = falling.kind.exposed
     _, aside, above = seen_from(
-        view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.sinking * exposed
+        view, -falling.wind_x * exposed, -falling.wind_y * exposed, falling.kind.sinking * exposed
     )
-    tumbling = 0.35 + 0.65 * abs(wave(2.7 * turn)) if falling.coloured else 1.0
+    tumbling = 0.35 + 0.65 * abs(wave(2.7 * turn)) if falling.kind.coloured else 1.0
     real = _radius(falling, size, ahead)
     radius = real * view.focal / ahead
-    if falling.coloured:
+    if falling.kind.coloured:
         radius *= tumbling
-    if radius < falling.smallest:
+    if radius < falling.kind.smallest:
         return
     across = view.focal_x / (ahead * view.across)
     down = view.focal_y / (ahead * view.down)
@@ -242,31 +235,27 @@ def _draw_flake(
     if snowfall.band.glass.on == 1:
         moved = aside, above
         streak = _bent_streak((ahead, left, up), moved, real * tumbling, snowfall)
-        if streak.radius < falling.smallest:
+        if streak.radius < falling.kind.smallest:
             return
     colour, pale = snowfall.white, snowfall.bytes
-    if falling.coloured:
+    if falling.kind.coloured:
         colour = leaf_colour(colour, tenth(number ^ other, 5))
-    if falling.lit and snowfall.band.lit.air.lamps > f4(0.0):
+    if falling.kind.lit and snowfall.band.lit.air.lamps > f4(0.0):
         place = eye.x + x, eye.y + y, eye.z + z
         colour = lit_by_lamps(colour, snowfall.band, place)
-    if falling.coloured or falling.lit:
+    if falling.kind.coloured or falling.kind.lit:
         pale = bytes_of(snowfall.band.light, snowfall.band.lit.air.exposure, colour)
     _smear(streak, colour, pale, snowfall)
 
 
 @kernel(inline=True)
 def _bent_streak(
-    place: tuple[float, float, float], moved: tuple[float, float], radius: float, snowfall: Snowfall
+    place: tuple[float, float, float],  # Forward, left and up in its face [m]
+    moved: tuple[float, float],  # How far it moves left and up while the picture is exposed [m]
+    radius: float,  # [m]
+    snowfall: Snowfall,  # Band to draw into
 ) -> Streak:
-    """Return a flake as a lens shows it; of radius 0 where it would lie across the picture's edge.
-
-    Args:
-        place: Forward, left and up in its face [m].
-        moved: How far it moves left and up while the picture is exposed [m].
-        radius: [m]
-        snowfall: Band to draw into.
-    """
+    """Return a flake as a lens shows it; of radius 0 if it would cross the picture's edge."""
     glass, (ahead, left, up) = snowfall.band.glass, place
     column, row = shown_at(glass, ahead, left, up)
     to_column, to_row = shown_at(glass, ahead, left + moved[0], up + moved[1])
@@ -278,15 +267,13 @@ def _bent_streak(
 
 
 @kernel
-def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall: Snowfall) -> None:
-    """Draw a soft streak.
-
-    Args:
-        streak: Where it is.
-        colour: Its radiance.
-        pale: Its bytes.
-        snowfall: Band to draw into.
-    """
+def _smear(
+    streak: Streak,  # Where it is
+    colour: Colour,  # Its radiance
+    pale: tuple[int, int, int],  # Its bytes
+    snowfall: Snowfall,  # Band to draw into
+) -> None:
+    """Draw a soft streak."""
     column, row, to_column, to_row, radius, inverse = streak
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
@@ -302,10 +289,10 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
     length = math.sqrt(to_column * to_column + to_row * to_row)
     # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
     share = radius / drawn
-    if not snowfall.falling.thin:
+    if not snowfall.falling.kind.thin:
         share *= share
     strength = share * min(1.0, 2.6 * drawn / (drawn + length))
-    strength *= snowfall.falling.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
+    strength *= snowfall.falling.kind.cover / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     for k in range(*own_rows(band, first, last)):
         i = pixel_row(band, k)
         for j in range(start, stop):
@@ -318,7 +305,7 @@ def _smear(streak: Streak, colour: Colour, pale: tuple[int, int, int], snowfall:
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            _blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.thin)
+            _blend(snowfall.canvas, i, j, cover, colour, pale, snowfall.falling.kind.thin)
 
 
 @kernel(inline=True)

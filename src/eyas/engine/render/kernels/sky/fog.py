@@ -1,12 +1,10 @@
 """The air between the camera and things."""
 
 from eyas.engine.render.kernels.bundles import Illumination, Light
-from eyas.engine.render.kernels.chance import noise
+from eyas.engine.render.kernels.hash_noise import noise
 from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser
-
-__all__ = ["HAZE_END", "fog_share", "hidden_at", "land_fog"]
 
 Colour = tuple[float, float, float]
 

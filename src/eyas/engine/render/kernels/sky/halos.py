@@ -20,7 +20,7 @@ from eyas.engine.render.kernels.sky.plumes import on_screen
 from eyas.engine.render.kernels.surface.signalling import BRAKING
 from eyas.engine.render.kernels.visibility.cull import sphere_is_visible
 from eyas.engine.render.kernels.visibility.key import distance_inverse
-from eyas.engine.render.kernels.visibility.things import end_of_thing, next_thing
+from eyas.engine.render.kernels.visibility.scene_iterator import end_of_thing, next_thing
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (
@@ -37,8 +37,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-__all__ = ["draw_halos"]
 
 Colour = tuple[float, float, float]
 
@@ -74,13 +72,11 @@ class Halo(NamedTuple):
 
 
 @kernel
-def draw_halos(band: Band, canvas: Canvas) -> None:
-    """Add the halos of the lamps of all vehicles that face the camera to a band.
-
-    Args:
-        band: The band.
-        canvas: Its colours.
-    """
+def draw_halos(
+    band: Band,
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Add the halos of the lamps of all vehicles that face the camera to a band."""
     movers, world, eye = band.movers, band.world, band.camera.eye
     slots, lamps = movers.part.shape[1], movers.lamps
     first = next_thing(band, 0)
@@ -161,17 +157,15 @@ def _draw(
 
 
 @kernel(inline=True)
-def _seen(band: Band, i: int, j: int, away: float, core: float, ahead: float) -> float:
-    """Return the shares of the peak in eight pixels.
-
-    Args:
-        band: The band.
-        i: Row of the pixels.
-        j: Column of the first.
-        away: Squared distances from the middle; 1 is the edge.
-        core: The same where half of the peak is left.
-        ahead: Distance of the lamp [m].
-    """
+def _seen(
+    band: Band,
+    i: int,  # Row of the pixels
+    j: int,  # Column of the first
+    away: float,  # Squared distances from the middle; 1 is the edge
+    core: float,  # The same where half of the peak is left
+    ahead: float,  # Distance of the lamp [m]
+) -> float:
+    """Return the shares of the peak in eight pixels."""
     zero, one, across = f4(0.0), f4(1.0), band.camera.across
     keys = keys_of(band.key, i * band.camera.down, j * across, across)
     inside = (away < one) & (keys >= i8(0))

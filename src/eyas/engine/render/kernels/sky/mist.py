@@ -1,14 +1,12 @@
 """Mist that lies on the land, and light that haze and lens scatter forward from a low sun."""
 
 from eyas.engine.render.kernels.bundles import Illumination, Light
-from eyas.engine.render.kernels.chance import noise
+from eyas.engine.render.kernels.hash_noise import noise
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
 from eyas.engine.render.kernels.sky.fog import land_fog
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser
-
-__all__ = ["aired", "glare", "mist_share", "veil"]
 
 Colour = tuple[float, float, float]
 
@@ -85,25 +83,15 @@ def veil(lit: Illumination, way: Colour) -> float:
 
 @kernel(inline=True)
 def aired(
-    light: Light,
-    lit: Illumination,
-    colour: Colour,
-    eye: Colour,
-    point: Colour,
-    way: Colour,
-    away: float,
+    light: Light,  # Says where land is open
+    lit: Illumination,  # Light and air
+    colour: Colour,  # Radiance of the surface
+    eye: Colour,  # Optical centre [m]
+    point: Colour,  # The point [m]
+    way: Colour,  # Unit vector from the eye
+    away: float,  # Distance [m]
 ) -> Colour:
-    """Return the radiance of a surface through air with mist and glare.
-
-    Args:
-        light: Says where land is open.
-        lit: Light and air.
-        colour: Radiance of the surface.
-        eye: Optical centre [m].
-        point: The point [m].
-        way: Unit vector from the eye.
-        away: Distance [m].
-    """
+    """Return the radiance of a surface through air with mist and glare."""
     sun, fog, clear = lit.sun_colour, lit.fog, f4(1.0) - land_fog(light, lit, eye, point, away)
     if lit.air.mist > f4(0.0):
         clear *= f4(1.0) - mist_share(light, lit, eye, point, away)

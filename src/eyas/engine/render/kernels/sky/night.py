@@ -3,7 +3,7 @@
 import math
 
 from eyas.engine.render.kernels.bundles import Illumination
-from eyas.engine.render.kernels.chance import hashed
+from eyas.engine.render.kernels.hash_noise import hashed
 from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
@@ -17,8 +17,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-__all__ = ["azimuth", "moon_face", "starlight", "turned_stars"]
 
 _STAR_ROWS = f4(72.0)  # Rows of cells from the horizon to the zenith, of equal area
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
-from eyas.engine.render.kernels.chance import scrambled, tenth
-from eyas.engine.render.kernels.lens.look import shown_at
+from eyas.engine.render.kernels.hash_noise import scrambled, tenth
+from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
 from eyas.engine.render.kernels.scalars import f4, i4, i8, u4
@@ -36,8 +36,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-__all__ = ["draw_plumes", "on_screen"]
 
 Colour = tuple[float, float, float]
 Vector = tuple[float, float, float]
@@ -64,14 +62,12 @@ class Puff(NamedTuple):
 
 
 @kernel
-def draw_plumes(band: Band, instant: float, canvas: Canvas) -> None:
-    """Draw smoke and spray into a band.
-
-    Args:
-        band: The band.
-        instant: Time [s].
-        canvas: Its colours.
-    """
+def draw_plumes(
+    band: Band,
+    instant: float,  # Time [s]
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Draw smoke and spray into a band."""
     for source in range(len(band.light.smoke)):
         _draw_smoke(band, source, instant, canvas)
     spray = band.movers.spray
@@ -204,19 +200,15 @@ def _draw_puff(band: Band, puff: Puff, colour: Colour, canvas: Canvas) -> None:
 
 @kernel(inline=True)
 def _cover(
-    band: Band, i: int, j: int, round_: float, thickness: float, ahead: float, soft: float
+    band: Band,
+    i: int,  # Row of the pixels
+    j: int,  # Column of the first
+    round_: float,  # 1 in the middle of the puff, 0 at its edge
+    thickness: float,  # Optical, through its middle
+    ahead: float,  # Its distance [m]
+    soft: float,  # What lies by more than half of one over this behind it is behind all of it [1/m]
 ) -> float:
-    """Return how much of eight pixels a puff covers, 0 to 1.
-
-    Args:
-        band: The band.
-        i: Row of the pixels.
-        j: Column of the first.
-        round_: 1 in the middle of the puff, 0 at its edge.
-        thickness: Optical, through its middle.
-        ahead: Its distance [m].
-        soft: What lies by more than half of one over this behind it is behind all of it [1/m].
-    """
+    """Return how much of eight pixels a puff covers, 0 to 1."""
     zero, one, across = f4(0.0), f4(1.0), band.camera.across
     keys = keys_of(band.key, i * band.camera.down, j * across, across)
     inside = (round_ > zero) & (keys >= i8(0))

@@ -36,19 +36,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = [
-    "CLOUDS_FROM",
-    "CLOUD_BEND",
-    "HILL_FARTHEST",
-    "HILL_TOP",
-    "blended",
-    "draw_backdrop",
-    "reflection",
-    "sky",
-    "sky_colour",
-    "surroundings",
-]
-
 CLOUD_BEND = 0.8
 """Rows of the clouds' panorama lie at `z (1 + bend) / (z + bend)`: closer near the horizon."""
 

@@ -20,8 +20,6 @@ from eyas.lanes.vector import (
     transposed,
 )
 
-__all__ = ["Attributes", "Frame", "attributes_of", "instance_frame"]
-
 Vector = tuple[float, float, float]
 
 
@@ -142,15 +140,13 @@ def _turned(frame: Frame, v: Vector) -> Vector:
 
 
 @kernel(inline=True)
-def attributes_of(band: Band, row: int, triangle: int, point: Vector) -> Attributes:
-    """Return what a triangle has at a world point [m].
-
-    Args:
-        band: The band.
-        row: Its instance, a row of `Band.drawn`, or -1; the same for all lanes.
-        triangle: Its row in `Geometry.shading`.
-        point: The point [m].
-    """
+def attributes_of(
+    band: Band,
+    row: int,  # Its instance, a row of `Band.drawn`, or -1; the same for all lanes
+    triangle: int,  # Its row in `Geometry.shading`
+    point: Vector,  # The point [m]
+) -> Attributes:
+    """Return what a triangle has at a world point [m]."""
     shading, moved = band.geometry.shading, row >= 0
     x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, SHADING_COLUMNS)
     v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, SHADING_COLUMNS)

@@ -47,9 +47,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["shade_band"]
-
-
 Colour = tuple[float, float, float]
 Four = tuple[int, int, int, int]
 
@@ -233,18 +230,14 @@ def _alike(
 
 @kernel(inline=True)
 def _shade_tile(
-    band: Band, rays: Rays, canvas: Canvas, size: tuple[int, int], row: int, first: int
+    band: Band,
+    rays: Rays,
+    canvas: Canvas,  # Its colours
+    size: tuple[int, int],  # Its rows and columns; what lies beyond is left out
+    row: int,  # The first row
+    first: int,  # The first column
 ) -> None:
-    """Write four pixels of a row and four of the next, with one sample each.
-
-    Args:
-        band: The band.
-        rays: Its rays.
-        canvas: Its colours.
-        size: Its rows and columns; what lies beyond is left out.
-        row: The first row.
-        first: The first column.
-    """
+    """Write four pixels of a row and four of the next, with one sample each."""
     key, lanes, half = band.key, lane_numbers(), splat(f4(0.5))
     down, right = to_f4(lanes >> i4(2)), to_f4(lanes & i4(ACROSS - 1))
     stride, below = 4 * key.shape[1], min(size[0] - 1 - row, 1)
@@ -349,13 +342,11 @@ def _mean_of_several(
 
 
 @kernel
-def shade_band(band: Band, canvas: Canvas) -> None:
-    """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
-
-    Args:
-        band: The band.
-        canvas: Its colours.
-    """
+def shade_band(
+    band: Band,
+    canvas: Canvas,  # Its colours
+) -> None:
+    """Write the pixels of a band except the sky, which `draw_backdrop` has already written."""
     rays, view, width, rows = rays_of(band.camera), band.camera, band.columns, band.lines
     if view.down == 1:
         for row in range(2 * band.member, rows, 2 * band.members):

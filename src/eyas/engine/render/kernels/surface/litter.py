@@ -1,14 +1,12 @@
 """Autumn on the ground: fallen leaves under trees, and yellowed grass."""
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import noise, seen_noise
+from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.snow import Bed
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, select
-
-__all__ = ["littered"]
 
 Colour = tuple[float, float, float]
 
@@ -23,25 +21,15 @@ def _clip(value: float) -> float:
 
 @kernel(inline=True)
 def littered(
-    colour: Colour,
-    light: Light,
-    litter: float,
-    bed: int,
-    point: Colour,
-    rise: float,
-    footprint: float,
+    colour: Colour,  # Without leaves
+    light: Light,  # Its map of trees
+    litter: float,  # How many have fallen, 0 to 1
+    bed: int,  # A `Bed`
+    point: Colour,  # The point [m]
+    rise: float,  # Upward component of its normal
+    footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
-    """Return the colour of the ground with the leaves that lie on it.
-
-    Args:
-        colour: Without leaves.
-        light: Its map of trees.
-        litter: How many have fallen, 0 to 1.
-        bed: A `Bed`.
-        point: The point [m].
-        rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
-    """
+    """Return the colour of the ground with the leaves that lie on it."""
     one, half, x, y = f4(1.0), f4(0.5), point[0], point[1]
     red, green, blue = colour
     porous, driven = bed == POROUS, bed == DRIVEN

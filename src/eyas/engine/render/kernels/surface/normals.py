@@ -30,8 +30,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["write_normals"]
-
 Vector = tuple[float, float, float]
 
 

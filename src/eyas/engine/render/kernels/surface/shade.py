@@ -33,8 +33,6 @@ from eyas.engine.state.mesh import MARGIN, Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4, to_i4
 
-__all__ = ["painted_share", "shade_point", "water_slope"]
-
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
 FOLIAGE = i4(int(Surface.FOLIAGE))
@@ -82,20 +80,17 @@ def water_slope(
 
 @kernel(inline=True)
 def painted_share(
-    across: float, slope: Vector, scale: float, way: Vector, cosine: float, size: float
+    across: float,  # u, see `Surface.MARKING`
+    slope: Vector,  # Gradient of u [1/m]
+    scale: float,  # Its length: one over half the width of the line [1/m]
+    way: Vector,  # Unit vector from the eye
+    cosine: float,  # Of the angle between the normal and the way to the eye
+    size: float,  # Width of the pixel at the point, seen from the front [m]
 ) -> float:
     """Return the share of a pixel that a line covers, 0 to 1.
 
     The pixel is a strip along the line, as wide as the pixel reaches across it, but not wider than
     the margins let be seen: lines farther away are as bright on average, but less steady.
-
-    Args:
-        across: u, see `Surface.MARKING`.
-        slope: Gradient of u [1/m].
-        scale: Its length: one over half the width of the line [1/m].
-        way: Unit vector from the eye.
-        cosine: Of the angle between the normal and the way to the eye.
-        size: Width of the pixel at the point, seen from the front [m].
     """
     one = f4(1.0)
     # A pixel is a circle seen from the front; on the ground it is longer along the view.

@@ -5,8 +5,6 @@ from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, select
 
-__all__ = ["BRAKING", "LEFT", "RIGHT", "signalled"]
-
 _TAIL = int(Surface.TAIL_LAMP)
 
 TAIL_LAMP = i4(_TAIL)
@@ -33,14 +31,12 @@ Colour = tuple[float, float, float]
 
 
 @kernel(inline=True)
-def signalled(colour: Colour, surface: int, lamps: int) -> Colour:
-    """Return radiances with those of the lamps of one vehicle that shine.
-
-    Args:
-        colour: The radiance of points of the vehicle without them.
-        surface: A `Surface` of each point.
-        lamps: See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points.
-    """
+def signalled(
+    colour: Colour,  # The radiance of points of the vehicle without them
+    surface: int,  # A `Surface` of each point
+    lamps: int,  # See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points
+) -> Colour:
+    """Return radiances with those of the lamps of one vehicle that shine."""
     red, green, blue = colour
     braking = i4(BRAKING)
     if lamps & braking == braking:

@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 from eyas.engine.render.kernels.bundles import Light
-from eyas.engine.render.kernels.chance import noise, seen_noise
+from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
@@ -17,8 +17,6 @@ from eyas.lanes.vector import (
     to_f4,
     to_i4,
 )
-
-__all__ = ["Bed", "snowed"]
 
 Colour = tuple[float, float, float]
 
@@ -77,19 +75,16 @@ def _texel(light: Light, at: int, far: float) -> float:
 
 @kernel(inline=True)
 def _on_leaves(
-    green: float, point: Colour, above: Colour, rise: float, footprint: float
+    green: float,  # Green of the leaves
+    point: Colour,  # The point [m]
+    above: Colour,  # The point from the middle of the crown, in the frame of the tree
+    rise: float,  # Upward component of its normal
+    footprint: float,  # Size of a pixel on the surface [m]
 ) -> tuple[float, float]:
     """Return the share of a crown that snow hides, and how bright that is.
 
     It lies in clumps on branches, less at the sides and hardly below, and on the upper leaves,
     which are the bright ones of the texture: the dark gaps between them stay.
-
-    Args:
-        green: Green of the leaves.
-        point: The point [m].
-        above: The point from the middle of the crown, in the frame of the tree.
-        rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
     """
     x, y, z = point
     away = root(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
@@ -103,15 +98,13 @@ def _on_leaves(
 
 
 @kernel(inline=True)
-def _on_road(colour: Colour, worn: float, grain: float, fine: float) -> Colour:
-    """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks.
-
-    Args:
-        colour: Without snow.
-        worn: Wear of the snow by wheels, 0 to 1.
-        grain: Noise of a third of a metre, 0 to 1.
-        fine: Noise of a tenth of a metre, 0 to 1.
-    """
+def _on_road(
+    colour: Colour,  # Without snow
+    worn: float,  # Wear of the snow by wheels, 0 to 1
+    grain: float,  # Noise of a third of a metre, 0 to 1
+    fine: float,  # Noise of a tenth of a metre, 0 to 1
+) -> Colour:
+    """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks."""
     ragged = worn * (f4(0.74) + f4(0.24) * grain + f4(0.32) * fine)
     share = f4(0.9) * greater(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
     # Wheels compress and soil the snow that they do not push away.
@@ -177,29 +170,17 @@ def _lying(
 
 @kernel(inline=True)
 def snowed(
-    colour: Colour,
-    light: Light,
-    depth: float,
-    bed: int,
-    middle: float,
-    point: Colour,
-    own: Colour,
-    rise: float,
-    footprint: float,
+    colour: Colour,  # Without snow
+    light: Light,  # Says where wheels have gone
+    depth: float,  # How much has fallen, 0 to 1
+    bed: int,  # A `Bed`
+    middle: float,  # z of the middle of the crown in the frame of its tree, if it is one
+    point: Colour,  # The point [m]
+    own: Colour,  # The point in the frame of the fixture or part it belongs to
+    rise: float,  # Upward component of its normal
+    footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
-    """Return the colour of a surface with the snow that lies on it.
-
-    Args:
-        colour: Without snow.
-        light: Says where wheels have gone.
-        depth: How much has fallen, 0 to 1.
-        bed: A `Bed`.
-        middle: z of the middle of the crown in the frame of its tree, if it is one.
-        point: The point [m].
-        own: The point in the frame of the fixture or part it belongs to.
-        rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
-    """
+    """Return the colour of a surface with the snow that lies on it."""
     result = colour
     white = (bed != BARE) & (rise >= f4(-0.6))
     leaves, vehicle = white & (bed == LEAVES), white & (bed == VEHICLE)

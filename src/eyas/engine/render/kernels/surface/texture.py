@@ -23,18 +23,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = [
-    "LAST_TEXEL",
-    "LEVELS",
-    "TEXELS",
-    "TEXELS_IN_ROW",
-    "colour_of",
-    "detail_of",
-    "first_texel",
-    "fraction",
-    "texel",
-]
-
 LEVELS = 9  # Mip levels of a layer
 
 TEXELS_IN_ROW = sum((1 << bits) + 1 for bits in range(LEVELS - 1))

@@ -20,8 +20,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["wetted"]
-
 Colour = tuple[float, float, float]
 
 DRIVEN, OPEN = i4(int(Bed.DRIVEN)), i4(int(Bed.OPEN))
@@ -45,34 +43,22 @@ def _clip(value: float) -> float:
 
 @kernel(inline=True)
 def wetted(
-    light: Light,
-    lit: Illumination,
-    colour: Colour,
-    bed: int,
-    point: Colour,
-    normal: Colour,
-    way: Colour,
-    open_share: float,
-    unblocked: float,
-    footprint: float,
+    light: Light,  # Its lamps
+    lit: Illumination,  # Light and air
+    colour: Colour,  # Radiance of the dry surface
+    bed: int,  # A `Bed`
+    point: Colour,  # The point [m]
+    normal: Colour,  # Unit normal of the surface
+    way: Colour,  # Unit vector from the eye
+    open_share: float,  # Share of the sky's light that reaches it past what stands
+    unblocked: float,  # The same past what moves
+    footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
     """Return the radiance of a surface in rain.
 
     Wet asphalt has half the albedo of dry asphalt, since light is kept in by total reflection at
     the film (Lekner and Dorf, Why some things are darker when wet, Applied Optics 27, 1988); what
     is porous swallows the water and darkens less. Nothing under a roof gets wet.
-
-    Args:
-        light: Its lamps.
-        lit: Light and air.
-        colour: Radiance of the dry surface.
-        bed: A `Bed`.
-        point: The point [m].
-        normal: Unit normal of the surface.
-        way: Unit vector from the eye.
-        open_share: Share of the sky's light that reaches it past what stands.
-        unblocked: The same past what moves.
-        footprint: Size of a pixel on the surface [m].
     """
     zero, one, x, y, rise = f4(0.0), f4(1.0), point[0], point[1], normal[2]
     fallen = lit.air.wet * _clip(f4(5.0) * open_share - f4(0.25))
@@ -129,19 +115,16 @@ def _puddle(
 
 @kernel(inline=True)
 def _mirrored(
-    lit: Illumination, film: float, rise: float, hidden: float, unblocked: float
+    lit: Illumination,  # Sky and sun
+    film: float,  # Share of the surface under a film of water
+    rise: float,  # Cosine of the angle between its normal and the way to the eye
+    hidden: float,  # Share of the sky's light that what stands around takes away
+    unblocked: float,  # Share of it that what moves lets through
 ) -> tuple[Colour, float]:
     """Return what a level wet surface mirrors of a clouded sky, and the share of it.
 
     A cheaper `eyas.engine.render.kernels.sky.radiance.reflection`: the mirrored ray rises as
     steeply as the eye looks down, and no sun shines.
-
-    Args:
-        lit: Sky and sun.
-        film: Share of the surface under a film of water.
-        rise: Cosine of the angle between its normal and the way to the eye.
-        hidden: Share of the sky's light that what stands around takes away.
-        unblocked: Share of it that what moves lets through.
     """
     one, horizon, zenith, walls = f4(1.0), lit.horizon, lit.zenith, surroundings(lit)
     graze = one - _clip(rise)

@@ -5,24 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.chance import seen_swing, swing
+from eyas.engine.render.kernels.hash_noise import seen_swing, swing
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.texture import colour_of, texel
 from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, greater, lesser, magnitude, select, to_i4
-
-__all__ = [
-    "DESERT",
-    "DRIFT",
-    "GREEN_SHORE",
-    "HEATH",
-    "HEATH_SHORE",
-    "HILLSIDE",
-    "Look",
-    "downwind",
-    "wild",
-]
 
 Colour = tuple[float, float, float]
 
@@ -86,25 +74,15 @@ class Look(NamedTuple):
 
 @kernel(inline=True)
 def wild(
-    surface: int,
-    look: Look,
-    colour: Colour,
-    along: float,
-    point: Colour,
-    rise: float,
-    footprint: float,
+    surface: int,  # A `Surface` of each
+    look: Look,  # Of their textures
+    colour: Colour,  # Of the textures
+    along: float,  # u, where that is a distance [m]
+    point: Colour,  # The point [m]
+    rise: float,  # Upward component of its normal
+    footprint: float,  # Size of a pixel on the surface [m]
 ) -> Colour:
-    """Return the colours of points with what grows or lies on wild ground, linear.
-
-    Args:
-        surface: A `Surface` of each.
-        look: Of their textures.
-        colour: Of the textures.
-        along: u, where that is a distance [m].
-        point: The point [m].
-        rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
-    """
+    """Return the colours of points with what grows or lies on wild ground, linear."""
     result = colour
     sandy = (surface >= DESERT) & (surface <= DRIFT)
     heathy = (surface == HEATH) | (surface == HEATH_SHORE)
@@ -169,14 +147,12 @@ def _edged(
 
 
 @kernel(inline=True)
-def _shore(colour: Colour, away: float, noises: Colour) -> Colour:
-    """Return the colour of a shore: wet mud, then sand and silt, then lush grass, then the land.
-
-    Args:
-        colour: Of the land.
-        away: Distance from the water [m].
-        noises: Wide, middle and fine noise, -0.5 to 0.5.
-    """
+def _shore(
+    colour: Colour,  # Of the land
+    away: float,  # Distance from the water [m]
+    noises: Colour,  # Wide, middle and fine noise, -0.5 to 0.5
+) -> Colour:
+    """Return the colour of a shore: wet mud, then sand and silt, then lush grass, then the land."""
     wide, clump, fine = noises
     ragged = away + f4(1.5) * wide + f4(1.0) * clump + f4(0.35) * fine
     grain = f4(0.9) + f4(0.5) * fine + f4(0.3) * clump
@@ -226,15 +202,13 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
 
 
 @kernel(inline=True)
-def hillside(colour: Colour, point: Colour, rise: float, footprint: float) -> Colour:
-    """Return the colour of a hillside, linear.
-
-    Args:
-        colour: Of the grass.
-        point: The point [m].
-        rise: Upward component of its normal.
-        footprint: Size of a pixel on the surface [m].
-    """
+def hillside(
+    colour: Colour,  # Of the grass
+    point: Colour,  # The point [m]
+    rise: float,  # Upward component of its normal
+    footprint: float,  # Size of a pixel on the surface [m]
+) -> Colour:
+    """Return the colour of a hillside, linear."""
     one = f4(1.0)
     x, y, z = point
     # Each turned differently, to hide the square cells of the noise.
@@ -260,14 +234,12 @@ def hillside(colour: Colour, point: Colour, rise: float, footprint: float) -> Co
 
 
 @kernel(inline=True)
-def heath(colour: Colour, point: Colour, footprint: float) -> Colour:
-    """Return the colour of a heath, linear.
-
-    Args:
-        colour: Of the soil.
-        point: The point [m].
-        footprint: Size of a pixel on the surface [m].
-    """
+def heath(
+    colour: Colour,  # Of the soil
+    point: Colour,  # The point [m]
+    footprint: float,  # Size of a pixel on the surface [m]
+) -> Colour:
+    """Return the colour of a heath, linear."""
     x, y = point[0], point[1]
     wide = swing(f4(0.016) * x + f4(0.009) * y, f4(0.016) * y - f4(0.009) * x)
     patch = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.11), footprint)

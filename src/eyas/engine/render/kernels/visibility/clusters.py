@@ -16,23 +16,6 @@ from eyas.engine.render.kernels.visibility.triangles import Corners
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, greater, lane_numbers, load, select, to_f8
 
-__all__ = [
-    "APEX",
-    "AXIS",
-    "BOUNDS_ROWS",
-    "CLUSTER",
-    "CLUSTER_ROWS",
-    "CUT_OFF",
-    "LARGEST",
-    "LEAVES",
-    "NO_CONE",
-    "SIZE",
-    "UV_ROWS",
-    "clusters_seen",
-    "has_leaves",
-    "project_cluster",
-]
-
 CLUSTER = 8  # Triangles in a cluster
 
 CLUSTER_ROWS = 11
@@ -61,17 +44,13 @@ _SLACK = 0.02  # How deep in a cone places must be [m]: more than float32 rounds
 
 @kernel(inline=True)
 def clusters_seen(
-    bounds: NDArray[np.float32], row: int, sides: Sides, eye: Point, smallest: float
+    bounds: NDArray[np.float32],  # See `Geometry`
+    row: int,  # Row of `bounds`
+    sides: Sides,  # Planes around what is shown, in the frame of the mesh
+    eye: Point,  # Optical centre in that frame [m]
+    smallest: float,  # Size of the smallest detail to draw [m]
 ) -> int:
-    """Return which of eight clusters may be seen, a bit each.
-
-    Args:
-        bounds: See `Geometry`.
-        row: Row of `bounds`.
-        sides: Planes around what is shown, in the frame of the mesh.
-        eye: Optical centre in that frame [m].
-        smallest: Size of the smallest detail to draw [m].
-    """
+    """Return which of eight clusters may be seen, a bit each."""
     at = row * BOUNDS_ROWS * CLUSTER
     seen = in_boxes(sides, bounds, at, CLUSTER)
     seen &= load(bounds, at + LARGEST * CLUSTER) >= f4(smallest)
@@ -123,22 +102,14 @@ def _reaches(plane: Plane, cluster: NDArray[np.float32], at: int) -> bool:
 
 @kernel(inline=True)
 def project_cluster(
-    cluster: NDArray[np.float32],
-    number: int,
-    screen: Projection,
-    planes: Planes,
-    view: View,
-    smallest: float,
+    cluster: NDArray[np.float32],  # See `Geometry`
+    number: int,  # Its row
+    screen: Projection,  # Projection of the mesh
+    planes: Planes,  # Planes around what is shown, in the frame of the mesh
+    view: View,  # The band
+    smallest: float,  # Size of the smallest detail to draw [m]
 ) -> tuple[Corners, bool, bool]:
     """Project the corners of a cluster.
-
-    Args:
-        cluster: See `Geometry`.
-        number: Its row.
-        screen: Projection of the mesh.
-        planes: Planes around what is shown, in the frame of the mesh.
-        view: The band.
-        smallest: Size of the smallest detail to draw [m].
 
     Returns:
         The corners; which triangles are in front of the near plane and large enough; which of

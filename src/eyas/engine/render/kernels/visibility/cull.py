@@ -15,16 +15,6 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import bits_of, load
 
-__all__ = [
-    "Sides",
-    "boxes_seen",
-    "in_boxes",
-    "planes_of",
-    "sides_of",
-    "sphere_is_visible",
-    "spheres_seen",
-]
-
 SLACK = 0.05
 """How far outside a plane things are still kept [m]: more than float32 rounds places off."""
 

@@ -52,8 +52,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-__all__ = ["SPAN_ROWS", "fill", "fill_row", "fill_rows", "slopes_of"]
-
 SPAN_ROWS = 7  # Rows of `Scratch.span`: a column for each of eight rows of samples.
 
 AT, END = 0, 1
@@ -230,9 +228,9 @@ def _fill_own_row(
 def fill_rows(
     triangle: NDArray[np.float64],
     number: int,
-    slopes: Slopes,
-    row: int,
-    last_row: int,
+    slopes: Slopes,  # Those of the triangle
+    row: int,  # The first row
+    last_row: int,  # `LAST_ROW` of the triangle
     top: int,
     width: int,
     key: NDArray[np.int64],
@@ -240,21 +238,7 @@ def fill_rows(
     holes: Holes,
     span: NDArray[np.int32],
 ) -> None:
-    """Draw eight rows of a triangle, see `fill`.
-
-    Args:
-        triangle: See there.
-        number: See there.
-        slopes: Those of the triangle.
-        row: The first row.
-        last_row: `LAST_ROW` of the triangle.
-        top: See there.
-        width: See there.
-        key: See there.
-        tag: See there.
-        holes: See there.
-        span: See there.
-    """
+    """Draw eight rows of a triangle, see `fill`."""
     numbers = lane_numbers()
     live = _find_spans(triangle, number, row, top, width, key.shape[1], holes, span)
     if last_row - row < WIDTH:
@@ -287,28 +271,18 @@ def fill_rows(
 
 @kernel(inline=True, apart=True)
 def fill(
-    triangle: NDArray[np.float64],
-    number: int,
-    top: int,
-    width: int,
-    key: NDArray[np.int64],
-    tag: int,
-    holes: Holes,
-    span: NDArray[np.int32],
+    triangle: NDArray[np.float64],  # From `set_up`
+    number: int,  # Its column
+    top: int,  # Row of the picture that is row 0 of `key`
+    width: int,  # Width of the picture [samples]
+    key: NDArray[np.int64],  # See `Scratch`, shape (rows, columns)
+    tag: int,  # Lower half of the key, see `eyas.engine.render.kernels.visibility.key`
+    holes: Holes,  # The texture whose alpha cuts holes
+    span: NDArray[np.int32],  # Working memory, see `Scratch`, shape (SPAN_ROWS, 8)
 ) -> None:
     """Draw a triangle wherever it is nearer than what was drawn before.
 
     A sample belongs to a triangle if its centre does, by the top-left rule.
-
-    Args:
-        triangle: From `set_up`.
-        number: Its column.
-        top: Row of the picture that is row 0 of `key`.
-        width: Width of the picture [samples].
-        key: See `Scratch`, shape (rows, columns).
-        tag: Lower half of the key, see `eyas.engine.render.kernels.visibility.key`.
-        holes: The texture whose alpha cuts holes.
-        span: Working memory, see `Scratch`, shape (SPAN_ROWS, 8).
     """
     row, last_row = i8(_entry(triangle, FIRST_ROW, number)), i8(_entry(triangle, LAST_ROW, number))
     slopes = slopes_of(triangle, number, holes)

@@ -10,8 +10,6 @@ from eyas.engine.render.kernels.surface.texture import TEXELS_IN_ROW, first_texe
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather, to_i4, whole
 
-__all__ = ["LEVELS", "Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
-
 SMALLEST_HOLES = 4
 """Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
 

@@ -19,8 +19,6 @@ from eyas.engine.state.draw import DrawStage
 from eyas.lanes import kernel
 from eyas.lanes.vector import claim_some, count_bits, first_bit
 
-__all__ = ["ITEM_COLUMNS", "draw_clusters", "find_clusters", "list_items"]
-
 CULLING = int(DrawStage.CULLING)
 
 ITEM_COLUMNS = 21

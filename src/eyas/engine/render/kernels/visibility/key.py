@@ -10,17 +10,6 @@ from eyas.engine.render.kernels.scalars import i4, i8
 from eyas.lanes import kernel
 from eyas.lanes.vector import bit_pattern, from_bits, like, select, to_i4, to_i8
 
-__all__ = [
-    "MOST_INSTANCES",
-    "MOST_TRIANGLES",
-    "distance_inverse",
-    "drawn_of",
-    "instance_tag",
-    "key_of",
-    "tag_of",
-    "triangle_of",
-]
-
 TRIANGLE_BITS = 17
 MOST_TRIANGLES = 1 << TRIANGLE_BITS  # Limit of the triangles of a level of detail
 

@@ -11,8 +11,6 @@ from eyas.engine.render.kernels.visibility.triangles import INVERSE
 from eyas.lanes import kernel
 from eyas.lanes.vector import gather
 
-__all__ = ["leaves_of", "tiles_of"]
-
 _TEXELS = 256.0  # Texels along a side of a texture
 
 
@@ -25,17 +23,13 @@ def tiles_of(geometry: Geometry, at: int) -> float:
 
 @kernel(inline=True)
 def leaves_of(
-    geometry: Geometry, at: int, triangle: NDArray[np.float64], column: int, focal: float
+    geometry: Geometry,  # Everything that can be drawn
+    at: int,  # The triangle's number
+    triangle: NDArray[np.float64],  # See `Scratch`
+    column: int,  # Its column there
+    focal: float,  # See `draw_mesh`
 ) -> int:
-    """Return the layer of a triangle's leaves times `LEVELS`, and its mip level; -1: no holes.
-
-    Args:
-        geometry: Everything that can be drawn.
-        at: The triangle's number.
-        triangle: See `Scratch`.
-        column: Its column there.
-        focal: See `draw_mesh`.
-    """
+    """Return the layer of a triangle's leaves times `LEVELS`, and its mip level; -1: no holes."""
     tiles = tiles_of(geometry, at)
     if tiles < 0.0:
         return i8(-1)

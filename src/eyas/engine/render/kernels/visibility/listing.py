@@ -30,8 +30,6 @@ from eyas.lanes.vector import (
     transposed,
 )
 
-__all__ = ["list_chunks", "list_fixtures", "list_slots"]
-
 SMALLEST = 0.4  # Things with a smaller radius are left out [pixels]
 
 EIGHT = 8

@@ -10,7 +10,11 @@ from eyas.engine.render.kernels.samples import ScreenBox, around, empty_box
 from eyas.engine.render.kernels.scalars import i4, i8
 from eyas.engine.render.kernels.visibility.key import tag_of
 from eyas.engine.render.kernels.visibility.passes import draw_slots
-from eyas.engine.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
+from eyas.engine.render.kernels.visibility.scene_iterator import (
+    belongs_to,
+    end_of_thing,
+    next_thing,
+)
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (
@@ -26,8 +30,6 @@ from eyas.lanes.vector import (
     store,
     to_i4,
 )
-
-__all__ = ["measure_actors", "measure_subject"]
 
 _MARGIN = 2
 """Width of the border around a thing's box that is searched, too: more than roundings [samples]."""

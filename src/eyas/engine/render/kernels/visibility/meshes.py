@@ -38,8 +38,6 @@ from eyas.engine.state.draw import DrawStage
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, first_bit, lane_numbers, prefetch, splat
 
-__all__ = ["draw_cluster", "draw_mesh", "fetch_mesh", "level_of_detail"]
-
 VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
@@ -74,26 +72,15 @@ def _fetch(array: NDArray[np.float32], number: int, rows: int) -> None:
 @kernel(inline=True)
 def draw_mesh(
     band: Band,
-    key: NDArray[np.int64],
-    mesh: NDArray[np.int32],
-    screen: Projection,
-    eye: Point,
-    focal: float,
-    smallest: float,
-    tag: int,
+    key: NDArray[np.int64],  # Drawn into: its `key` or `alone`
+    mesh: NDArray[np.int32],  # Row of `chunk_range` or `mesh_range`
+    screen: Projection,  # Projection of the mesh
+    eye: Point,  # Optical centre in the frame of the mesh [m]
+    focal: float,  # Focal length over the scale of the object [pixels]
+    smallest: float,  # Size of the smallest detail to draw [m]
+    tag: int,  # Tag of triangle 0
 ) -> None:
-    """Draw a chunk or a level of detail.
-
-    Args:
-        band: The band.
-        key: Drawn into: its `key` or `alone`.
-        mesh: Row of `chunk_range` or `mesh_range`.
-        screen: Projection of the mesh.
-        eye: Optical centre in the frame of the mesh [m].
-        focal: Focal length over the scale of the object [pixels].
-        smallest: Size of the smallest detail to draw [m].
-        tag: Tag of triangle 0.
-    """
+    """Draw a chunk or a level of detail."""
     geometry, view = band.geometry, band.camera
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
@@ -119,27 +106,16 @@ def fetch_mesh(geometry: Geometry, mesh: NDArray[np.int32]) -> None:
 
 @kernel(inline=True)
 def draw_cluster(
-    band: Band,
+    band: Band,  # See `draw_mesh`
     key: NDArray[np.int64],
-    cluster: int,
+    cluster: int,  # Row of `Geometry.cluster`
     screen: Projection,
-    planes: Planes,
+    planes: Planes,  # Planes around what the band shows, in the frame of the mesh
     focal: float,
     smallest: float,
     tag: int,
 ) -> None:
-    """Draw eight triangles of a mesh.
-
-    Args:
-        band: See `draw_mesh`.
-        key: See there.
-        cluster: Row of `Geometry.cluster`.
-        screen: See there.
-        planes: Planes around what the band shows, in the frame of the mesh.
-        focal: See there.
-        smallest: See there.
-        tag: See there.
-    """
+    """Draw eight triangles of a mesh."""
     geometry, view, triangle = band.geometry, band.camera, band.triangle
     corners, front, cut = project_cluster(geometry.cluster, cluster, screen, planes, view, smallest)
     leafy = has_leaves(geometry.cluster, cluster)

@@ -15,21 +15,15 @@ from eyas.engine.state.scene import ACTOR_OBJECT, SKY_OBJECT
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, load, store
 
-__all__ = ["object_of", "write_classes", "write_depth", "write_objects"]
-
 
 @kernel
 def write_depth(
-    key: NDArray[np.int64], output: NDArray[np.float32], member: int, members: int
+    key: NDArray[np.int64],  # See `Scratch`, shape (rows, columns)
+    output: NDArray[np.float32],  # Shape (rows, width of the picture)
+    member: int,  # See `Band`
+    members: int,  # See `Band`
 ) -> None:
-    """Write the distance along the optical axis of each pixel [m], infinity for sky.
-
-    Args:
-        key: See `Scratch`, shape (rows, columns).
-        output: Shape (rows, width of the picture).
-        member: See `Band`.
-        members: See `Band`.
-    """
+    """Write the distance along the optical axis of each pixel [m], infinity for sky."""
     width = output.shape[1]
     for row in range(member, output.shape[0], members):
         whole = width & -WIDTH

@@ -5,16 +5,14 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Geometry, Point, Projection, View
 from eyas.engine.render.kernels.scalars import i8
-from eyas.engine.render.kernels.visibility.hidden import box_is_hidden, measure_tiles
 from eyas.engine.render.kernels.visibility.key import instance_tag
 from eyas.engine.render.kernels.visibility.listing import list_chunks, list_fixtures, list_slots
 from eyas.engine.render.kernels.visibility.meshes import draw_mesh, fetch_mesh
+from eyas.engine.render.kernels.visibility.occlusion import box_is_hidden, measure_tiles
 from eyas.engine.render.kernels.visibility.transform import in_frame, object_projection, scale_of
 from eyas.engine.render.kernels.wind import sways
 from eyas.engine.state.draw import DrawStage
 from eyas.lanes import kernel
-
-__all__ = ["draw_scene", "draw_slots", "item_at", "list_scene"]
 
 CULLING = int(DrawStage.CULLING)
 

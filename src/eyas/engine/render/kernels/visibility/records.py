@@ -28,8 +28,6 @@ from eyas.lanes.vector import (
     to_i4,
 )
 
-__all__ = ["MOST_ROWS", "fill_recorded", "record_triangles"]
-
 MOST_ROWS = 1024
 """So many rows of samples of a triangle may be told apart; taller ones are not recorded."""
 
@@ -88,18 +86,14 @@ def _show(
 
 @kernel(threads=_record_own_triangle)
 def record_triangles(
-    band: Band, drawn: int, cluster: int, number: int, focal: float, tag: int
+    band: Band,  # The band; the triangles are in its `triangle`
+    drawn: int,  # Their columns there, a bit each
+    cluster: int,  # Row of `Geometry.cluster`
+    number: int,  # Which triangle of the cluster they are parts of; -1: each is that of its column
+    focal: float,  # See `draw_mesh`
+    tag: int,
 ) -> int:
-    """Record triangles to be filled later; return those for which there is no room, a bit each.
-
-    Args:
-        band: The band; the triangles are in its `triangle`.
-        drawn: Their columns there, a bit each.
-        cluster: Row of `Geometry.cluster`.
-        number: Which triangle of the cluster they are parts of; -1: each is that of its column.
-        focal: See `draw_mesh`.
-        tag: See there.
-    """
+    """Record triangles to be filled later; return those for which there is no room, a bit each."""
     triangle, record, unit, shown = band.triangle, band.record, band.unit, band.record_shown
     left = i8(0)
     while drawn != 0:

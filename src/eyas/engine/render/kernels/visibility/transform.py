@@ -10,15 +10,6 @@ from eyas.engine.render.kernels.scalars import i8
 from eyas.engine.render.kernels.visibility.cull import planes_of
 from eyas.lanes import kernel
 
-__all__ = [
-    "clip_near",
-    "in_frame",
-    "object_projection",
-    "scale_of",
-    "view_along",
-    "view_of",
-]
-
 
 @kernel(inline=True)
 def view_of(task: Task, band: int) -> View:
@@ -33,23 +24,14 @@ def view_of(task: Task, band: int) -> View:
 
 @kernel(inline=True)
 def view_along(
-    eye: Point,
-    axes: tuple[Point, Point, Point],
-    focal: tuple[float, float],
-    size: tuple[int, int],
-    rows: tuple[int, int],
-    task: Task,
+    eye: Point,  # Optical centre
+    axes: tuple[Point, Point, Point],  # Forward, left and up
+    focal: tuple[float, float],  # Focal length along rows and along columns [pixels]
+    size: tuple[int, int],  # Width and height of the whole picture [pixels]
+    rows: tuple[int, int],  # Its first row, and the row after the last [pixels]
+    task: Task,  # Tells how many samples each pixel has
 ) -> View:
-    """Return a band of a view.
-
-    Args:
-        eye: Optical centre.
-        axes: Forward, left and up.
-        focal: Focal length along rows and along columns [pixels].
-        size: Width and height of the whole picture [pixels].
-        rows: Its first row, and the row after the last [pixels].
-        task: Tells how many samples each pixel has.
-    """
+    """Return a band of a view."""
     ahead, left, up = axes
     pixels_x, pixels_y = focal
     across, down = task.across, task.down
@@ -175,27 +157,18 @@ def _write_corner(
 
 @kernel
 def clip_near(
-    screen: Projection,
-    cluster: NDArray[np.float32],
-    uv: NDArray[np.float32],
-    number: int,
-    middle_x: float,
-    middle_y: float,
-    polygon: NDArray[np.float64],
+    screen: Projection,  # Projection of the triangle's corners
+    cluster: NDArray[np.float32],  # Its cluster, a row of `Geometry.cluster`
+    uv: NDArray[np.float32],  # That row of `Geometry.corner_uv`
+    number: int,  # Its number in the cluster
+    middle_x: float,  # Column of the optical axis
+    middle_y: float,  # Row of the optical axis
+    polygon: NDArray[np.float64],  # Columns 0 and 1 are filled, see `Scratch`, shape (15, 8)
 ) -> int:
     """Cut a triangle at the near plane; return how many triangles are left: 0, 1 or 2.
 
     A cut point is always computed from the visible end of its edge, so both triangles
     at an edge get the very same point.
-
-    Args:
-        screen: Projection of the triangle's corners.
-        cluster: Its cluster, a row of `Geometry.cluster`.
-        uv: That row of `Geometry.corner_uv`.
-        number: Its number in the cluster.
-        middle_x: Column of the optical axis.
-        middle_y: Row of the optical axis.
-        polygon: Columns 0 and 1 are filled, see `Scratch`, shape (15, 8).
     """
     count = 0
     for j in range(3):

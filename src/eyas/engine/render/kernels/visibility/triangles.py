@@ -24,32 +24,6 @@ from eyas.lanes.vector import (
     whole,
 )
 
-__all__ = [
-    "ACROSS",
-    "DOWN",
-    "FALL",
-    "FIRST_ROW",
-    "INVERSE",
-    "LAST_ROW",
-    "LEAST",
-    "LONG",
-    "LOWER",
-    "MOST",
-    "RUN",
-    "SIXTEENTHS",
-    "START",
-    "TRIANGLE_ROWS",
-    "UPPER",
-    "Corners",
-    "U",
-    "V",
-    "X",
-    "Y",
-    "load_corners",
-    "set_up",
-    "set_up_leaves",
-]
-
 SIXTEENTHS = 16.0  # Steps in a sample to which corners are rounded
 
 TRIANGLE_ROWS = 28  # Rows of `Scratch.triangle`, see the following; a column for each triangle.
@@ -173,16 +147,12 @@ def set_up(
 
 @kernel(inline=True)
 def set_up_leaves(
-    corners: Corners, uv: NDArray[np.floating], first: int, triangle: NDArray[np.float64]
+    corners: Corners,  # See `set_up`
+    uv: NDArray[np.floating],  # Holds rows of eight: u and v of corner a, of b and of c [tiles]
+    first: int,  # Index of the first number of the first row
+    triangle: NDArray[np.float64],  # See `set_up`
 ) -> None:
-    """Prepare the texture coordinates of eight triangles; u/w and v/w are linear, like 1/w.
-
-    Args:
-        corners: See `set_up`.
-        uv: Holds rows of eight: u and v of corner a, of b and of c [tiles].
-        first: Index of the first number of the first row.
-        triangle: See `set_up`.
-    """
+    """Prepare the texture coordinates of eight triangles; u/w and v/w are linear, like 1/w."""
     c = corners
     for k in range(2):
         at = first + k * WIDTH

@@ -9,8 +9,6 @@ from eyas.engine.targets.jointed.people.surfaces import Row, wrapped
 from eyas.engine.targets.jointed.people.trunks import straps
 from eyas.engine.world.build.clothing import LEG, TORSO, cloth
 
-__all__ = ["carried_shape"]
-
 _DARK = cloth(tint=(0.12, 0.12, 0.13))
 
 

@@ -17,8 +17,6 @@ from eyas.engine.targets.jointed.people.person import (
     Shoes,
 )
 
-__all__ = ["LOOKS", "PEOPLE"]
-
 LOOKS = 112  # Number of people
 
 Thing = TypeVar("Thing")

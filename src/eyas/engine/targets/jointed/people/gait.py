@@ -19,8 +19,6 @@ from eyas.engine.targets.jointed.people.person import (
 )
 from eyas.engine.targets.jointed.people.wardrobe import Dress
 
-__all__ = ["STRIDE", "figure_of"]
-
 STRIDE = 1.46  # Of a person of 1.80 m [m]: 1.37 strides a second at the original's 2 m/s.
 
 _SHOULDERS = {Build.MAN: 0.188, Build.WOMAN: 0.162, Build.STOUT: 0.198, Build.CHILD: 0.168}
@@ -34,13 +32,11 @@ _SHOULDER = 0.452  # Height of the shoulders above the hips [m]
 _BEHIND = 0.51  # How far who pushes a pram is behind the middle of both [m]
 
 
-def figure_of(person: Person, dress: Dress) -> Figure:
-    """Return a person who walks.
-
-    Args:
-        person: Who it is.
-        dress: The shapes of the parts.
-    """
+def figure_of(
+    person: Person,  # Who it is
+    dress: Dress,  # The shapes of the parts
+) -> Figure:
+    """Return a person who walks."""
     stooped = person.posture is Posture.STOOPED
     behind = _BEHIND if person.carried is Carried.PRAM else 0.0
     return Figure(

@@ -11,8 +11,6 @@ from eyas.engine.targets.jointed.people.person import Head
 from eyas.engine.targets.jointed.people.surfaces import Row, wrapped
 from eyas.engine.world.build.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair, skin
 
-__all__ = ["hair_shape", "head_shape"]
-
 _SIDES = (5, 7, 10)
 _BARE = skin(None)
 

@@ -22,8 +22,6 @@ from eyas.engine.targets.jointed.people.surfaces import Row, wrapped
 from eyas.engine.targets.kind import Colour
 from eyas.engine.world.build.clothing import LEG, SKIN, SLEEVE, cloth, skin
 
-__all__ = ["SLEEVES", "THICKNESS", "Holds", "forearm", "shank", "shoe", "thigh", "upper_arm"]
-
 THICKNESS = {Build.MAN: 1.02, Build.STOUT: 1.02, Build.WOMAN: 0.87, Build.CHILD: 0.87}
 """Factor on the thickness of limbs; two of them, so that there are few parts."""
 

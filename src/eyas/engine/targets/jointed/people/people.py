@@ -10,8 +10,6 @@ from eyas.engine.targets.jointed.people.person import Carried, Garment, Head, Lo
 from eyas.engine.targets.jointed.people.wardrobe import colours_of, dress_of
 from eyas.engine.targets.kind import Colour
 
-__all__ = ["PEDESTRIANS", "PEOPLE"]
-
 _COLOURS: tuple[Colour, ...] = (
     (0.25, 0.55, 0.20),
     (0.72, 0.12, 0.11),

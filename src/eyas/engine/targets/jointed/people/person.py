@@ -9,26 +9,6 @@ from enum import Enum
 
 from eyas.engine.targets.kind import Colour
 
-__all__ = [
-    "ANKLE",
-    "FOREARM",
-    "HEEL",
-    "HIP",
-    "NECK",
-    "SHANK",
-    "THIGH",
-    "TOES",
-    "UPPER_ARM",
-    "Build",
-    "Carried",
-    "Garment",
-    "Head",
-    "Lower",
-    "Person",
-    "Posture",
-    "Shoes",
-]
-
 HIP = 0.95  # Height of the hips [m]
 NECK = 0.53  # Lower end of the neck above the hips [m]
 THIGH, SHANK, ANKLE = 0.44, 0.435, 0.085

@@ -12,8 +12,6 @@ from eyas.engine.state.mesh import Material
 from eyas.engine.world.build.bodywork import Region
 from eyas.lanes import exact
 
-__all__ = ["Row", "loop", "wrapped"]
-
 _CREASE = 1.35  # Bodies of five sides are round, boxes are not [rad]
 
 _FEW = 6  # With fewer sides, every second outline is left out
@@ -48,30 +46,18 @@ def _unit(sides: int, box: float) -> tuple[NDArray[np.float64], NDArray[np.float
 
 
 def wrapped(
-    shell: Shell,
-    rows: Sequence[Row],
-    ups: Sequence[float],
-    region: Region,
-    material: Material,
+    shell: Shell,  # Shell to add it to
+    rows: Sequence[Row],  # The outlines
+    ups: Sequence[float],  # Where each is in the region, 0 below, 1 above
+    region: Region,  # Of the texture of the material
+    material: Material,  # Of all faces
     *,
-    sides: int,
-    box: float = 0.0,
-    flip: bool = False,
-    caps: bool = True,
+    sides: int,  # See `loop`
+    box: float = 0.0,  # See `loop`
+    flip: bool = False,  # Whether the texture runs over the left side first
+    caps: bool = True,  # Whether both ends are closed
 ) -> None:
-    """Add the surface through outlines from the bottom up.
-
-    Args:
-        shell: Shell to add it to.
-        rows: The outlines.
-        ups: Where each is in the region, 0 below, 1 above.
-        region: Of the texture of the material.
-        material: Of all faces.
-        sides: See `loop`.
-        box: See `loop`.
-        flip: Whether the texture runs over the left side first.
-        caps: Whether both ends are closed.
-    """
+    """Add the surface through outlines from the bottom up."""
     if sides < _FEW:  # from afar
         rows, ups = (*rows[:-1:2], rows[-1]), (*ups[:-1:2], ups[-1])
     shell.crease = _CREASE

@@ -13,8 +13,6 @@ from eyas.engine.targets.kind import Colour
 from eyas.engine.world.build.clothing import HIPS, LEG, TORSO, cloth
 from eyas.lanes import exact
 
-__all__ = ["chest", "hips", "straps"]
-
 Points = NDArray[np.float64]
 
 _BODIES: dict[Build, tuple[Row, ...]] = {
@@ -53,15 +51,13 @@ _HEM = {Garment.T_SHIRT: -0.05, Garment.SHIRT: -0.06, Garment.OPEN_JACKET: -0.09
 
 
 @cache
-def chest(garment: Garment, build: Build, cut: str, inner: Colour) -> Shape:
-    """Return a garment from its hem to the neck.
-
-    Args:
-        garment: What it is.
-        build: Of the body in it.
-        cut: See `Person.cut`.
-        inner: Colour of what shows under a collar.
-    """
+def chest(
+    garment: Garment,  # What it is
+    build: Build,  # Of the body in it
+    cut: str,  # See `Person.cut`
+    inner: Colour,  # Colour of what shows under a collar
+) -> Shape:
+    """Return a garment from its hem to the neck."""
 
     def shape(shell: Shell, detail: int) -> None:
         sides = (5, 7, 10)[detail]

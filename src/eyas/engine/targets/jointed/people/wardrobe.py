@@ -19,8 +19,6 @@ from eyas.engine.targets.jointed.people.person import Carried, Head, Lower, Pers
 from eyas.engine.targets.jointed.people.trunks import chest, hips
 from eyas.engine.targets.kind import Colour
 
-__all__ = ["Dress", "colours_of", "dress_of"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dress:

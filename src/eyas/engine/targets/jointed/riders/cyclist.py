@@ -25,8 +25,6 @@ from eyas.engine.world.street.bicycle import (
     add_wheel,
 )
 
-__all__ = ["CYCLISTS"]
-
 _NAME = "Cyclist"
 
 _PEDAL = 0.165  # Length of the cranks [m]

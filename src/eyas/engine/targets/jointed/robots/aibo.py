@@ -8,8 +8,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import limb, matt
 
-__all__ = ["MODEL"]
-
 _WHITE, _BLACK, _BLUE, _GREY = (
     matt(0.93, 0.93, 0.94), matt(0.09, 0.09, 0.10), matt(0.55, 0.74, 0.90), matt(0.66, 0.67, 0.69)
 )  # fmt: skip

@@ -12,8 +12,6 @@ from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import bar, block, matt, stack
 from eyas.lanes import exact
 
-__all__ = ["MODEL"]
-
 _WHITE, _ORANGE, _GREY = matt(0.90, 0.89, 0.86), matt(0.90, 0.45, 0.10), matt(0.50, 0.51, 0.53)
 _EYE = Material(tint=(0.03, 0.03, 0.05), surface=Surface.GLASS)
 _RADIUS = 0.25

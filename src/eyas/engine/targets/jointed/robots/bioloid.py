@@ -7,8 +7,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, matt
 
-__all__ = ["MODEL"]
-
 _BRACKET, _SERVO, _WHITE, _HORN = (
     matt(0.72, 0.73, 0.74), matt(0.10, 0.10, 0.11), matt(0.90, 0.90, 0.90), matt(0.50, 0.51, 0.53)
 )  # fmt: skip

@@ -12,8 +12,6 @@ from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, matt, stack, wheel
 from eyas.lanes import exact
 
-__all__ = ["MODEL"]
-
 _RADIUS, _WHEEL = 0.1675, 0.031
 _SHELL, _BUMPER, _BAY = matt(0.88, 0.88, 0.87), matt(0.42, 0.43, 0.45), matt(0.16, 0.16, 0.17)
 _KEY, _TYRE, _HUB = matt(0.25, 0.62, 0.28), matt(0.10, 0.10, 0.11), matt(0.6, 0.6, 0.6)

@@ -10,8 +10,6 @@ from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, cylinder, matt, stack, wheel
 from eyas.lanes import exact
 
-__all__ = ["MODEL"]
-
 _SALMON, _PLATE, _BLUE = matt(0.80, 0.40, 0.40), matt(0.22, 0.22, 0.24), matt(0.16, 0.28, 0.72)
 _TYRE, _SONAR, _SCREEN = matt(0.10, 0.10, 0.11), matt(0.70, 0.60, 0.30), matt(0.35, 0.62, 0.38)
 _RADIUS = 0.05

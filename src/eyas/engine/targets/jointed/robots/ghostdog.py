@@ -8,8 +8,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, cylinder, matt
 
-__all__ = ["MODEL"]
-
 _WHITE, _AMBER, _RED, _GREY = (
     matt(0.94, 0.94, 0.94), matt(1.0, 0.70, 0.02), matt(0.82, 0.06, 0.05), matt(0.45, 0.46, 0.48)
 )  # fmt: skip

@@ -8,8 +8,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, cylinder, limb, matt, stack
 
-__all__ = ["MODEL"]
-
 _SILVER, _DARK, _BLUE, _LIGHT = (
     matt(0.66, 0.67, 0.70), matt(0.22, 0.23, 0.25), matt(0.14, 0.26, 0.66), matt(0.84, 0.85, 0.87)
 )  # fmt: skip

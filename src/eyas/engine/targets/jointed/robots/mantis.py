@@ -10,8 +10,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import bar, block, cylinder, matt, stack
 
-__all__ = ["MODEL"]
-
 _DARK, _SILVER, _STEEL, _SEAT = (
     matt(0.25, 0.26, 0.28), matt(0.74, 0.75, 0.77), matt(0.46, 0.48, 0.50), matt(0.08, 0.08, 0.09)
 )  # fmt: skip

@@ -8,8 +8,6 @@ from eyas.engine.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import block, cylinder, matt, stack
 
-__all__ = ["MODEL"]
-
 _GREY, _RED, _MAGENTA, _GREEN, _FOOT = (
     matt(0.78, 0.78, 0.78), matt(0.67, 0.02, 0.02), matt(1.0, 0.05, 1.0), matt(0.10, 0.62, 0.16),
     matt(0.35, 0.35, 0.37),

@@ -10,8 +10,6 @@ from eyas.engine.targets.jointed.figure import Figure, Joint
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import bar, block, matt, wheel
 
-__all__ = ["MODEL"]
-
 _BLUE = Material(tint=(0.19, 0.69, 1.0), surface=Surface.PAINT)
 _ROD, _TYRE, _HUB, _DARK = (
     matt(0.62, 0.64, 0.67), matt(0.09, 0.09, 0.10), matt(0.55, 0.57, 0.6), matt(0.16, 0.17, 0.19)

@@ -8,8 +8,6 @@ from eyas.engine.targets.jointed.figure import Figure, Joint
 from eyas.engine.targets.jointed.model import robot
 from eyas.engine.targets.jointed.outlines import bar, block, matt, wheel
 
-__all__ = ["MODEL"]
-
 _FOIL, _PANEL, _CELL = matt(0.80, 0.55, 0.20), matt(0.07, 0.10, 0.27), matt(0.14, 0.19, 0.42)
 _ARM, _WHEEL, _HUB, _WHITE = (
     matt(0.60, 0.57, 0.50), matt(0.52, 0.52, 0.53), matt(0.32, 0.32, 0.33), matt(0.86, 0.85, 0.82)

@@ -4,8 +4,6 @@ from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.finishes import TRIM
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-2.425, 0.98), (-2.36, 1.06), (-2.02, 1.66), (-1.75, 1.74), (-0.6, 1.80), (0.2, 1.78),
          (0.45, 1.72), (1.05, 1.18), (1.9, 1.08), (2.3, 0.96), (2.425, 0.80)),

@@ -6,8 +6,6 @@ from eyas.engine.world.cars.finishes import TRIM
 from eyas.engine.world.cars.frame import Axle
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-4.865, 2.90), (-4.80, 3.02), (-4.55, 3.10), (-3.9, 3.12), (4.1, 3.12), (4.6, 3.06),
          (4.79, 2.94), (4.865, 2.76)),

@@ -3,8 +3,6 @@
 from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-1.75, 0.84), (-1.70, 0.98), (-1.48, 1.36), (-1.1, 1.54), (-0.4, 1.60), (0.1, 1.58),
          (0.45, 1.48), (1.22, 0.98), (1.5, 0.86), (1.68, 0.74), (1.75, 0.60)),

@@ -3,8 +3,6 @@
 from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-2.5, 0.92), (-2.45, 1.02), (-1.85, 1.09), (-1.05, 1.40), (-0.5, 1.49), (0.0, 1.50),
          (0.25, 1.46), (0.98, 1.04), (1.9, 0.94), (2.35, 0.82), (2.5, 0.66)),

@@ -4,8 +4,6 @@ from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.finishes import TRIM
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-3.45, 2.50), (-3.38, 2.64), (-3.1, 2.70), (1.4, 2.70), (1.75, 2.62), (2.05, 2.40),
          (2.66, 1.52), (3.15, 1.28), (3.36, 1.12), (3.45, 0.90)),

@@ -15,8 +15,6 @@ from eyas.engine.world.cars.finishes import (
     TRIM,
 )
 
-__all__ = ["MODEL"]
-
 _POSTURE = Posture(
     hip=(-0.42, 0.0, 0.90),
     chest=(0.0, 0.0, 1.16),

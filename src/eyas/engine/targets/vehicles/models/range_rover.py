@@ -4,8 +4,6 @@ from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.finishes import BLACK_PAINT, TRIM
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-2.35, 1.00), (-2.28, 1.10), (-1.96, 1.58), (-1.7, 1.66), (-0.3, 1.70), (0.2, 1.68),
          (0.40, 1.64), (0.92, 1.20), (2.0, 1.10), (2.26, 1.00), (2.35, 0.84)),

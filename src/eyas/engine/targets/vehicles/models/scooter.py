@@ -5,8 +5,6 @@ from eyas.engine.targets.vehicles.two_wheelers import SEAT, Posture, lamp, two_w
 from eyas.engine.targets.vehicles.vehicle import VehicleModel
 from eyas.engine.world.cars.finishes import BRIGHT, GLASS, PAINT, PLATE, STEEL, TRIM
 
-__all__ = ["MODEL"]
-
 _POSTURE = Posture(
     hip=(-0.34, 0.0, 0.86),
     chest=(-0.22, 0.0, 1.24),

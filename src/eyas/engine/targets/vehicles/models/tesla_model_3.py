@@ -4,8 +4,6 @@ from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.finishes import ROOF_GLASS
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-2.4, 0.94), (-2.36, 1.05), (-2.0, 1.10), (-1.0, 1.40), (-0.4, 1.49), (0.0, 1.50),
          (0.3, 1.45), (1.28, 0.98), (1.9, 0.84), (2.25, 0.70), (2.4, 0.54)),

@@ -3,8 +3,6 @@
 from eyas.engine.targets.vehicles.car import car
 from eyas.engine.world.cars.shape import CarShape
 
-__all__ = ["MODEL"]
-
 _SHAPE = CarShape(
     top=((-2.25, 0.92), (-2.20, 1.02), (-2.05, 1.10), (-1.1, 1.38), (-0.4, 1.49), (0.0, 1.50),
          (0.25, 1.46), (1.32, 0.98), (1.8, 0.86), (2.12, 0.74), (2.25, 0.58)),

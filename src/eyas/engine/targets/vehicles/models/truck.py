@@ -2,8 +2,6 @@
 
 from eyas.engine.targets.vehicles.heavy import truck
 
-__all__ = ["MODEL"]
-
 MODEL = truck(
     "TruckSimple",
     mass=7500.0,

@@ -10,8 +10,6 @@ from eyas.engine.targets.vehicles.vehicle import Trailer, VehicleModel
 from eyas.engine.world.build.bodywork import BOX_DOORS, BOX_ROOF, BOX_SIDE, PLAIN
 from eyas.engine.world.cars.finishes import FREIGHT, SKIN_WHITE, TRIM
 
-__all__ = ["MODEL"]
-
 _STRIPE = replace(FREIGHT, tint=(0.68, 0.09, 0.09))
 
 

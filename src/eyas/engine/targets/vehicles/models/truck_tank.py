@@ -9,8 +9,6 @@ from eyas.engine.targets.vehicles.vehicle import Trailer, VehicleModel
 from eyas.engine.world.cars.finishes import BRIGHT, STEEL, TRIM
 from eyas.lanes import exact
 
-__all__ = ["MODEL"]
-
 
 def _tank_trailer(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     end, front = -vehicle.length / 2, vehicle.length / 2 - 3.15

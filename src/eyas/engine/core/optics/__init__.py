@@ -1,0 +1,4 @@
+"""Optics: the pinhole camera, and lenses that bend its rays.
+
+Begin with `pinhole.py`.
+"""

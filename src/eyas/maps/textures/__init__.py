@@ -1,0 +1,1 @@
+"""The textures: painted by formula (`library.py`), and shipped as data (`shipped.py`)."""
