@@ -1,5 +1,7 @@
 """The desert against the original's figures, and as a scene that holds together."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 import shapely
@@ -12,7 +14,7 @@ from eyas.engine.state.terrain import reliefs
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps.recipe import TRAFFIC_FILE
 from eyas.engine.world.roads.areas import joints, road_area
-from eyas.engine.world.weather import Season
+from eyas.engine.world.weather import RAIN, Season
 from eyas.maps.desert import DESERT
 from eyas.maps.desert.layout import lay_out
 from eyas.maps.desert.plan import DRIFT_HEIGHT
@@ -264,3 +266,18 @@ def test_stones_and_plants_are_ground_for_lidar_and_bodies(desert):
     wild = desert.fixtures.object_id[desert.object_class[desert.fixtures.object_id] == 0]
     assert len(wild) > 1500
     assert not set(solids_of(desert).thing.tolist()) & set(wild.tolist())
+
+
+def test_drifts_keep_away_from_each_other(plan):
+    middles = [drift.area.centroid for drift in plan.drifts]
+    pairs = [one.distance(other) for one, other in combinations(middles, 2)]
+    assert min(pairs) > 80.0
+
+
+def test_a_closed_sky_over_the_desert_is_warmer_than_elsewhere():
+    plain, here = RAIN.day, DESERT.light("rain")
+    for part in ("zenith_colour", "ambient_up", "fog_colour"):
+        red, _, blue = getattr(plain, part)
+        warm, _, cold = getattr(here, part)
+        assert warm > red
+        assert cold < blue
