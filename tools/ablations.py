@@ -20,16 +20,16 @@ from unittest.mock import patch
 import numpy as np
 
 import eyas
-from eyas.benchmark.comparison import differences
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker import tracker as flying
-from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
+from eyas.benchmark.policies.tracker.detector import Detector, TargetDetection, TargetPrior
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.policies.tracker.tracker import Tracker
-from eyas.benchmark.protocols import protocol_named
-from eyas.benchmark.record import EpisodeRecord
-from eyas.benchmark.result import RESULT, cell, load_run
-from eyas.benchmark.rows import rows_of
+from eyas.benchmark.protocols.table import protocol_named
+from eyas.benchmark.records.record import EpisodeRecord
+from eyas.benchmark.records.result import RESULT, cell, load_run
+from eyas.benchmark.statistics.comparison import differences
+from eyas.benchmark.statistics.table_rows import rows_of
 from eyas.engine.core.config import updated
 from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.file import load_settings, preset_file
@@ -70,14 +70,16 @@ class Row(NamedTuple):
     """Whether it has lessons of its own; else it flies by the network of `whole`."""
 
 
-def keep_no_key(tracker: Tracker, rows: np.ndarray, found: Found, sure: np.ndarray) -> None:
+def keep_no_key(
+    tracker: Tracker, rows: np.ndarray, found: TargetDetection, sure: np.ndarray
+) -> None:
     """Do not remember how targets look."""
 
 
 tells = Tracker._clue
 
 
-def tell_no_place(tracker: Tracker, rows: np.ndarray, *pose: np.ndarray) -> Clue:
+def tell_no_place(tracker: Tracker, rows: np.ndarray, *pose: np.ndarray) -> TargetPrior:
     """Return what the network is told, but for where a target is that it has a key of: without
     key nor place it could not know which one is meant.
     """
@@ -127,7 +129,9 @@ def teach_no_deviation(network: DetectorNetwork, answers: Any) -> Any:  # noqa: 
     return found
 
 
-def find_with_one_deviation(detector: Detector, pictures: np.ndarray, clue: Clue) -> Found:
+def find_with_one_deviation(
+    detector: Detector, pictures: np.ndarray, clue: TargetPrior
+) -> TargetDetection:
     """Find targets, with a deviation of one pixel."""
     found = finds(detector, pictures, clue)
     return found._replace(spread=np.ones_like(found.spread))

@@ -26,10 +26,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eyas.benchmark.record import EpisodeRecord
-from eyas.benchmark.result import load_run
-from eyas.benchmark.rows import figures_of
-from eyas.benchmark.statistics import (
+from eyas.benchmark.records.record import EpisodeRecord
+from eyas.benchmark.records.result import load_run
+from eyas.benchmark.statistics.intervals import (
     Clusters,
     Interval,
     clusters_of,
@@ -39,6 +38,7 @@ from eyas.benchmark.statistics import (
     restricted_mean_of,
     worst_fifth_of,
 )
+from eyas.benchmark.statistics.table_rows import figures_of
 
 SIZES = 12, 40, 100
 MEANS = "tsr", "cr", "flawless", "centre_error"

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from eyas.benchmark.entry import EntryClass, entry_class
+from eyas.benchmark.plan.entry import EntryClass, entry_class
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
+from eyas.benchmark.report.reproduce.tables import TABLES, Expected, ExpectedRow, Table, expected
 
 __all__ = ["standings"]
 

@@ -14,9 +14,9 @@ from plan_page import page_of_records, schema_text
 from standings import standings
 
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.reproduce.model_card import model_card
-from eyas.benchmark.reproduce.run import markdown
-from eyas.benchmark.reproduce.tables import TABLES, expected
+from eyas.benchmark.report.reproduce.model_card import model_card
+from eyas.benchmark.report.reproduce.run import markdown
+from eyas.benchmark.report.reproduce.tables import TABLES, expected
 from eyas.engine.exports.label import FIELDS, LabelField, label_schema
 
 DOCS = Path(__file__).parents[1] / "docs"

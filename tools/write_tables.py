@@ -8,8 +8,8 @@ What an interrupted run has left in the folder is not flown again.
 import argparse
 from pathlib import Path
 
-from eyas.benchmark.reproduce.run import made, write_expected
-from eyas.benchmark.reproduce.tables import TABLES
+from eyas.benchmark.report.reproduce.run import made, write_expected
+from eyas.benchmark.report.reproduce.tables import TABLES
 
 
 def main() -> None:

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from eyas.benchmark.api import evaluate as evaluate
     from eyas.benchmark.api import list_policies as list_policies
     from eyas.benchmark.api import list_protocols as list_protocols
-    from eyas.benchmark.box_trackers import BoxTracker as BoxTracker
-    from eyas.benchmark.protocols import protocol_named as protocol_named
+    from eyas.benchmark.policies.box_trackers import BoxTracker as BoxTracker
+    from eyas.benchmark.protocols.table import protocol_named as protocol_named
     from eyas.dat.observation import LegacyObservation as LegacyObservation
     from eyas.datasets.api import make_dataset as make_dataset
     from eyas.datasets.api import track as track
@@ -145,8 +145,8 @@ same build, settings and seed are the same to the bit."""
 
 _PLACES = {
     "benchmark.api": "evaluate list_policies list_protocols",
-    "benchmark.box_trackers": "BoxTracker",
-    "benchmark.protocols": "protocol_named",
+    "benchmark.policies.box_trackers": "BoxTracker",
+    "benchmark.protocols.table": "protocol_named",
     "dat.observation": "LegacyObservation",
     "datasets.api": "make_dataset track",
     "engine.api": "export make make_config make_vec record",

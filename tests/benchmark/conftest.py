@@ -3,7 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
+from eyas.benchmark.flight.policy_runner import fly_batch
+from eyas.benchmark.plan.plan import EvaluationPlan, batches
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import EvaluationPlan
 
 TOOL = Path(__file__).parents[2] / "tools" / "interval_coverage.py"
 

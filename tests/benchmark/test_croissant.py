@@ -4,11 +4,10 @@ import json
 import warnings
 from hashlib import sha256
 
-import mlcroissant
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import EvaluationPlan
 
 
 @pytest.fixture(scope="module")
@@ -19,6 +18,7 @@ def folder(tmp_path_factory):
 
 
 def test_the_metadata_are_valid_and_the_records_are_read(folder):
+    mlcroissant = pytest.importorskip("mlcroissant")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of mlcroissant's own
         data = mlcroissant.Dataset(folder / "croissant.json")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from own_policies import TimesOfLooks
 
-from eyas.benchmark.delay import PROFILES, delay_from
+from eyas.benchmark.plan.latency import PROFILES, delay_from
 from eyas.engine.core.errors import EyasError
 
 
@@ -24,6 +24,13 @@ def test_latencies_of_a_profile_are_the_episodes_own():
     both.begin([7, 8])
     alone = [one.next(0, 0.0) for _ in range(5)]
     assert [both.next(number, 0.0) for _ in range(5) for number in (0, 1)][1::2] == alone
+
+
+def test_the_first_measured_answers_are_free_as_libraries_warm_up():
+    delay = delay_from("measured")
+    for _ in range(2):  # each flight warms up anew
+        delay.begin([1])
+        assert [delay.next(0, 0.25) for _ in range(5)] == [0.0, 0.0, 0.0, 0.25, 0.25]
 
 
 def test_a_flight_with_a_profile_repeats_and_is_late(fly):

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.benchmark.entry import EntryClass, entry_class
-from eyas.benchmark.envelope import ENVELOPE
-from eyas.benchmark.plan import EvaluationPlan, check
-from eyas.benchmark.policies.apart import receive, send
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.entry import EntryClass, entry_class
+from eyas.benchmark.plan.plan import EvaluationPlan, check
+from eyas.benchmark.policies.sandbox import receive, send
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.run import run
+from eyas.benchmark.protocols.envelope import ENVELOPE
 from eyas.engine.core.errors import ConfigError
 
 HERE = Path(__file__).parent
@@ -224,8 +224,8 @@ def test_an_evaluation_that_is_killed_leaves_no_process(tmp_path):
     """The policy's process ends when its pipe is closed, even by SIGKILL."""
     code = (
         "import sys; sys.path.insert(0, sys.argv[1])\n"
-        "from eyas.benchmark.policies.apart import open_apart\n"
-        "policy = open_apart('cheats:Spinner', {}, sampled=False)\n"
+        "from eyas.benchmark.policies.sandbox import open_sandboxed\n"
+        "policy = open_sandboxed('cheats:Spinner', {}, sampled=False)\n"
         "print(policy._child._process.pid, flush=True)\n"
         "sys.stdin.read()"
     )

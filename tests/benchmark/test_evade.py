@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.evasion import Evasion, EvasionScenario, evasions_in, evasions_of
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.protocols import PROTOCOLS
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.flight.evasion import Evasion, EvasionScenario, evasions_in, evasions_of
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.targets.catalogue import MODELS
 

@@ -15,11 +15,11 @@ import pytest
 from typer.testing import CliRunner
 
 from eyas.benchmark.commands import _changes
-from eyas.benchmark.episode import seed_sets
-from eyas.benchmark.plan import EvaluationPlan, check
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.record import RecordFile, read_records
-from eyas.benchmark.run import run
+from eyas.benchmark.episodes.episode import seed_sets
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import EvaluationPlan, check
+from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.benchmark.records.record import RecordFile, read_records
 from eyas.cli.app import app
 from eyas.engine.core.errors import ConfigError, EyasError, OutputError
 

@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan, check
+from eyas.benchmark.plan.plan import EvaluationPlan, check
 from eyas.engine.core.errors import EyasError
 
 IMAGE = {"width": 16, "height": 12, "layout": "chw"}
@@ -145,7 +145,7 @@ def test_what_a_model_was_trained_with_travels_with_it(tmp_path, caplog):
     library = pytest.importorskip("stable_baselines3")
     from stable_baselines3.common.vec_env import DummyVecEnv, VecFrameStack
 
-    from eyas.benchmark.policies.sb3 import load_sb3
+    from eyas.benchmark.policies.sb3 import Sb3Policy
     from eyas.engine.envs.sb3 import EyasVecEnv
     from eyas.engine.envs.tracking_env import TrackingEnv
 
@@ -163,7 +163,7 @@ def test_what_a_model_was_trained_with_travels_with_it(tmp_path, caplog):
     ):
         model = library.PPO("CnnPolicy", env, n_steps=8, batch_size=8, device="cpu", seed=1)
         model.save(tmp_path / "model.zip")
-        policy = load_sb3(tmp_path / "model.zip", {}, sampled=False)
+        policy = Sb3Policy(tmp_path / "model.zip", {}, sampled=False)
         assert (policy.env.action_repeat, policy.env.actions) == (repeat, actions)
         if repeat == 4:
             assert policy.env == TrackingEnv(config).config.env
@@ -171,14 +171,14 @@ def test_what_a_model_was_trained_with_travels_with_it(tmp_path, caplog):
             assert policy.env.observation.frames == 2
         assert "start.height=30.0" in caplog.text
         assert "control.frequency=62.5" in caplog.text
-        changed = load_sb3(tmp_path / "model.zip", {"action_repeat": 2}, sampled=False)
+        changed = Sb3Policy(tmp_path / "model.zip", {"action_repeat": 2}, sampled=False)
         assert changed.env.action_repeat == 2
 
 
 @pytest.mark.slow
 def test_a_model_that_does_not_say_how_it_was_trained_is_said(tmp_path, caplog):
     library = pytest.importorskip("stable_baselines3")
-    from eyas.benchmark.policies.sb3 import load_sb3
+    from eyas.benchmark.policies.sb3 import Sb3Policy
 
     class Other(gymnasium.Env):
         observation_space = gymnasium.spaces.Box(0, 255, (3, 36, 36), np.uint8)
@@ -189,9 +189,9 @@ def test_a_model_that_does_not_say_how_it_was_trained_is_said(tmp_path, caplog):
 
     model = library.PPO("CnnPolicy", Other(), n_steps=8, batch_size=8, device="cpu")
     model.save(tmp_path / "model.zip")
-    load_sb3(tmp_path / "model.zip", {"action_repeat": 1}, sampled=False)
+    Sb3Policy(tmp_path / "model.zip", {"action_repeat": 1}, sampled=False)
     assert not caplog.records
-    load_sb3(tmp_path / "model.zip", {}, sampled=False)
+    Sb3Policy(tmp_path / "model.zip", {}, sampled=False)
     assert "--set env.action_repeat=4 changes it" in caplog.text
 
 

@@ -4,10 +4,10 @@ import pickle
 
 import pytest
 
-from eyas.benchmark.fliers import flown
-from eyas.benchmark.plan import EvaluationPlan, batches, stamp
-from eyas.benchmark.record import read_records
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.flight.policy_runner import flown
+from eyas.benchmark.plan.plan import EvaluationPlan, batches, stamp
+from eyas.benchmark.records.record import read_records
 from eyas.engine.core.errors import ConfigError
 
 PLAN = EvaluationPlan(policy="random", episodes=2, batch=3)
@@ -31,13 +31,13 @@ class LostError(Exception): ...
 def dying_after(count):
     """Return a cluster from which only so many batches come back."""
 
-    def flier(plan, parts, answers):
+    def runner(plan, parts, answers):
         for number, records in enumerate(last_first(plan, parts, answers)):
             if number == count:
                 raise LostError
             yield records
 
-    return flier
+    return runner
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +53,7 @@ def same(one, other):
 
 
 def test_batches_that_come_in_another_order_make_the_same_files(whole, tmp_path):
-    run(PLAN, tmp_path, quiet=True, flier=last_first)
+    run(PLAN, tmp_path, quiet=True, runner=last_first)
     same(tmp_path, whole)
     assert not (tmp_path / "timing.json").exists()
 
@@ -61,10 +61,10 @@ def test_batches_that_come_in_another_order_make_the_same_files(whole, tmp_path)
 @pytest.mark.parametrize("then", [last_first, None])
 def test_what_came_back_before_the_end_is_kept_and_the_rest_is_flown(whole, tmp_path, then):
     with pytest.raises(LostError):
-        run(PLAN, tmp_path, quiet=True, flier=dying_after(1))
+        run(PLAN, tmp_path, quiet=True, runner=dying_after(1))
     kept = read_records(tmp_path / "episodes.jsonl")
     assert {record.name for record in kept} == {episode.name for episode in batches(PLAN)[-1]}
-    run(PLAN, tmp_path, quiet=True, resume=True, **({"flier": then} if then else {}))
+    run(PLAN, tmp_path, quiet=True, resume=True, **({"runner": then} if then else {}))
     same(tmp_path, whole)
 
 

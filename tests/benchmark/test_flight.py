@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.meter import published
-from eyas.benchmark.plan import EvaluationPlan, batches, check, fly_batch
-from eyas.benchmark.record import EpisodeRecord
+from eyas.benchmark.flight.meter import published
+from eyas.benchmark.flight.policy_runner import fly_batch
+from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
+from eyas.benchmark.records.record import EpisodeRecord
 from eyas.engine.core.errors import EyasError
 
 

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.fitting import first_fitting
-from eyas.benchmark.plan import EvaluationPlan, opened
-from eyas.benchmark.policies.follow import follow
-from eyas.benchmark.policies.oracle_helm import flown_over
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.first_fitting import first_fitting
+from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED, leaves_its_way
+from eyas.benchmark.plan.plan import EvaluationPlan, opened
+from eyas.benchmark.policies import follow
+from eyas.benchmark.policies.oracle_commands import flown_over
 from eyas.benchmark.policies.predictors import constant_velocity
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.setting_out import AT_REST, AT_SPEED, leaves_its_way
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.settings.env import EnvConfig

@@ -6,13 +6,12 @@ import shutil
 import pytest
 from typer.testing import CliRunner
 
-from eyas.benchmark.leaderboard import page
-from eyas.benchmark.leaderboard.card import read_card
-from eyas.benchmark.leaderboard.mark import KEY_VARIABLE
-from eyas.benchmark.leaderboard.submission import submissions_in
-from eyas.benchmark.leaderboard.verify import Verdict, verify
-from eyas.benchmark.plan import EvaluationPlan
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import EvaluationPlan
+from eyas.benchmark.report.leaderboard import page
+from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE
+from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
+from eyas.benchmark.report.leaderboard.verify import Verdict, verify
 from eyas.cli.app import app
 from eyas.engine.core.errors import EyasError
 

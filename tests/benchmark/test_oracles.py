@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
 from eyas.benchmark.policies.lane_graph import SPACING, Lanes, lane_graph
 from eyas.benchmark.policies.predictors import AlongLanes, ConstantVelocity
 from eyas.benchmark.policies.road_search import RoadSearch
-from eyas.benchmark.policies.sighted import Clue, Motion
+from eyas.benchmark.policies.sighted import Clue, LastMotion
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.sim.scenes import load_network
 from eyas.engine.traffic.config import TrafficConfig
@@ -113,7 +113,7 @@ def _errors(predictor, seconds):
     off, count = [], recording.actors
     for at in range(500, 5000, 1500):
         later = at + round(seconds * recording.rate)
-        seen = Motion(tracks.position[at], tracks.velocity[at], tracks.yaw[at], np.zeros(count))
+        seen = LastMotion(tracks.position[at], tracks.velocity[at], tracks.yaw[at], np.zeros(count))
         start = Start(np.arange(count), lambda: np.zeros((count, 4)), None, lambda: [roads] * count)
         predictor.begin(start)
         every, nobody = np.ones(count, np.bool_), np.zeros(count, np.bool_)

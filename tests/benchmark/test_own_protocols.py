@@ -11,12 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 import eyas
-from eyas.benchmark.box_trackers import BOX_TRACKERS
-from eyas.benchmark.comparison import refuse_incomparable
-from eyas.benchmark.entry import entry_class
-from eyas.benchmark.leaderboard import page
-from eyas.benchmark.leaderboard.submission import complete_run
-from eyas.benchmark.plan import EvaluationPlan, opened
+from eyas.benchmark.plan.entry import entry_class
+from eyas.benchmark.plan.plan import EvaluationPlan, opened
+from eyas.benchmark.policies.box_trackers import BOX_TRACKERS
 from eyas.benchmark.policies.table import (
     ORACLES,
     POLICIES,
@@ -24,10 +21,13 @@ from eyas.benchmark.policies.table import (
     policy_names,
     runs_code,
 )
-from eyas.benchmark.protocol import Protocol
-from eyas.benchmark.protocols import PROTOCOLS, protocol_named
 from eyas.benchmark.protocols.flown import FLOWN
-from eyas.benchmark.result import load_run
+from eyas.benchmark.protocols.protocol import Protocol
+from eyas.benchmark.protocols.table import PROTOCOLS, protocol_named
+from eyas.benchmark.records.result import load_run
+from eyas.benchmark.report.leaderboard import page
+from eyas.benchmark.report.leaderboard.submission import complete_run
+from eyas.benchmark.statistics.comparison import refuse_incomparable
 from eyas.cli.app import app
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError, UnknownNameError
 from eyas.engine.core.own_code import origin_of

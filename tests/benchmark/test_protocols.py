@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.benchmark.episode import Place, episodes_of
-from eyas.benchmark.episode_batch import episode_groups
-from eyas.benchmark.flight import clear_shares
-from eyas.benchmark.neighbours import NEAR, with_neighbours
-from eyas.benchmark.protocols import PROTOCOLS
+from eyas.benchmark.episodes.episode import Place, episodes_of
+from eyas.benchmark.episodes.episode_batch import episode_groups
+from eyas.benchmark.episodes.neighbours import NEAR, with_neighbours
+from eyas.benchmark.flight.batch_flight import clear_shares
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.losses import (
+from eyas.benchmark.episodes import target_losses
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.from_above import FromAbove
+from eyas.benchmark.episodes.target_losses import (
     COVERED,
     SEARCH_LIMIT,
     Loss,
@@ -17,12 +17,14 @@ from eyas.benchmark.losses import (
     hidden_spans,
     losses_by_things,
 )
-from eyas.benchmark.plots import draw_plots
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.flight.recovery import RecoveryScenario, followed, recovery_figures
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.predictors import ConstantVelocity
 from eyas.benchmark.policies.sighted import SightOracle
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.recovery import RecoveryScenario, followed, recovery_figures
+from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.benchmark.report.plots import draw_plots
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.policies.policy import Decision
 from eyas.engine.policies.sight import visible_shares
@@ -163,6 +165,21 @@ def test_another_vehicle_is_followed_if_it_stays_in_the_middle():
     middle[80:89] = 7
     assert followed(middle, loss, period)
     assert not followed(np.roll(middle, 120), loss, period)  # long after
+
+
+def test_a_target_that_comes_out_where_it_vanished_makes_no_episode(monkeypatch):
+    """A drone that only waits would have it in its picture again."""
+    protocol = PROTOCOLS.get("recover")
+    looks = round(protocol.steps * protocol.period / 0.256)
+    shares = np.ones((2, looks))
+    shares[:, 40:60] = 0.0  # 5.1 s
+    places = np.zeros((2, looks, 2))
+    places[0, 40:, 0], places[1, 40:, 0] = 11.9, 12.1  # both vanish at look 39
+    seen = FromAbove(shares, places)
+    monkeypatch.setattr(target_losses, "seen_from_above", lambda *_: seen)
+    near, far = losses_by_things([None, None], protocol)
+    assert near == []
+    assert len(far) == 1
 
 
 def test_hidden_spans_join_over_glimpses():

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark import from_above
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.episode_batch import EpisodeBatch, episode_groups
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.look_alikes import CASES, COLOURS, case_of
-from eyas.benchmark.neighbours import CLOSE, COMPANY
+from eyas.benchmark.episodes import from_above
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch, episode_groups
+from eyas.benchmark.episodes.look_alikes import CASES, COLOURS, case_of
+from eyas.benchmark.episodes.neighbours import CLOSE, COMPANY
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
 from eyas.benchmark.protocols.crowd import switches
 from eyas.benchmark.protocols.referring import ReferringScenario
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.policies.policy import Instruction, PolicyInput, Start
 from eyas.engine.policies.sight import subjects
 from eyas.engine.settings.env import EnvConfig
@@ -138,7 +138,7 @@ def test_what_can_be_seen_is_measured_above_the_target(monkeypatch):
         middles.append(np.hypot(*away[:, :2].T))
         return subjects(simulation, *others)
 
-    monkeypatch.setattr("eyas.benchmark.episode_batch.subjects", looked)
+    monkeypatch.setattr("eyas.benchmark.episodes.episode_batch.subjects", looked)
     from_above._seen(specs, protocol, 0.128)
     assert len(middles) == 10
     assert np.max(middles) < 2.0
@@ -156,7 +156,7 @@ def test_observations_hold_the_words_of_the_variant_not_the_truth():
     specs, group = group_of([FIRST], tuple(PROTOCOL.variants))
     env = EnvConfig.model_validate({"observation": {"parts": ["words", "attributes"]}})
     batch = EpisodeBatch(specs, PROTOCOL, env)
-    told = ReferringScenario(batch, PROTOCOL, specs).told()
+    told = ReferringScenario(batch, PROTOCOL, specs).instruction()
     batch.tell(told)
     everyone = np.ones(4, np.bool_)
     batch.look(everyone, everyone)

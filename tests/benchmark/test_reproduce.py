@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from eyas.benchmark.plan import EvaluationPlan, check
+from eyas.benchmark.plan.plan import EvaluationPlan, check
 from eyas.benchmark.policies.shipped import shipped_names
-from eyas.benchmark.reproduce import run as reproduce
-from eyas.benchmark.reproduce import tables
-from eyas.benchmark.reproduce.run import made, markdown, run
-from eyas.benchmark.reproduce.tables import (
+from eyas.benchmark.report.reproduce import run as reproduce
+from eyas.benchmark.report.reproduce import tables
+from eyas.benchmark.report.reproduce.run import made, markdown, run
+from eyas.benchmark.report.reproduce.tables import (
     TABLES,
     Expected,
     Row,

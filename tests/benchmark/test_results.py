@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from eyas.benchmark import films as evaluation_films
-from eyas.benchmark.comparison import differences, text_of
-from eyas.benchmark.films import chosen_flights
-from eyas.benchmark.leaderboard import page as leaderboard
-from eyas.benchmark.plan import _NOT_FLOWN, EvaluationPlan, batches
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.record import read_records
-from eyas.benchmark.result import FEW_SEEDS, NO_INTERVALS, load_run, table
-from eyas.benchmark.rows import rows_of, thirds
-from eyas.benchmark.run import run
+from eyas.benchmark.evaluation import run
+from eyas.benchmark.plan.plan import _NOT_FLOWN, EvaluationPlan, batches
+from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.benchmark.records.record import read_records
+from eyas.benchmark.records.result import FEW_SEEDS, NO_INTERVALS, load_run, table
+from eyas.benchmark.report import films as evaluation_films
+from eyas.benchmark.report.films import chosen_flights
+from eyas.benchmark.report.leaderboard import page as leaderboard
+from eyas.benchmark.statistics.comparison import differences, text_of
+from eyas.benchmark.statistics.table_rows import rows_of, thirds
 from eyas.cli.app import app
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.identity.build import this_build
@@ -113,19 +113,21 @@ def other_build(folder, out, room):
 
 
 def test_what_another_build_has_flown_is_compared_and_continued_only_if_asked(folder, tmp_path):
-    changed = other_build(folder / "follow", tmp_path / "a", "targets")
+    changed = other_build(folder / "follow", tmp_path / "a", "engine/targets")
     words = ["compare", str(folder / "hover"), str(changed)]
     answer = CliRunner().invoke(app, words)
     assert isinstance(answer.exception, EyasError)
-    assert "of Eyas; the world differs in targets; fly one again, or" in str(answer.exception)
+    assert "of Eyas; the world differs in engine/targets; fly one again, or" in str(
+        answer.exception
+    )
     assert "B - A" in CliRunner().invoke(app, [*words, "--across-builds"]).output
-    figures = other_build(folder / "follow", tmp_path / "b", "evaluation")
+    figures = other_build(folder / "follow", tmp_path / "b", "benchmark")
     answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(figures)])
-    assert "they differ in evaluation;" in str(answer.exception)
-    heard = other_build(folder / "follow", tmp_path / "c", "wire")
+    assert "they differ in benchmark;" in str(answer.exception)
+    heard = other_build(folder / "follow", tmp_path / "c", "robotics")
     assert "B - A" in CliRunner().invoke(app, ["compare", words[1], str(heard)]).output
     plan, _ = load_run(changed)
-    with pytest.raises(EyasError, match=r"cannot be continued: .* differs from this one in targe"):
+    with pytest.raises(EyasError, match=r"cannot be continued: .* differs from this one in engin"):
         run(plan.plan, changed, resume=True, quiet=True)
     run(plan.plan, heard, resume=True, quiet=True)
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from eyas.benchmark.entry import entry_class
+from eyas.benchmark.plan.entry import entry_class
 from eyas.benchmark.policies.shipped import TRAINED, card_of, file_of, shipped_names
 from eyas.benchmark.policies.table import fingerprint, open_policy
 from eyas.engine.core.errors import EyasError

@@ -7,12 +7,12 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from eyas.benchmark.chosen import CELL, TRIED
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.plan import EvaluationPlan, batches, check
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.solvable import SOLVED
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.even_choice import CELL, TRIED
+from eyas.benchmark.flight.policy_runner import SOLVED
+from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.settings.env import EnvConfig
@@ -117,7 +117,7 @@ def test_unseen_is_flown_elsewhere_and_needs_no_sumo():
     code = (
         "import sys\n"
         "sys.modules.update(dict.fromkeys(['libsumo', 'sumo', 'sumolib', 'traci']))\n"
-        "from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch\n"
+        "from eyas.benchmark.plan.plan import EvaluationPlan, batches, fly_batch\n"
         f"plan = EvaluationPlan(policy='hover', episodes=1, **{one})\n"
         "parts = batches(plan)\n"
         "part = [episode for part in parts for episode in part][:1]\n"

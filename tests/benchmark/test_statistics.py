@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.benchmark.statistics import (
+from eyas.benchmark.statistics.intervals import (
     clusters_of,
     difference_interval,
     episodes_to_tell,

@@ -5,17 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import Place
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.messages import MESSAGE, Radio
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.plan import EvaluationPlan, batches, check, fly_batch
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.flight.policy_runner import fly_batch
+from eyas.benchmark.flight.team import SEARCH_LIMIT, TeamScenario
+from eyas.benchmark.flight.team_radio import MESSAGE, Radio
+from eyas.benchmark.plan.latency import delay_from
+from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
 from eyas.benchmark.policies.simple import Hover
 from eyas.benchmark.policies.table import open_policy
-from eyas.benchmark.protocols import PROTOCOLS
-from eyas.benchmark.team import SEARCH_LIMIT, TeamScenario
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import Decision
 from eyas.engine.settings.env import EnvConfig

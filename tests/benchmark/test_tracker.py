@@ -5,18 +5,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.entry import EntryClass, entry_class
-from eyas.benchmark.episode import Place
-from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.entry import EntryClass, entry_class
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, LAGS, PAST, Course
-from eyas.benchmark.policies.tracker.detector import Clue, Detector
+from eyas.benchmark.policies.tracker.detector import Detector, TargetPrior
 from eyas.benchmark.policies.tracker.ground import Ground
-from eyas.benchmark.policies.tracker.helm import Helm
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
-from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.policies.tracker.steering import Steering
+from eyas.benchmark.protocols.table import protocol_named
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import PolicyInput, Start, env_config
 
@@ -41,13 +41,13 @@ def test_a_drone_that_follows_late_is_not_asked_twice_for_the_same_way(lag, last
     """It stands yet, 5 m from its target; its commands of a second lead it most of the way."""
     env = env_config({"actions": "velocity", "action_repeat": 4})
     ground = Ground(TrackerSettings(), (60, 80))
-    helm = Helm(1, env, ground, 0.05, lag)
+    steering = Steering(1, env, ground, 0.05, lag)
     row, place = np.zeros(1, np.int64), np.zeros((1, 2))
     target = ground.middle[None] + [5.0, 0.0], np.zeros((1, 2))
     told = []
     for _ in range(40):
-        since = helm.time_since(row, None)
-        told.append(helm.steer(row, (place, np.zeros(1)), since, target)[0, 0])
+        since = steering.time_since(row, None)
+        told.append(steering.steer(row, (place, np.zeros(1)), since, target)[0, 0])
     assert told[0] == pytest.approx(5.0 * 0.05 / 0.032)
     assert told[-1] == pytest.approx(last, abs=0.01)
 
@@ -74,7 +74,7 @@ AHEAD = np.zeros((1, len(HORIZONS), 3), np.float32)
 def told():
     past = np.zeros((1, PAST), np.float32)
     key, known = np.zeros((1, 2), np.float32), np.ones(1, np.bool_)
-    return Clue(np.zeros((1, 2)), np.ones(1), key, known, past)
+    return TargetPrior(np.zeros((1, 2)), np.ones(1), key, known, past)
 
 
 def found(*shares):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.benchmark.meter import watched
+from eyas.benchmark.flight.meter import watched
 
 
 def of(text, *, broken_off=False):

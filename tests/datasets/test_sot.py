@@ -9,9 +9,6 @@ from io import StringIO
 
 import numpy as np
 import pytest
-from got10k.datasets import DTB70, GOT10k
-from got10k.experiments import ExperimentGOT10k
-from got10k.trackers import Tracker
 
 from eyas.datasets.formats.sot import cover_levels
 from eyas.engine.exports.checksums import CHECKSUMS, checksum_lines, read_checksums
@@ -39,9 +36,18 @@ def clipped(label) -> list[int]:
     return [left, top, right - left, bottom - top]
 
 
+@pytest.fixture
+def got10k():
+    """The toolkit of GOT-10k, of the extra `checkers`."""
+    pytest.importorskip("got10k.trackers")
+    pytest.importorskip("got10k.datasets")
+    pytest.importorskip("got10k.experiments")
+    return pytest.importorskip("got10k")
+
+
 @pytest.mark.parametrize("subset", ["train", "val"])
-def test_got10k_loads(exported, shown, subset):
-    loaded = quiet(GOT10k, exported("got10k"), subset=subset, return_meta=True)
+def test_got10k_loads(got10k, exported, shown, subset):
+    loaded = quiet(got10k.datasets.GOT10k, exported("got10k"), subset=subset, return_meta=True)
     episodes = {episode.name: episode for episode in shown.split(subset)}
     assert loaded.seq_names == list(episodes)
     for name, (pictures, boxes, facts) in zip(loaded.seq_names, loaded, strict=True):
@@ -66,23 +72,22 @@ def test_levels_of_cover_are_those_of_got10k(share, level):
     assert cover_levels(np.array([share])).tolist() == [level]
 
 
-class Still(Tracker):
-    """A tracker that never moves."""
-
-    def __init__(self):
-        super().__init__("Still", is_deterministic=True)
-
-    def init(self, image, box):
-        self.box = box
-
-    def update(self, image):
-        return self.box
-
-
 @pytest.mark.filterwarnings("ignore:.*(Mean of empty slice|invalid value|figure):RuntimeWarning")
-def test_got10k_runs_a_tracker_and_writes_its_report(exported, tmp_path):
+def test_got10k_runs_a_tracker_and_writes_its_report(got10k, exported, tmp_path):
+    class Still(got10k.trackers.Tracker):
+        """A tracker that never moves."""
+
+        def __init__(self):
+            super().__init__("Still", is_deterministic=True)
+
+        def init(self, image, box):
+            self.box = box
+
+        def update(self, image):
+            return self.box
+
     experiment = quiet(
-        ExperimentGOT10k, exported("got10k"), subset="val",
+        got10k.experiments.ExperimentGOT10k, exported("got10k"), subset="val",
         result_dir=str(tmp_path / "results"), report_dir=str(tmp_path / "reports"),
     )  # fmt: skip
     quiet(experiment.run, Still())
@@ -91,8 +96,8 @@ def test_got10k_runs_a_tracker_and_writes_its_report(exported, tmp_path):
     assert (tmp_path / "reports/GOT-10k/Still/performance.json").is_file()
 
 
-def test_dtb70_loads(exported, shown):
-    loaded = quiet(DTB70, exported("dtb70") / "train")
+def test_dtb70_loads(got10k, exported, shown):
+    loaded = quiet(got10k.datasets.DTB70, exported("dtb70") / "train")
     for name, (pictures, boxes) in zip(loaded.seq_names, loaded, strict=True):
         (episode,) = (each for each in shown if each.name == name)
         assert len(pictures) == len(episode)

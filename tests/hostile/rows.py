@@ -480,7 +480,7 @@ def _proto(folder, chance, most):
 
 @row("latencies")
 def _latencies(folder, chance, most):
-    from eyas.benchmark.delay import delay_from
+    from eyas.benchmark.plan.latency import delay_from
 
     path = folder / "latency.txt"
     path.write_text("12.5\n30\n44\n")
@@ -503,7 +503,7 @@ def _drone_log(folder, chance, most):
 
 @row("policy messages")
 def _messages(folder, chance, most):
-    from eyas.benchmark.policies.apart import receive, send
+    from eyas.benchmark.policies.sandbox import receive, send
 
     path, stream = folder / "message", io.BytesIO()
     send(stream, {"a": 1}, [np.zeros((3, 4), np.float32)])
@@ -547,10 +547,10 @@ RECORD = {
 
 @row("records")
 def _records(folder, chance, most):
-    from eyas.benchmark.protocols import PROTOCOLS, protocol_named
-    from eyas.benchmark.record import read_records
-    from eyas.benchmark.result import table
-    from eyas.benchmark.rows import rows_of
+    from eyas.benchmark.protocols.table import PROTOCOLS, protocol_named
+    from eyas.benchmark.records.record import read_records
+    from eyas.benchmark.records.result import table
+    from eyas.benchmark.statistics.table_rows import rows_of
 
     path = folder / "episodes.jsonl"
     path.write_text(json.dumps(RECORD))
@@ -567,8 +567,8 @@ def _records(folder, chance, most):
 
 @row("stamp")
 def _stamp(folder, chance, most):
-    from eyas.benchmark.plan import EvaluationPlan, stamp
-    from eyas.benchmark.result import STAMP, load_run
+    from eyas.benchmark.plan.plan import EvaluationPlan, stamp
+    from eyas.benchmark.records.result import STAMP, load_run
 
     path = folder / STAMP
     path.write_text(stamp(EvaluationPlan(policy="hover")).model_dump_json())
@@ -577,7 +577,7 @@ def _stamp(folder, chance, most):
 
 @row("card")
 def _card(folder, chance, most):
-    from eyas.benchmark.leaderboard.card import CARD, read_card
+    from eyas.benchmark.report.leaderboard.submission import CARD, read_card
 
     path = folder / CARD
     path.write_text(json.dumps({"name": "x", "authors": ["y"], "link": "https://a.b/c"}))
@@ -586,7 +586,7 @@ def _card(folder, chance, most):
 
 @row("mark")
 def _mark(folder, chance, most):
-    from eyas.benchmark.leaderboard.mark import MARK, fitting_mark
+    from eyas.benchmark.report.leaderboard.mark import MARK, fitting_mark
 
     path = folder / MARK
     path.write_text(json.dumps({"build": "b", "seed": 1, "flown": ["a"], "episodes": 2,
@@ -596,7 +596,7 @@ def _mark(folder, chance, most):
 
 @row("submission")
 def _submission(folder, chance, most):
-    from eyas.benchmark.leaderboard.submission import _text_in
+    from eyas.benchmark.report.leaderboard.submission import _text_in
 
     path = folder / "timing.json"
     path.write_text(json.dumps({"machine": "a fast one", "mean_ms": 3.5}))

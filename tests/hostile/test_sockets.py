@@ -363,7 +363,7 @@ def asyncio_run(loop, task):
 
 
 def feed_policy(simulation, tmp_path, caplog):
-    from eyas.benchmark.policies.apart import _decision, receive, send
+    from eyas.benchmark.policies.sandbox import _decision, receive, send
 
     chance, whole = random.Random(7), io.BytesIO()
     send(whole, {"failed": {}}, [np.zeros((2, 3)), np.zeros(2)])
@@ -391,7 +391,7 @@ FEEDERS = {
     ("robotics/ros/dds.py", "take"): feed_ros,
     ("demo/server.py", "async for"): feed_demo,
     ("demo/server.py", "process_request"): feed_demo,
-    ("benchmark/policies/apart.py", "read"): feed_policy,
+    ("benchmark/policies/sandbox.py", "read"): feed_policy,
     ("cli/bench/measurement.py", "read"): None,  # counters of this machine's own system
 }
 

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import Place
-from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, Course
 from eyas.benchmark.policies.tracker.detector import Detector
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.tracker import Tracker
-from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.protocols.table import protocol_named
 from eyas.learning.tracking import flights, lessons, training
 from eyas.learning.tracking.pilots import Oracle
 from eyas.learning.tracking.samples import GROUP, Samples

@@ -9,15 +9,15 @@ import pytest
 import torch
 from typer.testing import CliRunner
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import Place
-from eyas.benchmark.flight import BatchFlight
+from eyas.benchmark.episodes.episode import Place
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
 from eyas.benchmark.policies.tracker.detector import OUTPUTS
 from eyas.benchmark.policies.tracker.metadata import OBSERVED
 from eyas.benchmark.policies.tracker.settings import FLOWN, TrackerSettings
-from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.protocols.table import protocol_named
 from eyas.cli.app import app
 from eyas.engine.core.config import updated
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError

@@ -14,7 +14,8 @@ pytest.importorskip("torch")
 
 import torch
 
-from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
+from eyas.benchmark.flight.policy_runner import fly_batch
+from eyas.benchmark.plan.plan import EvaluationPlan, batches
 from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.identity.build import this_build
@@ -216,18 +217,18 @@ def test_a_run_of_another_build_is_not_resumed_but_may_be_taught_further(tmp_pat
     train(config, tmp_path / "run", say=quiet)
     path = tmp_path / "run" / "checkpoint.pt"
     saved = torch.load(path, weights_only=True)
-    saved["build"]["rooms"] |= {"task": "0", "wire": "0"}
+    saved["build"]["rooms"] |= {"engine/task": "0", "robotics": "0"}
     torch.save(saved, path)
     with pytest.raises(
-        EyasError, match=r"differs from this one in task; resume with that"
+        EyasError, match=r"differs from this one in engine/task; resume with that"
     ) as caught:
         train(config, tmp_path / "run", resume=True, say=quiet)
     assert "\n" not in str(caught.value)
     further = updated(config, {"train": {"begin_from": str(tmp_path / "run")}})
     train(further, tmp_path / "second", say=quiet)
-    saved["build"]["rooms"] |= {"task": this_build().rooms["task"]}
+    saved["build"]["rooms"] |= {"engine/task": this_build().rooms["engine/task"]}
     torch.save(saved, path)
-    train(config, tmp_path / "run", resume=True, say=quiet)  # `wire` has no part in it
+    train(config, tmp_path / "run", resume=True, say=quiet)  # `robotics` has no part in it
 
 
 def test_what_another_run_has_learned_is_taught_further(tmp_path):

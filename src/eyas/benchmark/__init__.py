@@ -1,5 +1,5 @@
 """Policies, protocols and figures: the same episodes for all, with their uncertainty.
 
-May import: `envs` and all rooms below.
-Begin with `plan.py`; a policy: `policies/policy.py`. Private: `eyas` offers what is public.
+May import: `engine`, `lanes`.
+Begin with `README.md`, then `plan/plan.py` and `flight/batch_flight.py`.
 """

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 if TYPE_CHECKING:
-    from eyas.benchmark.record import EpisodeRecord
+    from eyas.benchmark.records.record import EpisodeRecord
 
 __all__ = ["evaluate", "list_policies", "list_protocols"]
 
@@ -22,7 +22,7 @@ class EvaluationChoices(TypedDict, total=False):
     target: Names
     """A target, or several; by default SUMO_VEHICLE."""
     episodes: int
-    """For each place and start direction; by default the protocol's number."""
+    """Episodes of each place and start direction; by default the protocol's number."""
     seeds: int | Sequence[int]
     """Seed of the first episode of each set of episodes: one, or several."""
     latency: str
@@ -63,8 +63,8 @@ def evaluate(
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
     """
-    from eyas.benchmark.plan import EvaluationPlan, folder_name
-    from eyas.benchmark.run import run
+    from eyas.benchmark.evaluation import run
+    from eyas.benchmark.plan.plan import EvaluationPlan, folder_name
     from eyas.engine.core.config import validated
     from eyas.engine.core.errors import UnknownNameError
 
@@ -92,6 +92,6 @@ def list_policies() -> tuple[str, ...]:
 
 def list_protocols() -> tuple[str, ...]:
     """Return the names of the protocols: of Eyas, and of packages that are installed."""
-    from eyas.benchmark.protocols import PROTOCOLS
+    from eyas.benchmark.protocols.table import PROTOCOLS
 
     return PROTOCOLS.names()

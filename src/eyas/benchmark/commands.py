@@ -1,4 +1,4 @@
-"""`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
+"""`eyas evaluate`, `compare`, `leaderboard`, `reproduce` and `policies`."""
 
 import json
 from contextlib import AbstractContextManager, nullcontext
@@ -8,21 +8,24 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.terminal.options import POLICIES, SEVERAL
+from eyas.engine.terminal.options import (
+    SEVERAL,
+    AsJson,
+    Overwrite,
+    Plots,
+    Quiet,
+    Ray,
+    Resume,
+    by_policy,
+    to_write,
+)
 
 if TYPE_CHECKING:
-    from eyas.benchmark.fliers import Flier
+    from eyas.benchmark.flight.policy_runner import Runner
 
-__all__ = ["compare", "evaluate", "leaderboard"]
+__all__ = ["compare", "evaluate", "leaderboard", "policies", "reproduce"]
 
 
-_Policy = Annotated[
-    str,
-    typer.Option(
-        "--policy",
-        help=f"{POLICIES}, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
-    ),
-]
 _Protocol = Annotated[
     str,
     typer.Option(
@@ -89,28 +92,16 @@ _Changes = Annotated[
         "camera, start.velocity or extras makes another protocol.",
     ),
 ]
-_Out = Annotated[Path | None, typer.Option("--out", help="Folder to write to.")]
 _AsPublished = Annotated[
     bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
-]
-_Plots = Annotated[
-    bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
 ]
 _Videos = Annotated[
     bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
 ]
-_Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted evaluation.")]
-_Overwrite = Annotated[
-    bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
-]
-_Ray = Annotated[
-    bool, typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster).")
-]
-_Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
 
 
-def evaluate(  # noqa: PLR0913  # one parameter for each option
-    policy: _Policy,
+def evaluate(
+    policy: Annotated[str, by_policy("")],
     protocol: _Protocol = "paper",
     maps: _Maps = None,
     weathers: _Weathers = None,
@@ -124,21 +115,21 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     in_process: _InProcess = False,
     batch: _Batch = 64,
     set_: _Changes = None,
-    out: _Out = None,
+    out: Annotated[Path | None, to_write("Folder to write to.")] = None,
     as_published: _AsPublished = False,
-    plots: _Plots = False,
+    plots: Plots = False,
     videos: _Videos = False,
-    resume: _Resume = False,
-    overwrite: _Overwrite = False,
-    ray: _Ray = False,
-    quiet: _Quiet = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    ray: Ray = False,
+    quiet: Quiet = False,
 ) -> None:
     """Fly a policy in the episodes of a protocol, and tell how well it tracks.
 
     The exit code is 1 if the policy has failed in all episodes.
     """
-    from eyas.benchmark.episode import seed_sets
-    from eyas.benchmark.plan import EvaluationPlan, folder_name
+    from eyas.benchmark.episodes.episode import seed_sets
+    from eyas.benchmark.plan.plan import EvaluationPlan, folder_name
     from eyas.engine.core.config import validated
 
     values: dict[str, Any] = {
@@ -162,30 +153,30 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
     if ray and latency == "measured":
         raise ConfigError("--ray: not together with --latency measured: that is of this machine")
-    with _flier(ray=ray) as flier:
+    with _runner(ray=ray) as runner:
         common: Any = {"resume": resume, "overwrite": overwrite, "plots": plots, "quiet": quiet}
         if latency_curve:
-            from eyas.benchmark.latency_curve import run_curve
+            from eyas.benchmark.report.latency_curve import run_curve
 
-            records = run_curve(plan, folder, flier=flier, **common)
+            records = run_curve(plan, folder, runner=runner, **common)
         else:
-            from eyas.benchmark.run import run
+            from eyas.benchmark.evaluation import run
 
             own: Any = {"as_published": as_published, "videos": videos}
-            records = run(plan, folder, flier=flier, **own, **common)
+            records = run(plan, folder, runner=runner, **own, **common)
     if all(record.error is not None for record in records):
         raise typer.Exit(1)
 
 
-def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
+def _runner(*, ray: bool) -> "AbstractContextManager[Runner]":
     """Return what flies the batches."""
     if ray:
-        from eyas.benchmark.fliers import on_ray
+        from eyas.benchmark.flight.policy_runner import on_ray
 
         return on_ray()
-    from eyas.benchmark.fliers import fly_here
+    from eyas.benchmark.flight.policy_runner import run_here
 
-    return nullcontext(fly_here)
+    return nullcontext(run_here)
 
 
 _FREE = (["start", "velocity"], ["extras"])
@@ -193,11 +184,7 @@ _FREE = (["start", "velocity"], ["extras"])
 
 
 def _changes(said: list[str]) -> dict[str, Any]:
-    """Return changes from `env.key=value`, and of other rooms.
-
-    Raises:
-        ConfigError: One is of another form, or changes what the protocol fixes.
-    """
+    """Return changes from `env.key=value`, and of other rooms."""
     from eyas.engine.settings.file import parsed_override
 
     changes: dict[str, Any] = {}
@@ -225,11 +212,11 @@ def compare(
     trust: Annotated[
         bool, typer.Option("--trust", help="Run the code of a protocol that they name by a path.")
     ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json_: AsJson = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
-    from eyas.benchmark.comparison import differences, refuse_incomparable, text_of
-    from eyas.benchmark.result import load_run
+    from eyas.benchmark.records.result import load_run
+    from eyas.benchmark.statistics.comparison import differences, refuse_incomparable, text_of
 
     (stamp_a, records_a), (stamp_b, records_b) = (
         load_run(folder, trust=trust) for folder in (first, second)
@@ -253,12 +240,10 @@ _Entries = Annotated[
 @leaderboard.command()
 def page(
     folder: _Entries,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
-    ] = None,
+    out: Annotated[Path | None, to_write("The page; by default DIR/index.html.")] = None,
 ) -> None:
     """Write a page that ranks all evaluations in a folder."""
-    from eyas.benchmark.leaderboard.page import run
+    from eyas.benchmark.report.leaderboard.page import run
 
     typer.echo(run(folder, out or folder / "index.html"))
 
@@ -280,7 +265,7 @@ def verify(
 
     The exit code is 1 if the records of one are not those of its flights.
     """
-    from eyas.benchmark.leaderboard.verify import Verdict, verify
+    from eyas.benchmark.report.leaderboard.verify import Verdict, verify
 
     found = []
     for finding in verify(folder, share=share, seed=seed, trust=trust):
@@ -288,3 +273,70 @@ def verify(
         found.append(finding.verdict)
     if Verdict.DIFFERENT in found:
         raise typer.Exit(1)
+
+
+def reproduce(
+    tables: Annotated[
+        list[str] | None, typer.Argument(metavar="TABLE", help="Names of tables; none: list them.")
+    ] = None,
+    out: Annotated[
+        Path, to_write("Folder for their evaluations; continued if interrupted.")
+    ] = Path("runs/reproduce"),
+    quiet: Quiet = False,
+) -> None:
+    """Fly tables of the documents again, and tell whether every printed digit is equal."""
+    from eyas.benchmark.report.reproduce.run import listing, run
+
+    if not tables:
+        typer.echo(listing())
+        return
+    if not run(tuple(tables), out, quiet=quiet):
+        raise typer.Exit(1)
+
+
+policies = typer.Typer(help="Tell of the policies that Eyas brings along.", no_args_is_help=True)
+
+
+@policies.callback()
+def _policies_group() -> None: ...
+
+
+@policies.command("list")
+def list_policies(*, as_json: AsJson = False) -> None:
+    """Print the policies for `eyas evaluate --policy`; as JSON, also what trained ones reach."""
+    from eyas.benchmark.policies.shipped import card_of, shipped_names
+    from eyas.benchmark.policies.table import POLICIES
+    from eyas.benchmark.report.reproduce.tables import flown_of
+
+    if as_json:
+        listed: list[dict[str, Any]] = [{"name": name} for name in POLICIES.names()]
+        for name in shipped_names():
+            figures = [
+                {"table": table, **one.model_dump(mode="json"), "build_id": build}
+                for table, rows in flown_of(name).items()
+                for _, one, build in rows
+            ]
+            said = card_of(name).model_dump(mode="json")
+            listed.append({"name": name, **said, "figures": figures})
+        typer.echo(json.dumps(listed, indent=1))
+        return
+    for name in POLICIES.names():
+        typer.echo(f"{name} ({POLICIES.path(name) or 'built in'})")
+    for name in shipped_names():
+        card = card_of(name)
+        typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
+    typer.echo("What a trained policy reaches: eyas policies card NAME")
+
+
+@policies.command("card")
+def policy_card(
+    name: Annotated[str, typer.Argument(help="Name of a trained policy: see 'list'.")],
+) -> None:
+    """Print the model card of a trained policy: what it is for, learned from, reaches, cannot."""
+    from eyas.benchmark.policies.shipped import shipped_names
+    from eyas.benchmark.report.reproduce.model_card import model_card
+    from eyas.engine.core.errors import UnknownNameError
+
+    if name not in shipped_names():
+        raise UnknownNameError("NAME", name, shipped_names())
+    typer.echo(model_card(name))

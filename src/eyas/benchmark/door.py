@@ -14,8 +14,8 @@ HOUSE = House(
             "evaluate": "eyas.benchmark.commands:evaluate",
             "compare": "eyas.benchmark.commands:compare",
             "leaderboard": "eyas.benchmark.commands:leaderboard",
-            "reproduce": "eyas.benchmark.reproduce.command:reproduce",
-            "policies": "eyas.benchmark.policies.commands:app",
+            "reproduce": "eyas.benchmark.commands:reproduce",
+            "policies": "eyas.benchmark.commands:policies",
         },
     },
 )

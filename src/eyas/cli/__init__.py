@@ -1,5 +1,5 @@
-"""The command line: parses, calls a mode, prints errors in one line.
+"""The program `eyas`: commands of all houses, errors in one line, exit codes.
 
-May import: everything below; each command imports its mode when it runs.
-Begin with `app.py`, then the file of a command. Private: `eyas` offers what is public.
+May import: everything below; each command imports what it runs when it runs.
+Begin with `README.md`, then `main.py` and `app.py`.
 """

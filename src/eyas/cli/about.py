@@ -27,7 +27,7 @@ class Part(NamedTuple):
 
     name: str
     version: str
-    licence: str  # As its metadata say
+    licence: str  # Licence, by the package's metadata
     besides: str  # What its wheel has within it; empty: nothing that is known
 
 

@@ -5,12 +5,12 @@ import os
 import sys
 import traceback
 import warnings
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
 import typer.core
 
-from eyas.cli.switches import as_switches
 from eyas.engine.core.errors import EyasError, one_line
 from eyas.engine.core.own_code import ended
 from eyas.engine.core.registry import Registry
@@ -50,9 +50,9 @@ app = typer.Typer(
 COMMANDS: Registry[Any] = Registry("command", object, group="eyas.commands")
 """Functions and groups of functions (`typer.Typer`) by the names of their commands."""
 
-_FIRST = (
-    *("demo", "video", "export", "track", "train", "run", "serve", "evaluate", "compare"),
-    *("leaderboard", "reproduce", "policies", "dataset", "targets", "maps", "traffic"),
+_FIRST = tuple(
+    "demo video export track train run serve evaluate compare leaderboard reproduce policies "
+    "dataset targets maps traffic".split()
 )
 """The order of the commands in the help; all others follow."""
 
@@ -135,6 +135,28 @@ class _Line(logging.Formatter):
         return f"eyas: {word}" + "\n".join(lines)
 
 
+def _as_switches(command: Any) -> Any:  # noqa: ANN401  # Typer's own copy of click, or click
+    """Return a command whose help, and that of all in it, prints switches without `<bool>`, which
+    new versions of Typer add.
+    """
+    command.get_params = _patched(command.get_params)
+    for inner in getattr(command, "commands", {}).values():
+        _as_switches(inner)
+    return command
+
+
+def _patched(get_params: Callable[[Any], list[Any]]) -> Callable[[Any], list[Any]]:
+    def params(context: Any) -> list[Any]:  # noqa: ANN401  # as above
+        found = get_params(context)
+        for each in found:
+            described = getattr(each, "type_descriptor", None)
+            if described is not None and described.annotation is bool:
+                each.metavar = ""
+        return found
+
+    return params
+
+
 def run() -> int:
     """Run the command line; return the exit code."""
     warnings.showwarning = lambda message, *_, **__: say(f"warning: {message}")
@@ -143,7 +165,7 @@ def run() -> int:
     logging.basicConfig(handlers=[lines], level=logging.WARNING)
     logging.getLogger("eyas").setLevel(logging.INFO)
     try:
-        status = as_switches(typer.main.get_command(app))(standalone_mode=False)
+        status = _as_switches(typer.main.get_command(app))(standalone_mode=False)
         sys.stdout.flush()  # here, so that a closed pipe is caught below
     except EyasError as error:
         if logging.getLogger("eyas").isEnabledFor(logging.DEBUG):

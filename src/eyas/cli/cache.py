@@ -28,9 +28,6 @@ __all__ = ["run_clear", "run_info", "run_warm"]
 def run_info(*, as_json: bool = False) -> None:
     """Print the folder, size and size limit of the cache, and its contents by kind.
 
-    Args:
-        as_json: Whether to print one JSON object, with sizes in bytes.
-
     Raises:
         ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
@@ -85,10 +82,6 @@ def _shown(size: int) -> str:
 
 def run_warm(map_names: Sequence[str] = (), weather_names: Sequence[str] = ()) -> None:
     """Put into the cache what the default settings need, with passers-by and without.
-
-    Args:
-        map_names: The maps; empty: all.
-        weather_names: The weathers; empty: all.
 
     Raises:
         ConfigError: No such map or weather.

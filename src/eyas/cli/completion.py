@@ -30,12 +30,7 @@ def completion(
 
 
 def script(shell: Shell, command: Any) -> str:  # noqa: ANN401  # Typer's own copy of click, or click
-    """Return the script for a shell.
-
-    Args:
-        shell: The shell.
-        command: The program's command, with all others in it.
-    """
+    """Return the script for a shell."""
     known = [
         (path.removeprefix("eyas").strip(), list(getattr(one, "commands", ())), _options(one))
         for path, one in commands("eyas", command)

@@ -45,11 +45,7 @@ _FOR_DEVELOPERS = ("dev", "docs", "peers", "release")
 
 
 def run(*, as_json: bool = False) -> None:
-    """Print what is found.
-
-    Args:
-        as_json: Whether to print one JSON object.
-    """
+    """Print what is found."""
     found = facts() | {"a picture": _picture()}
     if as_json:
         print(json.dumps(found, indent=2))

@@ -14,18 +14,23 @@ import typer
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import (
-    POLICIES,
     SEVERAL,
     ConfigFile,
     MapName,
+    Out,
     Overrides,
+    Overwrite,
     Preset,
+    Quiet,
+    Resume,
     Seed,
     Trust,
     UntilIdle,
     Weather,
+    by_policy,
     chosen_file,
     gathered,
+    to_write,
 )
 from eyas.engine.terminal.stderr import say
 
@@ -35,8 +40,8 @@ if TYPE_CHECKING:
 __all__ = ["run", "serve", "video"]
 
 
-def video(  # noqa: PLR0913  # one parameter for each option
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
+def video(
+    out: Out = Path("runs/video"),
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -44,13 +49,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     trust: Trust = False,
-    policy: Annotated[
-        str | None,
-        typer.Option(
-            "--policy",
-            help=f"Let a policy fly: {POLICIES}, a file, or package.module:name.",
-        ),
-    ] = None,
+    policy: Annotated[str | None, by_policy("Let a policy fly: ")] = None,
     camera: Annotated[
         str | None,
         typer.Option(
@@ -59,13 +58,9 @@ def video(  # noqa: PLR0913  # one parameter for each option
             "hover-and-pan, search, exact, random, or package.module:Class; policy: as --policy.",
         ),
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue an interrupted recording.")
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="First delete a recording that is in the folder.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
 ) -> None:
     """Record labelled pictures and videos of drones that film their targets."""
     from eyas.engine.settings.config import Mode
@@ -97,7 +92,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)
 
 
-def serve(  # noqa: PLR0913  # one parameter for each option
+def serve(
     root: Annotated[
         Path | None,
         typer.Option(
@@ -203,9 +198,7 @@ def run(
     config: Annotated[
         Path, typer.Option("--config", help="JSON file, native or the original's env_config.json.")
     ],
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder to write to, of a recording or training.")
-    ] = None,
+    out: Annotated[Path | None, to_write("Folder to write to, of a recording or training.")] = None,
     root: Annotated[
         Path | None,
         typer.Option(

@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from eyas.engine.terminal.options import (
-    SEVERAL,
     AsJson,
     ConfigFile,
     MapName,
+    OnlyMaps,
+    OnlyWeathers,
     Overrides,
     Preset,
     chosen_file,
     gathered,
+    to_write,
 )
 from eyas.engine.terminal.stderr import say
 
@@ -26,9 +28,7 @@ __all__ = ["bench", "cache_app", "config_app", "doctor", "verify"]
 
 
 def bench(
-    out: Annotated[
-        Path | None, typer.Option("--out", help="JSON file to write the figures to, as well.")
-    ] = None,
+    out: Annotated[Path | None, to_write("JSON file to write the figures to, as well.")] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Measure for a tenth of the time.")
     ] = False,
@@ -54,9 +54,7 @@ def bench(
     bench.run(out, quick=quick, cold=cold, stages=stages, camera=camera, device=device)
 
 
-def doctor(
-    json_: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
-) -> None:
+def doctor(json_: AsJson = False) -> None:
     """Tell what Eyas finds here: versions, processor, cache, shipped kernels, graphics card."""
     from eyas.cli.doctor import run
 
@@ -68,7 +66,7 @@ def verify(
         bool, typer.Option("--quick", help="Look at a tenth of the cases only.")
     ] = False,
     map_: MapName = None,
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON, with all hashes.")] = False,
+    json_: AsJson = False,
 ) -> None:
     """Check that this machine computes the promised bytes: pictures, labels, rewards, people.
 
@@ -174,14 +172,8 @@ def clear_cache(
 
 @cache_app.command("warm")
 def warm_cache(
-    map_name: Annotated[
-        list[str] | None,
-        typer.Option("--map", help=f"Only this map; {SEVERAL}."),
-    ] = None,
-    weather: Annotated[
-        list[str] | None,
-        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
-    ] = None,
+    map_name: OnlyMaps = None,
+    weather: OnlyWeathers = None,
 ) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""
     from eyas.cli.cache import run_warm

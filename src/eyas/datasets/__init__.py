@@ -1,5 +1,5 @@
-"""Recordings and data sets: read, exported in the formats of other tools, planned, described.
+"""Data sets from recipes, exports in the formats of others, and box trackers scored on them.
 
-May import: `settings`, `exports` and all rooms below.
-Begin with `recording.py`, then `format.py` and `export.py`. Private: `eyas` offers what is public.
+May import: `benchmark`, `engine`, `lanes`.
+Begin with `README.md`, then `recipe.py`, `plan.py` and `making/make.py`.
 """

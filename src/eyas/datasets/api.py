@@ -65,7 +65,7 @@ def make_dataset(
 
     Args:
         recipe: `detect`, `follow`, `sot`, the path of a recipe, or one as nested dictionaries.
-        out: The folder, or a URL that fsspec knows.
+        out: The folder.
         resume: Whether an interrupted data set in the folder is continued.
         quiet: Whether nothing is printed.
         choices: `workers`, `sample`, `shard`, `ray`, `trust`: see `DatasetChoices` in this module.

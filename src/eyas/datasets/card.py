@@ -15,8 +15,12 @@ REPOSITORY_SPLITS = {"train": "train", "val": "validation", "test": "test"}
 """Names of the splits on the hub."""
 
 _SIZES = (
-    *((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M")),
-    *((10_000_000, "1M<n<10M"), (float("inf"), "10M<n<100M")),
+    (1_000, "n<1K"),
+    (10_000, "1K<n<10K"),
+    (100_000, "10K<n<100K"),
+    (1_000_000, "100K<n<1M"),
+    (10_000_000, "1M<n<10M"),
+    (float("inf"), "10M<n<100M"),
 )
 
 _TARGET = {
@@ -43,9 +47,7 @@ def card(plan: Plan, statistics: Mapping[str, Any], notices: Mapping[str, str]) 
     """Return the datasheet.
 
     Args:
-        plan: The plan of the data set.
         statistics: The content of `statistics.json`.
-        notices: What must be said of maps that are made of others' data, by map.
     """
     recipe, total = plan.recipe, statistics["total"]
     sample = " (a sample of a hundredth)" if plan.sample else ""
@@ -97,10 +99,13 @@ def _front_matter(plan: Plan, frames: int) -> str:
         "---",
         f"license: {recipe.licence}",
         f"pretty_name: {json.dumps(recipe.title)}",
-        *("language:", "- en", "annotations_creators:", "- machine-generated"),
-        *("size_categories:", f"- {size}", "task_categories:", "- object-detection"),
-        *("tags:", "- synthetic", "- drone", "- visual-tracking", "- eyas", "- croissant"),
-        *("configs:", "- config_name: default", "  data_files:", *files),
+        "language:\n- en",
+        "annotations_creators:\n- machine-generated",
+        f"size_categories:\n- {size}",
+        "task_categories:\n- object-detection",
+        "tags:\n- synthetic\n- drone\n- visual-tracking\n- eyas\n- croissant",
+        "configs:\n- config_name: default\n  data_files:",
+        *files,
         "---",
     ]
     return "\n".join(lines)

@@ -7,12 +7,23 @@ from typing import Annotated
 
 import typer
 
-from eyas.engine.terminal.options import SEVERAL
+from eyas.engine.terminal.options import (
+    SEVERAL,
+    Out,
+    Overwrite,
+    Plots,
+    Quiet,
+    Ray,
+    Resume,
+    Workers,
+    refuse_both,
+    to_write,
+)
 
 __all__ = ["dataset_app", "export", "track"]
 
 
-def export(  # noqa: PLR0913  # one parameter for each option
+def export(
     recording: Annotated[
         Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
     ],
@@ -24,8 +35,7 @@ def export(  # noqa: PLR0913  # one parameter for each option
         ),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder of the exports; by default RECORDING/exports."),
+        Path | None, to_write("Folder of the exports; by default RECORDING/exports.")
     ] = None,
     copy: Annotated[
         bool,
@@ -47,20 +57,15 @@ def export(  # noqa: PLR0913  # one parameter for each option
         bool,
         typer.Option("--ignore-parked", help="Ignore parked cars and whatever else never moves."),
     ] = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue an interrupted export.")
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="First delete an export that is in the folder.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
 ) -> None:
     """Export a recording in the formats of other tools: COCO, MOTChallenge, GOT-10k, YOLO, ..."""
     from eyas.engine.core.errors import ConfigError
     from eyas.engine.recordings.run import run
 
-    if resume and overwrite:
-        raise ConfigError("--overwrite and --resume cannot be used together")
+    refuse_both(resume=resume, overwrite=overwrite)
     if math.isnan(least_visible):
         raise ConfigError("--least-visible: nan is not allowed: 0 to 1")
     from eyas.engine.recordings.export import ExportOptions
@@ -76,7 +81,7 @@ def export(  # noqa: PLR0913  # one parameter for each option
     run(recording, formats, out, options, quiet=quiet)
 
 
-def track(  # noqa: PLR0913  # one parameter for each option
+def track(
     recording: Annotated[
         Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
     ],
@@ -88,8 +93,7 @@ def track(  # noqa: PLR0913  # one parameter for each option
         ),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder to write to; by default runs/track/<data>-<tracker>."),
+        Path | None, to_write("Folder to write to; by default runs/track/<data>-<tracker>.")
     ] = None,
     split: Annotated[
         str | None, typer.Option("--split", help="Only train, val or test of a data set.")
@@ -98,27 +102,18 @@ def track(  # noqa: PLR0913  # one parameter for each option
         bool,
         typer.Option("--restarts", help="After a failure, give the tracker the true box again."),
     ] = False,
-    workers: Annotated[
-        int | None,
-        typer.Option("--workers", min=1, help="Processes; by default one for each core."),
-    ] = None,
-    plots: Annotated[
-        bool, typer.Option("--plots", help="Draw success and precision (extra plots).")
-    ] = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    workers: Workers = None,
+    plots: Plots = False,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
 ) -> None:
     """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
-    from eyas.benchmark.plots import require_matplotlib
+    from eyas.benchmark.report.plots import require_matplotlib
     from eyas.datasets.tracking.report import draw_curves, print_figures
     from eyas.datasets.tracking.run import Scoring, run
-    from eyas.engine.core.errors import ConfigError
 
-    if resume and overwrite:
-        raise ConfigError("--overwrite and --resume cannot be used together")
+    refuse_both(resume=resume, overwrite=overwrite)
     if plots:
         require_matplotlib()  # not only when all is tracked
     name = tracker.rpartition(":")[2].lower()
@@ -139,13 +134,6 @@ def track(  # noqa: PLR0913  # one parameter for each option
 
 dataset_app = typer.Typer(no_args_is_help=True, help="Make data sets from recipes.")
 
-_Workers = Annotated[
-    int | None,
-    typer.Option("--workers", min=1, max=1024, help="Processes; by default one for each core."),
-]
-_Continue = Annotated[bool, typer.Option("--resume", help="Continue an interrupted data set.")]
-_Silent = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
-
 
 @dataset_app.command("make")
 def make_dataset(
@@ -153,10 +141,8 @@ def make_dataset(
         str,
         typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False),
     ],
-    out: Annotated[
-        str, typer.Option("--out", help="Folder to write to, or a URL: s3://bucket/folder.")
-    ],
-    workers: _Workers = None,
+    out: Annotated[str, to_write("Folder to write to.")],
+    workers: Workers = None,
     sample: Annotated[
         bool, typer.Option("--sample", help="Make a hundredth, to look at it first.")
     ] = False,
@@ -166,14 +152,12 @@ def make_dataset(
             "--shard", metavar="I/N", help="Make one of N shards; see eyas dataset merge."
         ),
     ] = None,
-    ray: Annotated[
-        bool, typer.Option("--ray", help="Spread the parts over a Ray cluster (extra cluster).")
-    ] = False,
+    ray: Ray = False,
     trust: Annotated[
         bool, typer.Option("--trust", help="Let the recipe name code, which is then run.")
     ] = False,
-    resume: _Continue = False,
-    quiet: _Silent = False,
+    resume: Resume = False,
+    quiet: Quiet = False,
 ) -> None:
     """Record a data set with all cores, export and describe it."""
     from eyas.datasets.making.make import Making
@@ -190,10 +174,10 @@ def merge_dataset(
     shards: Annotated[
         list[Path], typer.Argument(metavar="SHARD...", help="Folders of all shards, in any order.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")],
-    workers: _Workers = None,
-    resume: _Continue = False,
-    quiet: _Silent = False,
+    out: Out,
+    workers: Workers = None,
+    resume: Resume = False,
+    quiet: Quiet = False,
 ) -> None:
     """Join the shards of a data set, after checking that all are there and whole."""
     from eyas.datasets.making.make import Making

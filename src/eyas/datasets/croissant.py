@@ -37,13 +37,7 @@ _MEANINGS = {
 
 
 def croissant(plan: Plan, frames_sha256: str, notices: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of `croissant.json`.
-
-    Args:
-        plan: The plan of the data set.
-        frames_sha256: SHA-256 of `frames.csv`.
-        notices: What must be said of maps that are made of others' data, by map.
-    """
+    """Return the content of `croissant.json`."""
     recipe = plan.recipe
     named = recipe.about or recipe.title
     described = {

@@ -31,7 +31,7 @@ class Plan(Config):
     eyas: str
     """Version of Eyas."""
     build_id: str
-    """Of Eyas, too."""
+    """Build of Eyas."""
     source: str
     """The recipe that ships, or `recipe.json`, which the data set then holds."""
     recipe: Recipe
@@ -47,9 +47,6 @@ class Plan(Config):
         """Return the plan of a recipe with this Eyas.
 
         Args:
-            recipe: The recipe.
-            named: Its name or its file, as the user has said it.
-            sample: Whether only a hundredth is made.
             shard: Number of the shard, from 1, and of all shards; None: all of it.
         """
         return cls(
@@ -113,12 +110,6 @@ def write_plan(
     root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] = (), sealed: str = ""
 ) -> None:
     """Write the plan of a data set: that in the making, or with parts `dataset.json`.
-
-    Args:
-        root: Folder of the data set.
-        plan: The plan.
-        parts: The parts that are complete.
-        sealed: SHA-256 of the checksums of the other files.
 
     Raises:
         OutputError: It cannot be written.

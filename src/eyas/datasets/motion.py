@@ -13,15 +13,15 @@ from eyas.lanes import exact
 
 __all__ = ["STATE_NAMES", "TRUTH_NAMES", "Motion", "action_names", "motion_of", "task_of"]
 
-STATE_NAMES = (
-    *("x", "y", "z", "velocity_x", "velocity_y", "velocity_z"),
-    *("orientation_w", "orientation_x", "orientation_y", "orientation_z"),
+STATE_NAMES = tuple(
+    "x y z velocity_x velocity_y velocity_z orientation_w orientation_x orientation_y "
+    "orientation_z".split()
 )
 """The tracker's position [m], velocity [m/s] and orientation, in the world's frame."""
 
-TRUTH_NAMES = (
-    *("target_forward", "target_left", "target_up", "target_visible"),
-    *("box_left", "box_top", "box_right", "box_bottom"),
+TRUTH_NAMES = tuple(
+    "target_forward target_left target_up target_visible box_left box_top box_right "
+    "box_bottom".split()
 )
 """What only a teacher knows: the target's place in the tracker's body [m], its visible share, and
 its box [pixels]."""
@@ -37,9 +37,6 @@ GIMBAL_NAMES = ("gimbal_pitch_rate", "gimbal_yaw_rate")
 
 def action_names(widths: Iterable[int]) -> tuple[str, ...]:
     """Return the names of the numbers of an action of a data set.
-
-    Args:
-        widths: How many each of its episodes has: four or six.
 
     Raises:
         ConfigError: Not all have as many.

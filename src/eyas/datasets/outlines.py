@@ -53,9 +53,6 @@ def _loops(padded: Mask) -> list[list[Point]]:
     An edge ends where an odd number of the four pixels around a corner is in the mask, or two that
     touch there only. In the order of rows, each two of these ends are joined by a level edge; in
     the order of columns, by an upright one. A path takes both in turn.
-
-    Args:
-        padded: The mask, with an empty row or column at each side.
     """
     a, b, c, d = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
     touching = (a == d) & (b == c) & (a != b)

@@ -19,13 +19,9 @@ from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 __all__ = ["chosen_frames", "contact_sheet", "page", "stacked"]
 
 COLUMNS, ROWS = 6, 4  # Pictures in the contact sheet of a split
-
 _TILE = (240, 180)  # Largest size of a picture in it [pixels]
-
 _QUALITY = 88
-
 _TARGET, _OTHER = (255, 70, 70), (90, 220, 255)  # Colours of the boxes of targets and of others
-
 _STYLE = """
 :root { color-scheme: light dark; --bar: #3b7dd8; }
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 92rem; margin: 1.5rem auto;
@@ -100,9 +96,7 @@ def page(plan: Plan, statistics: Mapping[str, Any], sheets: Mapping[str, NDArray
     """Return the page, which needs no other file.
 
     Args:
-        plan: The plan of the data set.
         statistics: The content of `statistics.json`.
-        sheets: The contact sheet of each split.
     """
     recipe = plan.recipe
     title = html.escape(recipe.title + (" (a sample of a hundredth)" if plan.sample else ""))

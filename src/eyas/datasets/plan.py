@@ -98,11 +98,6 @@ def place_of(part: Part) -> tuple[str, str]:
 def shard_of(parts: Sequence[Part], number: int, count: int) -> list[Part]:
     """Return the parts of one shard: of few maps, and all variants of a part together.
 
-    Args:
-        parts: All parts.
-        number: Number of the shard, from 1.
-        count: Number of all shards.
-
     Raises:
         ConfigError: There are fewer parts than shards.
     """
@@ -162,11 +157,7 @@ def _roads_of(name: str) -> object:
 
 
 def _episodes(recipe: Recipe) -> dict[str, int]:
-    """Return how many episodes, without variants, each split has.
-
-    Raises:
-        ConfigError: They do not add up to the frames, or are too few for all maps.
-    """
+    """Return how many episodes, without variants, each split has."""
     variants = max(1, len(recipe.variants))
     unit = recipe.episode_frames * variants
     if recipe.frames % unit:
@@ -280,11 +271,7 @@ def _spread(values: Sequence[Any], count: int, key: str) -> list[Any]:
 def _settings(
     recipe: Recipe, chosen: Mapping[str, Any], variant: Mapping[str, Any], number: int
 ) -> EyasConfig:
-    """Return the settings of a part, but for when it records.
-
-    Raises:
-        ConfigError: A setting is wrong, or contradicts another.
-    """
+    """Return the settings of a part, but for when it records."""
     changes: dict[str, Any] = {
         "seed": recipe.seed + number,
         "target": chosen["target"],
@@ -320,14 +307,8 @@ def _timed(config: EyasConfig, recipe: Recipe, size: tuple[int, int], share: flo
     """Return settings that record so many trackers and episodes, all frames of each.
 
     Args:
-        config: The other settings.
-        recipe: The recipe.
-        size: Number of trackers, and of the episodes of each.
         share: Where in the traffic's recording it begins, 0 to 1; the parts of a map begin at
             different times.
-
-    Raises:
-        ConfigError: The traffic is too short, or has too few vehicles.
     """
     trackers, episodes = size
     spacing = PHYSICS_RATE / recipe.fps

@@ -20,7 +20,6 @@ from eyas.engine.targets.config import TargetName
 __all__ = ["LICENCES", "SHIPPED", "SPLITS", "Camera", "Recipe", "Split", "Splits", "read_recipe"]
 
 SHIPPED = ("detect", "follow", "sot")  # Names of the recipes that come with Eyas
-
 SPLITS = ("train", "val", "test")
 
 LICENCES = {

@@ -56,8 +56,6 @@ def facts_of(
     """Return what is known of a part.
 
     Args:
-        episodes: Its episodes.
-        checksums: See `PartFacts`.
         place: What is the same in all of its frames: `split`, `map`, `weather`, `flight`.
     """
     counts = {name: Counter[str]() for name in ("classes", "types", "targets", "episodes_by")}
@@ -168,10 +166,9 @@ def _episode_kinds(frames: list[dict[str, float]]) -> Counter[str]:
     )
 
 
-COLUMNS = (
-    *("picture", "split", "part", "episode", "frame", "time", "map", "weather"),
-    *("left", "top", "right", "bottom", "visible_fraction", "target_class", "target_words"),
-    "objects",
+COLUMNS = tuple(
+    "picture split part episode frame time map weather left top right bottom visible_fraction "
+    "target_class target_words objects".split()
 )
 """Columns of `frames.csv`: the box is that of the target's visible pixels."""
 
@@ -183,10 +180,19 @@ def _row(episode: RecordedEpisode, label: Label, seen: list[SeenObject]) -> list
     if episode.has("jpeg") or episode.has("png"):
         picture += episode.picture_file(number).name
     return [
-        *(picture, episode.split, run.name, episode.name, number, label["time"]),
-        *(world.map, world.weather, *label["target_visible_box"], label["visible_fraction"]),
+        picture,
+        episode.split,
+        run.name,
+        episode.name,
+        number,
+        label["time"],
+        world.map,
+        world.weather,
+        *label["target_visible_box"],
+        label["visible_fraction"],
         CLASS_NAMES[ObjectClass(label["target_class_id"])],
-        *(label["target_words"], len(seen)),
+        label["target_words"],
+        len(seen),
     ]
 
 

@@ -6,7 +6,6 @@ import typer
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import (
-    POLICIES,
     ConfigFile,
     MapName,
     Overrides,
@@ -14,6 +13,7 @@ from eyas.engine.terminal.options import (
     Seed,
     Trust,
     Weather,
+    by_policy,
     chosen_file,
     gathered,
 )
@@ -21,7 +21,7 @@ from eyas.engine.terminal.options import (
 __all__ = ["demo"]
 
 
-def demo(  # noqa: PLR0913  # one parameter for each option
+def demo(
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -29,13 +29,7 @@ def demo(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     trust: Trust = False,
-    policy: Annotated[
-        str | None,
-        typer.Option(
-            "--policy",
-            help=f"A policy that may fly, too: {POLICIES}, a file, or package.module:name.",
-        ),
-    ] = None,
+    policy: Annotated[str | None, by_policy("A policy that may fly, too: ")] = None,
     host: Annotated[
         str, typer.Option("--host", help="Address to serve; others than loopback ask for a token.")
     ] = "127.0.0.1",

@@ -1,5 +1,5 @@
-"""A small convolutional network is taught by a teacher or by rewards; the extra `train`.
+"""Networks learn to follow a target: by rewards, by a teacher, or by pictures with truth.
 
-May import: `evaluation` and all rooms below; all but `config` imports PyTorch.
-Begin with `trainer.py`. Private: `eyas` offers what is public.
+May import: `benchmark`, `engine`, `lanes`; all but settings and commands imports PyTorch.
+Begin with `README.md`, then `trainer.py` and `algorithm.py`.
 """

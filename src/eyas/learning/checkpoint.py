@@ -42,17 +42,13 @@ class TrainingProgress:
 
     stage: int = 0
     block: int = 0  # Number of the next block
-    decisions: int = 0  # Of all stages
-    stage_decisions: int = 0  # Of the current stage
-    rows: list[Row] = field(default_factory=list)  # Of the curve, one for each block
+    decisions: int = 0  # Decisions of all stages
+    stage_decisions: int = 0  # Decisions of the current stage
+    rows: list[Row] = field(default_factory=list)  # Rows of the curve, one for each block
 
 
 class RunFolder:
-    """A folder with `config.json`, `checkpoint.pt`, `curve.csv`, `policy.onnx`, `tensorboard/`.
-
-    Args:
-        path: The folder.
-    """
+    """A folder with `config.json`, `checkpoint.pt`, `curve.csv`, `policy.onnx`, `tensorboard/`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -88,9 +84,7 @@ class RunFolder:
         """Write a checkpoint and the curve.
 
         Args:
-            progress: How far the run has come.
             parts: What learns, `network` among them.
-            code: What identifies code of a user's that teaches.
         """
         data = io.BytesIO()
         torch.save(

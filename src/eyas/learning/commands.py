@@ -11,20 +11,23 @@ from eyas.engine.terminal.options import (
     MapName,
     Overrides,
     Preset,
+    Quiet,
+    Ray,
+    Resume,
     Seed,
     Trust,
     Weather,
     chosen_file,
     gathered,
+    to_write,
 )
 
 __all__ = ["train"]
 
 
-def train(  # noqa: PLR0913  # one parameter for each option
+def train(
     out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder to write to; by default runs/train, runs/train-2, ..."),
+        Path | None, to_write("Folder to write to; by default runs/train, runs/train-2, ...")
     ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
@@ -57,12 +60,9 @@ def train(  # noqa: PLR0913  # one parameter for each option
             help="Where to fly and learn: cuda, cuda:1, ... (train.device); by default here.",
         ),
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
-    ray: Annotated[
-        bool,
-        typer.Option("--ray", help="Spread the shards over a Ray cluster (extra cluster)."),
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    resume: Resume = False,
+    ray: Ray = False,
+    quiet: Quiet = False,
 ) -> None:
     """Teach a network to track, and write it as an ONNX file."""
     from eyas.engine.settings.file import load_settings

@@ -79,13 +79,13 @@ class Evaluation(Config):
     every: Annotated[int, Field(ge=0, le=100_000)] = 4
     """Blocks from one evaluation to the next; 0: none."""
     protocol: Annotated[str, NAMES_CODE] = "paper"
-    """Of `eyas evaluate`."""
+    """Protocol, as for `eyas evaluate`."""
     weathers: Annotated[tuple[str, ...], NAMES_CODE] = ()
     """None: `world.weather`."""
     episodes: Annotated[int, Field(ge=1, le=1000)] = 5
-    """For each weather and start direction."""
+    """Episodes of each weather and start direction."""
     seed: Annotated[int, Field(ge=0, lt=2**62)] = 2_000_000
-    """Of the first episode: far from those of training and of `eyas evaluate`."""
+    """Seed of the first episode: far from those of training and of `eyas evaluate`."""
 
 
 class DaggerConfig(Config):
@@ -114,7 +114,8 @@ class DaggerConfig(Config):
     """Parts of the new decisions of an update; each, with its share of old ones, is a step of the
     optimiser."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
-    """Of Adam; it falls linearly to `train.final_rate` of this while the teacher teaches."""
+    """Learning rate of Adam; it falls linearly to `train.final_rate` of this while the teacher
+    teaches."""
 
 
 class PpoConfig(Config):
@@ -156,7 +157,7 @@ class TrackerTraining(Config):
     drive_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 10_000
     """Steps of the optimiser for that."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 2e-3
-    """Of AdamW; in each round it rises to this and falls to a fiftieth of it."""
+    """Learning rate of AdamW; in each round it rises to this and falls to a fiftieth of it."""
 
     @property
     def pictures(self) -> int:
@@ -198,7 +199,7 @@ class WordsTraining(Config):
     passes: Annotated[int, Field(ge=1, le=100)] = 2
     """How often each picture is shown."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 3e-3
-    """Of AdamW; it rises to this and falls to a fiftieth of it."""
+    """Learning rate of AdamW; it rises to this and falls to a fiftieth of it."""
 
     @property
     def block_pictures(self) -> int:
@@ -242,7 +243,7 @@ class TrainConfig(Section):
     """Updates between two checkpoints. Each block begins with new episodes, so that a run that is
     resumed gives the same as one that never stopped."""
     learning_rate: Annotated[float, Field(gt=0, le=1)] = 5e-4
-    """Of Adam; it falls linearly to `final_rate` of this over all stages."""
+    """Learning rate of Adam; it falls linearly to `final_rate` of this over all stages."""
     final_rate: Share = 0.05
     """Share of the learning rate that is left at the end."""
     gamma: Share = 0.95

@@ -23,8 +23,8 @@ class Lessons:
     states: Tensor  # What the network carried, shape (T, M, S)
     ended: Tensor  # Whether the episode ended with each decision, shape (T, M)
     labels: Tensor  # The teacher's actions, shape (T, M)
-    weights: Tensor  # Of these, shape (T, M)
-    targets: Tensor  # Of the values, shape (T, M)
+    weights: Tensor  # Weights of the labels, shape (T, M)
+    targets: Tensor  # Targets of the values, shape (T, M)
 
 
 class Buffer:
@@ -34,9 +34,6 @@ class Buffer:
         lessons: They; only the first `filled` environments are there yet.
         filled: How many are.
         latest: Numbers of the environments of the latest rollout.
-
-    Args:
-        rollouts: R.
     """
 
     lessons: Lessons
@@ -50,7 +47,6 @@ class Buffer:
         """Keep a rollout in the place of the oldest one.
 
         Args:
-            data: The rollout.
             targets: Of its values, shape (T, N).
         """
         new = (data.pictures, data.states, data.ended, data.labels, data.weights, targets)
@@ -125,13 +121,7 @@ class Dagger(Algorithm):
         return self.descend(chosen, lambda part, share: self.loss(part, share, total))
 
     def loss(self, part: Tensor, share: float, total: Tensor) -> tuple[Tensor, Tensor]:
-        """Return what a part of a minibatch adds to the loss, and to the figures.
-
-        Args:
-            part: See `Algorithm`.
-            share: Of the minibatch.
-            total: Sum of the labels' weights in the minibatch.
-        """
+        """Return what a part of a minibatch adds to the loss, and to the figures."""
         lessons = self.buffer.lessons
         logits, values = self.outputs(lessons, part)
         labels = self.taken(lessons.labels, part)

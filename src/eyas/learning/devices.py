@@ -12,9 +12,6 @@ def torch_device(name: str | None) -> torch.device:
 
     On a graphics processor, PyTorch is told to choose convolutions that give the same each time.
 
-    Args:
-        name: `train.device`.
-
     Raises:
         ConfigError: PyTorch cannot use it.
     """

@@ -73,11 +73,6 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     at the start; `memory`, float (N, hidden), if it has one, 0 at the start. Outputs: `logits`,
     float (N, 7), and `next_memory`. The metadata `eyas` has the settings of actions and
     observations as JSON.
-
-    Args:
-        network: The network.
-        env: What it sees and chooses from.
-        path: The file.
     """
     graph, shape = Graph(), network.shape
     picture = ["n", shape.channels, shape.height, shape.width]
@@ -100,14 +95,7 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
 def write_model(
     body: onnx.GraphProto, env: EnvConfig, path: Path, further: Mapping[str, Any] | None = None
 ) -> None:
-    """Write what a network computes as an ONNX file.
-
-    Args:
-        body: What it computes.
-        env: What the policy sees and chooses from.
-        path: The file.
-        further: More metadata, anything that JSON can hold.
-    """
+    """Write what a network computes as an ONNX file."""
     model = helper.make_model(
         body,
         opset_imports=[helper.make_opsetid("", _OPSET)],

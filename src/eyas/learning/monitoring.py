@@ -9,11 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import EpisodeSpec, Place, episodes_of
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.protocol import Protocol
-from eyas.benchmark.protocols import protocol_named
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place, episodes_of
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
+from eyas.benchmark.protocols.protocol import Protocol
+from eyas.benchmark.protocols.table import protocol_named
 from eyas.engine.policies.policy import Decision, PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.env import EnvConfig
@@ -25,14 +25,14 @@ __all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "e
 
 
 class EvaluationScores(NamedTuple):
-    """Means over the episodes, see `eyas.benchmark.record.EpisodeRecord`."""
+    """Means over the episodes, see `eyas.benchmark.records.record.EpisodeRecord`."""
 
     cr: float
     tsr: float
 
 
 NO_SCORES = EvaluationScores(float("nan"), float("nan"))
-"""Of a block that is not followed by an evaluation."""
+"""Figures of a block that no evaluation follows."""
 
 
 class _NetworkPolicy:
@@ -90,11 +90,7 @@ def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol
 
 
 class TensorBoardWriter:
-    """Writes numbers for TensorBoard, if it is installed.
-
-    Args:
-        folder: Where its files are.
-    """
+    """Writes numbers for TensorBoard, if it is installed."""
 
     def __init__(self, folder: Path) -> None:
         try:

@@ -12,17 +12,17 @@ ACTIONS = 7
 HOVER = 6  # The action that stands for "none yet"; the network sees it as zeros
 
 STRIDE = 2
-"""Of each convolution [pixels]. With a first step of three, cars of 8 pixels are found less often:
-after the same time of training, TSR is 0.90 instead of 0.94."""
+"""Stride of each convolution [pixels]. With a first step of three, cars of 8 pixels are found less
+often: after the same time of training, TSR is 0.90 instead of 0.94."""
 
-MEAN, SPREAD = 110.0, 60.0  # Of the pixels of a picture by day
+MEAN, SPREAD = 110.0, 60.0  # Mean and standard deviation of pixels by day
 
 
 @dataclass(frozen=True)
 class NetworkShape:
     """What a network is made for."""
 
-    channels: int  # Of the picture
+    channels: int  # Channels of the picture
     height: int
     width: int
     hidden: int
@@ -43,10 +43,6 @@ class TrackingNetwork(nn.Module):
 
     Attributes:
         shape: What it is made for.
-
-    Args:
-        shape: What it is made for.
-        channels_last: Whether pictures and weights have their channels last in memory.
     """
 
     def __init__(self, shape: NetworkShape, *, channels_last: bool = False) -> None:

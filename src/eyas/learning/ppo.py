@@ -44,11 +44,8 @@ class Ppo(Algorithm):
         """Return the loss of a part of a minibatch and its figures, both times the part's share.
 
         Args:
-            data: The rollout.
             gains: Advantages of the actions, scaled to mean 0 and deviation 1, shape (T, N).
             targets: What the values should be, shape (T, N).
-            part: See `Algorithm`.
-            share: Of the minibatch.
         """
         settings, config = self.settings, self.learner.config
         logits, values = self.outputs(data, part)

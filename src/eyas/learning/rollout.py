@@ -33,7 +33,7 @@ class Rollout:
     actions: Tensor
     """Shape (T, N)."""
     log_probability: Tensor
-    """Of the actions, shape (T, N)."""
+    """Logarithms of the actions' probabilities, shape (T, N)."""
     rewards: Tensor
     """Scaled; with the value of what was cut off, shape (T, N)."""
     values: Tensor
@@ -43,7 +43,7 @@ class Rollout:
     labels: Tensor
     """What a teacher would have done, if there is one, shape (T, N)."""
     weights: Tensor
-    """Of the labels, shape (T, N)."""
+    """Weights of the labels, shape (T, N)."""
 
     @staticmethod
     def joined(shards: Sequence["Rollout"]) -> "Rollout":

@@ -14,13 +14,6 @@ __all__ = ["run"]
 def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: bool) -> Path:
     """Train a network; return the path of the ONNX file.
 
-    Args:
-        config: The settings.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        quiet: Whether to print no progress.
-        ray: Whether the environments run on a cluster of Ray.
-
     Raises:
         MissingExtraError: PyTorch, onnx or Ray is not installed.
         EyasError: A setting is wrong, or the folder.
@@ -50,11 +43,7 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
 
 
 def _refuse_spread(config: EyasConfig, *, ray: bool) -> None:
-    """Refuse to spread what learns without rollouts: it does so on this processor, in this process.
-
-    Raises:
-        ConfigError: It is asked for.
-    """
+    """Refuse to spread what learns without rollouts: one process on this processor does."""
     method, device = TrainConfig.of(config).method, TrainConfig.of(config).device
     if ray:
         raise ConfigError(f"--ray: not allowed with {SETTING} '{method}': one process learns")

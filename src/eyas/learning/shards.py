@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 import torch
 
-from eyas.benchmark.fliers import connected, one_line
+from eyas.benchmark.flight.policy_runner import connected, one_line
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads
@@ -28,9 +28,6 @@ class TorchThreads:
 
     PyTorch's threads would keep the renderer's from the processors while they wait, and results
     would depend on their number.
-
-    Args:
-        threads: Their number.
     """
 
     def __init__(self, threads: int) -> None:
@@ -112,11 +109,6 @@ class RayShards:
     The processes get the weights before each rollout. A process that is lost is replaced: the new
     one begins the block anew and repeats its rollouts with the weights that they were made with,
     so nothing is lost and no byte differs.
-
-    Args:
-        ray: The module, connected.
-        config: The settings of the stage.
-        network: The network that is learning.
 
     Raises:
         ConfigError: The cluster has fewer cores than there are shards.

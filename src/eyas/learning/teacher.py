@@ -27,12 +27,7 @@ _ORACLES = {TeacherKind.SIGHTED: SightOracle, TeacherKind.EXACT: _ExactOracle}
 
 
 class Teacher:
-    """Tells the right actions in N environments.
-
-    Args:
-        config: The settings.
-        count: N.
-    """
+    """Tells the right actions in N environments."""
 
     def __init__(self, config: EyasConfig, count: int) -> None:
         changes = config.env.model_dump(include={"action_repeat", "speeds"})
@@ -54,9 +49,6 @@ class Teacher:
 
         The longer a target has been hidden, the less the network can know where it is, and the less
         the teacher does.
-
-        Args:
-            truth: What is true now.
         """
         nothing = np.zeros(0)  # oracles do not look at observations
         sight = PolicyInput(

@@ -58,21 +58,16 @@ def train(
 
     Args:
         config: The settings; `env` and `train` say what is seen and how it is learned.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        say: Called with a line for each block.
-        make_shards: Makes the environments, here or elsewhere.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
     """
     run = _Run(config, RunFolder(folder), say, make_shards)
     run.files.begin(config, resume=resume)
-    for number, stage in enumerate(TrainConfig.of(config).stages):
-        updates, each = (
-            TrainConfig.of(config).updates_of(stage),
-            TrainConfig.of(config).update_decisions,
-        )
+    learned = TrainConfig.of(config)
+    each = learned.update_decisions
+    for number, stage in enumerate(learned.stages):
+        updates = learned.updates_of(stage)
         if updates * each != stage.total_timesteps:
             say(
                 f"stage {number}: {stage.total_timesteps:,} decisions are rounded up to "
@@ -80,15 +75,10 @@ def train(
             )
     if resume:
         run.progress = run.files.load(run.parts, run.code)
-    if run.progress.stage < len(
-        TrainConfig.of(config).stages
-    ):  # environments take a while to be made
-        left, each = (
-            TrainConfig.of(config).run_decisions - run.progress.decisions,
-            TrainConfig.of(config).update_decisions,
-        )
-        say(f"{left:,} decisions by {TrainConfig.of(config).method}, in updates of {each:,}")
-    while run.progress.stage < len(TrainConfig.of(config).stages):
+    if run.progress.stage < len(learned.stages):  # environments take a while to be made
+        left = learned.run_decisions - run.progress.decisions
+        say(f"{left:,} decisions by {learned.method}, in updates of {each:,}")
+    while run.progress.stage < len(learned.stages):
         run.stage()
     return run.files.policy
 
@@ -100,23 +90,20 @@ class _Run:
         self, config: EyasConfig, files: RunFolder, say: Say, make_shards: MakeShards
     ) -> None:
         self.config, self.files, self._say = config, files, say
+        self._learned = learned = TrainConfig.of(config)
         self._make_shards = make_shards
         _refuse_later_errors(config)
-        phases = phases_of(TrainConfig.of(config))
+        phases = phases_of(learned)
         # Before the network is made, because it sets PyTorch's threads.
-        threads = TorchThreads(TrainConfig.of(config).parts)
-        layout = TrainConfig.of(config).channels_last
-        self.network = TrackingNetwork(_shape(config), channels_last=layout)
+        threads = TorchThreads(learned.parts)
+        self.network = TrackingNetwork(_shape(config), channels_last=learned.channels_last)
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
-        if (first := TrainConfig.of(config).begin_from) is not None:
+        if (first := learned.begin_from) is not None:
             RunFolder(Path(first)).load_network(self.network)
-        self.network.to(torch_device(TrainConfig.of(config).device))
-        rate = TrainConfig.of(config).learning_rate
-        optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
-        self._learner = Learner(
-            self.network, optimiser, TrainConfig.of(config), torch.Generator(), threads
-        )
+        self.network.to(torch_device(learned.device))
+        optimiser = torch.optim.Adam(self.network.parameters(), learned.learning_rate, eps=1e-5)
+        self._learner = Learner(self.network, optimiser, learned, torch.Generator(), threads)
         self._phases = [
             (phase.algorithm(self._learner, phase.settings), phase.end) for phase in phases
         ]
@@ -129,12 +116,12 @@ class _Run:
         self.code = [str(origin_of(path)) for path in own if path is not None]
         self.progress = TrainingProgress()
         self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
-        self._total = TrainConfig.of(config).run_decisions
+        self._total = learned.run_decisions
         self._told = -math.inf  # When it was last told how it goes [s]
 
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
-        stage = TrainConfig.of(self.config).stages[self.progress.stage]
+        stage = self._learned.stages[self.progress.stage]
         settings = updated(self.config, stage.changes(self.config.world))
         shards = self._make_shards(settings, self.network)
         done = self.progress.stage_decisions >= stage.total_timesteps
@@ -149,7 +136,7 @@ class _Run:
 
     def _block(self, shards: Shards, stage: Stage) -> bool:
         """Do a block of updates; return whether the stage is done."""
-        config, progress, start = TrainConfig.of(self.config), self.progress, time.monotonic()
+        config, progress, start = self._learned, self.progress, time.monotonic()
         rng = stream(self.config.seed, "learning", progress.block)
         shards.begin(rng.spawn(config.shards))
         self._learner.generator.manual_seed(int(rng.integers(2**62)))
@@ -176,7 +163,7 @@ class _Run:
 
     def _evaluated(self, stage: Stage) -> EvaluationScores:
         """Return the scores after a block: of an evaluation, if it is time for one."""
-        every = TrainConfig.of(self.config).evaluation.every
+        every = self._learned.evaluation.every
         stage_done = self.progress.stage_decisions >= stage.total_timesteps
         if every and (self.progress.block % every == 0 or stage_done):
             return evaluated(self.network, self.config)
@@ -184,14 +171,14 @@ class _Run:
 
     def _updates(self, stage: Stage, end: int) -> int:
         """Return the updates of the next block, all of one algorithm."""
-        config, progress = TrainConfig.of(self.config), self.progress
+        config, progress = self._learned, self.progress
         left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
         before = (end - progress.decisions) // config.update_decisions
         return min(left, config.updates_per_block, before)
 
     def _set_rate(self, rate: float, end: int) -> None:
         """Set the rate of learning, which falls until the decision with which a phase ends."""
-        left = max(1.0 - self.progress.decisions / end, TrainConfig.of(self.config).final_rate)
+        left = max(1.0 - self.progress.decisions / end, self._learned.final_rate)
         for group in self._learner.optimiser.param_groups:
             group["lr"] = rate * left
 
@@ -236,11 +223,7 @@ class _Run:
 
 
 def _refuse_later_errors(config: EyasConfig) -> None:
-    """Refuse at once what would end the run only after minutes or hours.
-
-    Raises:
-        EyasError: The evaluation or a stage cannot be run.
-    """
+    """Refuse at once what would end the run only after minutes or hours."""
     evaluation_episodes(config)
     _refuse_test_seeds(config, "")
     for number, stage in enumerate(TrainConfig.of(config).stages):
@@ -255,11 +238,7 @@ def _refuse_later_errors(config: EyasConfig) -> None:
 
 
 def _refuse_test_seeds(config: EyasConfig, path: str) -> None:
-    """Refuse maps and traffic that are kept for tests.
-
-    Raises:
-        ConfigError: One is there.
-    """
+    """Refuse maps and traffic that are kept for tests."""
     for group in ("world", "traffic"):
         seed = getattr(config, group).seed
         if seed is not None and seed >= TEST_SEEDS:
@@ -270,11 +249,7 @@ def _refuse_test_seeds(config: EyasConfig, path: str) -> None:
 
 
 def _shape(config: EyasConfig) -> NetworkShape:
-    """Return the shape of the network for what is seen.
-
-    Raises:
-        ConfigError: The network cannot see or choose that.
-    """
+    """Return the shape of the network for what is seen."""
     env = config.env
     if env.actions is not ActionKind.DISCRETE:
         raise ConfigError(f"env.actions: '{env.actions}' cannot be trained yet: 'discrete' can")

@@ -9,7 +9,6 @@ import json
 import math
 import warnings
 
-import mlcroissant
 import pytest
 import yaml
 
@@ -151,6 +150,7 @@ def offline(monkeypatch):
 
 @pytest.mark.usefixtures("offline")
 def test_croissant_is_valid_and_its_records_are_read(made, frames):
+    mlcroissant = pytest.importorskip("mlcroissant")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of mlcroissant's own
         data = mlcroissant.Dataset(made / "croissant.json")

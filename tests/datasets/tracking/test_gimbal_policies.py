@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from eyas.benchmark.entry import entry_of
+from eyas.benchmark.plan.entry import entry_of
 from eyas.benchmark.policies.table import open_policy
 from eyas.datasets.motion import action_names, motion_of
 from eyas.engine.core.config import updated

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.benchmark.box_trackers import BoxTracker, box_tracker
-from eyas.benchmark.policies.each import load_callable
+from eyas.benchmark.policies.box_trackers import BoxTracker, box_tracker
+from eyas.benchmark.policies.own_policy import load_callable
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.custom.own import OwnTarget
 from eyas.engine.custom.user_class import made

@@ -100,7 +100,7 @@ def test_any_number_of_processes_and_an_interruption_give_the_same_bytes(folder,
 @pytest.mark.slow
 def test_the_order_of_episodes_changes_no_box_of_opencv(folder):
     pytest.importorskip("cv2")
-    from eyas.benchmark.box_trackers import box_tracker
+    from eyas.benchmark.policies.box_trackers import box_tracker
     from eyas.datasets.tracking.one_pass import track_episode
 
     episodes = list(load(folder))
@@ -212,7 +212,8 @@ def test_overlap_is_that_of_shapely(first, second):
 
 
 def test_the_same_class_flies_closed_loop(tmp_path):
-    from eyas.benchmark.plan import EvaluationPlan, batches, fly_batch
+    from eyas.benchmark.flight.policy_runner import fly_batch
+    from eyas.benchmark.plan.plan import EvaluationPlan, batches
 
     plan = EvaluationPlan(policy=f"{OWN}:Drifting", episodes=1, batch=1)
     ((record,),) = fly_batch(plan, batches(plan)[0])
@@ -227,7 +228,7 @@ def test_truth_is_inside_the_picture(folder):
 
 def test_opencv_trackers_follow_a_moving_square(tmp_path):
     pytest.importorskip("cv2")
-    from eyas.benchmark.box_trackers import box_tracker
+    from eyas.benchmark.policies.box_trackers import box_tracker
 
     ground = np.random.default_rng(0).integers(0, 255, (120, 160, 3), dtype=np.uint8) // 4
     square = np.random.default_rng(1).integers(128, 255, (24, 24, 3), dtype=np.uint8)

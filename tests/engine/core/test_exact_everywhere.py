@@ -38,7 +38,7 @@ ELSEWHERE = (
 
 ALLOWED = {
     "lanes/exact.py": "takes their place",
-    "benchmark/policies/choice.py": "chances of actions from scores of networks, which BLAS made",
+    "benchmark/policies/action_choice.py": "actions' shares from networks' scores, which BLAS made",
     "benchmark/policies/tracker/detector.py: np.exp": "the same of places",
     "engine/core/bounds.py: np.vdot": "whether numbers are looked at one by one; none changes",
     "engine/sim/stepper.py: np.vdot": "the same",

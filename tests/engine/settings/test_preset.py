@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.benchmark.protocols import PROTOCOLS
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.dat.settings.adapter import is_original
 from eyas.dat.settings.layout import flat
 from eyas.engine.core.errors import UnknownNameError

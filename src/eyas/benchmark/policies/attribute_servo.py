@@ -4,6 +4,7 @@ car's shape that is nearest to the middle.
 """
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -43,11 +44,8 @@ _CAR_LIKE: Final = 0.9
 """Largest difference of a blob's shape from a car's, as of `_unlike`: a van is one, a roof not."""
 
 _WATCHED: Final = 1.0  # How long it watches what moves, if the words are about that [s]
-
 _GATE: Final = 3.0  # Farthest from where it is expected that the target is looked for, at first [m]
-
 _WIDER: Final = 4.0  # How much farther, for each second in which it is not seen [m/s]
-
 _SPEEDS: Final = (0.8, 1.5)  # Below the first something stands, above the second it moves [m/s]
 
 _TURN: Final = 0.12
@@ -67,8 +65,8 @@ class _Drone:
 
     def __init__(self, claim: Claim | None) -> None:
         self.claim = claim
-        self.colour: Floats | None = None  # Of what it follows without words, as seen [0 to 255]
-        self.own = np.zeros(2)  # Its way so far, ahead and left [m]
+        self.colour: Floats | None = None  # Colour that is followed without words [0 to 255]
+        self.own = np.zeros(2)  # Distance flown so far, ahead and left [m]
         self.time = 0.0
         self.watched: list[tuple[float, Floats]] = []
         """Times and places of all candidates while it watches."""
@@ -79,7 +77,6 @@ class AttributeServo:
     """Flies to what the attributes say, from pictures alone.
 
     Args:
-        changes: Changes of `env`.
         listens: Whether it uses attributes; False: it does the same with any words.
     """
 
@@ -274,11 +271,5 @@ def _misdoing(doing: Doing, way: Floats) -> float:
     return 5.0 if wrong else 0.0
 
 
-def attribute_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that knows what it is told."""
-    return AttributeServo(changes, listens=True)
-
-
-def salient_servo(changes: Mapping[str, Any]) -> AttributeServo:
-    """Return the servo that takes a colourful car near the middle."""
-    return AttributeServo(changes, listens=False)
+attribute_servo = partial(AttributeServo, listens=True)
+salient_servo = partial(AttributeServo, listens=False)

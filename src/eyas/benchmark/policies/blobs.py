@@ -28,10 +28,8 @@ _LIGHT: Final = (0.6, 1.15)
 """Brightness in shade and in sun, as a multiple of the paint's; measured likewise."""
 
 _DARKER: Final = 0.3  # Weight of the logarithm of what is beyond these
-
 _UNSURE: Final = 0.05  # A paint may be one of two names that differ by less
-
-_LEVELS: Final = 32  # Of each channel in the table of names
+_LEVELS: Final = 32  # Levels of each channel in the table of names
 
 _BRIDGED: Final = 0.8, 0.45
 """Windows and roofs up to twice as long do not divide a blob, where it is one vehicle or a queue of
@@ -41,13 +39,9 @@ _FILLED: Final = 0.3
 """Least share of a blob's rectangle that has its colour: leaves have it here and there."""
 
 _QUEUE: Final = 1.4  # A blob that is so many times as long as one vehicle is a queue
-
 _SPACING: Final = 1.5  # Between the vehicles of a queue [m]
-
 _SIZES: Final = (0.8, 16.0)  # Shortest and longest blob that may be a vehicle [m]
-
 _WIDEST: Final = 4.0  # [m]
-
 _LEAST: Final = 4  # Fewest pixels
 
 
@@ -62,10 +56,6 @@ class Blobs(NamedTuple):
 
 def painted(picture: NDArray[np.uint8], name: str) -> Mask:
     """Return which pixels look like paint of a colour, and about as much as of any other name.
-
-    Args:
-        picture: Shape (H, W, 3).
-        name: In `COLOUR_NAMES`.
 
     Returns:
         Shape (H, W).
@@ -108,7 +98,6 @@ def coloured(picture: NDArray[np.uint8], colour: Floats) -> Mask:
     """Return which pixels have about the hue of a colour that the camera has seen, shape (H, W).
 
     Args:
-        picture: Shape (H, W, 3).
         colour: 0 to 255, shape (3,).
     """
     bright = picture.sum(axis=2, dtype=np.float64)
@@ -131,9 +120,7 @@ def blobs_in(mask: Mask, scale: float, each: float | None = None, *, apart: bool
 
     Args:
         mask: Shape (H, W).
-        scale: Metres in a pixel.
         each: Length of all of them, so that queues can be divided [m]; None: not known.
-        apart: Whether vehicles of different sizes may be near each other.
     """
     cv2 = _opencv()
     reach = max(round(_BRIDGED[apart] / scale), 1)

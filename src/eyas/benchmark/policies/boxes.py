@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.box_trackers import Box, BoxTracker, box_tracker
-from eyas.benchmark.policies.each import Each
+from eyas.benchmark.policies.box_trackers import Box, BoxTracker, box_tracker
+from eyas.benchmark.policies.own_policy import PerEpisodePolicy
 from eyas.engine.policies.policy import env_config
 from eyas.engine.policies.steering import pixel_offset, towards
 from eyas.engine.settings.env import EnvConfig
@@ -18,12 +18,7 @@ _SIZE = 240, 320  # Height and width of the pictures
 
 
 class BoxPilot:
-    """Tracks one target; hovers while it is lost.
-
-    Args:
-        make: Makes the box tracker.
-        env: How long an action lasts.
-    """
+    """Tracks one target; hovers while it is lost."""
 
     def __init__(self, make: Callable[[], BoxTracker], env: EnvConfig) -> None:
         self._tracker, self._env = make(), env
@@ -48,12 +43,11 @@ class BoxPilot:
         return int(towards(pixel_offset(*middle, _SIZE), self._env)[0])
 
 
-def pilot(said: str, changes: Mapping[str, Any]) -> Each:
+def pilot(said: str, changes: Mapping[str, Any]) -> PerEpisodePolicy:
     """Return the policy of a box tracker.
 
     Args:
         said: A name of `BOX_TRACKERS`, or `package.module:Class`.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The box tracker cannot be used here.
@@ -62,7 +56,7 @@ def pilot(said: str, changes: Mapping[str, Any]) -> Each:
     image = {"width": _SIZE[1], "height": _SIZE[0], "layout": "hwc", "colours": "rgb", "frames": 1}
     fixed = {"observation": image, "actions": "discrete"}
     env = env_config({**fixed, "action_repeat": 4}, {**changes, **fixed})
-    return Each(lambda: BoxPilot(make, env), env, said, frozenset({"box"}))
+    return PerEpisodePolicy(lambda: BoxPilot(make, env), env, said, frozenset({"box"}))
 
 
 csrt, kcf, mosse = (partial(pilot, name) for name in ("csrt", "kcf", "mosse"))

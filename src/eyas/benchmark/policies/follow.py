@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from eyas.benchmark.policies.oracle_helm import actions_of_oracles, flown_over
+from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
-__all__ = ["Follow", "follow"]
+__all__ = ["Follow"]
 
 
 class Follow:
@@ -21,15 +21,10 @@ class Follow:
         )
 
     def begin(self, start: Start) -> None:
-        """Do nothing, for it remembers nothing."""
+        """No-op: this oracle is stateless."""
 
     def act(self, sight: PolicyInput) -> Decision:
         """Fly there."""
         state = sight.snapshot()
         places, velocities = state.targets.centre[:, :2], state.targets.velocity[:, :2]
         return Decision(flown_over(state, places, velocities, self.env))
-
-
-def follow(changes: Mapping[str, Any]) -> Follow:
-    """Return the oracle."""
-    return Follow(changes)

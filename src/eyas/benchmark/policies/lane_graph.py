@@ -15,7 +15,6 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SPACING = 2.0  # Distance of neighbouring points [m]
-
 _ALIKE = 0.8  # Largest angle between the heading of a vehicle and that of its lane [rad]
 
 
@@ -23,7 +22,7 @@ class LaneGraph(NamedTuple):
     """Points along the lanes, and along the ways over junctions from lane to lane; P points."""
 
     place: Floats  # East and north [m], shape (P, 2)
-    heading: Floats  # Of the lane [rad], shape (P,)
+    heading: Floats  # Heading of the lane [rad], shape (P,)
     speed: Floats  # Speed limit [m/s], shape (P,)
     after: Integers
     """Points that follow, the straightest first; each row is filled up by repeating them, shape
@@ -56,8 +55,8 @@ class Lanes:
         self.graph = LaneGraph(place, heading, speed, np.concatenate(after))
         self._spans = [spans[id(roads)] for roads in networks]
 
-    def told(self, tell: Callable[[int, Floats], NDArray[np.bool_]]) -> NDArray[np.bool_]:
-        """Return what is told of all points, shape (P,).
+    def evaluated(self, tell: Callable[[int, Floats], NDArray[np.bool_]]) -> NDArray[np.bool_]:
+        """Return the values of a function at all points, shape (P,).
 
         Args:
             tell: Function of the number of a drone and of places around it, shape (M, 2).
@@ -71,7 +70,6 @@ class Lanes:
         """Return the points of lanes where a vehicle may be, the nearest first; maybe none.
 
         Args:
-            row: Number of the drone.
             place: East and north [m], shape (2,).
             heading: Of the vehicle [rad]; None: nobody knows.
             reach: Largest distance [m].

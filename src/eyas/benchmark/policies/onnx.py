@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.policies.choice import Chooser
+from eyas.benchmark.policies.action_choice import Chooser
 from eyas.benchmark.policies.listener.detector import VehicleDetector
 from eyas.benchmark.policies.listener.listener import Listener
 from eyas.benchmark.policies.simple import HOVER
@@ -43,12 +43,6 @@ _IMAGE, _LAST, _TOLD, _NEXT = "image", "last_action", "attributes", "next_"
 
 class OnnxPolicy:
     """A network.
-
-    Args:
-        path: The file, for messages.
-        session: The network, as onnxruntime runs it.
-        changes: Changes of `env`.
-        sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file does not hold such a network.

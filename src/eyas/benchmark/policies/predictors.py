@@ -23,7 +23,7 @@ class ConstantVelocity:
     """The target goes on at its last velocity."""
 
     def begin(self, start: Start) -> None:
-        """Do nothing: it remembers nothing."""
+        """No-op: this predictor is stateless."""
 
     def places(self, clue: Clue) -> Floats:
         """Return where the targets are after going straight on, shape (N, 2)."""
@@ -43,9 +43,9 @@ class AlongLanes:
         self._point = np.full(count, -1)
         """Last point of its lane that each hidden target has passed; -1: it is in no lane."""
         self._past = np.zeros(count)
-        """How far it is past it [m]."""
+        """Distance past that point [m]."""
         self._age = np.zeros(count)
-        """Its age when it was last moved [s]."""
+        """Age of each target when it was last moved [s]."""
         self._straight = ConstantVelocity()
 
     def places(self, clue: Clue) -> Floats:

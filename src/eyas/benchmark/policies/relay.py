@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.messages import MESSAGE
+from eyas.benchmark.flight.team_radio import MESSAGE
 from eyas.benchmark.policies.road_search import RoadSearch
 from eyas.benchmark.policies.sighted import Clue, SightOracle
 from eyas.engine.core.clock import PHYSICS_STEP

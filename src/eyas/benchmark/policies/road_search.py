@@ -36,16 +36,13 @@ _FEWEST = 20.0
 """Sum of the weights below which the guesses are taken again from those that are likely."""
 
 _NEARBY = 5.0  # Spread of the guesses that count together as a place worth looking at [m]
-
 _RANGE = 60.0  # Way to fly after which a place is half as attractive [m]
-
 _CHANGE = 0.25  # How often the speed of a guess changes [1/s]
 
 _STANDING = 3
 """One of so many guesses stands where the target vanished: it may have stopped out of sight."""
 
 _LONGEST = 40  # Most points of a lane that something hides: longer than any tunnel
-
 _PERIOD = 0.064  # Time between two moves of the guesses [s]
 
 
@@ -58,7 +55,7 @@ class RoadSearch:
         self._ahead = AlongLanes()
         self._ahead.begin(start)
         self._lanes = Lanes(start.roads())
-        self._open = self._lanes.told(start.is_open)
+        self._open = self._lanes.evaluated(start.is_open)
         self._exit = self._exits()
         self._random = [stream(seed, "search") for seed in start.seeds.tolist()]
         shape = count, _GUESSES

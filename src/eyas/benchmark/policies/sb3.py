@@ -12,7 +12,7 @@ from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.envs.trained_with import ELSEWHERE, trained_with
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 
-__all__ = ["Sb3Policy", "load_sb3"]
+__all__ = ["Sb3Policy"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -34,7 +34,6 @@ class Sb3Policy:
 
     Args:
         path: The `.zip`. It holds pickles, which run code: load only files that you trust.
-        changes: Changes of `env`.
         sampled: Whether actions are sampled; not repeatable, as the library seeds no single ones.
 
     Raises:
@@ -109,13 +108,9 @@ def _tell_others(path: Path, trained: Mapping[str, Any]) -> None:
     if others:
         _LOG.warning(
             "%s: was trained with %s; flown with those of the protocol, unless --set changes them",
-            *(path, ", ".join(others)),
+            path,
+            ", ".join(others),
         )
-
-
-def load_sb3(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> Sb3Policy:
-    """Return the policy in a file, see `Sb3Policy`."""
-    return Sb3Policy(path, changes, sampled=sampled)
 
 
 def _loaded(path: Path) -> Any:  # noqa: ANN401  # a model of any class

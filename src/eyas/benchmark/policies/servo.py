@@ -11,14 +11,13 @@ from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.engine.policies.steering import DEPTH, PERIOD, pixel_offset, towards
 from eyas.lanes import exact
 
-__all__ = ["GimbalServo", "Servo", "gimbal_servo", "servo"]
+__all__ = ["GimbalServo", "Servo"]
 
 _SIZE = 84
 _PATCH = 14  # Side of the pattern [pixels]
 _REACH = 11  # Farthest motion between two pictures [pixels]
 _LEARNING = 0.1  # Share of a new picture in the pattern, where the match is good
 _GOOD = 0.6  # Least correlation of a good match
-
 _GAIN = 5.0  # Rate at which a camera is turned, by how far it would have to be [1/s]
 _HIGHEST = 0.6  # How far it may be turned up [rad]
 _SHARES = np.zeros((7, 4))
@@ -121,13 +120,3 @@ def _correlation(area: Floats, pattern: Floats) -> Floats:
     ).sum(axis=0)
     match: Floats = dot / np.sqrt(np.maximum(spread, 1.0) * max(np.square(centred).sum(), 1.0))
     return match
-
-
-def gimbal_servo(changes: Mapping[str, Any]) -> GimbalServo:
-    """Return the visual servo that turns its camera, too."""
-    return GimbalServo(changes)
-
-
-def servo(changes: Mapping[str, Any]) -> Servo:
-    """Return the visual servo."""
-    return Servo(changes)

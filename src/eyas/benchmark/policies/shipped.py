@@ -13,7 +13,8 @@ from eyas.engine.core.config import Config, validated
 __all__ = ["TRAINED", "Card", "card_of", "file_of", "shipped_names"]
 
 TRAINED = Path(str(files("eyas.benchmark.policies"))) / "trained"
-"""Their folder: for each name a network (`.onnx`), a card (`.json`) and a curve (`.csv`)."""
+"""Folder of the policies: for each name a network (`.onnx`), a card (`.json`) and a curve
+(`.csv`)."""
 
 
 class Card(Config):
@@ -26,11 +27,11 @@ class Card(Config):
     command: str
     """The command that trained it."""
     entry_class: str = "pixels"
-    """What it knows, see `eyas.benchmark.entry.EntryClass`."""
+    """What it knows, see `eyas.benchmark.plan.entry.EntryClass`."""
     decisions: int
-    """Of all environments, in training; of trackers, pictures that they were shown."""
+    """Decisions of all environments in training; of trackers: pictures that they were shown."""
     version: str
-    """Of Eyas, when it was trained."""
+    """Version of Eyas that trained it."""
     trained_on: str
     """Places, conditions, targets and episodes of its training, in a few sentences."""
     limits: tuple[str, ...]

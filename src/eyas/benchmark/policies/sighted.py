@@ -9,11 +9,11 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.policies.oracle_helm import actions_of_oracles, flown_over
+from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
-__all__ = ["Clue", "Motion", "Predictor", "SightOracle"]
+__all__ = ["Clue", "LastMotion", "Predictor", "SightOracle"]
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -28,16 +28,16 @@ that both share one picture."""
 _FASTEST = 30.0  # What moves faster has not moved, but is another guess [m/s]
 
 
-class Motion(NamedTuple):
+class LastMotion(NamedTuple):
     """How targets moved when they were last seen."""
 
-    place: Floats  # Their centres, east and north [m], shape (N, 2)
+    place: Floats  # Centre of each, east and north [m], shape (N, 2)
     velocity: Floats  # [m/s], shape (N, 2)
     yaw: Floats  # Heading [rad], shape (N,)
     turn_rate: Floats  # [rad/s], shape (N,)
 
     @classmethod
-    def create(cls, count: int) -> "Motion":
+    def create(cls, count: int) -> "LastMotion":
         """Return the motion of targets that nobody has seen."""
         return cls(np.zeros((count, 2)), np.zeros((count, 2)), np.zeros(count), np.zeros(count))
 
@@ -45,12 +45,12 @@ class Motion(NamedTuple):
 class Clue(NamedTuple):
     """What is known of N targets at an instant."""
 
-    last: Motion  # Of one that has not been seen yet, its place is the middle of the first picture
+    last: LastMotion  # Before the first sighting: place is the middle of the first picture
     age: Floats  # Time since it was seen, or since the start [s], shape (N,); 0: it is seen
     known: Mask  # Whether it has been seen, shape (N,)
     middle: Floats  # Ground point in the middle of the picture, east and north [m], shape (N, 2)
     yaw: Floats  # Heading of the drone [rad], shape (N,)
-    covered: Mask  # Whose camera shows nothing, shape (N,)
+    covered: Mask  # True if the camera is covered, shape (N,)
 
 
 class _Flown(NamedTuple):
@@ -77,10 +77,6 @@ class SightOracle:
 
     Attributes:
         clue: What it knew when it last acted.
-
-    Args:
-        changes: Changes of `env`.
-        predictor: Says where a hidden target is.
     """
 
     sampled = False
@@ -95,7 +91,7 @@ class SightOracle:
     def begin(self, start: Start) -> None:
         """Forget the targets."""
         count = len(start.seeds)
-        self._last = Motion.create(count)
+        self._last = LastMotion.create(count)
         self._known = np.zeros(count, np.bool_)
         self._sees = np.zeros(count, np.bool_)
         self._seen_at = np.full(count, -1)

@@ -9,7 +9,7 @@ from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.engine.settings.env import ObservationPart
 
-__all__ = ["Hover", "Random", "hover", "random"]
+__all__ = ["Hover", "Random"]
 
 _NO_PICTURE = {"observation": {"parts": [ObservationPart.SENSORS]}}
 """Changes of `EnvConfig`: neither looks, so that no picture is drawn."""
@@ -57,13 +57,3 @@ class Random:
         for row in np.flatnonzero(sight.deciding).tolist():
             actions[row] = self._streams[row].integers(ACTIONS)
         return Decision(actions)
-
-
-def hover(changes: Mapping[str, Any]) -> Hover:
-    """Return a policy that does nothing."""
-    return Hover(changes)
-
-
-def random(changes: Mapping[str, Any]) -> Random:
-    """Return a policy that flies at random."""
-    return Random(changes)

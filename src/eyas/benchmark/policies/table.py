@@ -27,15 +27,15 @@ __all__ = [
 _ROOM = "eyas.benchmark.policies"
 
 _BUILT_IN = {
-    "random": f"{_ROOM}.simple:random",
-    "hover": f"{_ROOM}.simple:hover",
-    "follow": f"{_ROOM}.follow:follow",
+    "random": f"{_ROOM}.simple:Random",
+    "hover": f"{_ROOM}.simple:Hover",
+    "follow": f"{_ROOM}.follow:Follow",
     "sighted": f"{_ROOM}.road_search:sighted",
     "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
-    "servo": f"{_ROOM}.servo:servo",
-    "gimbal-servo": f"{_ROOM}.servo:gimbal_servo",
+    "servo": f"{_ROOM}.servo:Servo",
+    "gimbal-servo": f"{_ROOM}.servo:GimbalServo",
     "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
     "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
@@ -50,21 +50,21 @@ POLICIES: Registry[Callable[..., Any]] = Registry(
     _BUILT_IN,
     group="eyas.policies",
 )
-"""Built in are functions that take changes of `env` and return a policy; what installed packages
+"""Built in are classes and functions that take changes of `env`; what installed packages
 add is what `package.module:name` may be, see `load_callable`."""
 
 ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
-"""Those that are told the truth, and fly by seven actions or, where `env.actions` says so, by
+"""Policies that know the truth; they fly by seven actions or, where `env.actions` says so, by
 velocities."""
 
 FILES = {
     ".onnx": f"{_ROOM}.onnx:load_onnx",
-    ".zip": f"{_ROOM}.sb3:load_sb3",
-    ".pt": f"{_ROOM}.torch_file:load_torch",
-    ".pth": f"{_ROOM}.torch_file:load_torch",
-    ".pt2": f"{_ROOM}.torch_file:load_torch",
+    ".zip": f"{_ROOM}.sb3:Sb3Policy",
+    ".pt": f"{_ROOM}.torch_file:TorchPolicy",
+    ".pth": f"{_ROOM}.torch_file:TorchPolicy",
+    ".pt2": f"{_ROOM}.torch_file:TorchPolicy",
 }
-"""Functions that take a path and changes of `env` and return a policy, by the file's ending."""
+"""What takes a path and changes of `env` and returns a policy, by the file's ending."""
 
 
 _LARGEST = 1 << 22
@@ -88,8 +88,6 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 
     Args:
         said: A name of `policy_names`, the path of a file, or `package.module:name`.
-        changes: Changes of `env`.
-        sampled: Whether a network's actions are sampled instead of the best ones.
 
     Raises:
         EyasError: There is no such policy, or it cannot be loaded.
@@ -106,7 +104,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
         policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
         _refuse_large(path, policy, changes)
     elif own is not None:
-        from eyas.benchmark.policies.each import load_callable
+        from eyas.benchmark.policies.own_policy import load_callable
 
         _refuse_sampled(said, sampled=sampled)
         policy = load_callable(own, changes)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.policies.choice import Chooser
+from eyas.benchmark.policies.action_choice import Chooser
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 
-__all__ = ["TorchPolicy", "load_torch"]
+__all__ = ["TorchPolicy"]
 
 _EXPORTED = ".pt2"
 
@@ -26,8 +26,6 @@ class TorchPolicy:
     Args:
         path: A program of `torch.export.save`, `.pt2`; or a whole module of `torch.save`. The
             latter is a pickle, which runs code: load only files that you trust.
-        changes: Changes of `env`.
-        sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file is neither.
@@ -70,11 +68,6 @@ class TorchPolicy:
         except Exception as error:  # unpickling can raise anything
             line = " ".join(str(error).split())[:200]
             raise DataFileError(f"{path}: not a PyTorch policy: {line}") from error
-
-
-def load_torch(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> TorchPolicy:
-    """Return the policy in a file, see `TorchPolicy`."""
-    return TorchPolicy(path, changes, sampled=sampled)
 
 
 def _torch() -> Any:  # noqa: ANN401  # a module

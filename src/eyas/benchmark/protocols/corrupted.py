@@ -8,10 +8,10 @@ finished pictures, but of what the camera and the air do to light.
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.protocols.published import STANDARD
-from eyas.benchmark.record import EpisodeRecord
+from eyas.benchmark.records.record import EpisodeRecord
 
 __all__ = ["CLEAN", "CORRUPTED", "CORRUPTIONS"]
 

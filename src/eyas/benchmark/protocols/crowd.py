@@ -6,19 +6,20 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.envelope import Envelope
-from eyas.benchmark.episode import EpisodeSpec
-from eyas.benchmark.episode_batch import EpisodeBatch
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.neighbours import in_company
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.scenario import Scenario
+from eyas.benchmark.episodes.episode import EpisodeSpec
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch
+from eyas.benchmark.episodes.neighbours import in_company
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.flight.scenario import Scenario
+from eyas.benchmark.protocols.envelope import Envelope
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.policies.sight import nearest_to_middle
 
 __all__ = ["CROWD", "CrowdScenario", "switches"]
 
 _HEIGHT: Final = 12.0
-"""Of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22 m."""
+"""Height of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22
+m."""
 
 _SWITCHED: Final = 0.5  # Time for which another must be followed to count as a switch [s]
 
@@ -57,8 +58,6 @@ def switches(nearest: NDArray[np.int64], target: int, least: int) -> int:
 
     Args:
         nearest: Whom it follows at each look, -1: nobody, shape (M,).
-        target: Whom it should follow.
-        least: Number of looks in a row for which another must be followed.
     """
     starts = np.flatnonzero(np.diff(nearest, prepend=nearest[0] - 1))
     lengths = np.diff(starts, append=len(nearest))

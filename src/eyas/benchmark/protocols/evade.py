@@ -1,7 +1,7 @@
 """The target's driver wants to be lost."""
 
-from eyas.benchmark.evasion import EvasionScenario, evading
-from eyas.benchmark.protocol import NEVER, Protocol
+from eyas.benchmark.flight.evasion import EvasionScenario, evading
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.traffic.library import EVADING_MIX
 
 __all__ = ["EVADE"]

@@ -2,8 +2,8 @@
 
 import math
 
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.setting_out import AT_REST, AT_SPEED, at_rest_and_at_speed
+from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED, at_rest_and_at_speed
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
 __all__ = ["FLOWN"]
 

@@ -1,7 +1,7 @@
 """Episodes that last: is the target kept, found, and kept apart from others that look like it?"""
 
-from eyas.benchmark.neighbours import with_neighbours
-from eyas.benchmark.protocol import NEVER, Protocol
+from eyas.benchmark.episodes.neighbours import with_neighbours
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
 __all__ = ["DISTRACTOR", "LONG", "SEARCH"]
 

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from eyas.benchmark.chosen import evenly_in
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.even_choice import evenly_in
+from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.traffic.library import TEST_TRAFFIC
 from eyas.engine.world.maps.recipe import TEST_TOWNS
 

@@ -1,8 +1,8 @@
 """The target is out of sight for seconds, and must be found again."""
 
-from eyas.benchmark.losses import COVERED, with_losses
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.recovery import RecoveryScenario
+from eyas.benchmark.episodes.target_losses import COVERED, with_losses
+from eyas.benchmark.flight.recovery import RecoveryScenario
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
 __all__ = ["RECOVER", "RECOVER_CAMERA"]
 
@@ -24,9 +24,9 @@ RECOVER_CAMERA = Protocol(
     "90 s: the camera is covered twice, for 2, 5, 10 or 15 s",
     {"traffic": {"demand": "keep_alive"}, "done": _LENGTH},
     episodes=3,
-    columns=(
-        *("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s"),
-        *("recovery_time", "followed_wrong", "nt2f", "crashed"),
+    columns=tuple(
+        "recovered recovered_2s recovered_5s recovered_10s recovered_15s recovery_time "
+        "followed_wrong nt2f crashed".split()
     ),
     rank="recovered",
     choose=with_losses,

@@ -8,10 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.envelope import Envelope
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.episode_batch import EpisodeBatch, episode_groups
-from eyas.benchmark.look_alikes import (
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.episode_batch import EpisodeBatch, episode_groups
+from eyas.benchmark.episodes.look_alikes import (
     HEIGHT,
     PITCH,
     StagedStart,
@@ -19,9 +18,10 @@ from eyas.benchmark.look_alikes import (
     repeat_start,
     staged_start,
 )
-from eyas.benchmark.meter import LOOK
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.scenario import Scenario
+from eyas.benchmark.flight.meter import LOOK
+from eyas.benchmark.flight.scenario import Scenario
+from eyas.benchmark.protocols.envelope import Envelope
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import Kind
 from eyas.engine.core.errors import SpawnError
@@ -35,9 +35,7 @@ from eyas.engine.traffic.library import CANONICAL_MIX, DENSE_VEHICLES
 __all__ = ["REFERRING"]
 
 _VARIANTS: Final = ("right", "other", "contradictory", "none")
-
 _TRIED: Final = 12  # Number of seeds that are tried for each episode
-
 _LEAST_VISIBLE: Final = 0.5  # Smallest share of the target that is visible at the start
 
 _CHOSEN_BY: Final = 3.0
@@ -130,7 +128,7 @@ class ReferringScenario(Scenario):
         self._nearest = np.full((batch.count, protocol.steps // LOOK), -1, np.int64)
         """Whom each follows at each look; -1: nobody is in the picture."""
 
-    def told(self) -> Instruction:
+    def instruction(self) -> Instruction:
         """Return the words of each episode's variant."""
         phrases: list[Phrase] = [
             self._starts[row].phrases[variant] for row, variant in enumerate(self._variant)

@@ -1,7 +1,7 @@
 """Several drones follow one target together, and one camera is blind for a while."""
 
-from eyas.benchmark.protocol import NEVER, Protocol
-from eyas.benchmark.team import TeamScenario
+from eyas.benchmark.flight.team import TeamScenario
+from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
 __all__ = ["PAIR", "TEAM"]
 

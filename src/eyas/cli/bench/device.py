@@ -72,11 +72,7 @@ class _Kept:
 
 
 def _views(pictures: PictureBatch) -> tuple[CpuRenderer, Views, DrawList]:
-    """Return what trackers see that begin on citystreet, each in a world of its own.
-
-    Args:
-        pictures: How many there are, and the weather.
-    """
+    """Return what trackers see that begin on citystreet, each in a world of its own."""
     config = SimConfig(
         camera=CameraConfig(samples=pictures.samples), world=WorldConfig(weather=pictures.weather)
     )
@@ -101,7 +97,6 @@ def measure_device(device: Device, seconds: float) -> Iterator[Measurement]:
     """Measure pictures of several numbers, sizes and weathers.
 
     Args:
-        device: The device.
         seconds: Time to measure each [s].
     """
     for pictures in ON_DEVICES:
@@ -112,8 +107,6 @@ def measure_on_device(device: Device, pictures: PictureBatch, seconds: float) ->
     """Return the measurement of drawing pictures that stay on the device.
 
     Args:
-        device: The device.
-        pictures: What to draw.
         seconds: Time to measure [s].
     """
     renderer, given = on_device(device, pictures)

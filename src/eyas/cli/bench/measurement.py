@@ -25,7 +25,6 @@ __all__ = [
 ]
 
 _CALL = {"x86_64": 298, "aarch64": 241}  # Number of the system call `perf_event_open`
-
 _CYCLES, _INSTRUCTIONS = 0, 1
 _SIZE = 64
 _OWN_CODE_ONLY = 1 << 5 | 1 << 6  # Neither the kernel of the system nor a hypervisor
@@ -138,10 +137,6 @@ def of_pictures(
     """Return the measurement of a call that draws pictures.
 
     Args:
-        name: Name of the line.
-        includes: What the figure covers.
-        draw: The call.
-        size: Number of pictures that it draws, their width and height.
         seconds: Time to measure [s].
     """
     timing = timed(draw, seconds)

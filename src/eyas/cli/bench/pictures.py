@@ -147,7 +147,6 @@ def measure_pictures(pictures: PictureBatch, seconds: float) -> Measurement:
     """Return the measurement of drawing pictures.
 
     Args:
-        pictures: What to draw.
         seconds: Time to measure [s].
     """
     config = SimConfig(

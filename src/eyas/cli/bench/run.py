@@ -69,11 +69,6 @@ def run(
     """Measure, print a table and write the figures.
 
     Args:
-        json_path: File for the machine and the figures as JSON, or None.
-        quick: Whether to measure for a tenth of the time.
-        cold: Whether to time the first picture with an empty cache too.
-        stages: Whether to time the stages of a picture too.
-        camera: Whether to time camera models too.
         device: Whose pictures to measure, and nothing else, see `device_of`; None: all of this
             processor.
 
@@ -172,9 +167,7 @@ def _first_picture(name: str, cache: str | None, bytecode: str) -> Measurement:
     """Time a fresh process from its start to its first picture.
 
     Args:
-        name: Name of the measurement.
         cache: An empty folder for the cache; None: the user's.
-        bytecode: An empty folder for Python's, which is used with the user's cache only.
     """
     repeats = 1 if cache else 3
     times, spent = [], []

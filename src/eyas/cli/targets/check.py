@@ -39,8 +39,6 @@ def check(what: str, config: CustomConfig, map_name: str) -> tuple[list[str], bo
 
     Args:
         what: A name of the catalogue, a file, or `package.module:Class`.
-        config: How to read it.
-        map_name: Map on which it is to move.
 
     Raises:
         UnknownNameError: There is no such name.

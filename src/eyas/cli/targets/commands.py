@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from eyas.engine.terminal.options import AsJson
+from eyas.engine.terminal.options import AsJson, to_write
 
 if TYPE_CHECKING:
     from eyas.engine.custom.config import CustomConfig
 
 __all__ = ["app"]
 
-_WIDTH = 190  # Of the table [characters]; a narrower terminal breaks its lines
+_WIDTH = 190  # Width of the table [characters]; a narrower terminal breaks its lines
 
 _Scale = Annotated[float, typer.Option("--scale", help="Metres in the mesh file's unit.")]
 _Up = Annotated[str | None, typer.Option("--up", help="The mesh file's axis that is up: y or z.")]
@@ -79,10 +79,7 @@ def show_target(
     ],
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            help="File to write: .png, or .gif, .webp or .apng for a film; by default NAME.png.",
-        ),
+        to_write("File to write: .png, or .gif, .webp or .apng (a film); by default NAME.png."),
     ] = None,
     scale: _Scale = 1.0,
     up: _Up = None,

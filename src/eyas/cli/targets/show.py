@@ -18,7 +18,6 @@ from eyas.engine.targets.words import words_of
 __all__ = ["ALL", "run"]
 
 ALL = "all"  # Name by which all targets are shown in one picture
-
 _NEAR = 256  # Side of a picture from near [pixels]
 _SMALL = 168  # Side of a picture on the sheet of all [pixels]
 _HEIGHT = 22.0  # Distance of a tracker's camera [m]
@@ -37,7 +36,6 @@ def run(name: str, path: Path, custom: CustomConfig | None = None) -> None:
     Args:
         name: Name of a model or of a kind, `all`, a mesh file, or `package.module:Class`.
         path: A .png for a sheet; a .gif, .webp or .apng for a film.
-        custom: How to read a mesh file.
 
     Raises:
         EyasError: There is no such target or ending, or the file cannot be written.

@@ -44,11 +44,7 @@ class Camera:
 
 
 class TargetStage:
-    """Draws targets, one at a time.
-
-    Args:
-        kinds: Names of the kinds that it can draw.
-    """
+    """Draws targets, one at a time."""
 
     def __init__(self, kinds: Sequence[str]) -> None:
         recipe = MAPS.get(_MAP)
@@ -75,11 +71,7 @@ class TargetStage:
         """Return a picture of each shot, sRGB, shape (V, *size, 3).
 
         Args:
-            model: Index into `MODELS`.
-            colour: The target's colour.
-            shots: How it is, and from where it is seen.
             size: Height and width of the pictures [pixels].
-            samples: Samples for each pixel, 1, 2 or 4.
         """
         count, kinds = len(shots), len(self._kinds)
         actor = self._kinds.index(kind_index(MODELS[model].kind))

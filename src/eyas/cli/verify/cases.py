@@ -13,8 +13,16 @@ from eyas.engine.world.maps import MAPS
 __all__ = ["Case", "cases"]
 
 _QUICK = {
-    *("citystreet", "citystreet day", "citystreet snow", "village", "village night"),
-    *("citystreet night, 4 samples", "preset noisy", "preset lively", "flown drone", "lidar"),
+    "citystreet",
+    "citystreet day",
+    "citystreet snow",
+    "village",
+    "village night",
+    "citystreet night, 4 samples",
+    "preset noisy",
+    "preset lively",
+    "flown drone",
+    "lidar",
 }
 
 _EVERYWHERE = ("day", "foggy", "night", "snow")
@@ -22,11 +30,8 @@ _EVERYWHERE = ("day", "foggy", "night", "snow")
 which takes minutes, and is looked at on one."""
 
 _ALONE = {"channels": 1}
-
 _SHARP: dict[str, Any] = {"camera": {"samples": 4}}
-
 _GUSTS = {"speed": {"uniform": [0.0, 8.0]}, "turbulence": 5.0}
-
 _BARREL = {"model": "brown", "k1": -0.2, "vignetting": 0.3, "red": 0.003}
 
 _SETTINGS: dict[str, dict[str, Any]] = {

@@ -23,7 +23,7 @@ from eyas.lanes.trusted import FOLDER_VARIABLE
 
 __all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
 
-Hashes = dict[str, dict[str, str]]  # Of cases by name, of each by the name of what they are of
+Hashes = dict[str, dict[str, str]]  # Hashes by case, then by what is hashed
 
 
 def manifest_path() -> Path:
@@ -106,9 +106,7 @@ def run(*, quick: bool = False, map_name: str | None = None, as_json: bool = Fal
     """Compute, print what differs, and return whether all is as promised.
 
     Args:
-        quick: Whether to look at a tenth of the cases only.
         map_name: Look at the cases of this map only; None: at all.
-        as_json: Whether to print JSON.
 
     Raises:
         UnknownNameError: The manifest has no such map.

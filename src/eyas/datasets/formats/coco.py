@@ -18,7 +18,6 @@ from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
-    Job,
     by_split,
     left_top_width_height,
     numbered,
@@ -38,18 +37,15 @@ class Coco(Format):
 
     needs = frozenset({"jpeg", "labels", "masks"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Place its pictures, and keep its annotations."""
         frames = []
         ending, folder = picture_ending(episode), f"{split_of(episode)}/{episode.name}"
         for frame in episode:
             inside = f"{folder}/{numbered(frame, 0, 6, ending)}"
-            self._job.place(episode.picture_file(frame.number), inside)
+            self.job.place(episode.picture_file(frame.number), inside)
             frames.append((self._image(frame, inside), self._annotations(frame)))
-        self._job.keep(episode, {"fps": episode.fps, "frames": frames})
+        self.job.keep(episode, {"fps": episode.fps, "frames": frames})
 
     def _image(self, frame: RecordedFrame, inside: str) -> Row:
         label = frame.label
@@ -67,7 +63,7 @@ class Coco(Format):
                 "category_id": list(CLASS_NAMES.values()).index(seen.name) + 1,
                 "bbox": left_top_width_height(label["visible_box"]),
                 "area": area,
-                "iscrowd": int(self._job.ignores(seen)),
+                "iscrowd": int(self.job.ignores(seen)),
                 "segmentation": {"size": [height, width], "counts": counts},
                 "amodal_bbox": left_top_width_height(label["box"]),
                 "track_id": label["id"],
@@ -85,17 +81,17 @@ class Coco(Format):
 
     def _write(self, split: str, episodes: Sequence[Exported]) -> None:
         """Write one file, with the rows of one episode in memory at a time."""
-        path = self._job.folder / "annotations" / f"{split}.json"
+        path = self.job.folder / "annotations" / f"{split}.json"
         path.parent.mkdir(parents=True, exist_ok=True)
         videos, tracks = [], 0
         with atomic_path(path) as part, part.open("w") as file:
-            file.write('{"info": ' + json.dumps({"description": self._job.name}))
+            file.write('{"info": ' + json.dumps({"description": self.job.name}))
             file.write(', "licenses": [], "categories": ' + json.dumps(_categories()))
             file.write(', "annotations": [')
             images: list[Row] = []
             written = 0
             for video, episode in enumerate(episodes, 1):
-                kept = self._job.kept(episode.name)
+                kept = self.job.kept(episode.name)
                 videos.append({"id": video, "name": episode.name, "fps": kept["fps"]})
                 own: dict[int, int] = {}  # an id of an episode is unique in the file as well
                 for image, rows in kept["frames"]:

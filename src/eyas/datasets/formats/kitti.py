@@ -29,7 +29,6 @@ from eyas.engine.exports.label import Label
 from eyas.engine.recordings.format import (
     Exported,
     Format,
-    Job,
     SeenObject,
     by_split,
     lines,
@@ -67,28 +66,25 @@ class Kitti(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         folder, name = FOLDERS[episode.split or "train"], episode.name
-        self._job.place_all(episode, f"{folder}/image_02/{name}", 0, 6)
+        self.job.place_all(episode, f"{folder}/image_02/{name}", 0, 6)
         rows = [row for frame in episode for row in self._rows(frame.number, frame.label)]
         labels = episode.labels
         matrices = [_flat(label["intrinsics"]) for label in labels]
-        self._job.write(f"{folder}/label_02/{name}.txt", lines(rows))
-        self._job.write(f"{folder}/calib/{name}.txt", lines(_calibration(labels[0])))
-        self._job.write(f"{folder}/poses/{name}.txt", lines(map(_pose, labels)))
-        self._job.write(f"{folder}/intrinsics/{name}.txt", lines(matrices))
+        self.job.write(f"{folder}/label_02/{name}.txt", lines(rows))
+        self.job.write(f"{folder}/calib/{name}.txt", lines(_calibration(labels[0])))
+        self.job.write(f"{folder}/poses/{name}.txt", lines(map(_pose, labels)))
+        self.job.write(f"{folder}/intrinsics/{name}.txt", lines(matrices))
         if "distortion_model" in labels[0]:
             bends = (f"{row['distortion_model']} {_text(row['distortion'])}" for row in labels)
-            self._job.write(f"{folder}/distortion/{name}.txt", lines(bends))
+            self.job.write(f"{folder}/distortion/{name}.txt", lines(bends))
 
     def _rows(self, number: int, label: Label) -> Iterable[str]:
         position, camera = camera_pose(label)
         for seen in objects_of(label):
-            if self._job.ignores(seen):
+            if self.job.ignores(seen):
                 box = _text(seen.label["box"])
                 yield f"{number} -1 DontCare -1 -1 -10 {box} -1 -1 -1 -1000 -1000 -1000 -10"
             else:
@@ -99,7 +95,7 @@ class Kitti(Format):
         for split, group in by_split(episodes).items():
             folder = FOLDERS[split]
             rows = [f"{episode.name} empty 000000 {episode.frames:06d}" for episode in group]
-            self._job.write(f"{folder}/evaluate_tracking.seqmap.{folder}", lines(rows))
+            self.job.write(f"{folder}/evaluate_tracking.seqmap.{folder}", lines(rows))
 
 
 def _row(seen: SeenObject, camera: Floats, position: Floats) -> str:

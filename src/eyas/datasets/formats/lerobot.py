@@ -27,9 +27,7 @@ _LARGEST = 1 << 28  # Largest arrays of an episode [bytes]
 __all__ = ["LeRobot"]
 
 CAMERA = "observation.images.camera"
-
 _CHUNK = 1000  # Files in a folder
-
 _LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated
 
 _FEATURES = {
@@ -37,7 +35,6 @@ _FEATURES = {
     "observation.environment_state": TRUTH_NAMES,
 }
 _ACTION = "action"
-
 _COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 
 Stats = dict[str, list[Any]]
@@ -59,11 +56,11 @@ class LeRobot(Format):
             import pyarrow.parquet as pq
         except ImportError as error:
             raise MissingExtraError("the format 'lerobot'", "exports") from error
-        self._job, self._pa, self._pq = job, pa, pq
+        self.job, self._pa, self._pq = job, pa, pq
 
     def add(self, episode: RecordedEpisode) -> None:
         """Keep its video, and its states and actions."""
-        self._job.place(episode.folder / "episode.mp4", f"{KEPT}/{episode.name}.mp4")
+        self.job.place(episode.folder / "episode.mp4", f"{KEPT}/{episode.name}.mp4")
         motion = motion_of(episode)
         arrays: dict[str, Any] = {
             "observation.state": motion.states,
@@ -74,7 +71,7 @@ class LeRobot(Format):
         }
         stored = io.BytesIO()
         np.savez(stored, **arrays)
-        self._job.write(f"{KEPT}/{episode.name}.npz", stored.getvalue())
+        self.job.write(f"{KEPT}/{episode.name}.npz", stored.getvalue())
         width, height = episode.size
         kept = {
             "fps": episode.fps,
@@ -83,23 +80,23 @@ class LeRobot(Format):
             "colours": _colour_stats(episode),
             _ACTION: motion.actions.shape[1],
         }
-        self._job.keep(episode, kept)
+        self.job.keep(episode, kept)
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the tables and the descriptions, the splits one after the other."""
         order = sorted(episodes, key=lambda each: ("train", "val", "test").index(each.split))
-        names = action_names(self._job.kept(each.name)[_ACTION] for each in order)
+        names = action_names(self.job.kept(each.name)[_ACTION] for each in order)
         tasks: dict[str, int] = {}
         rows: list[Row] = []
         for number, episode in enumerate(order):
-            kept = self._job.kept(episode.name)
+            kept = self.job.kept(episode.name)
             task = tasks.setdefault(kept["task"], len(tasks))
             first = sum(row["length"] for row in rows)
             rows.append(self._episode(number, episode, kept, task, first))
         self._write_table("meta/tasks.parquet", self._tasks(tasks))
         columns = {name: [row[name] for row in rows] for name in rows[0]}
         self._write_table("meta/episodes/chunk-000/file-000.parquet", self._pa.table(columns))
-        first_kept = self._job.kept(order[0].name)
+        first_kept = self.job.kept(order[0].name)
         self._write_json("meta/info.json", _info(order, first_kept, len(tasks), names))
         self._write_json("meta/stats.json", _all_stats(rows))
 
@@ -107,9 +104,9 @@ class LeRobot(Format):
         """Write the data of an episode and place its video; return its row."""
         chunk, file = divmod(number, _CHUNK)
         inside = f"chunk-{chunk:03d}/file-{file:03d}"
-        self._job.settle(f"{episode.name}.mp4", f"videos/{CAMERA}/{inside}.mp4")
+        self.job.settle(f"{episode.name}.mp4", f"videos/{CAMERA}/{inside}.mp4")
         count = episode.frames
-        path = self._job.folder / KEPT / f"{episode.name}.npz"
+        path = self.job.folder / KEPT / f"{episode.name}.npz"
         try:
             arrays = npz_arrays(read_limited(path, _LARGEST), _LARGEST)
         except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
@@ -181,10 +178,10 @@ class LeRobot(Format):
     def _write_table(self, inside: str, table: "pyarrow.Table") -> None:
         stored = io.BytesIO()
         self._pq.write_table(table, stored, compression="snappy")
-        self._job.write(inside, stored.getvalue())
+        self.job.write(inside, stored.getvalue())
 
     def _write_json(self, inside: str, what: Any) -> None:  # noqa: ANN401  # JSON
-        self._job.write(inside, json.dumps(what, indent=4) + "\n")
+        self.job.write(inside, json.dumps(what, indent=4) + "\n")
 
 
 def _info(order: Sequence[Exported], kept: Row, tasks: int, actions: Sequence[str]) -> Row:

@@ -31,9 +31,7 @@ TOPICS = {
 """Topics and the names of their schemas."""
 
 _TARGET, _OTHER = (1.0, 0.55, 0.0, 1.0), (0.35, 0.67, 1.0, 1.0)  # Colours of boxes
-
 _LINE_LOOP = 2  # Foxglove's number of a closed line
-
 _TIME = {"type": "object", "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}}}
 
 _KEYS: dict[str, Json] = {
@@ -74,11 +72,11 @@ class Mcap(Format):
             from mcap import writer
         except ImportError as error:
             raise MissingExtraError("the format 'mcap'", "exports") from error
-        self._job, self._mcap = job, writer
+        self.job, self._mcap = job, writer
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its file."""
-        path = self._job.folder / split_of(episode) / f"{episode.name}.mcap"
+        path = self.job.folder / split_of(episode) / f"{episode.name}.mcap"
         with refusals(path):
             path.parent.mkdir(parents=True, exist_ok=True)
         with atomic_path(path) as part, part.open("wb") as file:

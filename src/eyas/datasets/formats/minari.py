@@ -42,7 +42,7 @@ class Minari(Format):
             import h5py
         except ImportError as error:
             raise MissingExtraError("the format 'minari'", "exports") from error
-        self._job, self._h5 = job, h5py
+        self.job, self._h5 = job, h5py
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its part, a file of its own."""
@@ -68,25 +68,25 @@ class Minari(Format):
             file["actions"] = motion.actions[:-1]
             file["rewards"] = motion.rewards[1:].astype(np.float64)
             file["terminations"], file["truncations"] = ends, last & ~ends
-        self._job.write(f"{KEPT}/{episode.name}.hdf5", stored.getvalue())
+        self.job.write(f"{KEPT}/{episode.name}.hdf5", stored.getvalue())
         about = {
             "task": task_of(episode),
             "size": [height, width],
             "action": motion.actions.shape[1],
         }
-        self._job.keep(episode, {"seed": episode.config.seed, **about})
+        self.job.keep(episode, {"seed": episode.config.seed, **about})
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Join the episodes, and describe the data set."""
-        folder = Path("eyas", f"{_plain(self._job.name)}-v0", "data")
-        path = self._job.folder / folder / "main_data.hdf5"
+        folder = Path("eyas", f"{_plain(self.job.name)}-v0", "data")
+        path = self.job.folder / folder / "main_data.hdf5"
         path.parent.mkdir(parents=True, exist_ok=True)
         self._require_space(path, [episode.name for episode in episodes])
-        kept = [self._job.kept(episode.name) for episode in episodes]
+        kept = [self.job.kept(episode.name) for episode in episodes]
         with atomic_path(path) as part, self._h5.File(part, "w", track_order=True) as file:
             for number, (episode, about) in enumerate(zip(episodes, kept, strict=True)):
                 group = file.create_group(f"episode_{number}")
-                own = self._job.folder / KEPT / f"{episode.name}.hdf5"
+                own = self.job.folder / KEPT / f"{episode.name}.hdf5"
                 with self._h5.File(own, "r") as stored:
                     for name in stored:
                         stored.copy(name, group)
@@ -104,12 +104,12 @@ class Minari(Format):
         size = round(path.stat().st_size / 1e6, 1)
         names = folder.parent.as_posix(), len(action_names(each["action"] for each in kept))
         about = _metadata(*names, len(episodes), steps, kept[0]["size"], size)
-        self._job.write((folder / "metadata.json").as_posix(), json.dumps(about) + "\n")
-        self._job.write("eyas/namespace_metadata.json", json.dumps({"description": "Eyas"}) + "\n")
+        self.job.write((folder / "metadata.json").as_posix(), json.dumps(about) + "\n")
+        self.job.write("eyas/namespace_metadata.json", json.dumps({"description": "Eyas"}) + "\n")
 
     def _require_space(self, path: Path, names: Sequence[str]) -> None:
         """Refuse to join what the disk cannot hold, see `add`."""
-        parts = (self._job.folder / KEPT / f"{name}.hdf5" for name in names)
+        parts = (self.job.folder / KEPT / f"{name}.hdf5" for name in names)
         needed = sum(part.stat().st_size + _MARGIN for part in parts)
         if shutil.disk_usage(path.parent).free < needed:
             raise OutputError(f"{path}: cannot write: it needs {needed >> 20} MiB, and the disk "

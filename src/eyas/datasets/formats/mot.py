@@ -16,7 +16,6 @@ from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
-    Job,
     by_split,
     left_top_width_height,
     lines,
@@ -37,13 +36,10 @@ class Mot(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         folder = f"{BENCHMARK}-{split_of(episode)}/{episode.name}"
-        self._job.place_all(episode, f"{folder}/img1", 1, 6)
+        self.job.place_all(episode, f"{folder}/img1", 1, 6)
         names = list(CLASS_NAMES.values())
         truth, classes, detections = [], [], []
         for frame in episode:
@@ -52,22 +48,22 @@ class Mot(Format):
                 visibility = label["visible_fraction"] * (1.0 - label["truncated"])
                 left, top, *size = left_top_width_height(label["box"])
                 box = (frame.number + 1, label["id"], left + 1, top + 1, *size)
-                counts = int(not self._job.ignores(seen))
+                counts = int(not self.job.ignores(seen))
                 truth.append((*box, counts, COUNTED, f"{visibility:.6g}"))
                 classes.append((*box, counts, names.index(seen.name) + 1, f"{visibility:.6g}"))
                 left, top, *size = left_top_width_height(label["visible_box"])
                 detections.append((frame.number + 1, -1, left + 1, top + 1, *size, 1, -1, -1, -1))
-        self._job.write(f"{folder}/gt/gt.txt", lines(truth))
-        self._job.write(f"{folder}/gt/gt_class.txt", lines(classes))
-        self._job.write(f"{folder}/gt/labels.txt", lines(names))
-        self._job.write(f"{folder}/det/det.txt", lines(detections))
-        self._job.write(f"{folder}/seqinfo.ini", lines(_sequence(episode)))
+        self.job.write(f"{folder}/gt/gt.txt", lines(truth))
+        self.job.write(f"{folder}/gt/gt_class.txt", lines(classes))
+        self.job.write(f"{folder}/gt/labels.txt", lines(names))
+        self.job.write(f"{folder}/det/det.txt", lines(detections))
+        self.job.write(f"{folder}/seqinfo.ini", lines(_sequence(episode)))
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the list of each split's sequences."""
         for split, group in by_split(episodes).items():
             names = [episode.name for episode in group]
-            self._job.write(f"seqmaps/{BENCHMARK}-{split}.txt", lines(["name", *names]))
+            self.job.write(f"seqmaps/{BENCHMARK}-{split}.txt", lines(["name", *names]))
 
 
 def _sequence(episode: RecordedEpisode) -> Iterable[str]:

@@ -23,7 +23,6 @@ from eyas.engine.exports.label import Label
 from eyas.engine.recordings.format import (
     Exported,
     Format,
-    Job,
     SeenObject,
     by_split,
     numbered,
@@ -48,18 +47,15 @@ CATEGORIES = {
     ObjectClass.TRAIN: "train",
 }
 VISIBILITIES = {"1": "0-40", "2": "40-60", "3": "60-80", "4": "80-100"}
-ATTRIBUTES = (
-    *("vehicle.moving", "vehicle.stopped", "vehicle.parked"),
-    *("pedestrian.moving", "pedestrian.standing"),
+ATTRIBUTES = tuple(
+    "vehicle.moving vehicle.stopped vehicle.parked pedestrian.moving pedestrian.standing".split()
 )
 
 MOVES = 0.2  # Speed from which something moves [m/s]
-
 CHANNEL, MAP = "CAM_FRONT", "maps/blank.png"
 
-PER_EPISODE = (
-    *("log", "scene", "sample", "sample_data", "ego_pose", "calibrated_sensor", "instance"),
-    "sample_annotation",
+PER_EPISODE = tuple(
+    "log scene sample sample_data ego_pose calibrated_sensor instance sample_annotation".split()
 )
 """Tables with rows of each episode."""
 
@@ -74,9 +70,6 @@ class NuScenes(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Place its pictures, and keep its rows."""
         ending = picture_ending(episode)
@@ -85,32 +78,32 @@ class NuScenes(Format):
         count = len(episode)
         for frame in episode:
             inside = f"samples/{CHANNEL}/{name}__{numbered(frame, 0, 6, ending)}"
-            self._job.place(episode.picture_file(frame.number), inside)
+            self.job.place(episode.picture_file(frame.number), inside)
             _add_frame(tables, own, frame, inside, count)
             for seen in objects_of(frame.label):
-                if not self._job.ignores(seen):
+                if not self.job.ignores(seen):
                     tables["sample_annotation"].append(_annotation(own, frame, seen))
         tables["instance"] = _instances(own, tables["sample_annotation"])
         _add_scene(tables, own, episode)
-        self._job.keep(episode, tables)
+        self.job.keep(episode, tables)
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the tables of each split."""
-        self._job.write(MAP, _blank())
+        self.job.write(MAP, _blank())
         for split, group in by_split(episodes).items():
             folder = f"v1.0-{split}"
             for table, rows in _constant_tables(group).items():
-                self._job.write(f"{folder}/{table}.json", json.dumps(rows, indent=0) + "\n")
+                self.job.write(f"{folder}/{table}.json", json.dumps(rows, indent=0) + "\n")
             for table in PER_EPISODE:
                 self._write(f"{folder}/{table}.json", self._rows(group, table))
 
     def _rows(self, group: Sequence[Exported], table: str) -> Iterator[Row]:
         for episode in group:
-            yield from self._job.kept(episode.name)[table]
+            yield from self.job.kept(episode.name)[table]
 
     def _write(self, inside: str, rows: Iterator[Row]) -> None:
         """Write a table, with the rows of one episode in memory at a time."""
-        with atomic_path(self._job.folder / inside) as part, part.open("w") as file:
+        with atomic_path(self.job.folder / inside) as part, part.open("w") as file:
             between = "[\n"
             for row in rows:
                 file.write(between + json.dumps(row))

@@ -33,12 +33,12 @@ class Rerun(Format):
             import rerun
         except ImportError as error:
             raise MissingExtraError("the format 'rerun'", "exports") from error
-        self._job, self._rr = job, rerun
+        self.job, self._rr = job, rerun
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its file."""
         stream = self._rr.RecordingStream(
-            "eyas", recording_id=f"{self._job.name}-{episode.name}", send_properties=False
+            "eyas", recording_id=f"{self.job.name}-{episode.name}", send_properties=False
         )
         # In memory: on a full disk Rerun's own thread, which writes, may never end.
         stored = stream.memory_recording()
@@ -49,7 +49,7 @@ class Rerun(Format):
         stream.flush()
         content = stored.drain_as_bytes()
         stream.disconnect()
-        self._job.write(f"{split_of(episode)}/{episode.name}.rrd", content)
+        self.job.write(f"{split_of(episode)}/{episode.name}.rrd", content)
 
     def _log(self, stream: Any, frame: RecordedFrame) -> None:  # noqa: ANN401  # rerun's
         rr, label = self._rr, frame.label

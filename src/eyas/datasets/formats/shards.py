@@ -11,13 +11,12 @@ import tarfile
 from collections.abc import Sequence
 
 from eyas.engine.core.files import atomic_path, read_limited
-from eyas.engine.recordings.format import KEPT, Exported, Format, Job, picture_ending
+from eyas.engine.recordings.format import KEPT, Exported, Format, picture_ending
 from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = ["WebDataset"]
 
-_LARGEST = 1 << 28  # Of a file of one frame [bytes]
-
+_LARGEST = 1 << 28  # Largest file of one frame [bytes]
 _PLANES = ("masks", "classes", "depth", "flow")
 
 
@@ -26,13 +25,10 @@ class WebDataset(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its shard, whose place among the others is not known yet."""
         planes = [plane for plane in _PLANES if episode.has(plane)]
-        ending, path = picture_ending(episode), self._job.folder / KEPT / f"{episode.name}.tar"
+        ending, path = picture_ending(episode), self.job.folder / KEPT / f"{episode.name}.tar"
         path.parent.mkdir(parents=True, exist_ok=True)
         with atomic_path(path) as part, tarfile.open(part, "w", format=tarfile.USTAR_FORMAT) as tar:
             for frame in episode:
@@ -53,15 +49,15 @@ class WebDataset(Format):
             own = [episode for episode in episodes if episode.split == split]
             for number, episode in enumerate(own):
                 shard = f"{split}-{number:06d}.tar"
-                self._job.settle(f"{episode.name}.tar", shard)
+                self.job.settle(f"{episode.name}.tar", shard)
                 shards.append({"url": shard, "nsamples": episode.frames})
             index = {
                 "__kind__": "wids-shard-index-v1",
                 "wids_version": 1,
-                "name": f"{self._job.name}-{split}",
+                "name": f"{self.job.name}-{split}",
                 "shardlist": shards,
             }
-            self._job.write(f"{split}.json", json.dumps(index, indent=1) + "\n")
+            self.job.write(f"{split}.json", json.dumps(index, indent=1) + "\n")
 
 
 def _put(tar: tarfile.TarFile, name: str, content: bytes) -> None:

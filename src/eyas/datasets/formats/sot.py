@@ -16,7 +16,6 @@ from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
-    Job,
     by_split,
     lines,
     split_of,
@@ -45,9 +44,6 @@ class Sequences(Format):
     """Folder of the pictures in that of the sequence, their first number, and its digits."""
     boxes: ClassVar[str]
     """Name of the file of boxes in the folder of the sequence."""
-
-    def __init__(self, job: Job) -> None:
-        self.job = job
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
@@ -155,14 +151,11 @@ class Uav123(Format):
     needs = frozenset({"jpeg", "labels"})
     first_sight = True
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         split, name = split_of(episode), episode.name
-        self._job.place_all(episode, f"{split}/data_seq/UAV123/{name}", 1, 6)
-        self._job.write(f"{split}/anno/UAV123/{name}.txt", lines(boxes_or_nan(episode, "NaN")))
+        self.job.place_all(episode, f"{split}/data_seq/UAV123/{name}", 1, 6)
+        self.job.write(f"{split}/anno/UAV123/{name}.txt", lines(boxes_or_nan(episode, "NaN")))
 
 
 def boxes_or_nan(episode: RecordedEpisode, nan: str) -> list[list[Any]]:

@@ -14,7 +14,6 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.engine.exports.label import Label
 from eyas.engine.recordings.format import (
     Format,
-    Job,
     SeenObject,
     left_top_width_height,
     lines,
@@ -28,11 +27,8 @@ __all__ = ["Uavdt"]
 
 CATEGORIES = {ObjectClass.CAR: 1, ObjectClass.TRUCK: 2, ObjectClass.BUS: 3}
 IGNORED = (1, -1, -1)  # The last columns of an ignored box
-
 LOW, HIGH = 30.0, 70.0  # Altitudes up to which a sequence is low, and from which it is high [m]
-
 LONG_TERM = 1500  # Number of frames from which a sequence is long
-
 STEEP = math.radians(60.0)  # Pitch of the camera from which it looks as a bird does
 
 _wrapped = interpreted(wrap_angle)
@@ -43,13 +39,10 @@ class Uavdt(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         name = episode.name
-        self._job.place_all(episode, f"UAV-benchmark-M/{name}", 1, 6, "img")
+        self.job.place_all(episode, f"UAV-benchmark-M/{name}", 1, 6, "img")
         counted, whole, ignored = [], [], []
         for frame in episode:
             for seen in objects_of(frame.label):
@@ -59,17 +52,17 @@ class Uavdt(Format):
                 category = CATEGORIES.get(ObjectClass(label["class_id"]))
                 if category is None and label["class_id"] != ObjectClass.MOTORCYCLE:
                     continue
-                if category is None or label["truncated"] > 0.5 or self._job.ignores(seen):
+                if category is None or label["truncated"] > 0.5 or self.job.ignores(seen):
                     ignored.append((*row, *IGNORED))
                 else:
                     counted.append((*row, 1, category, -1))
                     whole.append((*row, *_levels(seen), category))
         truth = f"UAV-benchmark-MOTD_v1.0/GT/{name}_gt"
-        self._job.write(f"{truth}.txt", lines(counted))
-        self._job.write(f"{truth}_whole.txt", lines(whole))
-        self._job.write(f"{truth}_ignore.txt", lines(ignored))
+        self.job.write(f"{truth}.txt", lines(counted))
+        self.job.write(f"{truth}_whole.txt", lines(whole))
+        self.job.write(f"{truth}_ignore.txt", lines(ignored))
         folder = "test" if episode.split == "test" else "train"
-        self._job.write(f"M_attr/{folder}/{name}_attr.txt", lines([_attributes(episode)]))
+        self.job.write(f"M_attr/{folder}/{name}_attr.txt", lines([_attributes(episode)]))
 
 
 def _levels(seen: SeenObject) -> tuple[int, int]:
@@ -91,8 +84,12 @@ def _attributes(episode: RecordedEpisode) -> list[int]:
     altitude = sorted(_altitude(label) for label in labels)[len(labels) // 2]
     view = _view(labels)
     facts = [
-        *(not night and not fog, night, fog),
-        *(altitude <= LOW, LOW < altitude < HIGH, altitude >= HIGH),
+        not night and not fog,
+        night,
+        fog,
+        altitude <= LOW,
+        LOW < altitude < HIGH,
+        altitude >= HIGH,
         *(view == name for name in ("front", "side", "bird")),
         len(labels) >= LONG_TERM,
     ]

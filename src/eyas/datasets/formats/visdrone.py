@@ -67,17 +67,14 @@ class VisDroneDet(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Place its pictures, and write their annotations."""
         root, ending = _root("DET", episode), picture_ending(episode)
         for frame in episode:
             name = f"{episode.name}_{numbered(frame, 0, 6, ending)}"
-            self._job.place(episode.picture_file(frame.number), f"{root}/images/{name}")
-            rows = lines(_row(seen, self._job) for seen in objects_of(frame.label))
-            self._job.write(f"{root}/annotations/{name.removesuffix(ending)}txt", rows)
+            self.job.place(episode.picture_file(frame.number), f"{root}/images/{name}")
+            rows = lines(_row(seen, self.job) for seen in objects_of(frame.label))
+            self.job.write(f"{root}/annotations/{name.removesuffix(ending)}txt", rows)
 
 
 class VisDroneMot(Format):
@@ -87,19 +84,16 @@ class VisDroneMot(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         root = _root("MOT", episode)
-        self._job.place_all(episode, f"{root}/sequences/{episode.name}", 1, 7)
-        self._job.write(f"{root}/annotations/{episode.name}.txt", lines(self._rows(episode)))
+        self.job.place_all(episode, f"{root}/sequences/{episode.name}", 1, 7)
+        self.job.write(f"{root}/annotations/{episode.name}.txt", lines(self._rows(episode)))
 
     def _rows(self, episode: RecordedEpisode) -> Iterator[Row]:
         for frame in episode:
             for seen in objects_of(frame.label):
-                yield frame.number + 1, seen.label["id"], *_row(seen, self._job)
+                yield frame.number + 1, seen.label["id"], *_row(seen, self.job)
 
 
 class VisDroneSot(Format):
@@ -110,12 +104,9 @@ class VisDroneSot(Format):
     needs = frozenset({"jpeg", "labels"})
     first_sight = True
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         root, name = _root("SOT", episode), episode.name
-        self._job.place_all(episode, f"{root}/sequences/{name}", 1, 7, "img")
+        self.job.place_all(episode, f"{root}/sequences/{name}", 1, 7, "img")
         boxes = target_boxes(episode.labels).tolist()
-        self._job.write(f"{root}/annotations/{name}.txt", lines(boxes))
+        self.job.write(f"{root}/annotations/{name}.txt", lines(boxes))

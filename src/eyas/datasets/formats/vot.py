@@ -14,7 +14,6 @@ from eyas.datasets.formats.sot import boxes_or_nan, target_boxes
 from eyas.engine.recordings.format import (
     Exported,
     Format,
-    Job,
     by_split,
     lines,
     picture_ending,
@@ -42,24 +41,21 @@ class Vot(Format):
     needs = frozenset({"jpeg", "labels"})
     first_sight = True
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Write its sequence."""
         folder = f"{split_of(episode)}/{episode.name}"
-        self._job.place_all(episode, f"{folder}/color", 1, 8)
-        self._job.write(f"{folder}/groundtruth.txt", lines(boxes_or_nan(episode, "nan")))
+        self.job.place_all(episode, f"{folder}/color", 1, 8)
+        self.job.write(f"{folder}/groundtruth.txt", lines(boxes_or_nan(episode, "nan")))
         for name, tag in _tags(episode).items():
-            self._job.write(f"{folder}/{name}.tag", lines(tag.astype(int).tolist()))
+            self.job.write(f"{folder}/{name}.tag", lines(tag.astype(int).tolist()))
         for name, key in (("visibility", "visible_fraction"), ("distance", "target_distance")):
-            self._job.write(f"{folder}/{name}.value", lines(episode.array(key).tolist()))
-        self._job.write(f"{folder}/sequence", lines(_properties(episode)))
+            self.job.write(f"{folder}/{name}.value", lines(episode.array(key).tolist()))
+        self.job.write(f"{folder}/sequence", lines(_properties(episode)))
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the list of each split's sequences."""
         for split, group in by_split(episodes).items():
-            self._job.write(f"{split}/list.txt", lines(episode.name for episode in group))
+            self.job.write(f"{split}/list.txt", lines(episode.name for episode in group))
 
 
 def _properties(episode: RecordedEpisode) -> list[str]:

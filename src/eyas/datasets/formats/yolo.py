@@ -18,7 +18,6 @@ from eyas.engine.recordings.format import (
     CLASS_NAMES,
     Exported,
     Format,
-    Job,
     lines,
     numbered,
     objects_of,
@@ -37,22 +36,19 @@ Points = NDArray[Any]
 class _Yolo(Format):
     """What the three have in common."""
 
-    def __init__(self, job: Job) -> None:
-        self._job = job
-
     def add(self, episode: RecordedEpisode) -> None:
         """Place its pictures, and write their labels."""
         split, ending = split_of(episode), picture_ending(episode)
         for frame in episode:
             picture = episode.picture_file(frame.number)
             name = f"{split}/{episode.name}_{numbered(frame, 0, 6, ending)}"
-            self._job.place(picture, f"images/{name}")
+            self.job.place(picture, f"images/{name}")
             rows = lines(self._rows(frame))
-            self._job.write(f"labels/{name.removesuffix(ending)}txt", rows)
+            self.job.write(f"labels/{name.removesuffix(ending)}txt", rows)
 
     def _rows(self, frame: RecordedFrame) -> Iterable[str]:
         size = np.array([frame.label["width"], frame.label["height"]])
-        counted = [seen for seen in objects_of(frame.label) if not self._job.ignores(seen)]
+        counted = [seen for seen in objects_of(frame.label) if not self.job.ignores(seen)]
         for seen, points in zip(
             counted, self.points(frame, [seen.label for seen in counted]), strict=True
         ):
@@ -70,7 +66,7 @@ class _Yolo(Format):
         # Without "path": Ultralytics takes the folder of the file; "." would be the current one.
         rows = [f"{split}: images/{folder}" for split, folder in folders.items()]
         names = [f"  {number}: {name}" for name, number in _NUMBERS.items()]
-        self._job.write("data.yaml", lines([*rows, "names:", *names]))
+        self.job.write("data.yaml", lines([*rows, "names:", *names]))
 
 
 class Yolo(_Yolo):

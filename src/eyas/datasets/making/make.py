@@ -69,17 +69,11 @@ def make(
     root: Path,
     making: Making,
     recorded: Recorded | None = None,
-    kept: Callable[[Part | None], None] = lambda part: None,
 ) -> None:
     """Make a data set, or what is missing of it.
 
     Args:
-        plan: The plan.
-        root: Its folder.
-        making: How.
         recorded: What records parts; None: the processes of this machine.
-        kept: Is told of each part that is complete, and at the end of None; see
-            `eyas.datasets.making.remote`.
 
     Raises:
         EyasError: The recipe cannot be met, the folder is taken, or something cannot be written;
@@ -92,9 +86,8 @@ def make(
     _check_worlds(parts, root, making)
     with folder_lock(root, "making a data set in it"), continuable(root):
         if open_folder(root, plan, resume=making.resume):
-            _record(parts, root, making, recorded or _on_this_machine(making), kept)
+            _record(parts, root, making, recorded or _on_this_machine(making))
             complete(plan, root, making)
-            kept(None)
 
 
 def _check_worlds(parts: Sequence[Part], root: Path, making: Making) -> None:
@@ -141,7 +134,8 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
             return False
         _LOG.warning(
             "%s: not as it was made (%d such files), so what is of it is made again",
-            *(damaged[0], len(damaged)),
+            damaged[0],
+            len(damaged),
         )
     if found != MAKING_FILE:
         write_plan(root, plan)
@@ -154,8 +148,6 @@ def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
     """Yield the files of a finished data set that have changed since; parts that have some are no
     longer known as complete.
     """
-    if not (root / "parts").exists():  # of one behind a URL, only dataset.json is on this machine
-        return
     yield from damaged_files(root, read_json(root / DATASET_FILE, 1 << 28).get(SEALED))
     for name in plan.recipe.formats if plan.shard is None else ():
         found = damaged_export(exports_folder(root, name, None))
@@ -175,12 +167,7 @@ def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
 
 
 def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
-    """Return the file by which a data set is known that is to be continued; None: there is none.
-
-    Raises:
-        OutputError: As `open_folder`.
-        DataFileError: As `open_folder`.
-    """
+    """Return the file by which a data set is known that is to be continued; None: there is none."""
     with refusals(root):
         names = {inside.name for inside in root.iterdir()} - {LOCK}
     names = {name for name in names if not name.endswith(PART_SUFFIX)}
@@ -199,13 +186,7 @@ def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
     return found
 
 
-def _record(
-    parts: Sequence[Part],
-    root: Path,
-    making: Making,
-    recorded: Recorded,
-    kept: Callable[[Part | None], None],
-) -> None:
+def _record(parts: Sequence[Part], root: Path, making: Making, recorded: Recorded) -> None:
     missing, done = [], 0
     for part in parts:
         if read_facts(root / part.folder) is None:
@@ -216,7 +197,6 @@ def _record(
         told(done)
         if missing:
             for part, _ in recorded(missing, root):
-                kept(part)
                 done += part.frames
                 told(done)
 

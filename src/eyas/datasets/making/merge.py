@@ -25,9 +25,7 @@ def merge(shards: Sequence[Path], out: Path, making: Making) -> None:
     """Join shards to the data set that would have been made at once, to the byte.
 
     Args:
-        shards: The folders of the shards, in any order.
         out: Its folder; files are hard links to those of the shards where the system can do it.
-        making: How it is made.
 
     Raises:
         EyasError: A shard is missing, there twice, of another recipe or build, or damaged; the

@@ -85,10 +85,6 @@ def check_part(part: Part) -> None:
 def record_part(part: Part, root: Path) -> PartFacts:
     """Record a part, or what is missing of it.
 
-    Args:
-        part: The part.
-        root: The folder of the data set.
-
     Raises:
         EyasError: It cannot be recorded; the line begins with its name.
     """
@@ -152,12 +148,6 @@ def read_facts(folder: Path) -> PartFacts | None:
 
 def export_part(part: Part, root: Path, dataset: str, formats: Sequence[str]) -> int:
     """Put the episodes of a part into the exports of the data set; return its frames.
-
-    Args:
-        part: The part.
-        root: The folder of the data set.
-        dataset: Name of the data set.
-        formats: Names of the formats.
 
     Raises:
         EyasError: A file cannot be read or written.

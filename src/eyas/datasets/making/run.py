@@ -3,7 +3,6 @@
 import re
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,18 +30,15 @@ def run(
 
     Args:
         named: `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON.
-        out: Its folder, or a URL of one, `s3://bucket/folder`.
-        making: How it is made.
-        sample: Whether only a hundredth is made.
         shard: Number of the shard, from 1, and of all shards; None: all of it.
-        ray: Whether the processes of Ray record.
-        trust: Whether the recipe may name code.
 
     Raises:
         EyasError: The recipe is wrong or cannot be met, the folder is taken, or something cannot
             be written; one line.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
+    if "://" in out:
+        raise ConfigError(f"--out: {out!r} is not allowed: a folder on this machine")
     if isinstance(named, str):
         recipe, source = read_recipe(named, trust=trust), named
     else:
@@ -56,14 +52,7 @@ def run(
             from eyas.datasets.making.spread import on_ray
 
             recorded = stack.enter_context(on_ray())
-        if "://" in out:
-            from eyas.datasets.making.remote import Remote
-
-            remote = Remote(out)
-            with remote.scratch(plan, making) as root:
-                make(plan, root, replace(making, resume=True), recorded, remote.keep)
-        else:
-            make(plan, Path(out), making, recorded)
+        make(plan, Path(out), making, recorded)
     report(plan, out, quiet=making.quiet)
 
 

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from eyas.benchmark.fliers import connected, one_line
+from eyas.benchmark.flight.policy_runner import connected, one_line
 from eyas.datasets.making.make import Recorded
 from eyas.datasets.making.parts import PART_FILE, read_facts, record_part
 from eyas.datasets.plan import Part, in_order_of_work
@@ -67,11 +67,7 @@ def _recorded(
 
 
 def _archive_of(part: Part, build: str) -> bytes:
-    """Return a recorded part as an archive, made by the one core that Ray has given this process.
-
-    Raises:
-        EyasError: It cannot be recorded here.
-    """
+    """Return a recorded part as an archive, made by the one core of this process."""
     limit_threads(1)
     here = this_build().id
     if here != build:

@@ -102,11 +102,7 @@ def work(
     """Yield what a function returns for each part, as they are done.
 
     Args:
-        parts: The parts.
         call: A function of a module, called with a part and `args`.
-        count: Number of processes; 1: this one.
-        threads: Threads of each.
-        args: Further arguments.
 
     Raises:
         EyasError: What it raises; all processes are ended.

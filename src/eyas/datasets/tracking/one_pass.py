@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.box_trackers import Box, BoxTracker
-from eyas.benchmark.statistics import Interval, clusters_of, interval_of
+from eyas.benchmark.policies.box_trackers import Box, BoxTracker
+from eyas.benchmark.statistics.intervals import Interval, clusters_of, interval_of
 from eyas.engine.recordings.recording import RecordedEpisode
 
 __all__ = [
@@ -31,9 +31,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 PRECISION_PIXELS = 20  # Largest distance of the centres that counts as precise [pixels]
-
 _SUCCESS = np.linspace(0.0, 1.0, 21)  # Thresholds of OTB's success curve
-
 _RESTART_AFTER = 5  # Frames after a failure until the tracker gets the true box again
 
 
@@ -61,7 +59,6 @@ def track_episode(
     """Let a tracker find the target in all frames of an episode.
 
     Args:
-        make: Makes the tracker.
         episode: The episode. The tracker begins with the first frame in which the target is
             visible.
         restarts: Whether it gets the true box again after a failure: a box that does not overlap
@@ -106,7 +103,6 @@ def overlaps(boxes: Floats, truth: Floats, size: tuple[int, int] | None = None) 
 
     Args:
         boxes: Left, top, width, height [pixels], shape (T, 4).
-        truth: The same.
         size: Width and height of the picture that both are cut to; None: they are not.
     """
     ours, theirs = (_corners(each, size) for each in (boxes, truth))

@@ -7,7 +7,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from eyas.benchmark.plots import save_plot
+from eyas.benchmark.report.plots import save_plot
 
 __all__ = ["draw_curves", "print_figures"]
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.box_trackers import box_tracker
-from eyas.benchmark.strata import strata_of
+from eyas.benchmark.policies.box_trackers import box_tracker
+from eyas.datasets.tracking.frame_strata import strata_of
 from eyas.datasets.tracking.one_pass import (
     Figures,
     centre_errors,
@@ -40,7 +40,6 @@ SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
 
 _LARGEST_BOXES = 1 << 28  # Largest file of boxes [bytes]
-
 SPEED = "timing.json"  # How fast the tracker was here; the one file that does not repeat
 
 
@@ -75,12 +74,7 @@ def run(
     The same tracker and episodes give the same bytes, with any number of processes.
 
     Args:
-        scoring: What is scored.
-        out: The folder.
         workers: Number of processes; None: one for each core.
-        resume: Whether an interrupted run in the folder is continued.
-        overwrite: Whether the run in the folder is replaced.
-        quiet: Whether nothing is printed.
 
     Raises:
         EyasError: Something is wrong with the tracker, the recording or the folder; one line.
@@ -117,11 +111,7 @@ def _episodes(recording: Recording, split: str | None) -> Sequence[RecordedEpiso
 
 
 def _open(out: Path, scoring: Scoring, *, resume: bool, overwrite: bool) -> None:
-    """Prepare the folder.
-
-    Raises:
-        OutputError: It is not empty, or of something else.
-    """
+    """Prepare the folder."""
     asked = {
         **asdict(scoring),
         "folder": scoring.folder.resolve().name,

@@ -1,8 +1,11 @@
-"""Options that several commands share."""
+"""The options that several commands share, each typed once.
+
+An option whose help differs from command to command is a function of the help, such as `to_write`.
+"""
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -15,13 +18,26 @@ __all__ = [
     "AsJson",
     "ConfigFile",
     "MapName",
+    "OnlyMaps",
+    "OnlyWeathers",
+    "Out",
     "Overrides",
+    "Overwrite",
+    "Plots",
     "Preset",
+    "Quiet",
+    "Ray",
+    "Resume",
     "Seed",
     "Trust",
+    "UntilIdle",
     "Weather",
+    "Workers",
+    "by_policy",
     "chosen_file",
     "gathered",
+    "refuse_both",
+    "to_write",
 ]
 
 ConfigFile = Annotated[
@@ -72,9 +88,49 @@ UntilIdle = Annotated[
     ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+OnlyMaps = Annotated[list[str] | None, typer.Option("--map", help=f"Only this map; {SEVERAL}.")]
+OnlyWeathers = Annotated[
+    list[str] | None, typer.Option("--weather", help=f"Only this weather; {SEVERAL}.")
+]
+Out = Annotated[Path, typer.Option("--out", help="Folder to write to.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Continue what was interrupted.")]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Replace what an earlier run has written there.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", min=1, max=1024, help="Processes; by default one for each core."),
+]
+Ray = Annotated[
+    bool, typer.Option("--ray", help="Spread the work over a Ray cluster (extra cluster).")
+]
+Plots = Annotated[bool, typer.Option("--plots", help="Draw the figures, too (extra plots).")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")
 ]
+
+
+def to_write(what: str) -> Any:  # noqa: ANN401  # Typer's
+    """Return the option `--out` of a command that writes something else than a folder, or knows
+    where to.
+    """
+    return typer.Option("--out", help=what)
+
+
+def by_policy(what: str) -> Any:  # noqa: ANN401  # Typer's
+    """Return the option `--policy`; `what` says what the policy does."""
+    return typer.Option("--policy", help=f"{what}{POLICIES}, a file, or package.module:name.")
+
+
+def refuse_both(*, resume: bool, overwrite: bool) -> None:
+    """Refuse to continue and to replace at once.
+
+    Raises:
+        ConfigError: Both are asked for.
+    """
+    if resume and overwrite:
+        raise ConfigError("--overwrite and --resume cannot be used together")
 
 
 def chosen_file(config: Path | None, preset: str | None) -> Path | None:

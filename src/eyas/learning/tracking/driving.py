@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.episode_batch import EpisodeGroup, episode_groups
+from eyas.benchmark.episodes.episode_batch import EpisodeGroup, episode_groups
 from eyas.benchmark.policies.tracker.course import HORIZONS, Course
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
@@ -27,26 +27,18 @@ Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]
 
 LOOK: Final = 0.032  # Time between two looks [s]
-
-_LOOKS: Final = 1100  # For which vehicles are followed
-
+_LOOKS: Final = 1100  # Looks for which vehicles are followed
 _LEAST: Final = 300  # Looks of a vehicle that is followed at all
-
 _JUMP: Final = 2.0  # Way of a vehicle from look to look with which it begins elsewhere anew [m]
-
 _ERRORS: Final = 0.1, 0.35  # Range of the standard deviation of places of vehicles [m]
-
 _LASTING: Final = 0.2  # Time constant of these errors [s]
-
 _SEEN, _GOING, _HIDDEN, _COMING = range(4)  # Phases, which follow each other
 
 _TOLD: Final = np.array((0.5, 0.9, 0.5, 0.9))
 """Standard deviation that the network says in each phase, times `TrackerSettings.doubt` [m]."""
 
-_BELIEF: Final = np.array((1.0, 0.8, 0.0, 0.8))  # Of each phase
-
+_BELIEF: Final = np.array((1.0, 0.8, 0.0, 0.8))  # Belief in each phase
 _LATE: Final = 0.35  # Most by which a half hidden vehicle is told late or early [s]
-
 _CHOSEN: Final = 0.15  # Share of the looks that are kept; of the last ones before it is hidden, all
 
 
@@ -63,9 +55,7 @@ def driven(env: EnvConfig, number: int, seed: int) -> Drives:
     """Return what drivers do in a batch of traffic.
 
     Args:
-        env: What the tracker sees and does.
         number: Of the batch; what is drawn depends on it and the seed only.
-        seed: Of the training.
     """
     rng = stream(seed, "tracking drives", number)
     groups = episode_groups(episodes_by_day(rng, number), protocol_of_batch(rng, varied=False), env)
@@ -98,12 +88,7 @@ def _ways(places: Floats) -> Floats:
 
 
 class _Sight:
-    """Which of K vehicles are seen, and where: as by a network.
-
-    Args:
-        count: K.
-        rng: Random numbers.
-    """
+    """Which of K vehicles are seen, and where: as by a network."""
 
     def __init__(self, count: int, rng: np.random.Generator) -> None:
         self._rng = rng

@@ -34,15 +34,7 @@ def export(
     settings: TrackerSettings,
     path: Path,
 ) -> None:
-    """Write networks.
-
-    Args:
-        network: Finds the target.
-        forecast: Says where it goes.
-        env: What the tracker sees and chooses from.
-        settings: Of the tracker.
-        path: The file.
-    """
+    """Write networks."""
     graph = Graph()
     cells, keys, (height, width) = len(network.cells), network.keys, network.size
     features = _trunk(graph, network)

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from eyas.benchmark.delay import delay_from
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.flight import BatchFlight
-from eyas.benchmark.protocol import Protocol
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.flight.batch_flight import BatchFlight
+from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.protocols.lasting import LONG
+from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.rng import stream
 from eyas.engine.targets.config import TargetName
 from eyas.learning.tracking.pilots import Oracle, Pupil
@@ -24,27 +24,16 @@ MAPS = ("citystreet", "downtown", "village", "lake", "desert", "farmland")
 """The first three are flown twice as often: there is more to hide behind."""
 
 WEATHERS = ("day", "night", "foggy", "snow")
-
 _TURN = (MAPS[0], MAPS[1], MAPS[2], MAPS[3], MAPS[0], MAPS[1], MAPS[2], MAPS[4], MAPS[5])
-
-_FLIGHTS = 8  # For each weather of a batch
-
-_WORLDS = 4  # For each batch of traffic without flights
-
+_FLIGHTS = 8  # Flights for each weather of a batch
+_WORLDS = 4  # Worlds for each batch of traffic without flights
 _STEPS = 5_000  # Length of a flight [2 ms]
-
 _WALKERS = tuple(name for name in TargetName if name is not TargetName.SUMO_VEHICLE)
-
 _WALKING = 0.2  # Share of the flights with a target other than a vehicle
-
 _ALIKE = 0.15  # Share of the batches in which all vehicles look like the target
-
 _HIDING = 0.5  # Share of a pupil's batches on maps with covers in which drivers hide
-
 _COVERED = "citystreet", "village"  # Maps for which traffic with such drivers comes with Eyas
-
-_LATENCIES = ("0", "0", "40", "80")  # Of a pupil [ms]
-
+_LATENCIES = ("0", "0", "40", "80")  # Latencies of a pupil [ms]
 _SEEDS = 2**40  # Range of the seeds of episodes, which tests draw below 100,000,000
 
 _TRAFFIC: tuple[dict[str, Any], ...] = (
@@ -61,9 +50,7 @@ def flown(
     """Yield the pictures of batches of flights.
 
     Args:
-        make: Makes who flies one, with its random numbers.
         batches: Numbers of the batches; each depends on its number and the seed only.
-        seed: Of the training.
     """
     for number in batches:
         rng = stream(seed, "tracking flights", number)

@@ -12,11 +12,8 @@ from eyas.learning.tracking.driving import Drives
 __all__ = ["FARTHEST", "Forecast", "taught_forecast"]
 
 _WIDTH = 64  # Numbers of a hidden layer
-
 FARTHEST = 6.0  # Limit of the scaled numbers of a past: rare ones are no reason for wild answers
-
 _BATCH = 1024  # Pasts in a step
-
 _RATE = 3e-3  # Largest rate of learning of Adam; it falls to nothing
 
 _FREEDOM = 3.0
@@ -32,7 +29,7 @@ class Forecast(nn.Module):
         self.second = nn.Linear(_WIDTH, _WIDTH)
         self.last = nn.Linear(_WIDTH, 3 * len(HORIZONS))
         self.mean: Tensor
-        self.spread: Tensor  # Of each number of the pasts, shape (PAST,)
+        self.spread: Tensor  # Standard deviation of each number of `past`, (PAST,)
         self.register_buffer("mean", torch.zeros(PAST))
         self.register_buffer("spread", torch.ones(PAST))
         unit = torch.tensor(HORIZONS, dtype=torch.float32)
@@ -57,14 +54,7 @@ class Forecast(nn.Module):
 def taught_forecast(
     network: Forecast, drives: Drives, steps: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, float]]:
-    """Teach a network; yield the step and the mean loss since the last ten times.
-
-    Args:
-        network: The network.
-        drives: What drivers did.
-        steps: Number of steps.
-        rng: Chooses the pasts of a step.
-    """
+    """Teach a network; yield the step and the mean loss since the last ten times."""
     past, after = torch.from_numpy(drives.past), torch.from_numpy(drives.ahead)
     network.mean.copy_(past.mean(0))
     network.spread.copy_(past.std(0) + 1e-6)

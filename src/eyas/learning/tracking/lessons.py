@@ -14,10 +14,8 @@ from eyas.learning.tracking.samples import GROUP, Sample, Samples
 
 __all__ = ["Loss", "Progress", "loss_of", "taught"]
 
-_GROUPS = LESSON // GROUP  # In a step
-
+_GROUPS = LESSON // GROUP  # Groups in a step
 _SHOWN = 0.6  # Share of the other pictures of a group whose keys make the target's
-
 _UNKNOWN = 0.15  # Share of the pictures without any key
 
 _IMPOSTORS = 0.5
@@ -25,11 +23,8 @@ _IMPOSTORS = 0.5
 theirs is not seen. Else places are enough to be right, and keys would tell little."""
 
 _WIDE = 5.0  # Least standard deviation of such an expectation [pixels]
-
 _PLACE = 0.3  # Weight of the place within a cell
-
 _APART = 0.3  # Weight of whose key it is among those of all groups
-
 _WARM_UP = 200  # Steps in which the rate of learning rises, at most a quarter of all
 
 
@@ -51,13 +46,7 @@ class Loss(NamedTuple):
 
 
 def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> Loss:
-    """Return how wrong a network is.
-
-    Args:
-        network: The network.
-        sample: Groups of pictures.
-        rng: Chooses the pictures whose keys are shown.
-    """
+    """Return how wrong a network is."""
     features, answers = network.see(sample.picture)
     height, width = (length // STRIDE for length in network.size)
     column, row = (sample.place / STRIDE).long().unbind(1)
@@ -90,15 +79,7 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
 def taught(
     network: DetectorNetwork, samples: Samples, steps: int, rate: float, rng: np.random.Generator
 ) -> Iterator[Progress]:
-    """Teach a network; yield its progress ten times.
-
-    Args:
-        network: The network.
-        samples: What it sees.
-        steps: Number of steps.
-        rate: Largest rate of learning.
-        rng: See `loss_of`.
-    """
+    """Teach a network; yield its progress ten times."""
     optimiser = torch.optim.AdamW(network.parameters(), rate, weight_decay=1e-4)
     recent = []
     for step in range(steps):

@@ -13,15 +13,13 @@ from eyas.benchmark.policies.tracker.detector import STRIDE
 
 __all__ = ["MEAN", "SPREAD", "DetectorNetwork"]
 
-MEAN, SPREAD = 110.0, 60.0  # Of the pixels of a picture by day
-
+MEAN, SPREAD = 110.0, 60.0  # Mean and standard deviation of pixels by day
 OFFSET = 4.0  # Place within a cell for an output of 1 [pixels]
 
 PATCH = 6
 """Side of the square around the middle of a cell whose mean colour is part of its key [pixels]."""
 
 CELL = 1.5  # Variance of a place in a cell, in one axis [pixels^2]
-
 SURE, UNSURE = -4.0, 3.0  # Limits of the logarithm of the standard deviation of a place [pixels]
 
 
@@ -30,8 +28,6 @@ class DetectorNetwork(nn.Module):
 
     Args:
         size: Height and width of the pictures [pixels].
-        width: Channels of the last convolutions.
-        keys: Numbers that tell how a target looks.
     """
 
     def __init__(self, size: tuple[int, int], width: int = 48, keys: int = 24) -> None:
@@ -53,11 +49,7 @@ class DetectorNetwork(nn.Module):
         """Middles of the cells, column and row [pixels], shape (C, 2)."""
 
     def see(self, pictures: Tensor) -> tuple[Tensor, Tensor]:
-        """Return features (B, C, width) and answers (B, C, 4 + K) of the cells.
-
-        Args:
-            pictures: Shape (B, 3, H, W).
-        """
+        """Return features (B, C, width) and answers (B, C, 4 + K) of the cells."""
         value = scaled = (pictures.float() - MEAN) / SPREAD
         for layer in (self.first, self.second, self.third):
             value = torch.relu(layer(value))
@@ -82,8 +74,6 @@ class DetectorNetwork(nn.Module):
         """Return logarithms of unnormalised probabilities of all cells and "not seen", (B, C + 1).
 
         Args:
-            features: Of `see`.
-            answers: Of `see`.
             clue: As the inputs of `eyas.benchmark.policies.tracker.detector`.
         """
         expected, spread, key, known = clue

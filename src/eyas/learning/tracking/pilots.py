@@ -14,7 +14,6 @@ __all__ = ["Oracle", "Pupil"]
 Floats = NDArray[np.float64]
 
 PERIOD = 0.128  # Time between two pictures [s]
-
 _FORGETS = 1.5  # Time constant of the oracle's disturbance [s]
 
 _LOST, _PATIENCE = 3.0, (1.5, 10.0)
@@ -22,17 +21,11 @@ _LOST, _PATIENCE = 3.0, (1.5, 10.0)
 more of its target, or late, to wait for it among others."""
 
 _PATIENT = 0.3  # Share of those who are found late
-
 _AT_RANDOM = 0.01  # Share of the looks at which a pupil is corrected, lost or not
 
 
 class Oracle:
-    """Flies to the target's true place beside a wandering disturbance.
-
-    Args:
-        env: What the tracker sees.
-        rng: Of the disturbance.
-    """
+    """Flies to the target's true place beside a wandering disturbance."""
 
     sampled = False
     told = frozenset({"truth"})
@@ -65,12 +58,7 @@ class Oracle:
 
 
 class Pupil:
-    """Lets the tracker fly; sets its filter right when it has been lost for a while.
-
-    Args:
-        tracker: The tracker.
-        rng: Of corrections, which are a little wrong themselves.
-    """
+    """Lets the tracker fly; sets its filter right when it has been lost for a while."""
 
     sampled = False
     told = frozenset({"box", "truth"})

@@ -19,14 +19,10 @@ _ENOUGH = 0.3
 place badly: at the edge of cover, where the target has driven on."""
 
 _EITHER = 0.05  # Around that share either answer is right
-
 _HARD = 0.5  # Share of the groups that are chosen for a picture in which it is hard
-
 _AROUND = 7  # Farthest second picture of such a group [pictures]
-
 _OWN = 0.55  # Share of the pictures with a place that a tracker expected for which it is taken
-
-_SPREADS = 0.6, 30.0  # Of other expected places, standard deviation [pixels]
+_SPREADS = 0.6, 30.0  # Standard deviations of other expected places [pixels]
 
 
 class Sample(NamedTuple):
@@ -41,12 +37,7 @@ class Sample(NamedTuple):
 
 
 class Samples:
-    """Draws samples of pictures.
-
-    Args:
-        shots: All pictures.
-        rng: Random numbers.
-    """
+    """Draws samples of pictures."""
 
     def __init__(self, shots: Shots, rng: np.random.Generator) -> None:
         self._shots, self._rng = shots, rng

@@ -51,7 +51,6 @@ def projected(state: Snapshot, size: tuple[int, int]) -> Floats:
     """Return where the targets' centres are in pictures of 4 to 3, shape (N, 2).
 
     Args:
-        state: N drones and their targets.
         size: Height and width [pixels].
     """
     cameras = state.cameras

@@ -52,8 +52,6 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
     Args:
         config: The settings: those of the preset `eyas`, with any seed, size of the pictures and
             `train.tracker`.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
         say: Called with a line for each batch, and ten times in each round of lessons.
 
     Raises:
@@ -74,11 +72,7 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
 
 
 def _refuse_unlike(config: EyasConfig) -> None:
-    """Refuse settings that would change nothing.
-
-    Raises:
-        ConfigError: There is one, or no such picture can be seen.
-    """
+    """Refuse settings that would change nothing."""
     if not config.tracker.supervised:
         raise ConfigError(
             "tracker.supervised: false is not allowed here: a tracker learns on supervised drones; "
@@ -104,11 +98,7 @@ def _refuse_unlike(config: EyasConfig) -> None:
 
 
 def _refuse_other_build(files: RunFolder, path: Path) -> None:
-    """Note the build that begins a run, or refuse one that another has begun.
-
-    Raises:
-        EyasError: Another build has, or the file cannot be read.
-    """
+    """Note the build that begins a run, or refuse one that another has begun."""
     if path.is_file():
         with readable(path):
             build = Build(**json.loads(path.read_text()))

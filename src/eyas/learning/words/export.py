@@ -21,14 +21,7 @@ __all__ = ["export"]
 
 
 def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, path: Path) -> None:
-    """Write a network.
-
-    Args:
-        network: The network.
-        env: What the listener sees and chooses from.
-        settings: Of the listener.
-        path: The file.
-    """
+    """Write a network."""
     write_model(_graph(network), env, path, {TRACKER: settings.model_dump(mode="json")})
 
 

@@ -15,14 +15,14 @@ from eyas.learning.words.scenes import Scenes, Vehicles, chosen
 __all__ = ["Lesson", "Loss", "lesson", "loss_of"]
 
 _ENOUGH: Final = 0.35  # Share of a vehicle that must be visible for it to count as seen
-
 _WIDE: Final = 0.7  # Standard deviation of a peak [cells]
 
 _JITTER: Final = 0.5
-"""Of the cell in which a vehicle's looks are taught, which is not always the peak [cells]."""
+"""Standard deviation of the cell in which a vehicle's looks are taught, which is not always the
+peak [cells]."""
 
 _WEIGHTS: Final = (1.0, 0.5, 0.5, 0.5, 0.5)
-"""Of the peaks, places, headings, colours and bodies in the loss."""
+"""Weights of peaks, places, headings, colours and bodies in the loss."""
 
 _LIGHT, _TINT, _NOISE = 0.2, 0.04, 3.0
 """Largest changes of a picture's light and of each colour's, and noise [levels]."""
@@ -57,10 +57,7 @@ def lesson(
     """Return some pictures, mirrored, lighter or darker.
 
     Args:
-        scenes: All pictures.
         rows: Which are chosen, shape (B,).
-        grid: Cells of a picture, down and across.
-        rng: Of the changes.
     """
     vehicles = _chosen(scenes.vehicles, rows)
     picture, mirror = _changed(scenes.picture[rows].astype(np.float32), rng)
@@ -131,12 +128,7 @@ def _around(
 
 
 def loss_of(network: ListenerNetwork, shown: Lesson) -> Loss:
-    """Return how wrong a network is.
-
-    Args:
-        network: The network.
-        shown: What it is shown.
-    """
+    """Return how wrong a network is."""
     vehicle, places, headings, colours, bodies = network(shown.picture)
     at = shown.vehicle, shown.cell
     count = max(len(shown.cell), 1)

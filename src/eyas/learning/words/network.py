@@ -16,7 +16,6 @@ PARTS = (1, 2, 4, len(NAMES), len(BODIES))
 """Numbers of a cell: vehicle, place, headings, colours, bodies."""
 
 PLAIN = 3  # Convolutions that are not added to what comes before them
-
 _RARE = -4.0  # Logarithm of the odds of a vehicle in a cell before anything is learned
 
 
@@ -25,7 +24,6 @@ class ListenerNetwork(nn.Module):
 
     Args:
         size: Height and width of the pictures [pixels].
-        width: Channels of the last convolutions.
     """
 
     def __init__(self, size: tuple[int, int], width: int = 48) -> None:
@@ -56,11 +54,7 @@ class ListenerNetwork(nn.Module):
         return -(-self.size[0] // STRIDE), -(-self.size[1] // STRIDE)
 
     def forward(self, pictures: Tensor) -> tuple[Tensor, ...]:
-        """Return the outputs of `eyas.benchmark.policies.listener.detector`.
-
-        Args:
-            pictures: Shape (B, 3, H, W).
-        """
+        """Return the outputs of `eyas.benchmark.policies.listener.detector`."""
         value = (pictures.float() - MEAN) / SPREAD
         for number, layer in enumerate(self.layers):
             before = value

@@ -7,8 +7,8 @@ from typing import Any, Final, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.episode import EpisodeSpec, Place
-from eyas.benchmark.look_alikes import COLOURS, HEIGHT, PITCH
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
+from eyas.benchmark.episodes.look_alikes import COLOURS, HEIGHT, PITCH
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES
 from eyas.benchmark.protocols.referring import REFERRING
 from eyas.engine.core.rng import stream
@@ -35,25 +35,16 @@ PLACES: Final = tuple(
 """Where pictures are taken: where the protocol's recordings ship, in all weathers."""
 
 SCENES: Final = 1024  # Pictures of a block
-
-_TOGETHER: Final = 32  # That are drawn together
-
+_TOGETHER: Final = 32  # Batch size when drawing
 _SEEDS: Final = 2**40  # Range of the seeds, which tests draw below 100,000,000
-
-_TRIED: Final = 4
-_NEAR: Final = 14.0
-"""Of so many vehicles the camera looks at the one with the most others around it [m]."""
+_TRIED: Final = 4  # Vehicles of which the camera looks at the one with the most others around it
+_NEAR: Final = 14.0  # Radius in which others are counted [m]
 
 _ASIDE: Final = 11.0  # Farthest from a vehicle that the camera looks [m]
-
 _HIGHER, _FLATTER = 2.0, 0.03  # Largest change of height [m] and pitch [rad]
-
 _NATURAL: Final = 0.15  # Share of the pictures in which vehicles have the colours of the traffic
-
 _UNIFORM: Final = 0.25  # Share of those in which all have two colours and two bodies
-
 _TOLD: Final = 0.6  # Share of the vehicles that have a colour of the protocol's look-alikes
-
 _CLEAR: Final = 1.3  # A colour has a name if the next one is so many times as far away
 
 
@@ -82,14 +73,7 @@ class Scenes(NamedTuple):
 
 
 def drawn(env: EnvConfig, seed: int, block: int, count: int = SCENES) -> Scenes:
-    """Return the pictures of a block; they depend on its number and the seed only.
-
-    Args:
-        env: What the listener sees.
-        seed: Of the training.
-        block: Number of the block.
-        count: Number of pictures, as many at each place as at the others.
-    """
+    """Return the pictures of a block; they depend on its number and the seed only."""
     rng = stream(seed, "scenes of words", block)
     pictures: list[NDArray[np.uint8]] = []
     found: list[Vehicles] = []

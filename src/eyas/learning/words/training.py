@@ -25,8 +25,7 @@ __all__ = ["LISTENER", "train"]
 LISTENER: Final = TrackerSettings(height=44.2, gain=0.3)
 """45 m above the road, and about 0.8 m less above the middles of vehicles."""
 
-_PICTURES: Final = 32  # In a step of learning
-
+_PICTURES: Final = 32  # Batch size of a step of learning
 _WARM_UP: Final = 200  # Steps in which the rate of learning rises, at most a quarter of all
 
 Say = Callable[[str], None]
@@ -39,9 +38,6 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
 
     Args:
         config: The settings: those of the preset `eyas-words`, with any seed and `train.words`.
-        folder: Where the run is kept.
-        resume: Whether to continue the run in the folder.
-        say: Called with a line for each block.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
@@ -121,11 +117,7 @@ def _line(progress: TrainingProgress, training: WordsTraining) -> str:
 
 
 def _refuse_unlike(config: EyasConfig) -> None:
-    """Refuse settings that would change nothing.
-
-    Raises:
-        ConfigError: There is one.
-    """
+    """Refuse settings that would change nothing."""
     wanted = load_settings(preset_file("eyas-words"))
     for name in sorted(EyasConfig.model_fields.keys() - {"mode", "seed", "train"}):
         if getattr(config, name) != getattr(wanted, name):

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.terminal.options import SEVERAL, AsJson
+from eyas.engine.terminal.options import AsJson, OnlyMaps, OnlyWeathers, Out, Overwrite, to_write
 
 __all__ = ["app"]
 
@@ -44,13 +44,9 @@ def list_maps(*, as_json: AsJson = False) -> None:
 
 @app.command("gallery")
 def draw_gallery(
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/gallery"),
-    map_name: Annotated[
-        list[str] | None, typer.Option("--map", help=f"Only this map; {SEVERAL}.")
-    ] = None,
-    weather: Annotated[
-        list[str] | None, typer.Option("--weather", help=f"Only this weather; {SEVERAL}.")
-    ] = None,
+    out: Out = Path("runs/gallery"),
+    map_name: OnlyMaps = None,
+    weather: OnlyWeathers = None,
 ) -> None:
     """Draw a page of pictures of each map in each weather."""
     from eyas.maps.gallery import run as gallery
@@ -62,14 +58,12 @@ def draw_gallery(
 def import_map(
     file: Annotated[Path, typer.Argument(help="OpenStreetMap: .osm, .osm.gz or .osm.pbf.")],
     name: Annotated[str | None, typer.Option("--name", help="Name of the map.")] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="Folder of the map; then use --map FOLDER.")
-    ] = None,
+    out: Annotated[Path | None, to_write("Folder of the map; then use --map FOLDER.")] = None,
     bbox: Annotated[
         str | None, typer.Option("--bbox", help="Only WEST,SOUTH,EAST,NORTH, in degrees.")
     ] = None,
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the map.")] = False,
+    overwrite: Overwrite = False,
 ) -> None:
     """Make a map of an OpenStreetMap file; use it with --map NAME, or --map DIR with --out DIR."""
     from eyas.maps.osm.importing import run
@@ -107,9 +101,7 @@ def show_info(name: Name, seed: Seed = 0, *, as_json: AsJson = False) -> None:
 @app.command("show")
 def show_map(
     name: Name,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="PNG file to write; by default NAME.png.")
-    ] = None,
+    out: Annotated[Path | None, to_write("PNG file to write; by default NAME.png.")] = None,
     seed: Seed = 0,
     width: Annotated[
         int, typer.Option("--width", min=100, max=8000, help="Width in pixels.")
@@ -128,9 +120,7 @@ def show_map(
 @app.command("plan")
 def write_plan(
     name: Name,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="File to write; by default NAME.plan.json.")
-    ] = None,
+    out: Annotated[Path | None, to_write("File to write; by default NAME.plan.json.")] = None,
     seed: Seed = 0,
 ) -> None:
     """Write the plan of a map: all that stands on it. Use it, or a copy, with --map FILE."""
@@ -169,7 +159,7 @@ def export_map(
     ],
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="File or folder to write; by default NAME with an ending."),
+        to_write("File or folder to write; by default NAME with an ending."),
     ] = None,
     seed: Seed = 0,
     detail: Annotated[

@@ -14,10 +14,12 @@ from eyas.engine.terminal.options import (
     ConfigFile,
     MapName,
     Overrides,
+    Overwrite,
     Preset,
     Trust,
     chosen_file,
     gathered,
+    to_write,
 )
 
 __all__ = ["app"]
@@ -32,7 +34,7 @@ def _group() -> None: ...
 
 
 @app.command()
-def record(  # noqa: PLR0913  # one parameter for each option
+def record(
     map_name: MapName = None,
     map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
     seed: Annotated[
@@ -55,10 +57,8 @@ def record(  # noqa: PLR0913  # one parameter for each option
         int | None,
         typer.Option("--workers", min=1, help="Processes for several seeds; default: all cores."),
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option("--out", help="File to write; with --traffic-seeds the folder.")
-    ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files.")] = False,
+    out: Annotated[Path | None, to_write("File to write; with --traffic-seeds the folder.")] = None,
+    overwrite: Overwrite = False,
     config: ConfigFile = None,
     preset: Preset = None,
     set_: Overrides = None,

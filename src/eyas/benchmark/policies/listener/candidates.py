@@ -9,35 +9,31 @@ from eyas.benchmark.policies.listener.detector import BODIES, NAMES, Detections,
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.lanes import exact
 
-__all__ = ["Candidates", "Seen"]
+__all__ = ["Candidates", "TrackedVehicles"]
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 _MOST: Final = 64  # Vehicles that are followed at once
-
 _NOISE: Final = 0.5  # Standard deviation of a place that the network finds [m]
-
-_ACCELERATION: Final = 4.0  # Of vehicles, in each direction [m/s^2]
+_ACCELERATION: Final = 4.0  # Standard deviation of a vehicle's acceleration, each axis [m/s^2]
 
 _SPEED: Final = 8.0
-"""Of vehicles that have just been seen for the first time, in each direction [m/s]."""
+"""Standard deviation of the velocity of a vehicle at its first look, each axis [m/s]."""
 
 _WIDEST: Final = 8.0  # Largest standard deviation of a place [m]
 
 _GATE: Final = 3.5
 """Largest distance of a vehicle from where it is expected, in standard deviations."""
 
-_FAR: Final = 3.0  # The same [m]
+_FAR: Final = 3.0  # Largest distance from where it is expected [m]
 
 _OTHER: Final = -4.0
 """Logarithm of how alike two looks are, below which they are not of the same vehicle, if one of
 them is known from so many pictures."""
 
 _LOOKED: Final = 5
-
 _ALIKE: Final = 0.7  # Weight of its looks, against that of its place
-
 _UNLIKE: Final = -6.0  # Least logarithm of how alike two looks are
 
 _KNOWN, _LONG = 0.25, 12.0
@@ -45,14 +41,12 @@ _KNOWN, _LONG = 0.25, 12.0
 one, if another has begun on the same vehicle."""
 
 _SURER: Final = 1.5  # Share of vehicles among things in which the network believes by 1
-
 _NEW: Final = 0.35  # Least belief in a vehicle that has not been seen before
 
 _FORGOTTEN: Final = 1.0
 """Time unseen after which a vehicle is forgotten, unless it is the target [s]."""
 
-_YOUNG: Final = 0.07  # The same for each look at which it has been seen [s]
-
+_YOUNG: Final = 0.07  # Patience for each look at which it has been seen, up to `_FORGOTTEN` [s]
 _REMEMBERED: Final = 0.05  # Least share of the latest look in what is known of a vehicle's looks
 
 
@@ -71,18 +65,19 @@ _SURELY: Final = -4.5
 """Least logarithm of how alike they are, less twice the distance by the farthest."""
 
 
-class Seen(NamedTuple):
+class TrackedVehicles(NamedTuple):
     """K vehicles."""
 
-    row: Rows  # Their numbers, shape (K,)
+    row: Rows  # Index in the filter, shape (K,)
     colour: Floats  # Logarithms of probabilities of `NAMES`, shape (K, 22)
     body: Floats  # Logarithms of probabilities of `BODIES`, shape (K, 9)
     heading: Floats  # Mean direction east and north, and of twice the angle, shape (K, 4)
-    first: Floats  # When each was seen first [s], shape (K,)
-    begin: Floats  # Where each was then, east and north [m], shape (K, 2)
+    first: Floats  # Time of the first look [s], shape (K,)
+    begin: Floats  # Place at that time, east and north [m], shape (K, 2)
     velocity: Floats  # [m/s], shape (K, 2)
     ways: list[Floats]
-    """Of each all looks: time [s], east and north [m], direction of its axis [rad], (L, 4)."""
+    """All looks at each: time [s], east and north [m], direction of its axis [rad], shape (L,
+    4)."""
 
 
 class Candidates:
@@ -110,9 +105,8 @@ class Candidates:
         """Take what a picture shows.
 
         Args:
-            found: D vehicles.
             where: Where they are, east and north [m], shape (D, 2).
-            heading: As in `Seen`, shape (D, 4).
+            heading: As in `TrackedVehicles`, shape (D, 4).
             since: Time since the last look [s].
         """
         self._time += since
@@ -132,10 +126,10 @@ class Candidates:
             self._learn(row, found, one, where[one], heading[one])
         self._recover()
 
-    def seen(self) -> Seen:
+    def seen(self) -> TrackedVehicles:
         """Return what is known of all of them."""
         rows = np.flatnonzero(self._alive)
-        return Seen(
+        return TrackedVehicles(
             rows,
             shares(self._colour[rows]),
             shares(self._body[rows]),

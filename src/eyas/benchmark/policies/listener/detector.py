@@ -39,10 +39,10 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 OUTPUTS: Final = ("vehicles", "places", "headings", "colours", "bodies")
-
 STRIDE: Final = 4  # Side of a cell [pixels]
-
-NAMES: Final = tuple(COLOUR_NAMES)  # Of colours
+NAMES: Final = tuple(
+    COLOUR_NAMES
+)  # Names of colours; index into `colours`, order: shipped networks
 
 BODIES: Final = (
     BodyWord.SEDAN,
@@ -55,7 +55,7 @@ BODIES: Final = (
     BodyWord.MOTORCYCLE,
     BodyWord.BICYCLE,
 )
-"""Own words of all that drives on roads."""
+"""Words of all that drives on roads; index into `bodies` (order: shipped networks have it)."""
 
 _LEAST: Final = -1.4  # Least logarithm of the odds of a vehicle: a fifth
 
@@ -69,18 +69,13 @@ class Detections(NamedTuple):
 
     belief: Floats  # Probability that it is one, shape (D,)
     place: Floats  # Column and row [pixels], shape (D, 2)
-    heading: Floats  # As the output, shape (D, 4)
+    heading: Floats  # Output `headings`, shape (D, 4)
     colour: Floats  # Logarithms of probabilities of `NAMES`, shape (D, 22)
     body: Floats  # Logarithms of probabilities of `BODIES`, shape (D, 9)
 
 
 class VehicleDetector:
-    """The network.
-
-    Args:
-        session: Of onnxruntime.
-        scale: Pixels of a metre on the ground.
-    """
+    """The network."""
 
     def __init__(self, session: Any, scale: float) -> None:  # noqa: ANN401  # no types
         self._session, self._scale = session, scale
@@ -91,11 +86,7 @@ class VehicleDetector:
         return "vehicles" in {each.name for each in session.get_outputs()}
 
     def find(self, pictures: NDArray[np.uint8]) -> list[Detections]:
-        """Return what N pictures show.
-
-        Args:
-            pictures: Shape (N, 3, H, W).
-        """
+        """Return what N pictures show."""
         answers = self._session.run(OUTPUTS, {"image": pictures})
         vehicles, *rest = answers
         return [

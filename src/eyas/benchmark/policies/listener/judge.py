@@ -5,7 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.policies.listener.candidates import Seen
+from eyas.benchmark.policies.listener.candidates import TrackedVehicles
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES, body_sizes
 from eyas.engine.targets.grammar.claims import Bearing, Claim, Doing, PicturePlace
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord
@@ -21,22 +21,18 @@ _LATE: Final = 0.3
 """Time after the first look from which on a vehicle that appears is hardly meant [s]."""
 
 _HARDLY: Final = 0.2  # How probable it is then, against one that was there
-
 _EDGE: Final = 0.02  # Softness of places in the picture [its width, its height]
-
 _STANDS: Final = 0.6, 0.15  # Speed between standing and moving, and the softness of that [m/s]
 
 _TURNS: Final = 0.12, 0.04
 """Yaw rate between straight on and a turn, and the softness of that [rad/s]."""
 
 _GAP: Final = 10.0  # Longest free road between two, one behind the other [m]
-
 _SOFT: Final = 0.6  # Softness of distances between vehicles [m]
-
 _ROLLS: Final = 1.0  # Speed from which on a vehicle heads where it moves [m/s]
 
 _WEIGHT: Final = 4.0
-"""Of directions of the axis, against those of the way, per (m/s)^2 of its speed."""
+"""Weight of the axis' yaw rate against that of the way, whose weight is speed^2 [(m/s)^2]."""
 
 
 class _Lying(NamedTuple):
@@ -47,12 +43,10 @@ class _Lying(NamedTuple):
     size: Floats  # Length and width [m], shape (K, 2)
 
 
-def judged(claim: Claim, seen: Seen, place: Floats) -> Floats:
+def judged(claim: Claim, seen: TrackedVehicles, place: Floats) -> Floats:
     """Return the logarithms of how probably each is meant, not normalised, shape (K,).
 
     Args:
-        claim: What is said.
-        seen: K vehicles.
         place: Where each was in the first picture, from the left and the upper edge [its width, its
             height], shape (K, 2).
     """
@@ -69,7 +63,7 @@ def judged(claim: Claim, seen: Seen, place: Floats) -> Floats:
     return judged
 
 
-def _called(body: BodyWord, colour: str | None, seen: Seen) -> Floats:
+def _called(body: BodyWord, colour: str | None, seen: TrackedVehicles) -> Floats:
     """Return the probability that each is called so, shape (K,)."""
     words = CAN_BE_CALLED[body] if body in (BodyWord.VEHICLE, BodyWord.CAR) else {body}
     fits = np.array([word in words for word in BODIES], np.float64)
@@ -139,7 +133,7 @@ def _motion(way: Floats) -> tuple[float, float]:
     return speed, rate
 
 
-def _lying(seen: Seen) -> _Lying:
+def _lying(seen: TrackedVehicles) -> _Lying:
     """Return how they lie: as they move, or else as their axes do."""
     axis = 0.5 * exact.atan2(seen.heading[:, 3], seen.heading[:, 2])
     line = np.stack((exact.cos(axis), exact.sin(axis)), axis=1)
@@ -152,12 +146,10 @@ def _lying(seen: Seen) -> _Lying:
     return _Lying(heading, front, exact.product(exact.exp(seen.body), body_sizes()))
 
 
-def _bears(bearing: Bearing, seen: Seen, other: Floats) -> Floats:
+def _bears(bearing: Bearing, seen: TrackedVehicles, other: Floats) -> Floats:
     """Return the probability that each is where a claim says from another one, shape (K,).
 
     Args:
-        bearing: Where.
-        seen: K vehicles.
         other: Probability that each is that other one, shape (K,).
     """
     lying = _lying(seen)

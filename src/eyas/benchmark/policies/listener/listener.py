@@ -16,9 +16,9 @@ from eyas.benchmark.policies.listener.candidates import Candidates
 from eyas.benchmark.policies.listener.detector import Detections, VehicleDetector
 from eyas.benchmark.policies.listener.judge import judged
 from eyas.benchmark.policies.tracker.ground import Ground
-from eyas.benchmark.policies.tracker.helm import Helm, turned
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
 from eyas.engine.policies.policy import Decision, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import claim_of
@@ -28,10 +28,8 @@ __all__ = ["Listener"]
 
 Floats = NDArray[np.float64]
 
-_WATCHED: Final = 0.3  # How long it looks before it chooses [s]
-
-_WATCHED_MOVING: Final = 1.1  # The same where it is told what its target does [s]
-
+_WATCHED: Final = 0.3  # Time of looking before the choice [s]
+_WATCHED_MOVING: Final = 1.1  # Time of looking where motion is named [s]
 _ROOF: Final = 0.8  # Height of a vehicle's middle above the road [m]
 
 
@@ -39,11 +37,8 @@ class Listener:
     """Follows N targets that it is told.
 
     Args:
-        path: The file of the network, for messages.
-        session: The network, as onnxruntime runs it.
         own: Changes of the defaults of `env` that belong to the file.
         said: `TrackerSettings` of the file.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The settings are wrong, or changes ask for what the network does not see.
@@ -74,7 +69,7 @@ class Listener:
             None if told is None else claim_of(told.attributes[row]) for row in range(count)
         ]
         self._seen = [Candidates() for _ in range(count)]
-        self._helm = Helm(count, self.env, self._ground, self.settings.gain)
+        self._steering = Steering(count, self.env, self._ground, self.settings.gain)
         self._time = np.zeros(count)
         self._pose = np.zeros((count, 3))
         """Where each was at its first look, east and north [m], and its heading [rad]."""
@@ -89,7 +84,7 @@ class Listener:
         seen: Any = sight.observation
         sensed = seen["sensors"][rows].astype(np.float64)
         place, yaw = sensed[:, :2], sensed[:, -1]
-        since = self._helm.time_since(rows, sight.clock)
+        since = self._steering.time_since(rows, sight.clock)
         found = self._detector.find(seen["image"][rows])
         for index, row in enumerate(rows.tolist()):
             pose = place[index : index + 1], yaw[index : index + 1]
@@ -98,7 +93,7 @@ class Listener:
         if chosen.any():
             targets = self._targets(rows[chosen])
             pose = place[chosen], yaw[chosen]
-            ahead = self._helm.steer(rows[chosen], pose, since[chosen], targets)
+            ahead = self._steering.steer(rows[chosen], pose, since[chosen], targets)
             actions[rows[chosen], :2] = ahead
         return Decision(actions)
 

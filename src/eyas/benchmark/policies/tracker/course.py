@@ -17,18 +17,17 @@ Rows = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
 LAGS = np.array((0.16, 0.32, 0.64, 1.28, 1.984))
-"""How long ago the states were that the network is told [s]."""
+"""Ages of the states in `past` [s] (order: input of shipped networks)."""
 
 HORIZONS = np.array((0.256, 0.512, 0.768, 1.024, 1.536, 2.048, 3.072))
-"""For which times ahead it answers [s]."""
+"""Times ahead of the forecast [s] (order: output `ahead` of shipped networks)."""
 
 PAST = 1 + 4 * len(LAGS)
 """Numbers of `past`: the speed, then the velocity at each lag and the way since, all in the frame
 of the present velocity [m/s, m]."""
 
 _KEPT = 64  # States: two seconds of looks of 32 ms
-
-_SLOWEST = 0.5  # Of targets that have a course [m/s]
+_SLOWEST = 0.5  # Least speed of a target with a course [m/s]
 
 _COVERED = 2.0
 """How long a target is followed as the network says [s]. One that is hidden for longer is below a
@@ -42,11 +41,7 @@ of it sees it come out and pass; from one that is behind it drives away unseen."
 
 
 class Course:
-    """The courses of N targets.
-
-    Args:
-        count: N.
-    """
+    """The courses of N targets."""
 
     def __init__(self, count: int) -> None:
         self._now = np.zeros(count)
@@ -56,7 +51,7 @@ class Course:
         self._next = np.zeros(count, np.int64)
         self.seen = np.full(count, np.nan)
         """When each was seen last with a course [s]; NaN: it has none."""
-        self._from = np.zeros((count, 4))  # Its state then
+        self._from = np.zeros((count, 4))  # State at that time, shape (N, 4)
         self._ahead = np.full((count, len(HORIZONS), 3), np.nan)
         """What the network said of that; NaN: it was not asked yet."""
         self.past = np.zeros((count, PAST), np.float32)

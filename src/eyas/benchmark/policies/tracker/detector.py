@@ -25,20 +25,17 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["OUTPUTS", "STRIDE", "Clue", "Detector", "Found"]
+__all__ = ["OUTPUTS", "STRIDE", "Detector", "TargetDetection", "TargetPrior"]
 
 Floats = NDArray[np.float64]
 
 OUTPUTS = ("scores", "places", "keys", "ahead")
-
 STRIDE = 4  # Side of a cell [pixels]
-
 _NEAR = 2  # Cells around the best one that are the same target
-
 _LEAST = np.finfo(np.float64).tiny  # Belief that is as good as none
 
 
-class Clue(NamedTuple):
+class TargetPrior(NamedTuple):
     """What is known of N targets before a picture is seen."""
 
     expected: Floats  # Column and row [pixels], shape (N, 2)
@@ -48,7 +45,7 @@ class Clue(NamedTuple):
     past: NDArray[np.float32]  # How each has moved of late, shape (N, 21)
 
 
-class Found(NamedTuple):
+class TargetDetection(NamedTuple):
     """What N pictures show."""
 
     place: Floats
@@ -65,7 +62,6 @@ class Detector:
     """The network.
 
     Args:
-        session: Of onnxruntime.
         size: Height and width of the pictures [pixels].
     """
 
@@ -86,13 +82,8 @@ class Detector:
         """Return whether such a network says where targets will be that are not seen."""
         return "past" in {each.name for each in session.get_inputs()}
 
-    def find(self, pictures: NDArray[np.uint8], clue: Clue) -> Found:
-        """Find targets.
-
-        Args:
-            pictures: Shape (N, 3, H, W).
-            clue: What is known of them.
-        """
+    def find(self, pictures: NDArray[np.uint8], clue: TargetPrior) -> TargetDetection:
+        """Find targets."""
         feed = {
             "image": pictures,
             "expected": clue.expected.astype(np.float32),
@@ -113,7 +104,7 @@ class Detector:
         # Of a target far out of view all shares may be 0; what is found then is not believed.
         around /= np.maximum(belief, _LEAST)[:, None]
         place, spread = _moments(around, places.astype(np.float64))
-        return Found(place, spread, belief, keys[np.arange(len(best)), best], ahead)
+        return TargetDetection(place, spread, belief, keys[np.arange(len(best)), best], ahead)
 
 
 def _moments(shares: Floats, places: Floats) -> tuple[Floats, Floats]:

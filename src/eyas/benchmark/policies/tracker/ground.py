@@ -22,7 +22,6 @@ class Ground:
     upper edge.
 
     Args:
-        settings: Height and pitch of the camera.
         size: Height and width of the picture [pixels].
 
     Attributes:

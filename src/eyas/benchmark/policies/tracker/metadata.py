@@ -22,11 +22,6 @@ velocities."""
 def metadata(path: Path, session: Any, key: str) -> Any:  # noqa: ANN401  # whatever JSON holds
     """Return what stands under a key; an empty dictionary: nothing.
 
-    Args:
-        path: The file, for messages.
-        session: Of onnxruntime.
-        key: One of the above.
-
     Raises:
         DataFileError: It is not JSON.
     """
@@ -40,11 +35,6 @@ def metadata(path: Path, session: Any, key: str) -> Any:  # noqa: ANN401  # what
 def env_as_trained(path: Path, own: Mapping[str, Any], changes: Mapping[str, Any]) -> EnvConfig:
     """Return what a network that flies by velocities sees and does: as it was trained, but for
     `env.action_repeat` and `env.speeds`.
-
-    Args:
-        path: Its file, for messages.
-        own: Changes of the defaults that stand in the file.
-        changes: Those of the user.
 
     Raises:
         EyasError: The user asks for something else, or the file lacks a part.

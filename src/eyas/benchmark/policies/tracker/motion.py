@@ -16,8 +16,7 @@ __all__ = ["MotionFilter"]
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
-_PLACE, _VELOCITY, _ACCELERATION = range(3)  # Of a state
-
+_PLACE, _VELOCITY, _ACCELERATION = range(3)  # Rows of a state
 _TOGETHER = 0.7  # Correlation of place and velocity on a course: who is ahead of it is fast
 
 
@@ -29,13 +28,12 @@ class MotionFilter:
         acceleration: Their standard deviation in each axis [m/s^2], shape (N,).
 
     Args:
-        count: N.
         widest: Largest standard deviation of a place [m].
     """
 
     def __init__(self, count: int, widest: float) -> None:
         self._state = np.zeros((count, 3, 2))
-        self._variance = np.zeros((count, 3, 3))  # Of each axis
+        self._variance = np.zeros((count, 3, 3))  # Covariance of either axis, shape (N, 3, 3)
         self.acceleration, self.lasting = np.ones(count), np.ones(count)
         self._widest = widest
 
@@ -144,7 +142,6 @@ class MotionFilter:
         """Return how far seen places are from the expected ones, in standard deviations, (K,).
 
         Args:
-            rows: K of the targets.
             place: Where they are seen [m], shape (K, 2).
             variance: Of that in each axis [m^2], shape (K,).
         """
@@ -158,9 +155,6 @@ class MotionFilter:
         association filter", equations 38 to 44).
 
         Args:
-            rows: As in `distance`.
-            place: As in `distance`.
-            variance: As in `distance`.
             belief: Probability that it is the target, shape (K,).
         """
         both = self._variance[rows, _PLACE]

@@ -16,21 +16,21 @@ class TrackerSettings(Config):
     """Where the camera is, how targets move, and when the network is believed."""
 
     height: Positive = 22.0
-    """Of the drone above the target's centre at the start [m]."""
+    """Height of the drone above the target's centre at the start [m]."""
     pitch: Annotated[float, Field(gt=0.0, le=1.6)] = 1.37
-    """Of the camera, positive down [rad]."""
+    """Pitch of the camera, positive down [rad]."""
     small: Positive = 1.0
     """A target whose first box has a smaller area than the square of this walks [m]."""
     acceleration: Positive = 4.0
-    """Of a vehicle, standard deviation in each direction [m/s^2]."""
+    """Standard deviation of a vehicle's acceleration, each axis [m/s^2]."""
     lasting: Positive = 1.0
     """Time constant of an acceleration [s]."""
     speed: Positive = 8.0
-    """Of a vehicle at the start, standard deviation in each direction [m/s]."""
+    """Standard deviation of a vehicle's velocity at the start, each axis [m/s]."""
     walking_acceleration: Positive = 2.0
-    """Of what walks [m/s^2]."""
+    """Standard deviation of a walker's acceleration, each axis [m/s^2]."""
     walking_speed: Positive = 1.5
-    """Of what walks, at the start [m/s]."""
+    """Standard deviation of a walker's velocity at the start, each axis [m/s]."""
     widest: Positive = 8.0
     """Largest standard deviation of a place [m]."""
     floor: Positive = 0.5

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.benchmark.policies.tracker.course import Course
-from eyas.benchmark.policies.tracker.detector import Clue, Detector, Found
+from eyas.benchmark.policies.tracker.detector import Detector, TargetDetection, TargetPrior
 from eyas.benchmark.policies.tracker.ground import Ground
-from eyas.benchmark.policies.tracker.helm import Helm, turned
 from eyas.benchmark.policies.tracker.metadata import TRACKER, env_as_trained
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
+from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.policies.policy import (
@@ -47,18 +47,15 @@ _LEAST_RENEWAL = 0.001
 _SURE_PIXELS = 8.0
 """Largest standard deviation of the expected place at which that memory is renewed [pixels]."""
 
-_FIRST_SPREAD = 0.5  # Of the place that the first box tells [m]
+_FIRST_SPREAD = 0.5  # Standard deviation of the place of the first box [m]
 
 
 class Tracker:
     """Follows N targets, each from its first box on.
 
     Args:
-        path: The file of the network, for messages.
-        session: The network, as onnxruntime runs it.
         own: Changes of the defaults of `env` that belong to the file.
         said: `TrackerSettings` of the file.
-        changes: Changes of `env`.
 
     Raises:
         EyasError: The settings are wrong, changes ask for what the network does not see, or it is
@@ -92,7 +89,7 @@ class Tracker:
         self.motion, self.course = MotionFilter(count, self.settings.widest), Course(count)
         self.boxes = start.boxes().astype(np.float64)
         self.expected, self.spread = np.zeros((count, 2)), np.ones(count)
-        """What the network was told last, see `Clue`."""
+        """What the network was told last, see `TargetPrior`."""
         self.sees = np.zeros(count, np.bool_)
         """Whether each target was seen in the last look."""
         self.left = np.zeros((count, 2))
@@ -101,7 +98,7 @@ class Tracker:
         self._renewed = np.zeros(count)
         """How often each memory of how the target looks was renewed."""
         own = self.settings
-        self._helm = Helm(count, self.env, self.ground, own.gain, own.lag)
+        self._steering = Steering(count, self.env, self.ground, own.gain, own.lag)
 
     def act(self, sight: PolicyInput) -> Decision:
         """Look, and fly to where the targets should be when the action takes effect."""
@@ -113,10 +110,10 @@ class Tracker:
             seen: Any = sight.observation
             sensed = seen["sensors"][rows].astype(np.float64)
             place, yaw = sensed[:, :2], sensed[:, -1]
-            since = self._helm.time_since(rows, sight.clock)
+            since = self._steering.time_since(rows, sight.clock)
             self.look(rows, seen["image"][rows], place, yaw, since)
             target = self.motion.place[rows], self.motion.velocity[rows]
-            actions[rows, :2] = self._helm.steer(rows, (place, yaw), since, target)
+            actions[rows, :2] = self._steering.steer(rows, (place, yaw), since, target)
         return Decision(actions, failed)
 
     def look(
@@ -176,7 +173,7 @@ class Tracker:
         self.motion.stop(rows[far], self.settings.speed)
         self.course.leave(rows[far])
 
-    def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> Clue:
+    def _clue(self, rows: Rows, place: Floats, yaw: Floats) -> TargetPrior:
         """Return what the network is told about targets, see `look`."""
         expected = self.ground.pixels(turned(self.motion.place[rows] - place, -yaw))
         spread = np.sqrt(
@@ -184,7 +181,7 @@ class Tracker:
         )
         known = self._renewed[rows] > 0
         spread *= self.ground.pixels_per_metre
-        return Clue(expected, spread, self._key[rows], known, self.course.past[rows])
+        return TargetPrior(expected, spread, self._key[rows], known, self.course.past[rows])
 
     def _show(self, rows: Rows, place: Floats, yaw: Floats) -> None:
         """Begin with the first boxes: where the targets are, and what can move how."""
@@ -199,7 +196,7 @@ class Tracker:
         self.motion.begin(rows, where, np.zeros_like(where), _FIRST_SPREAD, speed)
         self.left[rows] = where
 
-    def _remember(self, rows: Rows, found: Found, sure: Mask) -> None:
+    def _remember(self, rows: Rows, found: TargetDetection, sure: Mask) -> None:
         """Renew the memory of how targets look, by those that are surely seen."""
         sure = sure & (found.belief > self.settings.remembered)
         rows = rows[sure]

@@ -1,0 +1,59 @@
+"""The first episodes of consecutive seeds in which something happens that a protocol asks for."""
+
+from collections.abc import Callable, Sequence
+
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place, episodes_of
+from eyas.benchmark.protocols.protocol import Protocol
+from eyas.engine.core.errors import SpawnError
+
+__all__ = ["Fits", "first_fitting"]
+
+Fits = Callable[[Sequence[EpisodeSpec], Protocol], Sequence[object]]
+"""Returns for each episode what it has of what is asked for; nothing (`bool` is false): it does not
+fit."""
+
+_TRIED = 50  # Number of seeds that are tried for each episode
+_HOPELESS = 1_000  # Number of starts after which no more are tried if none of them fits
+_PARTS = 25  # Groups in which starts are tried: a few together cost less than each alone
+
+
+def first_fitting(
+    places: Sequence[Place],
+    protocol: Protocol,
+    count: int,
+    first_seed: int,
+    *,
+    fits: Fits,
+    wanted: str,
+    tried: int = _TRIED,
+) -> list[EpisodeSpec]:
+    """Return the first episodes of each place and direction that fit, in all variants.
+
+    Raises:
+        SpawnError: There are too few.
+    """
+    chosen = []
+    for place in places:
+        starts = episodes_of([place], protocol.directions, count * tried, first_seed)
+        found: dict[float, list[EpisodeSpec]] = {turn: [] for turn in protocol.directions}
+        together = max(len(starts) // _PARTS, 1)
+        for begin in range(0, len(starts), together):
+            part = starts[begin : begin + together]
+            for episode, own in zip(part, fits(part, protocol), strict=True):
+                if own and len(found[episode.direction]) < count:
+                    found[episode.direction].append(episode)
+            tested, full = begin + len(part), all(len(own) == count for own in found.values())
+            if full or (tested >= _HOPELESS and not any(found.values())):
+                break
+        if not full:
+            raise SpawnError(
+                f"protocol '{protocol.name}': of {tested} starts in '{place.map}' too few have "
+                f"{wanted}; {count} are needed for each direction"
+            )
+        chosen += [
+            found[turn][number]._replace(variant=variant)
+            for number in range(count)
+            for turn in protocol.directions
+            for variant in protocol.variants or ("",)
+        ]
+    return chosen

@@ -1,0 +1,1 @@
+"""Reports: plots, films, latency curves, the leaderboard, and the tables of `eyas reproduce`."""
