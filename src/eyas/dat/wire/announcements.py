@@ -92,12 +92,7 @@ class Announcements:
         return last
 
     def _next(self) -> int | None:
-        """Return the number in the next message; None if it has none.
-
-        Raises:
-            BlockingIOError: There is no message.
-            TimeoutError: There is none yet.
-        """
+        """Return the number in the next message; None if it has none."""
         try:
             message, sender = self._socket.recvfrom(_LONGEST)
         except ConnectionError:  # some systems tell so that an earlier message was not heard
@@ -122,12 +117,7 @@ class Announcements:
 
 
 def _listening(address: str, port: int) -> socket.socket:
-    """Return a socket that listens.
-
-    Raises:
-        ConfigError: No such address on this machine.
-        OutputError: The port is not free.
-    """
+    """Return a socket that listens."""
     try:
         family, kind, _, _, place = socket.getaddrinfo(
             address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE

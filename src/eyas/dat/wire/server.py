@@ -184,11 +184,7 @@ class Server(Face):
         self._announcements.poll()  # of the others of them
 
     def _begin(self, count: int, begun: frozenset[int] = frozenset()) -> None:
-        """Make a world for agents that have announced themselves.
-
-        Args:
-            begun: Those of them whose first reset has been taken already.
-        """
+        """Make a world for agents that have announced themselves."""
         self._count = count
         _LOG.info("%d agent%s announced", count, "s" * (count > 1))
         service = self._ask()

@@ -338,11 +338,7 @@ south."""
 def _skyways(
     city: DowntownLayout, keep_free: shapely.Geometry, rng: np.random.Generator
 ) -> list[Skyway]:
-    """Return skyways between fronts that are high enough on both sides.
-
-    Args:
-        keep_free: Ground of trees, poles and the railway [m].
-    """
+    """Return skyways between fronts that are high enough on both sides."""
     buildings, roads = city.buildings, city.roads
     high = [parts[0].height >= STOREY * (FLOORS_UNDER + 2) for parts in buildings]
     shapely.prepare(keep_free)

@@ -170,12 +170,7 @@ class _Data:
 
 
 def _best(lags: Floats, sums: Floats) -> Floats:
-    """Return the lag, thrust, drag and lateness that leave the least squares, shape (4,).
-
-    Args:
-        lags: Those tried, shape (L,).
-        sums: Their normal equations, shape (L, 3, 4).
-    """
+    """Return the lag, thrust, drag and lateness that leave the least squares, shape (4,)."""
     try:
         solved = np.linalg.solve(sums[..., :3], sums[..., 3:])[..., 0]
     except np.linalg.LinAlgError:

@@ -111,11 +111,7 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
 
 
 def _check_tracker(config: TrackerConfig) -> None:
-    """Refuse a tracker without rotors, and what a driven drone does not have.
-
-    Raises:
-        ConfigError: There is such a setting.
-    """
+    """Refuse a tracker without rotors, and what a driven drone does not have."""
     if config.supervised or config.kind is not TrackerKind.DRONE:
         raise ConfigError(
             "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "
