@@ -266,3 +266,11 @@ def test_templates_of_both_kinds_are_named(tmp_path, mark):
     path.write_text(f"PROTO t [] {{ Shape {{ geometry Box {{ size 1 1 {mark} }} }} }}")
     with pytest.raises(EyasError, match=f"it is a template \\({mark[:2]} "):
         read_mesh(path)
+
+
+def test_a_node_turns_what_is_inside_it_counter_clockwise_about_its_axis(read):
+    box = "Shape { geometry Box { size 0.2 0.2 0.2 } }"
+    inner = f"Pose {{ translation 1 0 0 children [ {box} ] }}"
+    quarter = f"Pose {{ rotation 0 0 1 {math.pi / 2} children [ {inner} ] }}"
+    shape = read(f"PROTO Thing [] {{ Solid {{ children [ {quarter} ] }} }}")
+    assert shape.points.mean(axis=0) == pytest.approx([0.0, 1.0, 0.0], abs=1e-9)

@@ -1,9 +1,12 @@
 """The desert against the original's figures, and as a scene that holds together."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 import shapely
 
+from eyas.engine.core.rng import stream
 from eyas.engine.sensors.obstacles import solids_of
 from eyas.engine.sim.scenes import load_network, load_scene
 from eyas.engine.state.mesh import Surface
@@ -11,10 +14,10 @@ from eyas.engine.state.scene import ObjectClass
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps.recipe import TRAFFIC_FILE
-from eyas.engine.world.roads.areas import joints, road_area
-from eyas.engine.world.weather import Season
+from eyas.engine.world.roads.areas import joints, road_area, streets
+from eyas.engine.world.weather import RAIN, Season
 from eyas.maps.desert import DESERT
-from eyas.maps.desert.layout import lay_out
+from eyas.maps.desert.layout import _drifts, lay_out
 from eyas.maps.desert.plan import DRIFT_HEIGHT
 from eyas.maps.land.mounds import highest
 from eyas.maps.plan.build import build_scene
@@ -264,3 +267,19 @@ def test_stones_and_plants_are_ground_for_lidar_and_bodies(desert):
     wild = desert.fixtures.object_id[desert.object_class[desert.fixtures.object_id] == 0]
     assert len(wild) > 1500
     assert not set(solids_of(desert).thing.tolist()) & set(wild.tolist())
+
+
+def test_drifts_keep_away_from_each_other(roads):
+    ways = [way for way in streets(roads) if way.start < way.end]
+    for seed in range(4):
+        middles = [drift.area.centroid for drift in _drifts(ways, stream(seed, "desert drifts"))]
+        assert min(one.distance(other) for one, other in combinations(middles, 2)) > 80.0
+
+
+def test_a_closed_sky_over_the_desert_is_warmer_than_elsewhere():
+    plain, here = RAIN.day, DESERT.light("rain")
+    for part in ("zenith_colour", "ambient_up", "fog_colour"):
+        red, _, blue = getattr(plain, part)
+        warm, _, cold = getattr(here, part)
+        assert warm > red
+        assert cold < blue

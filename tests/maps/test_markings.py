@@ -9,6 +9,7 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.world.roads.areas import joints, road_area, streets
 from eyas.maps.roads.markings import road_paint
 from eyas.maps.roads.painting import PAINT_HEIGHT, mesh_of, stripes
+from eyas.maps.towns.crossings import town_paint
 
 
 @pytest.fixture(scope="module")
@@ -144,3 +145,18 @@ def test_lines_go_on_around_bends_and_end_where_the_street_changes(edges, lines)
     painted = shapely.union_all(white_areas(paint))
     for _, ends, _ in edges:
         assert shapely.LineString(ends).buffer(3.5).intersection(painted).area > 20.0
+
+
+def test_stop_lines_of_imported_streets_lie_before_the_ends_of_their_lanes(network):
+    roads, every = road_area(network), streets(network)
+    unlit, _ = town_paint(network, roads, [], ())
+    lit, _ = town_paint(network, roads, [], network.edges)
+    known = {line.middle.tobytes() for line in unlit}
+    stops = [line.middle for line in lit if line.middle.tobytes() not in known]
+    assert len(stops) == len(network.edges)
+    for street, stop in zip(every, stops, strict=True):
+        way = shapely.LineString(street.right)
+        ends = way.project(shapely.points(stop))
+        assert (way.length - ends).max() == pytest.approx(0.6, abs=0.05)
+        across = np.linalg.norm(stop[1] - stop[0])
+        assert 2.0 < across < 7.0

@@ -289,6 +289,7 @@ def test_what_is_no_plan_is_refused(content, tmp_path):
 
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
+corners = st.floats(-1e6, 9.99e5)  # no side of a box is longer than 99 m
 shares = st.floats(0.0, 1.0)
 colours = st.tuples(shares, shares, shares)
 covers = st.builds(
@@ -297,7 +298,7 @@ covers = st.builds(
 )  # fmt: skip
 boxes = st.builds(
     lambda x, y, w, h: shapely.box(x, y, x + w, y + h),
-    numbers, numbers, st.floats(1.0, 99.0), st.floats(1.0, 99.0),
+    corners, corners, st.floats(1.0, 99.0), st.floats(1.0, 99.0),
 )  # fmt: skip
 chances = st.builds(
     plan.Chance, stream=st.text(max_size=9), index=st.tuples(st.integers(0, 9))

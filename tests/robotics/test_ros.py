@@ -22,6 +22,7 @@ from rosbags.highlevel import AnyReader
 
 from eyas.robotics.ros import types
 from eyas.robotics.ros.bag import RosbagMcapWriter, RosbagWriter
+from eyas.robotics.ros.geometry import rotation_of
 from eyas.robotics.ros.messages import TOPICS
 from eyas.robotics.ros.types import message_types
 
@@ -319,3 +320,13 @@ def test_a_missing_extra_is_told_in_one_line(run, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags.typesys", None)
     with pytest.raises(MissingExtraError, match=r"^video\.writers: 'rosbag' needs the extra 'ros'"):
         RosbagWriter(run)
+
+
+def test_the_matrix_of_a_quaternion_is_a_rotation_about_its_axis():
+    axis, angle = np.array([2.0, -1.0, 2.0]) / 3.0, 0.7
+    turned = rotation_of(np.array([math.cos(angle / 2), *(math.sin(angle / 2) * axis)]))
+    assert turned @ turned.T == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.linalg.det(turned) == pytest.approx(1.0)
+    assert turned @ axis == pytest.approx(axis)
+    quarter = rotation_of(np.array([math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)]))
+    assert quarter @ np.array([1.0, 0.0, 0.0]) == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)

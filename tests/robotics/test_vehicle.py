@@ -320,7 +320,7 @@ def test_a_message_that_cannot_be_handled_is_a_line(bench, caplog):
     def fail(message):
         raise LookupError("at the worst\nmoment")
 
-    bench.fleet.vehicles[0]._components[1].heard["HEARTBEAT"] = fail
+    bench.fleet.vehicles[0]._components[1].handlers["HEARTBEAT"] = fail
     bench.beat()
     bench.beat()
     (record,) = caplog.records

@@ -53,7 +53,7 @@ class Duel:
         self._from = now + READY
         return True
 
-    def told(self, now: float) -> dict[str, Any]:
+    def state(self, now: float) -> dict[str, Any]:
         """Return stage, scores and seconds left."""
         steps = self._steps.get(self.stage, 0)
         return {
@@ -120,7 +120,10 @@ class PolicyController:
         )
         sim = self._simulation
         sight = PolicyInput(
-            *(batch, np.ones(1, np.bool_), lambda: sim.snapshot, self._visible),
+            observation=batch,
+            deciding=np.ones(1, np.bool_),
+            snapshot=lambda: sim.snapshot,
+            visible=self._visible,
             covered=np.zeros(1, np.bool_),
         )
         try:

@@ -255,11 +255,7 @@ class DemoServer:
                 await connection.close(1008, "too many messages were refused")
 
     def _hear(self, viewer: Viewer, message: said.Message) -> None:
-        """Take a message.
-
-        Raises:
-            ConfigError: Only who flies may say this.
-        """
+        """Take a message."""
         if isinstance(message, said.AckMessage):
             viewer.acknowledge(message.frame, 0.001 * message.spent)
         elif isinstance(message, said.PicturesMessage):

@@ -202,7 +202,7 @@ class Session:
             "speed_of_time": self.clock.speed,
             "flies": self.controller_name,
             "recorded": None if self.recording is None else self.recording.frames,
-            "duel": None if self.duel is None else self.duel.told(now),
+            "duel": None if self.duel is None else self.duel.state(now),
             "body": self.screen.body(width, height),
             "marks": self.screen.marks(width, height) if self.overlay else None,
         }

@@ -192,11 +192,7 @@ def _plan(
 
 
 def _recipe_of_plan(path: Path) -> MapRecipe:
-    """Return the map of a plan in a file; the rest of it is read when it is built.
-
-    Raises:
-        DataFileError: It is not a plan, or has no name.
-    """
+    """Return the map of a plan in a file; the rest of it is read when it is built."""
     from eyas.maps.plan.file import content_of
 
     content = content_of(path)

@@ -76,9 +76,9 @@ def test_the_constants_of_a_flight_are_found_again(tmp_path, options, every):
     assert found.rate == pytest.approx(500.0 / every)
     assert found.error < 0.15 * found.spread
     assert found.speed_error < 0.1
-    assert found.thrust.told
-    assert found.drag.told
-    assert found.lag.told
+    assert found.thrust.is_determined
+    assert found.drag.is_determined
+    assert found.lag.is_determined
 
 
 def test_noise_widens_the_intervals_and_they_hold_the_truth(tmp_path):
@@ -113,7 +113,7 @@ def test_a_hover_does_not_tell_the_drag(tmp_path):
     rows, frame = flight(speed=0.02, **SLOW)
     found = fit(read_log(saved(tmp_path / "log.csv", rows)))
     assert found.thrust.value == pytest.approx(frame.thrust_constant / frame.mass, rel=0.01)
-    assert not found.drag.told
+    assert not found.drag.is_determined
 
 
 def test_the_command_prints_what_follows_from_a_known_constant(tmp_path, monkeypatch, capsys):

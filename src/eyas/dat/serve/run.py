@@ -64,7 +64,10 @@ def tell_disagreements(config: EyasConfig, root: Path, settings: Path) -> None:
         for key, said, served in _disagreements(path, keys, group, ours):
             _LOG.warning(
                 "%s: %s is %s, but is served as %s: clients that read this file go wrong",
-                *(path, key, shown(said), shown(served)),
+                path,
+                key,
+                shown(said),
+                shown(served),
             )
 
 

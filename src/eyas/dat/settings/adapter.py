@@ -193,11 +193,7 @@ def _told(entry: OriginalEntry, config: EyasConfig) -> Values:
 
 
 def _written(entry: OriginalEntry, config: EyasConfig) -> Values:
-    """Return all keys of an entry, as they were in the original's file where that means the same.
-
-    Raises:
-        ConfigError: The original's keys cannot express a value.
-    """
+    """Return all keys of an entry, as in the file that was read where that means the same."""
     said = entry.write(_fields(config, entry))
     before = {key: value for key, value in _kept(config).items() if key in entry.keys}
     defaults = {key: every_key()[key] for key in entry.keys}

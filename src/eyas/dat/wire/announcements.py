@@ -92,12 +92,7 @@ class Announcements:
         return last
 
     def _next(self) -> int | None:
-        """Return the number in the next message; None if it has none.
-
-        Raises:
-            BlockingIOError: There is no message.
-            TimeoutError: There is none yet.
-        """
+        """Return the number in the next message; None if it has none."""
         try:
             message, sender = self._socket.recvfrom(_LONGEST)
         except ConnectionError:  # some systems tell so that an earlier message was not heard
@@ -115,17 +110,14 @@ class Announcements:
             self._told = now
             _LOG.warning(
                 "message %r from %s ignored: not a number of agents, 1 to %d",
-                *(message[:40], sender, MOST_AGENTS),
+                message[:40],
+                sender,
+                MOST_AGENTS,
             )
 
 
 def _listening(address: str, port: int) -> socket.socket:
-    """Return a socket that listens.
-
-    Raises:
-        ConfigError: No such address on this machine.
-        OutputError: The port is not free.
-    """
+    """Return a socket that listens."""
     try:
         family, kind, _, _, place = socket.getaddrinfo(
             address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE

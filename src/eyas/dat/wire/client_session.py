@@ -135,7 +135,8 @@ class ClientSession:
         _LOG.warning(
             "%s: a new action while %s was not taken: a new client, or one out of order; "
             "the rest of that answer is dropped",
-            *(self.names.tracker, part.name),
+            self.names.tracker,
+            part.name,
         )
         self.withdraw()
         return True
@@ -159,11 +160,7 @@ class ClientSession:
         return True
 
     def _line(self) -> bytes | None:
-        """Return the first line of the action file; None while there is none.
-
-        Raises:
-            ActionError: It is not an ordinary file, or cannot be read.
-        """
+        """Return the first line of the action file; None while there is none."""
         flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         try:
             file = os.open(self.names.action, flags)
@@ -191,11 +188,7 @@ class ClientSession:
 
 
 def _put_away(path: Path) -> None:
-    """Delete a file; a folder in its place is renamed, as nobody knows what is in it.
-
-    Raises:
-        OutputError: That is not possible.
-    """
+    """Delete a file; a folder in its place is renamed, as nobody knows what is in it."""
     with refusals(path):
         if path.is_dir() and not path.is_symlink():
             names = (path.with_name(f"{path.name}.folder-{number}") for number in count(1))

@@ -85,7 +85,8 @@ class Server(Face):
             _LOG.info(
                 "%s: deleted %d files of an earlier run; clients that were started before now must "
                 "be started again",
-                *(self._exchange.files, removed),
+                self._exchange.files,
+                removed,
             )
         _LOG.info("waiting for clients on UDP port %d of %s", port, address)
 
@@ -161,7 +162,8 @@ class Server(Face):
             _LOG.warning(
                 "%s: nothing for %g s: the client is busy, stopped or dead; all others wait for "
                 "it, and a new client can take its place",
-                *(", ".join(late), patience),
+                ", ".join(late),
+                patience,
             )
 
     def fail(self, error: EyasError) -> None:
@@ -175,16 +177,14 @@ class Server(Face):
         _LOG.error(
             "%d agent%s cannot be served: %s; their clients wait in vain: end them; waiting for "
             "the next",
-            *(count, "s" * (count > 1), error),
+            count,
+            "s" * (count > 1),
+            error,
         )
         self._announcements.poll()  # of the others of them
 
     def _begin(self, count: int, begun: frozenset[int] = frozenset()) -> None:
-        """Make a world for agents that have announced themselves.
-
-        Args:
-            begun: Those of them whose first reset has been taken already.
-        """
+        """Make a world for agents that have announced themselves."""
         self._count = count
         _LOG.info("%d agent%s announced", count, "s" * (count > 1))
         service = self._ask()

@@ -15,7 +15,8 @@ TOWER_SHARE = 0.22  # Share of the buildings that stand on another one
 
 # Quantiles of the original's street city: share of buildings and ground area [m^2] or height [m].
 _AREA = ((0.0, 9), (0.04, 60), (0.25, 445), (0.5, 915), (0.75, 2015), (0.95, 4800), (1.0, 9141))
-_HEIGHT = ((0.0, 5.6), (0.25, 12), (0.5, 30), (0.61, 48), (0.75, 57), (0.867, 76), (0.9, 104), (0.95, 152), (1.0, 228))  # noqa: E501  # fmt: skip
+_HEIGHT = ((0.0, 5.6), (0.25, 12), (0.5, 30), (0.61, 48), (0.75, 57), (0.867, 76),
+           (0.9, 104), (0.95, 152), (1.0, 228))  # fmt: skip
 
 
 def ground_areas(count: int, rng: np.random.Generator) -> NDArray[np.float64]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -176,8 +176,8 @@ def _dunes(
         far, wind = rng.uniform(*_LEAN), _WIND + rng.uniform(-0.3, 0.3)
         lean = np.round(far * np.array([exact.cos(wind), exact.sin(wind)]), 4).tolist()
         leaning.append(
-            Mound(
-                *(dune.x, dune.y, dune.radius, dune.height),
+            replace(
+                dune,
                 phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()),
                 waviness=0.1,
                 lean=(lean[0], lean[1]),

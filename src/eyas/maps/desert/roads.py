@@ -70,13 +70,7 @@ def _outer(start: Points, end: Points, half: Points) -> Points:
 
 
 def _inner(start: Points, inwards: Points, onwards: float) -> Points:
-    """Return a road from a junction to the middle, without its ends.
-
-    Args:
-        start: The junction [m].
-        inwards: Its direction there, a unit vector.
-        onwards: Its direction in the middle [rad].
-    """
+    """Return a road from a junction to the middle, without its ends."""
     reach = math.sqrt(np.square(start[0]) + np.square(start[1]))
     arrive = np.array([exact.cos(onwards), exact.sin(onwards)])
     one, other = start + _REACH[0] * reach * inwards, -_REACH[1] * reach * arrive

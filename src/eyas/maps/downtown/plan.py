@@ -277,11 +277,7 @@ def _clutter(
 def _entrances(
     network: RoadNetwork, keep_free: shapely.Geometry, rng: np.random.Generator
 ) -> list[Placed]:
-    """Return entrances of the subway beside the ends of wide roads.
-
-    Args:
-        keep_free: Area where something else stands or drives [m].
-    """
+    """Return entrances of the subway beside the ends of wide roads."""
     meeting, made = joints(network), []
     for street in streets(network):
         end = street.right[-1]

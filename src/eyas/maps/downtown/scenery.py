@@ -170,7 +170,8 @@ _POND_LINE = ((-72.0, -34.0), (-50.0, 26.0), (4.0, 40.0), (46.0, 10.0), (88.0, 4
 """Backbone of the pond about its middle, in the frame of the grid [m]."""
 _POND_REACH = 34.0
 _FOUNTAIN = 11.3  # Radius of the basin of the fountain: 401 m^2, as in the original [m]
-_SMALL_PONDS = ((0.10, 0.72, 9.0, 6.0), (0.82, 0.74, 12.0, 7.0), (0.60, 0.90, 8.0, 8.0), (0.30, 0.92, 10.0, 5.0))  # noqa: E501  # fmt: skip
+_SMALL_PONDS = ((0.10, 0.72, 9.0, 6.0), (0.82, 0.74, 12.0, 7.0), (0.60, 0.90, 8.0, 8.0),
+                (0.30, 0.92, 10.0, 5.0))  # fmt: skip
 """Position as a share of width and depth, and half axes [m]."""
 _PATH = 3.6
 _TREES = 243
@@ -337,11 +338,7 @@ south."""
 def _skyways(
     city: DowntownLayout, keep_free: shapely.Geometry, rng: np.random.Generator
 ) -> list[Skyway]:
-    """Return skyways between fronts that are high enough on both sides.
-
-    Args:
-        keep_free: Ground of trees, poles and the railway [m].
-    """
+    """Return skyways between fronts that are high enough on both sides."""
     buildings, roads = city.buildings, city.roads
     high = [parts[0].height >= STOREY * (FLOORS_UNDER + 2) for parts in buildings]
     shapely.prepare(keep_free)

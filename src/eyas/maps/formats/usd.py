@@ -177,11 +177,7 @@ class _Stage:
         return self._shown.textures
 
     def fill(self, notice: str) -> None:
-        """Add everything.
-
-        Args:
-            notice: Whose data the map is made of.
-        """
+        """Add everything."""
         from pxr import Kind, Usd, UsdGeom, UsdPhysics
 
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.Tokens.z)

@@ -206,8 +206,12 @@ def _shrubs(district: LakeLayout, rng: np.random.Generator) -> list[Placed]:
     )
     return [
         Placed(
-            gardens.BORDERS[int(rng.integers(len(gardens.BORDERS)))],
-            *(x, y, FLOOR_HEIGHT, rng.uniform(0, 2 * np.pi), rng.uniform(0.6, 1.2)),
+            kind=gardens.BORDERS[int(rng.integers(len(gardens.BORDERS)))],
+            x=x,
+            y=y,
+            z=FLOOR_HEIGHT,
+            turn=rng.uniform(0, 2 * np.pi),
+            scale=rng.uniform(0.6, 1.2),
         )
         for x, y in rounded(spots).tolist()
     ]

@@ -190,11 +190,7 @@ class _Place(NamedTuple):
 
 
 def _place(data: OsmData, bounds: Bounds | None, source: str) -> _Place:
-    """Return the area to import, in degrees and in metres around its middle.
-
-    Raises:
-        EyasError: It is empty, too large or too small.
-    """
+    """Return the area to import, in degrees and in metres around its middle."""
     west, south, east, north = limits = covered(data, bounds, source)
     projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
     corners = projection.metres([(west, south), (east, south), (east, north), (west, north)])
@@ -224,11 +220,7 @@ class _Streets(NamedTuple):
 
 
 def _streets(data: OsmData, place: _Place, report: Report) -> _Streets:
-    """Return the streets for cars within the area.
-
-    Raises:
-        EyasError: SUMO is not installed, or makes no network of them.
-    """
+    """Return the streets for cars within the area."""
     cut = street_file(data, place.limits, lambda key: report.odd.update([key]))
     finished = osm_network(cut, place.projection.text, place.source)
     graph, net = RoadGraph(report.name, 0, (), (), finished), SumoNet(finished)

@@ -3,6 +3,7 @@
 import re
 import subprocess
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -151,32 +152,32 @@ def _xml(tags: Tags) -> str:
 _TYPES = ("osmNetconvert.typ.xml", "osmNetconvertUrbanDe.typ.xml")
 """Lanes, speeds and users of each kind of road, in the folder `data/typemap` of SUMO."""
 
-OPTIONS = (
-    *("--offset.disable-normalization", "true"),
+OPTIONS = {
+    "--offset.disable-normalization": "true",
     # Streets for cars that hang together, with sidewalks as tagged.
-    *("--keep-edges.by-vclass", "passenger"),
-    *("--keep-edges.components", "1"),
-    *("--osm.sidewalks", "true"),
-    *("--walkingareas", "true"),
+    "--keep-edges.by-vclass": "passenger",
+    "--keep-edges.components": "1",
+    "--osm.sidewalks": "true",
+    "--walkingareas": "true",
     # Crossings, with lights for those on foot, only where there are traffic lights.
-    *("--crossings.guess", "true"),
-    *("--crossings.guess.speed-threshold", "0"),
+    "--crossings.guess": "true",
+    "--crossings.guess.speed-threshold": "0",
     # Bends are not junctions, and what is one crossing for drivers is one junction.
-    *("--geometry.remove", "true"),
-    *("--junctions.join", "true"),
-    *("--max-join-ids", "3"),
-    *("--roundabouts.guess", "true"),
-    *("--tls.guess-signals", "true"),
-    *("--tls.discard-simple", "true"),
-    *("--tls.join", "true"),
+    "--geometry.remove": "true",
+    "--junctions.join": "true",
+    "--max-join-ids": "3",
+    "--roundabouts.guess": "true",
+    "--tls.guess-signals": "true",
+    "--tls.discard-simple": "true",
+    "--tls.join": "true",
     # As for the maps of recipes, see `eyas.engine.traffic.network`.
-    *("--junctions.corner-detail", "8"),
-    *("--junctions.internal-link-detail", "20"),
-    *("--junctions.limit-turn-speed", "5.5"),
-    *("--no-turnarounds.except-deadend", "true"),
-    *("--output.street-names", "false"),
-    *("--precision", "3"),
-)
+    "--junctions.corner-detail": "8",
+    "--junctions.internal-link-detail": "20",
+    "--junctions.limit-turn-speed": "5.5",
+    "--no-turnarounds.except-deadend": "true",
+    "--output.street-names": "false",
+    "--precision": "3",
+}
 """netconvert's options, except its files and the projection."""
 
 
@@ -199,7 +200,7 @@ def osm_network(streets: bytes, projection: str, source: str) -> bytes:
         given.write_bytes(streets)
         files = ("--osm-files", str(given), "--type-files", types, "-o", str(out))
         done = subprocess.run(
-            [str(program), *files, "--proj", projection, *OPTIONS],
+            [str(program), *files, "--proj", projection, *chain.from_iterable(OPTIONS.items())],
             env=environment,
             capture_output=True,
             text=True,

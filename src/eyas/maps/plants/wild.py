@@ -37,13 +37,6 @@ def _blades(
     """Return blades, a triangle each, that lean outwards and are seen from above.
 
     They are no `Surface.FOLIAGE`, whose holes and shadows cost more than such small plants show.
-
-    Args:
-        spread: Radius of the circle in which they stand.
-        long: Length along x to which it is drawn out.
-        heights: Least and largest height.
-        width: Of a blade at its foot.
-        tints: Colours, sRGB.
     """
     away, angle = np.sqrt(rng.uniform(0.0, 1.0, count)), rng.uniform(0.0, 2 * np.pi, count)
     out = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(count)])

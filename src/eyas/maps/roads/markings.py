@@ -215,12 +215,7 @@ _ARROW_BACK = 4.0  # From the stop line back to the origin of an arrow, 1 m ahea
 
 
 def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
-    """Return arrows before the stop line: right from the rightmost lane, left from the leftmost.
-
-    Args:
-        street: Street that leads to the stop line.
-        leaving: Streets that begin beyond it; arrows point only to these.
-    """
+    """Return arrows before the stop line: right from the rightmost lane, left from the leftmost."""
     _, onwards, leftwards, width = frame_of(street)
     turns = [
         unit(other.right[1] - other.right[0]) for other in leaving if other.end != street.start

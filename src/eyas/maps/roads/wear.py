@@ -134,12 +134,7 @@ def _beside(lane: shapely.LineString, start: float, end: float, right: float, le
 
 
 def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
-    """Return the strip of a lane in which tyres run; it is one texture wide.
-
-    Args:
-        lane: Middle of the lane [m].
-        start: Start of the strip in the texture [repeats].
-    """
+    """Return the strip of a lane in which tyres run; it is one texture wide."""
     middle = shapely.get_coordinates(shapely.segmentize(lane, GRID))
     along = np.gradient(middle, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)

@@ -64,13 +64,7 @@ def _moved(mesh: Mesh, place: Sequence[float], size: float = 1.0) -> Mesh:
 def _scraps(
     which: int, tints: Sequence[tuple[float, float, float]], sizes: tuple[float, float], count: int
 ) -> Levels:
-    """Return scraps that lie about, the largest of them also in the far level.
-
-    Args:
-        which: Number of the patch: each lies otherwise.
-        sizes: Shortest and longest side [m].
-        count: How many.
-    """
+    """Return scraps that lie about, the largest of them also in the far level."""
     rng = np.random.Generator(np.random.PCG64(7919 * which + count))
     place = rng.uniform(-1.0, 1.0, (count, 2)) * _SPREAD
     half = 0.5 * np.sort(rng.uniform(*sizes, count))[::-1]

@@ -62,14 +62,7 @@ def _car(
     roof: _Roof,
     **more: Any,  # noqa: ANN401  # other lines of `CarShape`
 ) -> CarType:
-    """Return a type of car.
-
-    Args:
-        size: Length, width with mirrors, height [m].
-        wheels: Wheelbase, radius, and x of the front axle as a share of half the length [m].
-        heights: Lower edge of the rear window, belt line, lower edge of the windscreen [m].
-        more: Other lines.
-    """
+    """Return a type of car."""
     (length, width, high), (base, radius, share) = size, wheels
     half, (low, belt, cowl) = length / 2, heights
     x = _Roof(*(half * part for part in roof))

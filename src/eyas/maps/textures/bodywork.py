@@ -277,18 +277,8 @@ def _front(sheet: Sheet, kind: str, look: str) -> None:
     sheet.line([(0.0, 0.02), (side, 0.02)], 0.05, _BLACK)
 
 
-_SIDES = {
-    "saloon": _car_side,
-    "hatch": _car_side,
-    "van": _van_side,
-    "bus": _bus_side,
-}
-_TOPS = {
-    "saloon": _saloon_top,
-    "hatch": _hatch_top,
-    "van": _van_top,
-    "bus": _bus_top,
-}
+_SIDES = {"saloon": _car_side, "hatch": _car_side, "van": _van_side, "bus": _bus_side}
+_TOPS = {"saloon": _saloon_top, "hatch": _hatch_top, "van": _van_top, "bus": _bus_top}
 
 _GLASS = 0.05  # Brightness of what is seen through a pane, as a share of the tint
 

@@ -76,11 +76,7 @@ def sheet_of(tones: Field, region: Region, size: tuple[float, float]) -> Sheet:
 def texture_of(tones: Field) -> NDArray[np.uint8]:
     """Return brightness, linear, rows from below, as an opaque picture."""
     tone = np.clip(tones[::-1], 1e-6, 1.0)
-    encoded = np.where(
-        tone <= 0.0031308,
-        12.92 * tone,
-        1.055 * exact.power(tone, 1 / 2.4) - 0.055,
-    )
+    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
     picture = np.full((SIZE, SIZE, 4), 255, np.uint8)
     picture[..., :3] = np.round(255.0 * encoded)[..., None]
     # Seams and dark parts have no gloss.

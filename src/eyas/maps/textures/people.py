@@ -10,16 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.engine.world.build.bodywork import BASE
-from eyas.engine.world.build.clothing import (
-    CLOTHES,
-    FACE,
-    HAIR,
-    HIPS,
-    LEG,
-    NECK,
-    SLEEVE,
-    TORSO,
-)
+from eyas.engine.world.build.clothing import CLOTHES, FACE, HAIR, HIPS, LEG, NECK, SLEEVE, TORSO
 from eyas.lanes import exact
 from eyas.maps.textures.brush import Sheet, sheet_of, texture_of
 

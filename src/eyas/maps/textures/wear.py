@@ -3,15 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import (
-    SIZE,
-    fractal,
-    mixed,
-    opaque,
-    painted,
-    source,
-    white,
-)
+from eyas.engine.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
 from eyas.engine.render.textures.mipmap import linear
 from eyas.lanes import exact
 from eyas.maps.textures.ground import asphalt

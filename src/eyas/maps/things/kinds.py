@@ -48,14 +48,7 @@ class Thing:
 
 
 def _upright(radius: float, top: float, *, by_size: bool = False, from_foot: bool = False) -> Solid:
-    """Return the rule of a trunk or a pole, which stands on the floor unless it is `from_foot`.
-
-    Args:
-        radius: Its radius [m], or as a share of the scale.
-        top: z of its top [m], or as a share of the scale.
-        by_size: Whether both are shares of the scale.
-        from_foot: Whether it begins, and its height is measured, at the foot of the copy.
-    """
+    """Return the rule of a trunk or a pole, which stands on the floor unless it is `from_foot`."""
 
     def add(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
         size = pose.scale if by_size else 1.0

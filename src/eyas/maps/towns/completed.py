@@ -293,11 +293,7 @@ def _room_to_furnish(town: Town) -> shapely.Geometry:
 def _usual_lamps(
     network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator
 ) -> list[tuple[float, float]]:
-    """Return places beside all kerbs, those of both sides in turn [m].
-
-    Args:
-        taken: Where no pole may stand [m].
-    """
+    """Return places beside all kerbs, those of both sides in turn [m]."""
     shapely.prepare(taken)
     kept = SpacedPoints(_APART)
     for street in streets(network):
@@ -316,12 +312,7 @@ def _usual_lamps(
 def _lamps(
     network: RoadNetwork, places: Sequence[tuple[float, float]], taken: shapely.Geometry
 ) -> list[Placed]:
-    """Return street lamps, their arms towards the nearest lane, where nothing else stands.
-
-    Args:
-        places: Feet of the lamps [m].
-        taken: Where no pole may stand [m].
-    """
+    """Return street lamps, their arms towards the nearest lane, where nothing else stands."""
     first = network.lane_first
     lanes = [shapely.LineString(network.lane_points[a:b]) for a, b in pairwise(first)]
     tree = shapely.STRtree(lanes)

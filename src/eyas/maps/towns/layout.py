@@ -170,12 +170,7 @@ def _largest(shape: shapely.Polygon) -> shapely.Polygon:
 def _yards(
     houses: Sequence[House], kerbs: shapely.Geometry, free: shapely.Geometry
 ) -> shapely.Geometry:
-    """Return the paving between and around buildings, where no other ground is.
-
-    Args:
-        kerbs: Streets with their pavements [m].
-        free: Ground that nothing covers [m].
-    """
+    """Return the paving between and around buildings, where no other ground is."""
     town = shapely.union_all([one.shape for one in houses if not is_small(one)])
     closed = shapely.buffer(shapely.buffer(town, _YARD, quad_segs=3), -_INSET, quad_segs=3)
     street = shapely.buffer(shapely.union(town, kerbs), _STRIP, quad_segs=3)
@@ -193,12 +188,6 @@ def _rounded_corners(
     houses: Sequence[shapely.Polygon],
 ) -> tuple[shapely.Geometry, shapely.Geometry]:
     """Return streets with rounder corners, where houses leave room for them and a pavement.
-
-    Args:
-        roads: Asphalt [m].
-        places: Junctions and sharp bends [m].
-        walked: Sidewalks and the corners between them [m].
-        houses: Footprints of the buildings [m].
 
     Returns:
         The asphalt, and the pavements round those corners that have one [m].

@@ -86,7 +86,10 @@ def record(
             run_canonical(settings.world)
             return
         run(
-            *(settings.world, settings.traffic, duration, out),
+            world=settings.world,
+            config=settings.traffic,
+            duration=duration,
+            path=out,
             seeds=many,
             workers=workers,
             overwrite=overwrite,
@@ -111,11 +114,7 @@ def info(
 
 
 def _numbers(text: str) -> tuple[int, ...]:
-    """Return the numbers of a list such as `1-4,9`.
-
-    Raises:
-        ConfigError: It is not such a list, or too long.
-    """
+    """Return the numbers of a list such as `1-4,9`."""
     ends = [re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", part.strip()) for part in text.split(",")]
     spans = [range(int(one[1]), int(one[2] or one[1]) + 1) for one in ends if one]
     if all(ends) and all(spans) and sum(map(len, spans)) <= _MOST:

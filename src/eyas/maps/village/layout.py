@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -279,10 +279,6 @@ def _hills(
     filled = shapely.Polygon(shapely.get_exterior_ring(shapely.get_parts(roads)[0]))
     ring = place_ring(sizes(_RING, _RING_RADII, rng).tolist(), _RING_GAPS, _RING_STEEP, filled, rng)
     return [
-        Mound(
-            *(hill.x, hill.y, hill.radius, hill.height),
-            phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()),
-            waviness=0.14,
-        )
+        replace(hill, phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()), waviness=0.14)
         for hill in (*made, *ring)
     ]

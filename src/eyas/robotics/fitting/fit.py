@@ -55,7 +55,7 @@ class FittedConstant:
     high: float
 
     @property
-    def told(self) -> bool:
+    def is_determined(self) -> bool:
         """Whether the flight tells more than the order of its size."""
         return self.low > 0.0 and self.high - self.low < self.value
 
@@ -170,12 +170,7 @@ class _Data:
 
 
 def _best(lags: Floats, sums: Floats) -> Floats:
-    """Return the lag, thrust, drag and lateness that leave the least squares, shape (4,).
-
-    Args:
-        lags: Those tried, shape (L,).
-        sums: Their normal equations, shape (L, 3, 4).
-    """
+    """Return the lag, thrust, drag and lateness that leave the least squares, shape (4,)."""
     try:
         solved = np.linalg.solve(sums[..., :3], sums[..., 3:])[..., 0]
     except np.linalg.LinAlgError:

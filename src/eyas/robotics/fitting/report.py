@@ -68,6 +68,6 @@ def _told(estimate: FittedConstant) -> list[float]:
 
 
 def _row(name: str, estimate: FittedConstant, unit: str) -> str:
-    doubt = "" if estimate.told else "; this flight hardly tells"
+    doubt = "" if estimate.is_determined else "; this flight hardly tells"
     span = f"{estimate.low:.4g} to {estimate.high:.4g}"
     return f"{name:28} {estimate.value:.4g} {unit} ({span}{doubt})"

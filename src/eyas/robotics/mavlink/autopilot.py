@@ -33,7 +33,7 @@ def refuse_missions(component: Component) -> None:
     def tell_count(message: Any) -> None:  # noqa: ANN401  # pymavlink's
         component.send("mission_count", count=0, **to(message))
 
-    component.heard.update(
+    component.handlers.update(
         {
             "MISSION_REQUEST_LIST": tell_count,
             "MISSION_CLEAR_ALL": answer(_ACCEPTED),
@@ -82,7 +82,7 @@ class Autopilot:
             }
         )
         parameters = pilot.parameters
-        component.heard.update(
+        component.handlers.update(
             {
                 "HEARTBEAT": self._hear_heartbeat,
                 "SET_MODE": self._hear_mode,
@@ -106,9 +106,9 @@ class Autopilot:
         if state != self._reported:
             self._reported = state
             self._component.tell("heartbeat")
-        for severity, text in self._pilot.said:
+        for severity, text in self._pilot.notices:
             self._component.send("statustext", severity=severity, text=text.encode()[:50])
-        self._pilot.said.clear()
+        self._pilot.notices.clear()
 
     def _arm(self, command: Command) -> Result:
         if command.p[0] == 1.0:

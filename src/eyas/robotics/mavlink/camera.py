@@ -66,7 +66,7 @@ class Camera:
         self._component, self._lens, self._now = component, lens, now
         self._choose, self._subject = choose, subject
         self._mode, self._seen = _NONE, None
-        component.told.update(
+        component.producers.update(
             {
                 "heartbeat": lambda: (self._heartbeat(),),
                 "camera_information": lambda: (self._information(),),

@@ -48,9 +48,9 @@ class Component:
         id: Component id.
         name: Names of MAVLink's messages and constants.
         answers: What to do for a command, by the name of the command without `MAV_CMD_`.
-        told: The fields of the messages that may be asked for, by name; each gives as many as are
-            sent at once.
-        heard: What to do for other messages, by their type.
+        producers: Makers of the messages that may be asked for, by name; each gives the fields of
+            as many as are sent at once.
+        handlers: What to do for other messages, by their type.
 
     Args:
         system: As above.
@@ -61,8 +61,8 @@ class Component:
         self.system, self.id = system, component
         self.names = dialect()
         self.answers: dict[str, Handler] = {}
-        self.told: dict[str, Callable[[], Iterable[Fields]]] = {}
-        self.heard: dict[str, Callable[[Any], None]] = {}
+        self.producers: dict[str, Callable[[], Iterable[Fields]]] = {}
+        self.handlers: dict[str, Callable[[Any], None]] = {}
         self._packer, self._out = Packer(system, component), out
         self._due: dict[str, float] = {}
         self._usual: dict[str, float] = {}
@@ -74,9 +74,9 @@ class Component:
 
     def tell(self, message: str) -> bool:
         """Send one of the messages that may be asked for; return whether it is one."""
-        if message not in self.told:
+        if message not in self.producers:
             return False
-        for fields in self.told[message]():
+        for fields in self.producers[message]():
             self.send(message, **fields)
         return True
 
@@ -111,8 +111,8 @@ class Component:
             self._obey(_of_long(message), message)
         elif kind == "COMMAND_INT":
             self._obey(_of_int(message), message)
-        elif kind in self.heard:
-            self.heard[kind](message)
+        elif kind in self.handlers:
+            self.handlers[kind](message)
 
     def knows(self, number: int) -> bool:
         """Return whether a command is one of this component's own."""
@@ -163,12 +163,12 @@ class Component:
         return found.msgname.lower() if found is not None else ""
 
     def _can_tell(self, command: Command) -> Result:
-        known = self._message(command.p[0]) in self.told
+        known = self._message(command.p[0]) in self.producers
         return Result.ACCEPTED if known else Result.UNSUPPORTED
 
     def _set_interval(self, command: Command) -> Result:
         message, interval = self._message(command.p[0]), command.p[1]
-        if message not in self.told:
+        if message not in self.producers:
             return Result.UNSUPPORTED
         if not math.isfinite(interval):
             return Result.DENIED

@@ -198,7 +198,7 @@ class Fleet(Face):
         crashed = self.simulation.snapshot.episodes.crash
         for at in np.flatnonzero(crashed & ~self._crashed).tolist():
             if self.vehicles[at].pilot.landed is Landed.AIR:
-                self.vehicles[at].pilot.said.append((2, "Crashed"))
+                self.vehicles[at].pilot.notices.append((2, "Crashed"))
         self._crashed = crashed.copy()
 
     def rewind(self) -> None:

@@ -47,8 +47,8 @@ class Gimbal:
         self._rates = (0.0, 0.0)
         self._look: Vector | None = None
         self._pilot = (0, 0)
-        manager.told["gimbal_manager_information"] = lambda: (self._information(),)
-        manager.told["gimbal_manager_status"] = lambda: (self._status(),)
+        manager.producers["gimbal_manager_information"] = lambda: (self._information(),)
+        manager.producers["gimbal_manager_status"] = lambda: (self._status(),)
         manager.stream("gimbal_manager_status", 5.0)
         manager.answers.update(
             {
@@ -58,15 +58,15 @@ class Gimbal:
                 "DO_SET_ROI_NONE": self._look_at_nothing,
             }
         )
-        manager.heard.update(
+        manager.handlers.update(
             {
                 "GIMBAL_MANAGER_SET_PITCHYAW": self._hear_pitch_yaw,
                 "GIMBAL_MANAGER_SET_ATTITUDE": self._hear_attitude,
             }
         )
-        device.told["heartbeat"] = lambda: (self._heartbeat(),)
-        device.told["gimbal_device_information"] = lambda: (self._device_information(),)
-        device.told["gimbal_device_attitude_status"] = lambda: (self._attitude(),)
+        device.producers["heartbeat"] = lambda: (self._heartbeat(),)
+        device.producers["gimbal_device_information"] = lambda: (self._device_information(),)
+        device.producers["gimbal_device_attitude_status"] = lambda: (self._attitude(),)
         device.stream("heartbeat", 1.0)
         device.stream("gimbal_device_attitude_status", 20.0)
 

@@ -46,7 +46,7 @@ class Pilot:
         home: Where it took off, world frame [m].
         set_points: How many set points it has taken.
         cruise: Speed on the way to a place [m/s]; None: as the parameters say.
-        said: What has happened since someone has looked, for people: severity (4 a warning, 6 an
+        notices: What has happened since someone has looked, for people: severity (4 a warning, 6 an
             information) and text.
 
     Args:
@@ -59,7 +59,7 @@ class Pilot:
         self.parameters, self.home = parameters, home
         self.cruise: float | None = None
         self.set_points = 0
-        self.said: list[tuple[int, str]] = []
+        self.notices: list[tuple[int, str]] = []
         self._velocity = [0.0, 0.0, 0.0]
         self._goal = Goal()
         self._offboard, self._offboard_at = Goal(), -math.inf
@@ -72,14 +72,14 @@ class Pilot:
     def hear_ground_station(self, now: float) -> None:
         """Note that a ground station is there [s]."""
         if self._ground_station is None:
-            self.said.append((6, "Ground station connected"))
+            self.notices.append((6, "Ground station connected"))
         self._ground_station = now
 
     def arm(self) -> None:
         """Let it fly."""
         if not self.armed:
             self.armed, self._stood, self._flown = True, 0.0, False
-            self.said.append((6, "Armed"))
+            self.notices.append((6, "Armed"))
 
     def disarm(self) -> bool:
         """Stop the rotors; return whether that was possible: not in flight."""
@@ -88,7 +88,7 @@ class Pilot:
         if self.armed:
             self.armed, self.mode = False, Mode.HOLD
             self._goal = Goal()
-            self.said.append((6, "Disarmed"))
+            self.notices.append((6, "Disarmed"))
         return True
 
     def enter(self, mode: Mode, now: float, body: Body) -> bool:
@@ -97,7 +97,7 @@ class Pilot:
         Offboard mode and following need what they follow.
         """
         if mode is Mode.OFFBOARD and self.set_point_age(now) > self.parameters["COM_OF_LOSS_T"]:
-            self.said.append((4, "Offboard mode needs set points"))
+            self.notices.append((4, "Offboard mode needs set points"))
             return False
         if mode is Mode.TAKEOFF:
             self.take_off(body, None)
@@ -157,14 +157,14 @@ class Pilot:
         heard = self._ground_station
         if heard is not None and now - heard > self.parameters["COM_DL_LOSS_T"]:
             self._ground_station = None
-            self.said.append((4, "Ground station lost"))
+            self.notices.append((4, "Ground station lost"))
             if not self.mode.automatic:
                 self.hold("Ground station lost")
 
     def hold(self, why: str) -> None:
         """Hold because something is lost."""
         self.mode, self._goal = Mode.HOLD, Goal()
-        self.said.append((4, f"{why}: holding"))
+        self.notices.append((4, f"{why}: holding"))
 
     def _goal_of(self, body: Body, now: float) -> Goal:
         """Return where to fly, or how fast, and go on to the next part of a mode."""

@@ -40,6 +40,20 @@ def degrees_e7(angle: float) -> int:
     return round(angle * 1e7)
 
 
+_SENSORS = (
+    "SENSOR_3D_GYRO SENSOR_3D_ACCEL SENSOR_3D_MAG SENSOR_ABSOLUTE_PRESSURE SENSOR_GPS "
+    "SENSOR_ANGULAR_RATE_CONTROL SENSOR_ATTITUDE_STABILIZATION SENSOR_YAW_POSITION "
+    "SENSOR_Z_ALTITUDE_CONTROL SENSOR_XY_POSITION_CONTROL SENSOR_MOTOR_OUTPUTS AHRS "
+    "SENSOR_BATTERY PREARM_CHECK".split()
+)
+"""MAV_SYS_STATUS_*: what is there and well."""
+_CAPABILITIES = (
+    "MISSION_INT COMMAND_INT PARAM_ENCODE_BYTEWISE MAVLINK2 SET_POSITION_TARGET_LOCAL_NED "
+    "SET_POSITION_TARGET_GLOBAL_INT COMPONENT_IMPLEMENTS_GIMBAL_MANAGER".split()
+)
+"""MAV_PROTOCOL_CAPABILITY_*: what the autopilot understands."""
+
+
 class Telemetry:
     """Makes the fields of messages.
 
@@ -71,7 +85,7 @@ class Telemetry:
             "scaled_imu": self.scaled_imu,
             "autopilot_version": self.autopilot_version,
         }
-        component.told.update({name: _one(make) for name, make in made.items()})
+        component.producers.update({name: _one(make) for name, make in made.items()})
         for name, rate in RATES.items():
             component.stream(name, rate)
 
@@ -98,13 +112,7 @@ class Telemetry:
         """All sensors are well."""
         n = self._names
         prefix = "MAV_SYS_STATUS_"
-        sensors = (
-            *("SENSOR_3D_GYRO", "SENSOR_3D_ACCEL", "SENSOR_3D_MAG", "SENSOR_ABSOLUTE_PRESSURE"),
-            *("SENSOR_GPS", "SENSOR_ANGULAR_RATE_CONTROL", "SENSOR_ATTITUDE_STABILIZATION"),
-            *("SENSOR_YAW_POSITION", "SENSOR_Z_ALTITUDE_CONTROL", "SENSOR_XY_POSITION_CONTROL"),
-            *("SENSOR_MOTOR_OUTPUTS", "AHRS", "SENSOR_BATTERY", "PREARM_CHECK"),
-        )
-        bits = sum(getattr(n, prefix + sensor) for sensor in sensors)
+        bits = sum(getattr(n, prefix + sensor) for sensor in _SENSORS)
         sensed = {f"onboard_control_sensors_{what}": bits for what in ("present", "enabled")}
         errors = {f"errors_count{k}": 0 for k in range(1, 5)}
         return {
@@ -267,14 +275,11 @@ class Telemetry:
     def autopilot_version(self) -> Fields:
         """What the autopilot understands."""
         n = self._names
-        can = (
-            *("MISSION_INT", "COMMAND_INT", "PARAM_ENCODE_BYTEWISE", "MAVLINK2"),
-            *("SET_POSITION_TARGET_LOCAL_NED", "SET_POSITION_TARGET_GLOBAL_INT"),
-            "COMPONENT_IMPLEMENTS_GIMBAL_MANAGER",
-        )
         blank = [0] * 8
         return {
-            "capabilities": sum(getattr(n, f"MAV_PROTOCOL_CAPABILITY_{what}") for what in can),
+            "capabilities": sum(
+                getattr(n, f"MAV_PROTOCOL_CAPABILITY_{what}") for what in _CAPABILITIES
+            ),
             **{"flight_sw_version": 0x010F_00FF, "middleware_sw_version": 0},
             **{"os_sw_version": 0, "board_version": 0, "flight_custom_version": blank},
             **{"middleware_custom_version": blank, "os_custom_version": blank},

@@ -66,7 +66,7 @@ class Vehicle:
             parts[camera.COMPONENT], lens, self._now, self._choose, self._subject
         )
         for id_ in (camera.COMPONENT, gimbal.DEVICE):
-            parts[id_].told["heartbeat"] = self._following(parts[id_].told["heartbeat"])
+            parts[id_].producers["heartbeat"] = self._following(parts[id_].producers["heartbeat"])
 
     def _following(self, told: Callable[[], Iterable[Fields]]) -> Callable[[], Iterable[Fields]]:
         """Return what tells heartbeats that have the mode while the vehicle follows.

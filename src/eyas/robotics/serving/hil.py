@@ -56,9 +56,9 @@ def bound(text: str) -> socket.socket:
 
 
 _TAKEN = {
-    *("kind", "supervised", "flight", "judged", "inertial_time_constant"),
-    *("motor_time_constant", "drag_area", "ground_contact", "wind"),
-}
+    "kind", "supervised", "flight", "judged", "inertial_time_constant", "motor_time_constant",
+    "drag_area", "ground_contact", "wind",
+}  # fmt: skip
 """Settings of the tracker that hold for a driven drone, or do nothing to any flown one."""
 
 _ALWAYS = {"start": {"velocity": "rest"}, "tracker": {"ground_contact": True}}
@@ -111,11 +111,7 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
 
 
 def _check_tracker(config: TrackerConfig) -> None:
-    """Refuse a tracker without rotors, and what a driven drone does not have.
-
-    Raises:
-        ConfigError: There is such a setting.
-    """
+    """Refuse a tracker without rotors, and what a driven drone does not have."""
     if config.supervised or config.kind is not TrackerKind.DRONE:
         raise ConfigError(
             "tracker: a supervised drone, a car or a tracker of one's own has no rotors that "

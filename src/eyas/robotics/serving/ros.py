@@ -63,7 +63,7 @@ class Bridge(Face):
         self._steps = physics_steps(config.control.frequency)
         self._between = max(round(PHYSICS_RATE / config.video.fps), 1)
         self._readers = {name: bus.listen(name, kind) for name, kind in HEARD.items()}
-        self._told = {name: (np.zeros(6), -_PATIENCE) for name in HEARD}
+        self._velocities = {name: (np.zeros(6), -_PATIENCE) for name in HEARD}
         camera = config.camera
         many = simulation.actors
         self._picture = Picture.create(1, camera.height, camera.width, subject=True, actors=many)
@@ -87,13 +87,13 @@ class Bridge(Face):
         for twist in self._bus.heard(self._readers[message]):
             parts = _numbers(twist.linear), _numbers(twist.angular)
             whole = np.array([*parts[0], *parts[1]])
-            self._told[message] = np.where(np.isfinite(whole), whole, 0.0), self.now
+            self._velocities[message] = np.where(np.isfinite(whole), whole, 0.0), self.now
 
     def orders(self) -> Orders:
         """Tell what is due, and return the velocities that hold."""
         if self._ticks >= self._due:
             self._due += self._between
-            self._tell()
+            self._publish()
         return Orders(self._command(), self._steps)
 
     def answer(self, *, late: bool) -> None:
@@ -104,18 +104,18 @@ class Bridge(Face):
         """Return the command that holds now, shape (1, 8)."""
         from eyas.engine.envs.actions import turn_commands
 
-        body, camera = (self._held(name) for name in HEARD)
+        body, camera = (self._velocity(name) for name in HEARD)
         command = np.array([[body[0], body[1], body[2] * PHYSICS_STEP, body[5]]])
         gimbal = self._config.env.gimbal
         most = np.array([gimbal.pitch_rate, gimbal.yaw_rate])
         rates = np.minimum(np.maximum(camera[4:6], -most), most)
         return np.concatenate((command, turn_commands(rates[None], gimbal)), axis=1)
 
-    def _held(self, name: str) -> NDArray[np.float64]:
-        told, since = self._told[name]
-        return told if self.now - since < _PATIENCE else np.zeros(6)
+    def _velocity(self, name: str) -> NDArray[np.float64]:
+        velocity, since = self._velocities[name]
+        return velocity if self.now - since < _PATIENCE else np.zeros(6)
 
-    def _tell(self) -> None:
+    def _publish(self) -> None:
         from eyas.engine.exports.capture import frame_of, moment_of
         from eyas.engine.exports.frame import RecordedAction
 
