@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 if TYPE_CHECKING:
     from eyas.benchmark.records.record import EpisodeRecord
 
-__all__ = ["evaluate", "list_policies", "list_protocols"]
-
 Names = str | Sequence[str]
 
 

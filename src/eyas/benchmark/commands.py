@@ -23,9 +23,6 @@ from eyas.engine.terminal.options import (
 if TYPE_CHECKING:
     from eyas.benchmark.flight.policy_runner import Runner
 
-__all__ = ["compare", "evaluate", "leaderboard", "policies", "reproduce"]
-
-
 _Protocol = Annotated[
     str,
     typer.Option(

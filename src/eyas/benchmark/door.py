@@ -2,8 +2,6 @@
 
 from eyas.engine.core.doors import House
 
-__all__ = ["HOUSE"]
-
 HOUSE = House(
     results=True,
     brings={

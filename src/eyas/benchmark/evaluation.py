@@ -42,8 +42,6 @@ from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.core.folder_lock import folder_lock
 from eyas.engine.core.machine import describe_machine
 
-__all__ = ["TIMING", "run"]
-
 _LOG = logging.getLogger("eyas")
 CROISSANT = "croissant.json"  # What the episodes are, for machines
 TIMING = "timing.json"  # How long the policy takes; apart from the result, which repeats

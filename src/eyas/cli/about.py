@@ -12,8 +12,6 @@ from eyas.engine.terminal.options import AsJson
 if TYPE_CHECKING:
     from importlib.metadata import Distribution
 
-__all__ = ["Part", "about", "parts"]
-
 _BESIDES = {
     "shapely": "its wheel has GEOS, LGPL-2.1",
     "numpy": "its wheel has OpenBLAS, BSD-3-Clause, and libgfortran, GPL-3.0 with the exception",

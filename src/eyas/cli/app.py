@@ -17,8 +17,6 @@ from eyas.engine.core.registry import Registry
 from eyas.engine.core.scratch import remove_left_scratch
 from eyas.engine.terminal.stderr import lacks_memory, say
 
-__all__ = ["app", "run"]
-
 # Typer brings its own copy of click in new versions and uses click in old ones.
 _UsageError: Any = typer.BadParameter.__mro__[1]
 Click = Any  # an object of Typer's own copy of click, or of click

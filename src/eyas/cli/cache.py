@@ -22,8 +22,6 @@ from eyas.engine.world.maps import MAPS
 from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 from eyas.maps.gallery.run import conditions
 
-__all__ = ["run_clear", "run_info", "run_warm"]
-
 
 def run_info(*, as_json: bool = False) -> None:
     """Print the folder, size and size limit of the cache, and its contents by kind.

@@ -6,8 +6,6 @@ from typing import Annotated, Any
 
 import typer
 
-__all__ = ["Shell", "commands", "completion", "script"]
-
 Command = Any  # Typer's own copy of click's class, or click's
 
 

@@ -33,8 +33,6 @@ from eyas.lanes.shipped import (
 )
 from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
-__all__ = ["facts", "run"]
-
 _NEEDED = ("numpy", "numba", "llvmlite")
 _EXTRAS = ("torch", "onnxruntime")
 _EXTRA = re.compile(r"([\w.-]+)[^;]*;.*\bextra == ['\"]([\w-]+)['\"].*")

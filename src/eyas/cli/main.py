@@ -5,8 +5,6 @@ import sys
 
 from eyas.engine.terminal.interrupts import EndingSignals
 
-__all__ = ["main"]
-
 _WORDS = {2: "interrupted", 15: "terminated", 1: "hung up"}
 """What the signals SIGINT, SIGTERM and SIGHUP have done."""
 

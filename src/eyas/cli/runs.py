@@ -37,8 +37,6 @@ from eyas.engine.terminal.stderr import say
 if TYPE_CHECKING:
     from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["run", "serve", "video"]
-
 
 def video(
     out: Out = Path("runs/video"),

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from eyas.engine.settings.config import EyasConfig
 
 
-__all__ = ["bench", "cache_app", "config_app", "doctor", "verify"]
-
-
 def bench(
     out: Annotated[Path | None, to_write("JSON file to write the figures to, as well.")] = None,
     quick: Annotated[

@@ -8,8 +8,6 @@ import typer
 
 from eyas.engine.terminal.options import Overrides, UntilIdle
 
-__all__ = ["webots_shim"]
-
 
 def webots_shim(
     install: Annotated[

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["LegacyObservation", "scrambled"]
-
 Floats = NDArray[np.float32]
 
 

@@ -15,8 +15,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.lanes import exact
 
-__all__ = ["GEOMETRY", "Part", "read_proto"]
-
 GEOMETRY = ("Box", "Cylinder", "Sphere", "Cone", "Capsule", "IndexedFaceSet", "Mesh")
 """Geometry nodes that are read."""
 

@@ -9,8 +9,6 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import NoReturn
 
-__all__ = ["Node", "Proto", "parsed"]
-
 _TOKEN = re.compile(
     r'\s*(?:,|#[^\n]*|(?P<text>"(?:[^"\\]|\\.)*")|(?P<mark>[\[\]{}])'
     r'|(?P<word>[^\s,#"\[\]{}]+))'

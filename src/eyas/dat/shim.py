@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-__all__ = ["main"]
-
 
 def main() -> None:
     """Serve the world that the arguments name, as `eyas serve` does; all else is ignored."""

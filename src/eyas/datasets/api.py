@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
-__all__ = ["make_dataset", "track"]
-
 
 def track(
     recording: Path | str,

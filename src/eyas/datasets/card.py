@@ -9,8 +9,6 @@ from eyas.datasets.layout import RECIPE_FILE, Plan
 from eyas.datasets.recipe import LICENCES, SPLITS
 from eyas.datasets.statistics import EDGES, UNITS
 
-__all__ = ["REPOSITORY_SPLITS", "card", "limits", "range_texts"]
-
 REPOSITORY_SPLITS = {"train": "train", "val": "validation", "test": "test"}
 """Names of the splits on the hub."""
 

@@ -20,8 +20,6 @@ from eyas.engine.terminal.options import (
     to_write,
 )
 
-__all__ = ["dataset_app", "export", "track"]
-
 
 def export(
     recording: Annotated[

@@ -9,8 +9,6 @@ from eyas.datasets.recipe import LICENCES
 from eyas.datasets.statistics import COLUMNS
 from eyas.engine.recordings.croissant import CONFORMS_TO, CONTEXT
 
-__all__ = ["croissant"]
-
 _KINDS = {
     "sc:Integer": ("frame", "left", "top", "right", "bottom", "objects"),
     "sc:Float": ("time", "visible_fraction"),

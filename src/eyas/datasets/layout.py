@@ -17,8 +17,6 @@ from eyas.engine.core.installed import installed_version
 from eyas.engine.exports.checksums import SEALED
 from eyas.engine.recordings.recording import DATASET_FILE
 
-__all__ = ["MAKING_FILE", "RECIPE_FILE", "Plan", "described_parts", "read_plan", "write_plan"]
-
 MAKING_FILE = "making.json"
 """File with the `Plan` of a data set that is being made, until `dataset.json` takes its place."""
 

@@ -11,8 +11,6 @@ from eyas.engine.exports.label import Label
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.lanes import exact
 
-__all__ = ["STATE_NAMES", "TRUTH_NAMES", "Motion", "action_names", "motion_of", "task_of"]
-
 STATE_NAMES = tuple(
     "x y z velocity_x velocity_y velocity_z orientation_w orientation_x orientation_y "
     "orientation_z".split()

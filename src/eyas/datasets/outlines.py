@@ -11,8 +11,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-__all__ = ["least_rectangles", "outlines"]
-
 Mask = NDArray[np.bool_]
 Point = tuple[int, int]
 

@@ -16,8 +16,6 @@ from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.recordings.format import objects_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
-__all__ = ["chosen_frames", "contact_sheet", "page", "stacked"]
-
 COLUMNS, ROWS = 6, 4  # Pictures in the contact sheet of a split
 _TILE = (240, 180)  # Largest size of a picture in it [pixels]
 _QUALITY = 88

@@ -22,8 +22,6 @@ from eyas.engine.targets.config import TargetName
 from eyas.engine.traffic.library import STANDARD_DURATION
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["Part", "in_order_of_work", "planned", "sample_of", "shard_of"]
-
 _WARM_UP = 310  # Steps before the first episode that can be: those of `start.warm_up_steps` [2 ms].
 
 _UNRECORDED = 30

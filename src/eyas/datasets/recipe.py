@@ -17,8 +17,6 @@ from eyas.engine.settings.file import read_settings
 from eyas.engine.settings.trust import code_of, refuse_named
 from eyas.engine.targets.config import TargetName
 
-__all__ = ["LICENCES", "SHIPPED", "SPLITS", "Camera", "Recipe", "Split", "Splits", "read_recipe"]
-
 SHIPPED = ("detect", "follow", "sot")  # Names of the recipes that come with Eyas
 SPLITS = ("train", "val", "test")
 

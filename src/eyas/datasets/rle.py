@@ -11,8 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["encoded_masks"]
-
 _MOST_GROUPS = 7  # More than enough for 32 bits with their sign
 
 Ints = NDArray[np.int64]

@@ -17,8 +17,6 @@ from eyas.engine.recordings.format import CLASS_NAMES, SeenObject, objects_of
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = ["EDGES", "PartFacts", "added", "episode_kinds", "facts_of"]
-
 EDGES: dict[str, tuple[float, ...]] = {
     "size": (0, 8, 16, 32, 64, 96, 128, 256, 512),
     "visible": (0.0, 0.1, 0.25, 0.5, 0.75, 0.9, 0.999),

@@ -14,9 +14,6 @@ from eyas.engine.targets.config import TargetName
 from eyas.engine.trackers.config import TrackerKind
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["Builder", "WorldChoice", "choice_of", "world_of"]
-
-
 _TRACKERS: dict[str, dict[str, Any]] = {
     "drone": {"kind": TrackerKind.DRONE, "supervised": True},
     "flown": {"kind": TrackerKind.DRONE, "supervised": False},

@@ -18,8 +18,6 @@ from eyas.engine.terminal.options import (
     gathered,
 )
 
-__all__ = ["demo"]
-
 
 def demo(
     config: ConfigFile = None,

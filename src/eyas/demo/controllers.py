@@ -16,8 +16,6 @@ from eyas.engine.envs.observation import Observer
 from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.policies.sight import subjects, visible_shares
 
-__all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
-
 SEED = 7  # Seed of the episode that is flown, so that results of different days compare
 SECONDS = 60
 READY = 3.0  # Seconds before each flight in which everything stands still

@@ -7,8 +7,6 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["CAMERA_PITCH", "CAMERA_YAW", "Control", "camera_turn", "command_of"]
-
 
 class Control(StrEnum):
     """Something that can be held down."""

@@ -2,6 +2,4 @@
 
 from eyas.engine.core.doors import House
 
-__all__ = ["HOUSE"]
-
 HOUSE = House(results=False, brings={"eyas.commands": {"demo": "eyas.demo.commands:demo"}})

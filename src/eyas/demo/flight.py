@@ -28,8 +28,6 @@ from eyas.engine.task.rules import lenient, make_rules
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.replay import Replay
 
-__all__ = ["DemoFlight", "DemoSimulation", "DemoWorld", "build_world"]
-
 COLOUR = (0.62, 0.05, 0.06)  # Colour of the first model of a car, as the manual says
 
 WANTED = (30.0, 30.0)

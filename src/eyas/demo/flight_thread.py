@@ -13,8 +13,6 @@ from eyas.demo.session import FRAME, Session
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.faults import FaultLog
 
-__all__ = ["Audience", "FlightThread"]
-
 
 class Audience(Protocol):
     """Those who watch; its methods are called in the thread of the session."""

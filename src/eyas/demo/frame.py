@@ -14,8 +14,6 @@ from PIL import Image
 from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["FACTORS", "IN_FLIGHT", "Coding", "CodingChoice", "DemoFrame", "Stream", "packed"]
-
 Coding = Literal["auto", "jpeg", "h264"]
 
 IN_FLIGHT = 2  # Largest number of frames that a viewer has not acknowledged

@@ -12,27 +12,6 @@ from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.targets.config import TargetName
 from eyas.engine.task.config import RewardMode, RewardType
 
-__all__ = [
-    "LIGHTS",
-    "LONGEST",
-    "AckMessage",
-    "BoxMessage",
-    "ClickMessage",
-    "DoMessage",
-    "DuelMessage",
-    "FlyMessage",
-    "KeysMessage",
-    "Light",
-    "LookMessage",
-    "Message",
-    "PaceMessage",
-    "PicturesMessage",
-    "RecordMessage",
-    "RewardMessage",
-    "WorldMessage",
-    "parsed",
-]
-
 LONGEST = 4096  # Largest message [bytes]
 
 Share = Annotated[float, Field(ge=0, le=1)]

@@ -12,17 +12,6 @@ from eyas.demo.recording import DemoRecording
 from eyas.demo.session import Session
 from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
 
-__all__ = [
-    "BOXES",
-    "carry_out",
-    "change_sides",
-    "end_recording",
-    "enter_new_world",
-    "open_with_a_chase",
-    "reward_of",
-    "world_now",
-]
-
 BOXES = "boxes"  # The name under which a tracker outside flies
 
 _UNFAIR = (

@@ -14,8 +14,6 @@ from eyas.engine.task.done import DoneReason
 from eyas.engine.task.ground import ground_corners
 from eyas.lanes import interpreted
 
-__all__ = ["readings", "traffic"]
-
 _plane_at, _relief_at = interpreted(plane_at), interpreted(relief_at)
 _axis_depth, _view_share = interpreted(reward.axis_depth), interpreted(reward.view_share)
 _rewarded_size = interpreted(reward.rewarded_size)

@@ -15,8 +15,6 @@ from eyas.engine.video.folder import open_folder
 from eyas.engine.video.formats import with_writers
 from eyas.engine.video.recorder import Recorder
 
-__all__ = ["DemoRecording"]
-
 
 class DemoRecording:
     """A recording of one episode, from now on.

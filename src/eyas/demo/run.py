@@ -18,8 +18,6 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.task.step_line import step_line
 from eyas.lanes.interrupts import let_in, shielded
 
-__all__ = ["RECORDINGS", "listen", "run_browser", "run_headless", "session_of"]
-
 _LOOK = 0.05  # Time from one look for signals to the next [s]
 
 

@@ -34,8 +34,6 @@ from eyas.engine.settings.dialect import spoken
 from eyas.engine.targets.config import TargetName
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["DemoServer", "Gate", "is_loopback", "own_file", "page_file", "path_of", "query_of"]
-
 PAGE = Path(str(files("eyas.demo"))) / "page"
 
 _TYPES = {

@@ -15,8 +15,6 @@ from eyas.demo.views import Screen
 from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["FRAME", "Clock", "PictureSize", "Session"]
-
 FRAME = 1.0 / 30.0  # Between frames [s]
 LONGEST = 0.1
 """Longest frame, in seconds of the clock: a slower machine flies slower, not farther at a time."""

@@ -11,8 +11,6 @@ from eyas.demo.frame import FACTORS, IN_FLIGHT, Coding, CodingChoice, DemoFrame,
 if TYPE_CHECKING:  # PyAV takes its time to be imported; only H.264 needs it
     from eyas.demo.frame import Stream
 
-__all__ = ["Viewer", "Viewers"]
-
 TEXTS = 32  # Largest number of texts that wait for a viewer; older ones are dropped
 
 

@@ -13,8 +13,6 @@ from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.state.snapshot import CameraState
 
-__all__ = ["Screen"]
-
 CHASE = (9.0, 4.0)  # Distance of the camera behind the drone, and above it [m]
 ABOVE = 60.0  # Height above the drone of the camera that looks down [m]
 OUTSIDE_FIELD = 1.0  # Horizontal field of view of cameras outside [rad]

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
     from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["export", "make", "make_config", "make_vec", "record"]
-
 Names = str | Sequence[str]
 
 

@@ -2,6 +2,4 @@
 
 from eyas.engine.core.doors import House
 
-__all__ = ["HOUSE"]
-
 HOUSE = House(results=True)

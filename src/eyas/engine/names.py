@@ -3,14 +3,6 @@
 Light, as shells ask for them whenever one is opened: nothing of a simulation is imported.
 """
 
-__all__ = [
-    "list_formats",
-    "list_maps",
-    "list_presets",
-    "list_targets",
-    "list_weathers",
-]
-
 
 def list_formats() -> tuple[str, ...]:
     """Return the names of the formats of `export`."""

@@ -22,8 +22,6 @@ if TYPE_CHECKING:  # rollouts ask here whether a teacher is wanted
     from eyas.learning.rollout import Rollout
     from eyas.learning.shards import TorchThreads
 
-__all__ = ["Algorithm", "Learner", "Phase", "Views", "phases_of"]
-
 
 @dataclass
 class Learner:

@@ -5,8 +5,6 @@ from typing import Unpack
 
 from eyas.engine.envs.choice import EnvChoices, Source, chosen_settings
 
-__all__ = ["train"]
-
 
 def train(
     config: Source = None,

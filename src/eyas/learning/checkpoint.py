@@ -17,8 +17,6 @@ from eyas.engine.core.identity.build import Build, this_build
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings, save_settings
 
-__all__ = ["RunFolder", "Stateful", "TrainingProgress", "readable"]
-
 Row = dict[str, float]
 
 

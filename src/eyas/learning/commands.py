@@ -22,8 +22,6 @@ from eyas.engine.terminal.options import (
     to_write,
 )
 
-__all__ = ["train"]
-
 
 def train(
     out: Annotated[

@@ -16,19 +16,6 @@ from eyas.engine.world.simple_maps import simple_world
 if TYPE_CHECKING:
     from eyas.engine.settings.config import EngineConfig
 
-__all__ = [
-    "LESSON",
-    "DaggerConfig",
-    "Evaluation",
-    "PpoConfig",
-    "Round",
-    "Stage",
-    "TeacherKind",
-    "TrackerTraining",
-    "TrainConfig",
-    "WordsTraining",
-]
-
 LESSON = 128  # Pictures in a step of learning of a tracker
 
 Share = Annotated[float, Field(ge=0, le=1)]

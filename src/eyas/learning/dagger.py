@@ -12,8 +12,6 @@ from eyas.learning.algorithm import Algorithm
 from eyas.learning.config import DaggerConfig
 from eyas.learning.rollout import Rollout
 
-__all__ = ["Buffer", "Dagger"]
-
 
 @dataclass
 class Lessons:

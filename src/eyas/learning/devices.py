@@ -4,8 +4,6 @@ import torch
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["torch_device"]
-
 
 def torch_device(name: str | None) -> torch.device:
     """Return where the network of a run is.

@@ -16,8 +16,6 @@ from eyas.engine.core.installed import installed_version
 from eyas.engine.settings.env import EnvConfig
 from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
-__all__ = ["Graph", "export", "write_model"]
-
 _OPSET = 17
 
 

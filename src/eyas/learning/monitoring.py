@@ -21,8 +21,6 @@ from eyas.engine.world.maps import MAPS
 from eyas.learning.config import TrainConfig
 from eyas.learning.network import TrackingNetwork
 
-__all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "evaluation_episodes"]
-
 
 class EvaluationScores(NamedTuple):
     """Means over the episodes, see `eyas.benchmark.records.record.EpisodeRecord`."""

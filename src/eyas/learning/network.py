@@ -6,8 +6,6 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-__all__ = ["ACTIONS", "HOVER", "STRIDE", "NetworkShape", "TrackingNetwork"]
-
 ACTIONS = 7
 HOVER = 6  # The action that stands for "none yet"; the network sees it as zeros
 

@@ -10,8 +10,6 @@ from eyas.learning.algorithm import Algorithm
 from eyas.learning.config import PpoConfig
 from eyas.learning.rollout import Rollout
 
-__all__ = ["Ppo"]
-
 
 class Ppo(Algorithm):
     """Several passes over each rollout, in which the policy may not move far.

@@ -5,8 +5,6 @@ from typing import Any
 
 from eyas.engine.core.registry import Registry
 
-__all__ = ["ALGORITHMS", "SETTING"]
-
 SETTING = "train.method"
 
 ALGORITHMS: Registry[Callable[..., Any]] = Registry(

@@ -19,8 +19,6 @@ from eyas.learning.devices import torch_device
 from eyas.learning.network import TrackingNetwork
 from eyas.learning.teacher import Teacher
 
-__all__ = ["Finished", "Roller", "Rollout"]
-
 
 @dataclass
 class Rollout:

@@ -8,8 +8,6 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.learning.config import TrainConfig
 from eyas.learning.registry import ALGORITHMS, SETTING
 
-__all__ = ["run"]
-
 
 def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: bool) -> Path:
     """Train a network; return the path of the ONNX file.

@@ -17,8 +17,6 @@ from eyas.learning.config import TrainConfig
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Finished, Roller, Rollout
 
-__all__ = ["LocalShards", "MakeShards", "Shards", "TorchThreads", "on_ray"]
-
 Job = TypeVar("Job")
 Result = TypeVar("Result")
 

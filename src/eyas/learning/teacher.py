@@ -12,8 +12,6 @@ from eyas.engine.policies.policy import PolicyInput, Start
 from eyas.engine.settings.config import EyasConfig
 from eyas.learning.config import TeacherKind, TrainConfig
 
-__all__ = ["Teacher"]
-
 
 class _ExactOracle(SightOracle):
     """Knows where the target is even while it is hidden."""

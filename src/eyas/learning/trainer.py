@@ -34,8 +34,6 @@ from eyas.learning.registry import ALGORITHMS
 from eyas.learning.rollout import Finished
 from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 
-__all__ = ["train"]
-
 _SILENCE = 10.0  # Longest time without a line [s]
 
 Say = Callable[[str], None]

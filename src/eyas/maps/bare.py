@@ -13,8 +13,6 @@ from eyas.engine.world.roads.areas import road_area
 from eyas.maps.land.ground import blob, rectangle
 from eyas.maps.plan.plan import Chance, Far, Flat, GroundCover, MapPlan, Paint, Roadway
 
-__all__ = ["make_plan"]
-
 _PATCHES = 70
 _PATCH = (8.0, 34.0)  # Number and mean radius of the patches of another tint [m]
 _PALER, _DARKER = 1.06, 0.93  # Factors on the ground's colour in them

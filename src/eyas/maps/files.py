@@ -27,18 +27,6 @@ if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
     from eyas.maps.plan.plan import MapPlan
 
-__all__ = [
-    "FOLDER_VARIABLE",
-    "FORMAT",
-    "MAP_FILE",
-    "MAP_FILES",
-    "ROADS_FILE",
-    "Origin",
-    "maps_folder",
-    "origin_of",
-    "roads_in",
-]
-
 _LOG = logging.getLogger("eyas")
 
 FOLDER_VARIABLE = "EYAS_MAPS_DIR"

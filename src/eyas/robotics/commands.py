@@ -10,8 +10,6 @@ import typer
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import AsJson
 
-__all__ = ["app"]
-
 app = typer.Typer(help="Find the constants of a drone from its flights.", no_args_is_help=True)
 
 

@@ -5,8 +5,6 @@ from typing import NamedTuple
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["FIRST_SEED", "SETS_APART", "EpisodeSpec", "Place", "episodes_of", "seed_sets"]
-
 FIRST_SEED = 1_000_000
 """Seed of the first episode: far from the seeds that training begins with, 0, 1, ..."""
 

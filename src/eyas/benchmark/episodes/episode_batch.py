@@ -24,8 +24,6 @@ from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.state.terrain import reliefs
 from eyas.engine.targets.grammar.attributes import ATTRIBUTES
 
-__all__ = ["EpisodeBatch", "EpisodeGroup", "episode_groups"]
-
 Mask = NDArray[np.bool_]
 Gathered = TypeVar("Gathered")
 

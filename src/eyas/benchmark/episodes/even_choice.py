@@ -23,8 +23,6 @@ from eyas.engine.policies.sight import visible_shares
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["CELL", "TRIED", "evenly_in", "starts_of"]
-
 CELL = 100.0  # Side of the squares of the map that are visited in turn [m]
 _VISIBLE = 0.5  # Least share of the target that is visible at the start
 TRIED = 16  # Starts of which one is kept

@@ -6,8 +6,6 @@ from eyas.benchmark.episodes.episode import EpisodeSpec, Place, episodes_of
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.errors import SpawnError
 
-__all__ = ["Fits", "first_fitting"]
-
 Fits = Callable[[Sequence[EpisodeSpec], Protocol], Sequence[object]]
 """Returns for each episode what it has of what is asked for; nothing (`bool` is false): it does not
 fit."""

@@ -23,8 +23,6 @@ from eyas.engine.settings.env import EnvConfig
 from eyas.engine.sim.simulation import Simulation
 from eyas.lanes import exact
 
-__all__ = ["FromAbove", "seen_from_above"]
-
 Floats = NDArray[np.float64]
 
 

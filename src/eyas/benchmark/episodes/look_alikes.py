@@ -28,17 +28,6 @@ from eyas.engine.targets.grammar.naming import (
 from eyas.engine.targets.grammar.wording import Wording, in_words
 from eyas.lanes import exact
 
-__all__ = [
-    "CASES",
-    "COLOURS",
-    "HEIGHT",
-    "PITCH",
-    "StagedStart",
-    "case_of",
-    "repeat_start",
-    "staged_start",
-]
-
 HEIGHT: Final = 45.0
 """Height of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other
 protocols it would hardly ever see four vehicles, and cars of 4.5 m are still 10 of 84 pixels

@@ -12,8 +12,6 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["CLOSE", "COMPANY", "NEAR", "in_company", "with_neighbours"]
-
 NEAR = 12.0  # Largest distance of the other vehicle from the target [m]
 
 CLOSE, COMPANY = 8.0, 2

@@ -19,8 +19,6 @@ from eyas.benchmark.episodes.from_above import seen_from_above
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.lanes import exact
 
-__all__ = ["AT_REST", "AT_SPEED", "at_rest_and_at_speed", "leaves_its_way", "setting_out"]
-
 AT_REST, AT_SPEED = "at-rest", "at-speed"
 """Variants: the target stands at the start, and the drone hovers; both drive."""
 

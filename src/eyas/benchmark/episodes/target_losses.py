@@ -19,17 +19,6 @@ from eyas.engine.core.rng import stream
 from eyas.engine.sim.cover import cover_of
 from eyas.lanes import exact
 
-__all__ = [
-    "COVERED",
-    "LEAST_VISIBLE",
-    "SEARCH_LIMIT",
-    "Loss",
-    "covered_losses",
-    "hidden_spans",
-    "losses_by_things",
-    "with_losses",
-]
-
 LEAST_VISIBLE = 0.15  # Share of the target that must be visible, else it is out of sight
 SEARCH_LIMIT = 15.0  # Time within which a target must be seen again to count as recovered [s]
 

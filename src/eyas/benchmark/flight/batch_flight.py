@@ -20,8 +20,6 @@ from eyas.engine.core.errors import ActionError
 from eyas.engine.envs.actions import command_width, make_actions
 from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 
-__all__ = ["BatchFlight", "Watcher", "clear_shares"]
-
 _PERIOD = 0.128  # Time between two looks [s]
 
 

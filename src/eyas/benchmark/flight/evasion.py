@@ -17,8 +17,6 @@ from eyas.benchmark.flight.scenario import Scenario
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.lanes import exact
 
-__all__ = ["KINDS", "Evasion", "EvasionScenario", "evading", "evasions_of"]
-
 KINDS = ("stop", "turn", "dash", "hiding")
 """Evasions that a target's path shows: a stop on the road, an about-turn, a dash over every speed
 limit, a while out of sight (order: that of the printed figures)."""

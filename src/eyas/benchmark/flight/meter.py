@@ -17,8 +17,6 @@ from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Failure
 from eyas.engine.task.done import DoneReason
 
-__all__ = ["LOOK", "TRACE_PERIOD", "Meter", "published", "watched"]
-
 LEAST_LOSS = 0.5  # Shortest time out of the picture that counts as a loss [s]
 
 

@@ -25,8 +25,6 @@ from eyas.engine.core.errors import ConfigError, EyasError, MissingExtraError
 from eyas.engine.core.identity.build import this_build
 from eyas.lanes import limit_threads
 
-__all__ = ["SOLVED", "Runner", "connected", "flown", "on_ray", "one_line", "run_here"]
-
 Ray = Any  # the module, which has no types
 
 

@@ -19,8 +19,6 @@ from eyas.benchmark.flight.meter import LOOK
 from eyas.benchmark.flight.scenario import Scenario
 from eyas.benchmark.protocols.protocol import Protocol
 
-__all__ = ["RecoveryScenario", "followed", "recovery_figures", "time_to_see"]
-
 _STEADY = 0.5  # How long the target must be seen without a gap to count as seen again [s]
 _CENTRED = 3.0  # Distance from the middle of the picture within which a vehicle is followed [m]
 _WRONG = 2.0  # How long another vehicle must be in the middle to count as followed [s]

@@ -5,8 +5,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.policies.policy import Instruction
 
-__all__ = ["Scenario"]
-
 Mask = NDArray[np.bool_]
 
 

@@ -18,8 +18,6 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.rng import stream
 from eyas.engine.policies.sight import visible_shares
 
-__all__ = ["SEARCH_LIMIT", "TeamScenario", "lid_of"]
-
 SEARCH_LIMIT = 15.0  # Longest time that is waited for a drone to see the target again [s]
 _LIDS = (5.0, 10.0, 15.0)  # How long a camera is covered [s]
 _STEADY = 0.5  # How long the target must be seen without a gap to count as seen again [s]

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.protocols.protocol import Protocol
 
-__all__ = ["MESSAGE", "Radio", "mates"]
-
 MESSAGE = 6  # Numbers of a message, whose meaning is the policy's own
 
 Floats = NDArray[np.float64]

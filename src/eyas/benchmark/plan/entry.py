@@ -12,8 +12,6 @@ from eyas.engine.settings.env import (
     ObservationPart,
 )
 
-__all__ = ["Entry", "EntryClass", "entry_class", "entry_of"]
-
 
 class EntryClass(StrEnum):
     """What a policy knows."""

@@ -12,8 +12,6 @@ from eyas.engine.core.files import read_limited
 from eyas.engine.core.rng import stream
 from eyas.lanes import exact
 
-__all__ = ["PROFILES", "Delay", "Fixed", "Measured", "Profiled", "SampledDelay", "delay_from"]
-
 _LARGEST = 10_000.0  # Largest latency [ms]
 _GRACE = 3  # First answers that count as immediate: libraries warm up
 

@@ -26,8 +26,6 @@ from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.policies.policy import Policy
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["EvaluationPlan", "Stamp", "batches", "folder_name", "opened", "stamp"]
-
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 Seed = Annotated[int, Field(ge=0, lt=2**62)]
 

@@ -5,8 +5,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.rng import stream
 
-__all__ = ["Chooser"]
-
 
 class Chooser:
     """Chooses actions of N episodes by their scores."""

@@ -18,8 +18,6 @@ from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, Pictu
 from eyas.engine.targets.grammar.in_view import BodyWord
 from eyas.lanes import exact
 
-__all__ = ["AttributeServo", "attribute_servo", "salient_servo"]
-
 Floats = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 

@@ -10,8 +10,6 @@ from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.targets.colour_names import COLOUR_NAMES
 from eyas.lanes import exact
 
-__all__ = ["Blobs", "blobs_in", "coloured", "painted", "salient"]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError, UnknownNameError
 from eyas.engine.core.own_code import imported, left_out
 
-__all__ = ["BOX_TRACKERS", "NANO_FOLDER", "Box", "BoxTracker", "box_tracker"]
-
 Box = tuple[float, float, float, float]  # Left, top, width, height [pixels]
 
 Picture = NDArray[np.uint8]  # sRGB, row 0 on top, shape (H, W, 3)

@@ -12,8 +12,6 @@ from eyas.engine.policies.policy import env_config
 from eyas.engine.policies.steering import pixel_offset, towards
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["BoxPilot", "csrt", "kcf", "medianflow", "mosse", "nano", "pilot", "stay"]
-
 _SIZE = 240, 320  # Height and width of the pictures
 
 

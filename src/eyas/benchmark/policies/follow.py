@@ -6,8 +6,6 @@ from typing import Any
 from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_over
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
-__all__ = ["Follow"]
-
 
 class Follow:
     """Brings the middle of the picture over the target, whose true position it knows."""

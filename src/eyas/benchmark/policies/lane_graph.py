@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.roads import RoadNetwork
 from eyas.lanes import exact
 
-__all__ = ["SPACING", "LaneGraph", "Lanes", "lane_graph"]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -8,8 +8,6 @@ from eyas.engine.policies.steering import towards
 from eyas.engine.settings.env import ActionKind, EnvConfig
 from eyas.engine.state.snapshot import Snapshot
 
-__all__ = ["actions_of_oracles", "flown_over"]
-
 Floats = NDArray[np.float64]
 
 _RATE = 1.0

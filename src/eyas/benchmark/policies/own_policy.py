@@ -21,8 +21,6 @@ from eyas.engine.policies.policy import (
 )
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["BatchedFunction", "PerEpisodePolicy", "load_callable"]
-
 _IN_WORDS = frozenset({"words", "attributes"})
 SETTINGS = "env_settings"  # Attribute of a user's policy: changes of the defaults of `env`
 

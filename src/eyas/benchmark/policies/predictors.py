@@ -14,8 +14,6 @@ from eyas.benchmark.policies.sighted import Clue, SightOracle
 from eyas.engine.policies.policy import Start
 from eyas.lanes import exact
 
-__all__ = ["AlongLanes", "ConstantVelocity", "constant_velocity", "road_graph"]
-
 Floats = NDArray[np.float64]
 
 

@@ -12,8 +12,6 @@ from eyas.benchmark.policies.sighted import Clue, SightOracle
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.policies.policy import Decision, PolicyInput
 
-__all__ = ["Relay", "relay"]
-
 Floats = NDArray[np.float64]
 
 

@@ -16,8 +16,6 @@ from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Start
 from eyas.lanes import exact
 
-__all__ = ["RoadSearch", "sighted"]
-
 Floats = NDArray[np.float64]
 
 _GUESSES = 96

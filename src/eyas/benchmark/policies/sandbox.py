@@ -30,8 +30,6 @@ from eyas.engine.policies.policy import (
 )
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["SandboxedPolicy", "open_sandboxed", "receive", "send"]
-
 Array = NDArray[Any]
 Read = TypeVar("Read")
 

@@ -17,8 +17,6 @@ from eyas.engine.core.errors import ActionError, EyasError
 from eyas.engine.envs.actions import make_actions
 from eyas.engine.policies.policy import Decision, Failure, Instruction, Policy, PolicyInput, Start
 
-__all__ = ["main"]
-
 
 def main() -> None:
     """Answer the messages on the standard input; what the policy prints goes to stderr."""

@@ -12,8 +12,6 @@ from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.envs.trained_with import ELSEWHERE, trained_with
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 
-__all__ = ["Sb3Policy"]
-
 _LOG = logging.getLogger("eyas")
 
 _SIGNS = {

@@ -11,8 +11,6 @@ from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.engine.policies.steering import DEPTH, PERIOD, pixel_offset, towards
 from eyas.lanes import exact
 
-__all__ = ["GimbalServo", "Servo"]
-
 _SIZE = 84
 _PATCH = 14  # Side of the pattern [pixels]
 _REACH = 11  # Farthest motion between two pictures [pixels]

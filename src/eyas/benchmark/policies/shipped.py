@@ -10,8 +10,6 @@ from pathlib import Path
 
 from eyas.engine.core.config import Config, validated
 
-__all__ = ["TRAINED", "Card", "card_of", "file_of", "shipped_names"]
-
 TRAINED = Path(str(files("eyas.benchmark.policies"))) / "trained"
 """Folder of the policies: for each name a network (`.onnx`), a card (`.json`) and a curve
 (`.csv`)."""

@@ -13,8 +13,6 @@ from eyas.benchmark.policies.oracle_commands import actions_of_oracles, flown_ov
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
-__all__ = ["Clue", "LastMotion", "Predictor", "SightOracle"]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

@@ -9,8 +9,6 @@ from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.engine.settings.env import ObservationPart
 
-__all__ = ["Hover", "Random"]
-
 _NO_PICTURE = {"observation": {"parts": [ObservationPart.SENSORS]}}
 """Changes of `EnvConfig`: neither looks, so that no picture is drawn."""
 

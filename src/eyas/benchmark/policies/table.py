@@ -14,16 +14,6 @@ from eyas.engine.core.registry import Registry
 if TYPE_CHECKING:  # its observations know the whole simulation, and here are names
     from eyas.engine.policies.policy import Policy
 
-__all__ = [
-    "FILES",
-    "ORACLES",
-    "POLICIES",
-    "fingerprint",
-    "open_policy",
-    "policy_names",
-    "runs_code",
-]
-
 _ROOM = "eyas.benchmark.policies"
 
 _BUILT_IN = {

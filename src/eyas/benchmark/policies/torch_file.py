@@ -11,8 +11,6 @@ from eyas.benchmark.policies.action_choice import Chooser
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 
-__all__ = ["TorchPolicy"]
-
 _EXPORTED = ".pt2"
 
 

@@ -13,8 +13,6 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.protocols.published import STANDARD
 from eyas.benchmark.records.record import EpisodeRecord
 
-__all__ = ["CLEAN", "CORRUPTED", "CORRUPTIONS"]
-
 CLEAN = "clean"  # The variant without faults
 
 Settings = Mapping[str, Any]

@@ -15,8 +15,6 @@ from eyas.benchmark.protocols.envelope import Envelope
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.policies.sight import nearest_to_middle
 
-__all__ = ["CROWD", "CrowdScenario", "switches"]
-
 _HEIGHT: Final = 12.0
 """Height of the drone above the ground [m]: people are then 5 of 84 pixels wide, and 2 from 22
 m."""

@@ -9,8 +9,6 @@ from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["ENVELOPE", "Envelope"]
-
 Floats = NDArray[np.float64]
 
 _RESPONSE = 0.5

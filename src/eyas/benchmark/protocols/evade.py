@@ -4,8 +4,6 @@ from eyas.benchmark.flight.evasion import EvasionScenario, evading
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.traffic.library import EVADING_MIX
 
-__all__ = ["EVADE"]
-
 EVADE = Protocol(
     "evade",
     "60 s: the target's driver stops, turns round, dashes, weaves behind buses and hides",

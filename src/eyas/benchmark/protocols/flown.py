@@ -5,8 +5,6 @@ import math
 from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED, at_rest_and_at_speed
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
-__all__ = ["FLOWN"]
-
 FLOWN = Protocol(
     "flown",
     "20 s: a drone on a flight controller, 6 m/s of wind, 40 ms late, at rest and at speed",

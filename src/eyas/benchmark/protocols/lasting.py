@@ -3,8 +3,6 @@
 from eyas.benchmark.episodes.neighbours import with_neighbours
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
-__all__ = ["DISTRACTOR", "LONG", "SEARCH"]
-
 LONG = Protocol(
     "long",
     "60 s: when is the target lost, and is it found again?",

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from eyas.benchmark.records.record import EpisodeRecord
     from eyas.engine.sim.simulation import Simulation
 
-__all__ = ["NEVER", "Chooser", "MakeScenario", "Protocol", "Stage", "in_order"]
-
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 NEVER = 2**31 - 1  # Value of `done.no_reward_steps` with which a lost target ends no episode
 

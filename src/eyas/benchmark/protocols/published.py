@@ -9,8 +9,6 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.traffic.library import TEST_TRAFFIC
 from eyas.engine.world.maps.recipe import TEST_TOWNS
 
-__all__ = ["PAPER", "STANDARD", "UNSEEN"]
-
 
 def in_several_recordings(
     places: Sequence[Place], protocol: Protocol, count: int, first_seed: int

@@ -4,8 +4,6 @@ from eyas.benchmark.episodes.target_losses import COVERED, with_losses
 from eyas.benchmark.flight.recovery import RecoveryScenario
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
-__all__ = ["RECOVER", "RECOVER_CAMERA"]
-
 _LENGTH = {"total_steps": 45_000, "no_reward_steps": NEVER}
 
 RECOVER = Protocol(

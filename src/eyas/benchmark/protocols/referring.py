@@ -32,8 +32,6 @@ from eyas.engine.sim.simulation import Simulation
 from eyas.engine.targets.grammar.naming import Phrase
 from eyas.engine.traffic.library import CANONICAL_MIX, DENSE_VEHICLES
 
-__all__ = ["REFERRING"]
-
 _VARIANTS: Final = ("right", "other", "contradictory", "none")
 _TRIED: Final = 12  # Number of seeds that are tried for each episode
 _LEAST_VISIBLE: Final = 0.5  # Smallest share of the target that is visible at the start

@@ -9,8 +9,6 @@ from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.errors import UnknownNameError
 from eyas.engine.core.registry import OWN, Registry
 
-__all__ = ["PROTOCOLS", "protocol_named"]
-
 _ROOM = "eyas.benchmark.protocols"
 
 PROTOCOLS: Registry[Protocol] = Registry(

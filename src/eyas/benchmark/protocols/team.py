@@ -3,8 +3,6 @@
 from eyas.benchmark.flight.team import TeamScenario
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 
-__all__ = ["PAIR", "TEAM"]
-
 _BESIDE = {"start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}}}
 
 PAIR = Protocol(

@@ -8,8 +8,6 @@ from eyas.benchmark.plan.plan import Stamp
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.engine.recordings.croissant import CONFORMS_TO, CONTEXT
 
-__all__ = ["croissant"]
-
 _FILE = "episodes.jsonl"
 _TYPES = {str: "sc:Text", int: "sc:Integer", float: "sc:Float", bool: "sc:Boolean"}
 

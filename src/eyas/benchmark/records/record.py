@@ -11,16 +11,6 @@ from eyas.engine.core.decoding import decoded_json
 from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.core.files import read_limited, refusals, write_atomic
 
-__all__ = [
-    "EpisodeRecord",
-    "PublishedFigures",
-    "RecordFile",
-    "Trace",
-    "order_records",
-    "read_records",
-]
-
-
 _LARGEST = 1 << 31  # Largest size of a file of records [bytes]: half a million episodes of 90 s
 
 

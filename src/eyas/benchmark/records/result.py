@@ -17,20 +17,6 @@ from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
 
-__all__ = [
-    "EPISODES",
-    "FEW_SEEDS",
-    "NO_INTERVALS",
-    "RESULT",
-    "ROWS",
-    "STAMP",
-    "UNITS",
-    "cell",
-    "load_run",
-    "table",
-    "write_result",
-]
-
 STAMP, EPISODES, RESULT, ROWS = "run.json", "episodes.jsonl", "result.json", "result.csv"
 """Files of an evaluation's folder."""
 

@@ -17,8 +17,6 @@ from eyas.engine.core.files import refusals
 from eyas.engine.exports.mp4 import Mp4Episode
 from eyas.engine.state.draw import Picture
 
-__all__ = ["FOLDER", "chosen_flights", "film"]
-
 FOLDER = "videos"
 _LOG = logging.getLogger("eyas")
 _SIZE = 480, 640  # Height and width of the pictures

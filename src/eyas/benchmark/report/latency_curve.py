@@ -14,8 +14,6 @@ from eyas.benchmark.statistics.table_rows import rows_of
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import write_atomic
 
-__all__ = ["LATENCIES", "run_curve"]
-
 LATENCIES = ("0", "20", "40", "80", "160")  # [ms]
 CURVE = "latency"  # Name of the files of the curve, without ending
 _FIGURES = ("tsr", "cr")

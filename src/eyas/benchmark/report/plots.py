@@ -16,8 +16,6 @@ from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.core.files import atomic_path, refusals
 from eyas.engine.sim.scenes import load_network
 
-__all__ = ["FOLDER", "draw_plots", "require_matplotlib", "save_plot"]
-
 FOLDER = "plots"
 Axes = Any  # matplotlib has no types
 _FLIGHTS = 8  # Flights that are drawn on a map; more could not be told apart

@@ -19,8 +19,6 @@ from eyas.benchmark.statistics.intervals import (
 from eyas.benchmark.statistics.table_rows import Figure, clusters_in, figures_of, groups_of
 from eyas.engine.core.errors import DataFileError
 
-__all__ = ["COMPARED", "Difference", "differences", "refuse_incomparable", "text_of", "told_apart"]
-
 COMPARED = ("cr", "tsr", "flawless", "seen", "watched", "losses", "centre_error")
 """The figures that every episode has; those of the protocol are compared, too."""
 

@@ -24,26 +24,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "ENOUGH",
-    "FEWEST",
-    "LEVEL",
-    "POWER",
-    "Clusters",
-    "Estimate",
-    "Interval",
-    "clusters_of",
-    "difference_interval",
-    "episodes_to_tell",
-    "improvement",
-    "interval_of",
-    "mean_of",
-    "restricted_mean",
-    "restricted_mean_of",
-    "survival",
-    "worst_fifth_of",
-]
-
 Floats = NDArray[np.float64]
 
 LEVEL = 0.95  # Share of repetitions of which the interval should hold the true value

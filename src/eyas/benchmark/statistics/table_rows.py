@@ -20,8 +20,6 @@ from eyas.benchmark.statistics.intervals import (
     worst_fifth_of,
 )
 
-__all__ = ["Figure", "TableRow", "clusters_in", "figures_of", "groups_of", "rows_of", "thirds"]
-
 
 class Figure(NamedTuple):
     """A figure of an episode."""

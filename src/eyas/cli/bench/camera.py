@@ -15,8 +15,6 @@ from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 
-__all__ = ["CameraCost", "camera_table", "measure_camera"]
-
 _VIEWS, _SIDE = 64, 84
 _TURN = (12.0, 0.0, 0.0, 1.5)  # Command while it is measured: without motion nothing is blurred
 

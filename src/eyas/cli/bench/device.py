@@ -23,14 +23,6 @@ from eyas.engine.world.config import WorldConfig
 from eyas.gpu.render.read_back import ReadBackRenderer, UploadedViews
 from eyas.lanes.device import Device
 
-__all__ = [
-    "ON_DEVICES",
-    "measure_device",
-    "measure_on_device",
-    "on_device",
-    "seconds_of",
-]
-
 ON_DEVICES = (
     *(PictureBatch(views, 84, 84) for views in (256, 1024, 4096, 16384)),
     PictureBatch(4096, 84, 84, samples=4),

@@ -13,17 +13,6 @@ from typing import NamedTuple
 
 from rich.table import Table
 
-__all__ = [
-    "Counts",
-    "Measurement",
-    "Timing",
-    "counted",
-    "measurement_table",
-    "of_pictures",
-    "timed",
-    "why_not",
-]
-
 _CALL = {"x86_64": 298, "aarch64": 241}  # Number of the system call `perf_event_open`
 _CYCLES, _INSTRUCTIONS = 0, 1
 _SIZE = 64

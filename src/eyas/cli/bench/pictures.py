@@ -21,18 +21,6 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import DrawStage, Picture, Views
 from eyas.engine.world.config import WorldConfig
 
-__all__ = [
-    "BY_DAY",
-    "OTHER_WEATHERS",
-    "SIZES",
-    "PictureBatch",
-    "StageTime",
-    "measure_horizon",
-    "measure_pictures",
-    "measure_stages",
-    "stage_table",
-]
-
 SIZES = ((64, 84, 84), (1, 84, 84), (1, 640, 480), (1, 1280, 720))
 """Number of views, width and height of the measured pictures."""
 

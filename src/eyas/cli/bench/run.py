@@ -36,8 +36,6 @@ from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.world.weather import Season
 from eyas.gpu.envs.devices import device_of
 
-__all__ = ["run"]
-
 FIRST_PICTURE = """
 import os, sys
 if sys.argv[1]:  # an empty folder for the cache, compiled kernels too

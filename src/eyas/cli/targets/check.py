@@ -26,8 +26,6 @@ from eyas.engine.custom.user_class import posed, tracks_of
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.targets.catalogue import KINDS, MODELS
 
-__all__ = ["check"]
-
 _SECONDS = 60  # Time for which a motion of one's own is tried [s]
 
 _OUT, _LOST = 0.05, 0.25

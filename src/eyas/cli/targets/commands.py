@@ -12,8 +12,6 @@ from eyas.engine.terminal.options import AsJson, to_write
 if TYPE_CHECKING:
     from eyas.engine.custom.config import CustomConfig
 
-__all__ = ["app"]
-
 _WIDTH = 190  # Width of the table [characters]; a narrower terminal breaks its lines
 
 _Scale = Annotated[float, typer.Option("--scale", help="Metres in the mesh file's unit.")]

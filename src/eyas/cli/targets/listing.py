@@ -16,8 +16,6 @@ from eyas.engine.targets.quadrotor import QUADROTOR
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.targets.words import colour_words
 
-__all__ = ["ModelRow", "entries", "table"]
-
 
 @dataclass(frozen=True, slots=True)
 class ModelRow:

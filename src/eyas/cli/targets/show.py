@@ -15,8 +15,6 @@ from eyas.engine.custom.kind import as_custom, kind_name_of
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, kind_of, models_of
 from eyas.engine.targets.words import words_of
 
-__all__ = ["ALL", "run"]
-
 ALL = "all"  # Name by which all targets are shown in one picture
 _NEAR = 256  # Side of a picture from near [pixels]
 _SMALL = 168  # Side of a picture on the sheet of all [pixels]

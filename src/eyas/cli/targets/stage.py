@@ -17,8 +17,6 @@ from eyas.engine.targets.rig import Rigs
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.weather import DAY
 
-__all__ = ["Camera", "TargetPose", "TargetStage"]
-
 _MAP = "simpleway-lake"
 
 

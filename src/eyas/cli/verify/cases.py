@@ -11,8 +11,6 @@ from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import PRESETS, preset_file
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["Case", "cases"]
-
 _QUICK = {
     "citystreet",
     "citystreet day",

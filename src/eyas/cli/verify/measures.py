@@ -22,8 +22,6 @@ from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.targets.config import TargetName
 from eyas.engine.video.run import run
 
-__all__ = ["flight_of", "recording_of", "world_of"]
-
 _SEED = 5
 _ACTIONS = 12
 _SIZE = {"width": 160, "height": 120}

@@ -21,8 +21,6 @@ from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
 from eyas.lanes.trusted import FOLDER_VARIABLE
 
-__all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
-
 Hashes = dict[str, dict[str, str]]  # Hashes by case, then by what is hashed
 
 

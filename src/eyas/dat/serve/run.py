@@ -29,8 +29,6 @@ from eyas.engine.world.maps import MAPS
 if TYPE_CHECKING:
     from eyas.dat.wire.tracker_group import TrackerGroup
 
-__all__ = ["SettingsSource", "quietly", "run", "tell_disagreements"]
-
 _LOG = logging.getLogger("eyas")
 
 _CLIENT = Path("Alg_Base", "DAT_Benchmark", "config.json")

@@ -11,8 +11,6 @@ from eyas.engine.core.config import shown
 from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
 
-__all__ = ["PROGRAM", "install", "serve_arguments"]
-
 PROGRAM = "webots"
 
 _MARK = "# Made by `eyas webots-shim`: starts Eyas in the place of Webots.\n"

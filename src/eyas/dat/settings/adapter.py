@@ -21,17 +21,6 @@ from eyas.engine.task.config import StartConfig, StartVelocity
 from eyas.engine.trackers.config import Flight
 from eyas.engine.traffic.config import Lamps, Signals
 
-__all__ = [
-    "LIKE_THE_ORIGINAL",
-    "check_original",
-    "from_original",
-    "is_original",
-    "original_key_of",
-    "save_original",
-    "to_original",
-    "with_original",
-]
-
 _LOG = logging.getLogger("eyas")
 
 LIKE_THE_ORIGINAL = updated(

@@ -19,8 +19,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import Nested
 
-__all__ = ["DAT"]
-
 _CLIENT_KEY = "Benchmark"  # the one group of the `config.json` of the original's client
 
 

@@ -12,19 +12,6 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.variation import Mirrored, Uniform
 from eyas.engine.world.config import world_of
 
-__all__ = [
-    "Guess",
-    "Optional",
-    "OriginalEntry",
-    "Pitch",
-    "Same",
-    "Span",
-    "Switch",
-    "Values",
-    "Varied",
-    "WorldPath",
-]
-
 Values = Mapping[str, object]  # Values by dotted path: by the original's keys, or by ours
 
 

@@ -12,8 +12,6 @@ from eyas.dat.settings.entries import (
 )
 from eyas.engine.traffic.config import Demand
 
-__all__ = ["ENTRIES", "GROUP_KEYS", "KEEP_ALIVE"]
-
 KEEP_ALIVE = "Sumo_Params.keep_alive"
 """A key of ours, which the original ignores: without it, or false, its traffic is meant."""
 

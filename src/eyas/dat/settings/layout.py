@@ -10,8 +10,6 @@ from typing import Any
 from eyas.dat.settings.entries import OriginalEntry, Values
 from eyas.engine.core.config import Problem, unknown_keys
 
-__all__ = ["Nested", "check_kinds", "every_key", "flat", "nested", "original_defaults", "renewed"]
-
 Nested = Mapping[str, Any]  # The content of a JSON object
 
 _LOG = logging.getLogger("eyas")

@@ -11,8 +11,6 @@ from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.custom.config import ENDINGS
 from eyas.engine.targets.config import TargetName
 
-__all__ = ["CUSTOM", "own_target_folders", "with_own_target"]
-
 CUSTOM = "custom"  # Key of ours in the original's file: settings of a target of one's own
 
 _KEY = "Tracking_Object"

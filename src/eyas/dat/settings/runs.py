@@ -12,8 +12,6 @@ from eyas.engine.core.rng import TEST_SEEDS, fresh_seed
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.traffic.config import Source
 
-__all__ = ["AGENT_STEPS", "CHANNEL_STEPS", "of_a_run", "started_later"]
-
 _LOG = logging.getLogger("eyas")
 
 

@@ -33,8 +33,6 @@ from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
 from eyas.maps.formats.registry import MapExport, MapFormat
 from eyas.maps.formats.roads import sumo_files_of
 
-__all__ = ["WEBOTS", "Condition", "run"]
-
 _PROJECT = Path("Webots_Simulation", "traffic_project")
 _PREFIX = "eyas.dat.webots.controllers."
 _CONTROLLERS = {

@@ -10,8 +10,6 @@ from eyas.engine.targets.quadrotor import quadrotor_levels
 from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.engine.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, YAW_JOINT
 
-__all__ = ["DRONE", "INTERFACE", "drone_proto", "interface_proto", "pool", "vehicle_protos"]
-
 DRONE, INTERFACE = "Drone", "SumoInterface"
 
 _DETAIL = 1

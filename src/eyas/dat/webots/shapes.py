@@ -8,8 +8,6 @@ from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.maps.formats.gltf.file import PLAIN
 from eyas.maps.formats.meshes import Indexed, subset, welded
 
-__all__ = ["Shapes", "face_set"]
-
 _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 _FLAT = 0.9999  # Cosine of the largest angle between the normals of a face's corners and its own
 _STEP = 1e-4  # Resolution of positions, normals and texture coordinates, as they are written

@@ -13,8 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["HEADER", "Is", "Node", "Use", "Value", "floats", "indices", "label", "proto", "world"]
-
 HEADER = "#VRML_SIM R2023b utf8\n"
 
 _STEP = 1e4

@@ -15,8 +15,6 @@ from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact
 from eyas.maps.formats.meshes import Part, copies_of, parts_of, prism, prototypes_of
 
-__all__ = ["BASIC_STEP", "scene_nodes", "sky_nodes"]
-
 BASIC_STEP = 2  # Step of the physics, as in the original [ms]
 
 _SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colour 1

@@ -8,8 +8,6 @@ from contextlib import suppress
 
 from eyas.engine.core.errors import ConfigError, EyasError, OutputError
 
-__all__ = ["MOST_AGENTS", "Announcements", "listen_early"]
-
 MOST_AGENTS = 1024  # Largest number of agents, as of the channels of a recording
 
 _LONGEST = 256  # Largest message that is read whole, as by the original [bytes]

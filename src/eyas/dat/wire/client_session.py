@@ -15,8 +15,6 @@ from eyas.dat.wire.exchange import RARE, Names
 from eyas.engine.core.errors import ActionError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
 
-__all__ = ["AnswerFile", "ClientSession"]
-
 _LONGEST = 4096  # Largest action file that is read [bytes]
 
 _UNFINISHED = 1.0  # Time after which a line without its end is taken as it is [s]

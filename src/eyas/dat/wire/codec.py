@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.errors import ActionError
 
-__all__ = ["HOVER", "RESET", "Action", "packet_line", "parse_action"]
-
 _FASTEST = 1e4  # Largest number in an action, as for the speeds of the environments' actions
 
 

@@ -6,8 +6,6 @@ from pydantic import Field
 
 from eyas.engine.settings.section import Section
 
-__all__ = ["WireConfig"]
-
 
 class WireConfig(Section):
     """Settings of `eyas serve`, the server for the original's protocol."""

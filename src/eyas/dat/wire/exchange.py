@@ -12,8 +12,6 @@ from eyas.engine.core.errors import DataFileError, OutputError
 from eyas.engine.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.engine.core.folder_lock import folder_lock
 
-__all__ = ["RARE", "SETTINGS_FILE", "Exchange", "Names", "Pause"]
-
 _SHORTEST, _LONGEST = 0.0002, 0.02
 """Limits of a sleep [s]. Clients of the original look once in a millisecond themselves."""
 

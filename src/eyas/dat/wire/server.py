@@ -24,8 +24,6 @@ from eyas.engine.task.journal import Journal
 if TYPE_CHECKING:
     from eyas.dat.wire.tracker_group import Answer, TrackerGroup
 
-__all__ = ["Server", "Service"]
-
 _LOG = logging.getLogger("eyas")
 
 _LOOKS = 0.5  # Time between two looks at the settings' port [s]

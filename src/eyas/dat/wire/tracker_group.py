@@ -18,8 +18,6 @@ from eyas.engine.task.packet_rows import SENSOR_COLUMNS
 from eyas.engine.task.packets import BASIC_COLUMNS
 from eyas.lanes import thread_count
 
-__all__ = ["Answer", "TrackerGroup"]
-
 _LOG = logging.getLogger("eyas")
 
 

@@ -27,8 +27,6 @@ from eyas.engine.recordings.format import (
 )
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
-__all__ = ["Coco"]
-
 Row = dict[str, Any]
 
 

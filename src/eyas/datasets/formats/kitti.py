@@ -38,8 +38,6 @@ from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 from eyas.lanes import exact, interpreted
 
-__all__ = ["Kitti", "occlusion_level"]
-
 FOLDERS = {"train": "training", "val": "validation", "test": "testing"}
 
 TYPES = {

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 _LARGEST = 1 << 28  # Largest arrays of an episode [bytes]
 
-__all__ = ["LeRobot"]
-
 CAMERA = "observation.images.camera"
 _CHUNK = 1000  # Files in a folder
 _LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated

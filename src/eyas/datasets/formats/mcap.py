@@ -16,8 +16,6 @@ from eyas.engine.exports.label import label_schema
 from eyas.engine.recordings.format import Format, Job, SeenObject, objects_of, split_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
-__all__ = ["Mcap"]
-
 Json = dict[str, Any]
 
 TOPICS = {

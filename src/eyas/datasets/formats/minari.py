@@ -21,8 +21,6 @@ from eyas.engine.core.files import atomic_path
 from eyas.engine.recordings.format import KEPT, Exported, Format, Job
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = ["Minari"]
-
 Row = dict[str, Any]
 
 _MARGIN = 1 << 16  # What an episode may take more than its part [bytes]

@@ -25,8 +25,6 @@ from eyas.engine.recordings.format import (
 )
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = ["Mot"]
-
 BENCHMARK = "EYAS"
 COUNTED = 1  # The class of everything in the main file: pedestrian
 

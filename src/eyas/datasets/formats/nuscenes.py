@@ -33,8 +33,6 @@ from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 from eyas.engine.state.scene import ObjectClass
 from eyas.lanes import exact, interpreted
 
-__all__ = ["NuScenes"]
-
 CATEGORIES = {
     ObjectClass.CAR: "vehicle.car",
     ObjectClass.TRUCK: "vehicle.truck",

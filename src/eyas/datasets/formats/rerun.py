@@ -14,8 +14,6 @@ from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
 from eyas.engine.recordings.format import Format, Job, objects_of, split_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
-__all__ = ["Rerun"]
-
 _TARGET, _OTHER = (255, 140, 0), (90, 170, 255)  # Colours of boxes
 
 

@@ -14,8 +14,6 @@ from eyas.engine.core.files import atomic_path, read_limited
 from eyas.engine.recordings.format import KEPT, Exported, Format, picture_ending
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = ["WebDataset"]
-
 _LARGEST = 1 << 28  # Largest file of one frame [bytes]
 _PLANES = ("masks", "classes", "depth", "flow")
 

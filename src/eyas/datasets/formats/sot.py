@@ -23,8 +23,6 @@ from eyas.engine.recordings.format import (
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = ["Dtb70", "Got10k", "Lasot", "Otb", "Sequences", "Uav123", "target_boxes"]
-
 
 def target_boxes(labels: Sequence[Label]) -> NDArray[np.int64]:
     """Return the target's boxes: left, top, width, height [pixels], all 0 outside the picture,

@@ -23,8 +23,6 @@ from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 from eyas.lanes import exact, interpreted
 
-__all__ = ["Uavdt"]
-
 CATEGORIES = {ObjectClass.CAR: 1, ObjectClass.TRUCK: 2, ObjectClass.BUS: 3}
 IGNORED = (1, -1, -1)  # The last columns of an ignored box
 LOW, HIGH = 30.0, 70.0  # Altitudes up to which a sequence is low, and from which it is high [m]

@@ -24,8 +24,6 @@ from eyas.engine.recordings.format import (
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = ["VisDroneDet", "VisDroneMot", "VisDroneSot"]
-
 OTHERS = 11
 CATEGORIES = {
     ObjectClass.CAR: 4,

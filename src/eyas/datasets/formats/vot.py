@@ -21,8 +21,6 @@ from eyas.engine.recordings.format import (
 )
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = ["Vot", "resizing"]
-
 CAMERA_MOVES = 0.5
 """Speed [m/s], or rate of turning [rad/s], from which the camera counts as moving."""
 

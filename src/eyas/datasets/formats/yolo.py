@@ -26,8 +26,6 @@ from eyas.engine.recordings.format import (
 )
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
-__all__ = ["Yolo", "YoloOriented", "YoloSegments"]
-
 _NUMBERS = {name: number for number, name in enumerate(CLASS_NAMES.values())}
 
 Points = NDArray[Any]

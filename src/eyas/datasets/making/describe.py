@@ -19,8 +19,6 @@ from eyas.engine.recordings.recording import load_part
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE
 
-__all__ = ["describe"]
-
 
 def describe(plan: Plan, parts: Sequence[tuple[Part, PartFacts]], root: Path) -> None:
     """Write recipe, table of frames, statistics, overview, datasheet and metadata.

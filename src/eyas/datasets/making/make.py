@@ -35,8 +35,6 @@ from eyas.engine.recordings.recording import DATASET_FILE, Recording, load_part
 from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
 
-__all__ = ["Making", "Recorded", "complete", "continuable", "make", "open_folder", "report"]
-
 _LOG = logging.getLogger("eyas")
 
 EXPORTED = ".exported"

@@ -18,8 +18,6 @@ from eyas.engine.exports.checksums import CHECKSUMS, read_checksums
 from eyas.engine.recordings.recording import DATASET_FILE
 from eyas.engine.terminal.progress import frames_bar
 
-__all__ = ["merge"]
-
 
 def merge(shards: Sequence[Path], out: Path, making: Making) -> None:
     """Join shards to the data set that would have been made at once, to the byte.

@@ -27,17 +27,6 @@ from eyas.engine.sim.worlds import together
 from eyas.engine.video.run import recording_rules, run
 from eyas.lanes import limit_threads
 
-__all__ = [
-    "PART_FILE",
-    "begin_worker",
-    "check_part",
-    "digest_of",
-    "export_part",
-    "read_facts",
-    "record_part",
-    "worlds_of",
-]
-
 PART_FILE = "part.json"  # File of a complete part with its `PartFacts`
 
 

@@ -13,8 +13,6 @@ from eyas.engine.core.config import validated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.video.action import check_flight
 
-__all__ = ["parsed_shard", "run"]
-
 
 def run(
     named: str | Mapping[str, Any],

@@ -22,8 +22,6 @@ from eyas.engine.core.identity.build import this_build
 from eyas.engine.core.scratch import scratch
 from eyas.lanes import limit_threads
 
-__all__ = ["on_ray"]
-
 _RETRIES = 3  # How often a part is made again whose process was lost
 
 _WAITING = 2

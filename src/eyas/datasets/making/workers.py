@@ -16,8 +16,6 @@ from eyas.datasets.plan import Part, in_order_of_work
 from eyas.engine.core.errors import EyasError
 from eyas.engine.terminal.interrupts import interrupts_held
 
-__all__ = ["work"]
-
 Result = TypeVar("Result")
 
 _MAPS = 2

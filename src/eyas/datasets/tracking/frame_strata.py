@@ -11,8 +11,6 @@ from eyas.engine.exports.label import Label
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.lanes import exact
 
-__all__ = ["near_look_alikes", "strata_of"]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

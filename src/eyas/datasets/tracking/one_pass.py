@@ -17,16 +17,6 @@ from eyas.benchmark.policies.box_trackers import Box, BoxTracker
 from eyas.benchmark.statistics.intervals import Interval, clusters_of, interval_of
 from eyas.engine.recordings.recording import RecordedEpisode
 
-__all__ = [
-    "PRECISION_PIXELS",
-    "Figures",
-    "Track",
-    "figures_of",
-    "overlaps",
-    "track_episode",
-    "true_boxes",
-]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 

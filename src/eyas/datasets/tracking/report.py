@@ -9,8 +9,6 @@ from rich.table import Table
 
 from eyas.benchmark.report.plots import Axes, save_plot
 
-__all__ = ["draw_curves", "print_figures"]
-
 
 def print_figures(out: Path, results: dict[str, Any]) -> None:
     """Print the figures of all frames and of each stratum."""

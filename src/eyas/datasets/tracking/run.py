@@ -34,8 +34,6 @@ from eyas.engine.terminal.interrupts import interrupts_held
 from eyas.engine.terminal.progress import frames_bar
 from eyas.lanes import thread_count
 
-__all__ = ["Scoring", "run"]
-
 SCORING, RESULTS, BOXES = "tracking.json", "results.json", "boxes"
 """What was asked, the figures, and the folder with a file of boxes for each episode."""
 

@@ -18,8 +18,6 @@ from typing import (
 import annotated_types
 from pydantic.fields import FieldInfo
 
-__all__ = ["JsonNotation", "TextForm", "describe", "names_of"]
-
 
 @runtime_checkable
 class JsonNotation(Protocol):

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.errors import EyasError
 
-__all__ = ["FARTHEST", "LARGEST", "checked", "limited"]
-
 Floats = NDArray[np.float64]
 
 LARGEST = 1e4  # Largest number of a command, as of the speeds of environments' actions

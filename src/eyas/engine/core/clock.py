@@ -2,8 +2,6 @@
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["PHYSICS_RATE", "PHYSICS_STEP", "physics_steps"]
-
 PHYSICS_RATE = 500  # Physics steps per second [Hz]
 PHYSICS_STEP = 1.0 / PHYSICS_RATE  # Length of a physics step [s]; kernels read it
 

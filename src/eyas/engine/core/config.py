@@ -13,17 +13,6 @@ from pydantic_core import CoreSchema, ErrorDetails
 from eyas.engine.core.allowed import describe, names_of
 from eyas.engine.core.errors import ConfigError, UnknownNameError, nearest
 
-__all__ = [
-    "Config",
-    "Problem",
-    "entries_of",
-    "group_of",
-    "shown",
-    "unknown_keys",
-    "updated",
-    "validated",
-]
-
 Path = tuple[str, ...]
 
 

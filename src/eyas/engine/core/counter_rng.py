@@ -10,8 +10,6 @@ import math
 from eyas.lanes import kernel
 from eyas.lanes.elementary import cos, log
 
-__all__ = ["SEEDS", "mixed", "normal", "uniform"]
-
 SEEDS = 1 << 32  # Seeds are whole numbers from 0 up to below this
 
 _WORD = 0xFFFFFFFF

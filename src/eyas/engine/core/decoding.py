@@ -23,9 +23,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 
-__all__ = ["decoded_arrays", "decoded_json", "decoded_picture", "gunzipped", "npz_arrays",
-           "read_json"]  # fmt: skip
-
 _MOST_ARRAYS = 64  # Largest number of arrays in a `.npz`.
 _LARGEST_NUMBER = 2.0**64
 """Largest size of a number in JSON: nothing that Eyas reads has a larger one."""

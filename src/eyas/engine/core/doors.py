@@ -15,8 +15,6 @@ from importlib.util import find_spec
 from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
-__all__ = ["STREET", "House", "brought", "brought_object", "first_brought", "houses", "installed"]
-
 STREET: Final = (
     "lanes",
     "engine",

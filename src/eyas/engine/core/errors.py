@@ -4,20 +4,6 @@ import difflib
 import re
 from collections.abc import Iterable
 
-__all__ = [
-    "ActionError",
-    "ConfigError",
-    "DataFileError",
-    "EyasError",
-    "MissingExtraError",
-    "OutputError",
-    "SpawnError",
-    "UnknownNameError",
-    "nearest",
-    "one_line",
-]
-
-
 _LONGEST = 1200  # Largest number of characters of a message
 _LONG = re.compile(r"""(?<!\w)(b?(['"]))((?:(?!\2(?!\w)).){201,})\2(?!\w)|\S{401,}""", re.DOTALL)
 """A quoted text, or anything without spaces, that is too long to be shown whole."""

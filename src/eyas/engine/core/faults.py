@@ -7,8 +7,6 @@ from contextlib import contextmanager
 
 from eyas.engine.core.errors import one_line
 
-__all__ = ["FaultLog"]
-
 _LOG = logging.getLogger("eyas")
 _BETWEEN = 1.0  # Shortest time between two lines, so that a sender cannot fill the log [s]
 

@@ -12,19 +12,6 @@ from pathlib import Path
 from eyas.engine.core.errors import DataFileError, OutputError
 from eyas.lanes.trusted import open_at_once
 
-__all__ = [
-    "PART_SUFFIX",
-    "atomic_path",
-    "flushed",
-    "part_path",
-    "read_limited",
-    "refusals",
-    "require_sum",
-    "sum_of",
-    "user_path",
-    "write_atomic",
-]
-
 PART_SUFFIX = ".part"
 """Ending of a file that is still being written; such a file may be deleted at any time."""
 

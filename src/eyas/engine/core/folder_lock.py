@@ -20,8 +20,6 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["LOCK", "folder_lock"]
-
 LOCK = ".lock"
 """File that exists while a process works in a folder; it holds the id of that process."""
 

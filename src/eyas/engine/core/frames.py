@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = ["rotate", "rotate_back", "wrap_angle"]
-
 _TURN = 2.0 * math.pi
 
 Quaternion = NDArray[np.float64] | tuple[float, float, float, float]

@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-__all__ = ["install_command", "installed_version"]
-
 _CLONE = Path(__file__).parents[4]
 
 

@@ -5,8 +5,6 @@ import platform
 import sys
 from pathlib import Path
 
-__all__ = ["describe_machine", "peak_memory"]
-
 
 def describe_machine() -> str:
     """Return the processor, usable cores, system and Python version in one line."""

@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["Memento", "recall", "remember"]
-
 Memento = dict[tuple[Any, ...], Any]
 """Values of the parts that may change, by the names, indices and keys that lead to each."""
 

@@ -13,14 +13,6 @@ from traceback import extract_tb
 
 from eyas.engine.core.errors import ConfigError, nearest
 
-__all__ = [
-    "ended",
-    "imported",
-    "left_out",
-    "running",
-    "takes",
-]
-
 
 def imported(path: str, setting: str) -> object:
     """Return the object at a path; ordinary errors raised by its module pass through.

@@ -16,8 +16,6 @@ from eyas.engine.core.own_code import imported
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-__all__ = ["OWN", "FileObjects", "Registry"]
-
 OWN = "package.module:attribute"  # Notation of the path of an object of a user
 
 T = TypeVar("T")

@@ -8,8 +8,6 @@ import numpy as np
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["TEST_SEEDS", "EpisodeKey", "checked_seed", "fresh_seed", "room_key", "stream"]
-
 TEST_SEEDS = 900_000_000
 """Seeds of maps and of traffic from here on are kept for tests: nothing is taught with them."""
 

@@ -14,8 +14,6 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["remove_left_scratch", "scratch"]
-
 _PREFIX, _OWNER = "eyas-scratch-", "in-use"
 """Begin of the names of these folders; the file in each that its process has locked."""
 

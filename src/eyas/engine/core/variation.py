@@ -11,19 +11,6 @@ from eyas.engine.core.config import Config
 from eyas.lanes import kernel
 from eyas.lanes.pcg64 import fraction, whole
 
-__all__ = [
-    "Choice",
-    "Mirrored",
-    "Rule",
-    "Uniform",
-    "Variation",
-    "bounds",
-    "rule_of",
-    "sample",
-    "sampled",
-    "within",
-]
-
 
 class Uniform(Config):
     """A value sampled uniformly between two limits: `{"uniform": [low, high]}`."""

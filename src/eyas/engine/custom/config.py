@@ -9,8 +9,6 @@ from eyas.engine.core.doors import brought
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.targets.habit import Behaviour
 
-__all__ = ["ENDINGS", "MESHES", "CustomConfig"]
-
 MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")  # Endings of the mesh files that can be read
 ENDINGS = (*MESHES, *brought("eyas.mesh_files"))  # Endings of the files of shapes that can be read
 

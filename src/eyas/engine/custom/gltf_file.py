@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.decoding import decoded_json
 from eyas.engine.core.files import read_limited
 
-__all__ = ["beside", "mended_gltf"]
-
 _READ = re.compile(
     "KHR_mesh_quantization|KHR_lights_punctual|KHR_materials_.*|KHR_xmp.*|EXT_texture_webp"
 )

@@ -27,8 +27,6 @@ from eyas.engine.targets.colour_names import with_article
 from eyas.engine.targets.kind import Group, Kind, Looks, Model
 from eyas.lanes import exact
 
-__all__ = ["as_custom", "kind_name_of", "own_target"]
-
 _LOG = logging.getLogger("eyas")
 
 

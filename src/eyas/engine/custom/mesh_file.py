@@ -20,8 +20,6 @@ from eyas.engine.custom.config import ENDINGS, MESHES, CustomConfig
 from eyas.engine.custom.gltf_file import beside, mended_gltf
 from eyas.lanes import exact
 
-__all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
-
 LARGEST = 200_000  # Largest number of triangles of a target
 _LARGEST_FILE = 512 << 20  # [bytes]
 _GLTF_ENDINGS = (".glb", ".gltf")

@@ -24,8 +24,6 @@ from eyas.engine.targets.catalogue import MODELS, kind_index, models_of
 from eyas.engine.targets.habit import Habit
 from eyas.lanes import exact
 
-__all__ = ["Places", "custom_motion"]
-
 _SPAN = 0.25  # Half the distance over which the slope of the ground is taken [m]
 _FEWEST = 5  # Least number of samples of a trajectory
 

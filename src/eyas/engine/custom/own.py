@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import Scene
 
-__all__ = ["MovesItself", "OwnTarget", "Ride", "Shaped"]
-
 
 class Ride(NamedTuple):
     """Motion of K bodies at one instant: all that their parts may depend on."""

@@ -12,17 +12,6 @@ from eyas.engine.state.scene import Scene
 from eyas.engine.state.terrain import reliefs
 from eyas.lanes import exact
 
-__all__ = [
-    "LONGEST",
-    "Finding",
-    "numbered",
-    "of_height",
-    "of_noise",
-    "of_shape",
-    "of_trajectory",
-    "worst",
-]
-
 _LARGE, _SMALL = 60.0, 0.05  # Lengths from which on a target is hardly one: a unit is suspected [m]
 LONGEST = 100.0  # Largest length of a target [m]
 _USUAL = 2.0  # Length of a usual target [m]

@@ -8,8 +8,6 @@ from eyas.engine.custom.mesh_file import Triangles
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import exact
 
-__all__ = ["levels_of_detail", "mesh_of", "simplified"]
-
 _COLOURS = 64  # Largest number of colours of a target
 _CREASE = exact.cos(np.radians(40.0))
 """Cosine of the angle between two faces above which the edge between them is sharp."""

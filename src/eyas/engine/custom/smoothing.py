@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.custom.trajectory import Trajectory
 from eyas.lanes import exact
 
-__all__ = ["smoothed"]
-
 _SLOW = 0.5  # Speed below which a body may stand [m/s]
 _LONG = 4.0
 """Shortest stand, in times of the smoothing: within it, the spline forgets what was before."""

@@ -13,8 +13,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.lanes import exact
 
-__all__ = ["JUMP", "Trajectory", "read_trajectory"]
-
 COLUMNS = ("t", "x", "y", "z", "yaw")  # Names in the first line; z and yaw may be left out
 JUMP = 100.0  # Speed from which on two points are a jump [m/s]
 _LARGEST = 64 << 20  # Largest size of a file [bytes]

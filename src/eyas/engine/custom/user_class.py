@@ -17,8 +17,6 @@ from eyas.engine.custom.trajectory import Trajectory
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import Scene
 
-__all__ = ["made", "posed", "tracks_of"]
-
 _CLASSES: Registry[type] = Registry("custom.path", type, {})
 
 Floats = NDArray[np.float64]

@@ -10,22 +10,6 @@ from eyas.engine.core.errors import ActionError
 from eyas.engine.settings.env import ActionKind, ActionSpeeds, EnvConfig, EnvSpeeds, GimbalConfig
 from eyas.engine.trackers.gimbal_command import WIDTH, WITH_GIMBAL
 
-__all__ = [
-    "Actions",
-    "Commands",
-    "Discrete",
-    "DiscreteGimbal",
-    "FourNumbers",
-    "GimbalNumbers",
-    "Shares",
-    "Velocity",
-    "action_table",
-    "command_width",
-    "make_actions",
-    "turn_commands",
-    "turn_rates",
-]
-
 Commands = NDArray[np.float64]
 """Forward [m/s], left [m/s], up [m per 2 ms], counter-clockwise [rad/s], shape (N, 4); or with what
 turns the camera, shape (N, 8), see `eyas.engine.trackers.gimbal_command`."""

@@ -45,8 +45,6 @@ from eyas.engine.task.journal import Journal
 from eyas.engine.task.step_line import step_line
 from eyas.lanes import BoundCall, CompiledCall, Kernel, PackedBundle
 
-__all__ = ["Batch", "Outcome", "Seeds", "Truth"]
-
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall, Kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)

@@ -22,19 +22,6 @@ from eyas.engine.settings.env import (
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 
-__all__ = [
-    "EnvChoices",
-    "EpisodeChoices",
-    "Source",
-    "checked_options",
-    "chosen_settings",
-    "episode_settings",
-    "first_seed",
-    "kinds_of",
-    "settings_of_kinds",
-    "steps_per_action",
-]
-
 Source = EyasConfig | Mapping[str, Any] | str | Path | None
 """Settings: whole ones, nested dictionaries of native settings, the name of a preset (`dat-train`,
 `dat-eval`, `easy`), or the path of a JSON file (native or the original's `env_config.json`)."""

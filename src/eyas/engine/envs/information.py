@@ -15,8 +15,6 @@ from eyas.engine.task.done import DoneReason
 from eyas.engine.task.packet_rows import SENSOR_COLUMNS
 from eyas.engine.task.packets import BASIC_COLUMNS, REWARD_COLUMNS
 
-__all__ = ["Info", "by_term", "information", "masked", "of_one", "sensor_state"]
-
 Floats = NDArray[np.float64]
 Info = dict[str, Any]
 Mask = NDArray[np.bool_]

@@ -16,8 +16,6 @@ from eyas.engine.envs.choice import EnvChoices, Source
 from eyas.engine.envs.vector_env import EyasVectorEnv, Stepped
 from eyas.engine.settings.env import ObservationPart
 
-__all__ = ["LeRobotVectorEnv", "make_lerobot_env"]
-
 _NAMES = {
     ObservationPart.IMAGE.value: "pixels",
     ObservationPart.SENSORS.value: "agent_pos",

@@ -15,8 +15,6 @@ from eyas.engine.envs.observation import Observation
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.task.terms import BUILTIN
 
-__all__ = ["MixedBatch", "array_of", "joined", "terms_of"]
-
 Mask = NDArray[np.bool_]
 
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.codecs.png import png_bytes
 
-__all__ = ["LONGEST_STRIP", "show_wrapped", "strip_html"]
-
 LONGEST_STRIP = 6  # Largest number of pictures of a strip
 
 

@@ -23,8 +23,6 @@ from eyas.engine.targets.grammar.wording import CHARACTERS, LONGEST
 from eyas.engine.task.packet_rows import SENSOR_COUNT
 from eyas.engine.task.privileged import PRIVILEGED, fill_privileged
 
-__all__ = ["Observation", "Observer", "observation_space"]
-
 Array = NDArray[Any]
 Observation = Array | dict[str, Any]
 """An array; of several parts a dictionary of arrays, with a text, or a tuple of texts, as words."""

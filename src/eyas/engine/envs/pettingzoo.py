@@ -29,8 +29,6 @@ try:
 except ImportError as error:
     raise MissingExtraError("eyas.engine.envs.pettingzoo", "pettingzoo") from error
 
-__all__ = ["EyasParallelEnv"]
-
 _LOG = logging.getLogger("eyas")
 
 Stepped = tuple[

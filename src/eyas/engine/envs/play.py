@@ -19,8 +19,6 @@ from eyas.engine.settings.env import EnvConfig
 if TYPE_CHECKING:
     import pygame
 
-__all__ = ["Window", "hover_action", "keys_to_action", "load_pygame"]
-
 
 class Window:
     """A window for the pictures of one environment; it opens with the first picture.

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-__all__ = ["register", "register_map"]
-
 
 def register() -> None:
     """Register the maps that come with Eyas and imported ones; importing `eyas` does it.

@@ -21,8 +21,6 @@ try:
 except ImportError as error:
     raise MissingExtraError("eyas.engine.envs.sb3", "train") from error
 
-__all__ = ["EyasVecEnv"]
-
 Indices = None | int | Iterable[int]
 
 

@@ -11,8 +11,6 @@ from eyas.engine.settings.config import EyasConfig
 if TYPE_CHECKING:
     from eyas.engine.envs.vector_env import EyasVectorEnv
 
-__all__ = ["SubEnv"]
-
 
 class SubEnv:
     """One of N environments. It has the attributes that libraries ask for by name, and any that

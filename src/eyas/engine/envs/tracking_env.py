@@ -24,8 +24,6 @@ from eyas.engine.envs.observation import Observation
 from eyas.engine.envs.play import Window, keys_to_action
 from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["TrackingEnv"]
-
 _ONE = np.ones(1, np.bool_)
 _GOES_ON = np.zeros(1, np.bool_)
 

@@ -9,8 +9,6 @@ import gymnasium
 
 from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["ELSEWHERE", "describe", "trained_with"]
-
 _KEY = "eyas_settings"
 ELSEWHERE = ("control", "start", "camera", "tracker")
 """Groups that a protocol decides, not the policy."""

@@ -23,8 +23,6 @@ from eyas.engine.envs.sub_env import SubEnv
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes.device import Device
 
-__all__ = ["EyasVectorEnv"]
-
 Mask = NDArray[np.bool_]
 Seed = int | Sequence[int | None] | None
 Stepped = tuple[Observation, NDArray[np.float64], Mask, Mask, Info]

@@ -8,8 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.engine.exports.label import Label
 
-__all__ = ["Box3D", "box_of", "camera_pose", "quaternion_of"]
-
 Floats = NDArray[np.float64]
 
 

@@ -36,8 +36,6 @@ from eyas.engine.task.packet_rows import SENSOR_COLUMNS
 from eyas.engine.trackers.tracker import ROTORS
 from eyas.lanes import interpreted
 
-__all__ = ["Moment", "frame_of", "moment_of", "others_of"]
-
 _target_centre = interpreted(target_centre)
 _target_direction = interpreted(target_direction)
 

@@ -7,11 +7,6 @@ from pathlib import Path
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import flushed, read_limited, refusals, sum_of, write_atomic
 
-__all__ = [
-    "CHECKSUMS", "GROWING", "SEALED", "checksum_lines", "damaged_files", "read_checksums",
-    "seal_folder",
-]  # fmt: skip
-
 SEALED = "contents"
 """Key of the SHA-256 of the checksums, in the file that says that a folder is complete."""
 

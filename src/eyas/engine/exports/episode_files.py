@@ -20,8 +20,6 @@ from eyas.engine.exports.frame import Floats, Frame
 from eyas.engine.exports.writer import EndedEpisode, Episode, Files, Gather, Run, Summary, Writer
 from eyas.engine.sensors.table import fitted_sensors
 
-__all__ = ["ROTOR_COLUMNS", "EventWriter", "LidarWriter", "MarkWriter", "SensorWriter", "evt2"]
-
 ROTOR_COLUMNS = ("rotor_1", "rotor_2", "rotor_3", "rotor_4")  # Columns of `Frame.rotors`.
 
 

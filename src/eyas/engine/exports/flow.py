@@ -21,8 +21,6 @@ from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.state.draw import MovingParts
 from eyas.lanes import compiled, kernel
 
-__all__ = ["FlowWriter", "forward_flow"]
-
 SCALE, ZERO = 64.0, 32768.0  # KITTI's encoding of a flow: 64 for each pixel, above 32768
 _TOLERANCE, _LEAST = 0.01, 0.02
 """A point is hidden by what is nearer than it by this share of its distance, and [m]: more than

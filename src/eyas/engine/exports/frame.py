@@ -23,17 +23,6 @@ from eyas.engine.targets.kind import Section
 from eyas.engine.task.direction import TargetDirection
 from eyas.engine.task.done import DoneReason
 
-__all__ = [
-    "OUTPUTS",
-    "CameraPicture",
-    "CameraPose",
-    "Frame",
-    "Output",
-    "RecordedAction",
-    "RecordedBody",
-    "Subject",
-]
-
 Floats: TypeAlias = NDArray[np.float64]
 
 Output = Literal[

@@ -28,18 +28,6 @@ from eyas.engine.exports.writer import (
 from eyas.engine.state.scene import ACTOR_OBJECT, LABELLED, LAST_PARKED
 from eyas.lanes import exact
 
-__all__ = [
-    "ArrayWriter",
-    "CameraWriter",
-    "ClassWriter",
-    "CleanWriter",
-    "DepthWriter",
-    "JpegWriter",
-    "MaskWriter",
-    "NormalWriter",
-    "PngWriter",
-]
-
 _MOST = np.iinfo(np.uint16).max  # Largest value of a pixel of 16 bits
 _LABELLED = sorted(map(int, LABELLED))
 

@@ -26,19 +26,6 @@ from eyas.engine.state.scene import LABELLED
 from eyas.engine.task.done import DoneReason
 from eyas.lanes import interpreted
 
-__all__ = [
-    "FIELDS",
-    "LABELS",
-    "Label",
-    "LabelField",
-    "LabelWriter",
-    "label_of",
-    "label_schema",
-    "read_labels",
-    "rounded",
-    "rounded_list",
-]
-
 DECIMALS = 6  # Decimals of every number (micrometres, microradians); few enough for identical bytes
 
 

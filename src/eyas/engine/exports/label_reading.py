@@ -9,8 +9,6 @@ from pydantic_core import CoreSchema, SchemaValidator, ValidationError, core_sch
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 
-__all__ = ["labels_in", "reader_of"]
-
 _LARGEST = 1 << 30
 """Largest file of labels of an episode [bytes]: a hundred thousand frames with many others."""
 

@@ -11,8 +11,6 @@ from eyas.engine.task.direction import TargetDirection
 from eyas.engine.traffic.trailer import folded
 from eyas.lanes import exact, interpreted
 
-__all__ = ["Movement", "SectionBox", "box_corners", "posed_corners", "section_boxes"]
-
 Floats: TypeAlias = NDArray[np.float64]
 
 _ENDS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -14,8 +14,6 @@ from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Run, Summary
 if TYPE_CHECKING:
     from av.video.stream import VideoStream
 
-__all__ = ["Mp4Episode", "Mp4Writer"]
-
 MOVIE = "episode.mp4"
 
 CODECS = {

@@ -9,8 +9,6 @@ from eyas.engine.core.registry import Registry
 from eyas.engine.exports.frame import OUTPUTS
 from eyas.engine.exports.writer import Files, Writer
 
-__all__ = ["WRITERS", "chosen_writers"]
-
 SETTING = "video.writers"
 
 WRITERS: Registry[type[Any]] = Registry(

@@ -13,8 +13,6 @@ from eyas.engine.targets.catalogue import MODELS, kind_index, model_index
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 
-__all__ = ["painted", "resting_mesh"]
-
 
 @lru_cache(maxsize=64)
 def resting_mesh(model: str, detail: int) -> Mesh:

@@ -17,8 +17,6 @@ from eyas.engine.core.errors import OutputError
 from eyas.engine.core.files import refusals
 from eyas.engine.exports.writer import Episode, Files, FilmEpisode, Summary, Writer
 
-__all__ = ["WebpEpisode", "WebpWriter"]
-
 MOVIE = "episode.webp"
 _QUALITY, _EFFORT = 75, 0
 """A picture of 320 x 240 pixels takes 1.8 ms and 15 kB, and is nearer to the true one than in our

@@ -30,24 +30,6 @@ from eyas.engine.core.files import part_path, refusals, write_atomic
 from eyas.engine.exports.frame import Frame, Output
 from eyas.engine.sim.config import SimConfig
 
-__all__ = [
-    "EndedEpisode",
-    "Episode",
-    "EpisodeWriter",
-    "Files",
-    "FilmEpisode",
-    "Gather",
-    "PerFrameWriter",
-    "Run",
-    "Scores",
-    "Summary",
-    "Writer",
-    "joined",
-    "numbered",
-    "pattern_of",
-    "total",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Scores:

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import exact
 
-__all__ = ["concatenate", "of_one_material", "transformed"]
-
 
 def of_one_material(
     positions: NDArray[np.floating],

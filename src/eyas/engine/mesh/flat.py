@@ -14,8 +14,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     import shapely
 
-__all__ = ["flat_polygon", "flat_polygons", "quads", "wall_along", "walls"]
-
 Rows = NDArray[np.float64]
 
 

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["box_panels", "cells", "closed", "fan", "halves", "mirrored"]
-
 Points = NDArray[np.float64]
 
 _HALVES = np.array([[0, 1, 2], [0, 2, 3]])  # Corners of the two triangles of a quadrilateral

@@ -10,8 +10,6 @@ from eyas.engine.mesh.panels import box_panels, cells, closed, fan, halves, mirr
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import exact
 
-__all__ = ["DETAILS", "Shape", "Shell", "levels_of", "shell_of"]
-
 _CREASE = 0.75  # Panels that meet at a larger angle keep a hard edge [rad]
 
 

@@ -11,8 +11,6 @@ from eyas.engine.mesh.flat import quads
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import exact
 
-__all__ = ["box", "cylinder", "sphere", "tube"]
-
 
 def box(size: Sequence[float], centre: Sequence[float], material: Material, tile: float) -> Mesh:
     """Return a box with six faces; textures repeat every `tile` metres."""

@@ -14,8 +14,6 @@ from eyas.engine.overlay.items import GroundArea
 from eyas.engine.state.terrain import Plane, height_over
 from eyas.lanes import exact, interpreted
 
-__all__ = ["paint_area"]
-
 _height_over = interpreted(height_over)
 
 RISE = 0.3

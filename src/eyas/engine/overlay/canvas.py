@@ -11,8 +11,6 @@ from eyas.engine.core.optics.pinhole import project
 from eyas.engine.state.draw import Views
 from eyas.lanes import exact
 
-__all__ = ["CASING", "NEAR", "Canvas", "cover"]
-
 NEAR = 0.1  # Nearer parts than this are not drawn [m]
 
 Floats = NDArray[np.float32]

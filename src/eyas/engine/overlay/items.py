@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.engine.state.terrain import Plane
 
-__all__ = ["GroundArea", "Label", "Overlay", "Solid", "ThinLine"]
-
 Colour = tuple[float, float, float]  # sRGB, each 0 to 1
 
 

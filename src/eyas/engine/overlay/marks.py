@@ -19,8 +19,6 @@ from eyas.engine.task.reward import axis_depth, view_centre
 from eyas.engine.task.rules import BuiltinReward, Rules
 from eyas.lanes import exact, interpreted
 
-__all__ = ["Marks"]
-
 DRONE_SIZE = 0.5
 """Distance between neighbouring motors [m]; larger than the real one, to be visible from far."""
 

@@ -16,8 +16,6 @@ from eyas.engine.overlay.solid import paint_solid
 from eyas.engine.state.draw import Picture, Views
 from eyas.lanes import exact
 
-__all__ = ["paint_overlays", "with_depth"]
-
 SMALLEST, OF_HEIGHT = 9, 0.042
 """Size of letters: a share of the picture's height, but at least this many pixels."""
 

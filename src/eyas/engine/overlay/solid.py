@@ -9,8 +9,6 @@ from eyas.engine.overlay.canvas import CASING, NEAR, Canvas
 from eyas.engine.overlay.items import Solid
 from eyas.lanes import exact
 
-__all__ = ["paint_solid"]
-
 SIDE = 4  # Number of samples along each side of a pixel
 OUTLINE = 1.25  # Width of the outline, which lies outside the body, in strokes of the canvas
 TOWARDS_LIGHT = np.array([0.36, 0.48, 0.8])  # World frame, of length 1

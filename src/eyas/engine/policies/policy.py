@@ -16,19 +16,6 @@ from eyas.engine.settings.env import EnvConfig, ObservationPart
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.snapshot import Snapshot
 
-__all__ = [
-    "BLIND",
-    "Decision",
-    "Failure",
-    "Instruction",
-    "Policy",
-    "PolicyFailedError",
-    "PolicyInput",
-    "Start",
-    "env_config",
-    "settings_in",
-]
-
 BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
 """Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
 

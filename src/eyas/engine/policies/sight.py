@@ -11,8 +11,6 @@ from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.motion import ActorState
 from eyas.lanes import exact
 
-__all__ = ["SIZE", "nearest_to_middle", "subjects", "visible_shares"]
-
 SIZE = 63, 84  # Height and width of the pictures in which pixels are counted
 
 

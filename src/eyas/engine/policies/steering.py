@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from eyas.engine.settings.env import EnvConfig
 from eyas.lanes import exact
 
-__all__ = ["DEPTH", "PERIOD", "ground_offset", "ground_width", "pixel_offset", "towards"]
-
 Floats = NDArray[np.float64]
 
 _FIELD_OF_VIEW, _ASPECT = 0.7854, 0.75

@@ -4,8 +4,6 @@ responsible AI.
 
 from typing import Any
 
-__all__ = ["CONFORMS_TO", "CONTEXT"]
-
 CONTEXT: dict[str, Any] = {
     "@language": "en",
     "@vocab": "https://schema.org/",

@@ -36,18 +36,6 @@ from eyas.engine.recordings.recording import (
     from_first_sight,
 )
 
-__all__ = [
-    "EXPORTS",
-    "ExportOptions",
-    "add_episodes",
-    "damaged_export",
-    "export",
-    "exports_folder",
-    "finish_export",
-    "formats_needs",
-    "require_outputs",
-]
-
 _LOG = logging.getLogger("eyas")
 EXPORTS = "exports"  # Folder of the exports in that of a recording or data set
 FINISHED, GROWING = "export.json", ".export.json"

@@ -26,24 +26,6 @@ from eyas.engine.exports.label import FIELDS, Label
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = [
-    "CLASS_NAMES",
-    "FORMATS",
-    "KEPT",
-    "SETTING",
-    "Exported",
-    "Format",
-    "Job",
-    "SeenObject",
-    "by_split",
-    "left_top_width_height",
-    "lines",
-    "numbered",
-    "objects_of",
-    "picture_ending",
-    "split_of",
-]
-
 CLASS_NAMES = {
     ObjectClass.CAR: "car",
     ObjectClass.TRUCK: "truck",

@@ -34,17 +34,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT, LAST_PARKED
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = [
-    "DATASET_FILE",
-    "OF_EPISODES",
-    "RecordedEpisode",
-    "RecordedFrame",
-    "Recording",
-    "from_first_sight",
-    "load",
-    "load_part",
-]
-
 DATASET_FILE = "dataset.json"  # Contents of a data set, see `eyas.datasets.plan`
 SPLITS = ("train", "val", "test")  # Folders of a data set, in the order of its episodes
 MASK_OFFSET = ACTOR_OBJECT - 1

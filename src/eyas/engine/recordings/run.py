@@ -10,8 +10,6 @@ from eyas.engine.recordings.export import ExportOptions, export, exports_folder
 from eyas.engine.recordings.recording import load
 from eyas.engine.terminal.progress import frames_bar
 
-__all__ = ["run"]
-
 
 def run(
     folder: Path,

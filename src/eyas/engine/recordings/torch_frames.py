@@ -15,8 +15,6 @@ try:
 except ImportError as error:
     raise MissingExtraError("a recording as a PyTorch data set", "train") from error
 
-__all__ = ["TorchFrames"]
-
 
 class TorchFrames(Dataset[dict[str, Any]]):
     """Items are dictionaries of NumPy arrays, which `torch.utils.data.default_collate` makes

@@ -10,8 +10,6 @@ from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 
-__all__ = ["Dialect", "dialect", "named_path", "of_a_run", "originals_named", "spoken"]
-
 Nested = Mapping[str, Any]
 
 

@@ -8,17 +8,6 @@ from pydantic import Field, model_validator
 from eyas.engine.camera.config import ColourLayout, Colours
 from eyas.engine.core.config import Config
 
-__all__ = [
-    "ActionKind",
-    "ActionSpeeds",
-    "EnvConfig",
-    "EnvSpeeds",
-    "GimbalConfig",
-    "MixturePart",
-    "ObservationConfig",
-    "ObservationPart",
-]
-
 Speed = Annotated[float, Field(ge=-1e4, le=1e4)]
 TurnRate = Annotated[float, Field(ge=-1e3, le=1e3)]
 

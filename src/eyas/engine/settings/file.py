@@ -16,14 +16,6 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.dialect import dialect, named_path, spoken
 from eyas.engine.settings.trust import refuse_code
 
-__all__ = [
-    "SCHEMA_KEY",
-    "load_settings",
-    "parsed_override",
-    "read_settings",
-    "save_settings",
-]
-
 _LOG = logging.getLogger("eyas")
 
 Nested = dict[str, Any]

@@ -10,8 +10,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import SCHEMA_KEY
 
-__all__ = ["config_schema", "field_texts"]
-
 Schema = dict[str, Any]
 
 

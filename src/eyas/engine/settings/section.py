@@ -8,8 +8,6 @@ from eyas.engine.core.config import Config, validated
 if TYPE_CHECKING:  # which is made of the sections
     from eyas.engine.settings.config import EngineConfig
 
-__all__ = ["Changes", "Section"]
-
 Changes = Mapping[str, Any]
 
 

@@ -15,8 +15,6 @@ from eyas.engine.core.files import user_path
 from eyas.engine.core.named_code import code_named
 from eyas.engine.settings.config import EyasConfig, variants
 
-__all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code", "refuse_named"]
-
 TRUST_VARIABLE = "EYAS_TRUST"
 """Environment variable: folders whose files of settings, at any depth, may name code."""
 

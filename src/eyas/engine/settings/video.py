@@ -7,8 +7,6 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.settings.env import ActionSpeeds
 
-__all__ = ["VideoConfig"]
-
 ShareAsked = Annotated[float, Field(ge=0, le=1)] | None
 
 

@@ -12,17 +12,6 @@ from eyas.engine.state.lighting import LightState
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass
 
-__all__ = [
-    "NO_SPRAY",
-    "DrawList",
-    "DrawStage",
-    "MovingParts",
-    "PartLibrary",
-    "Picture",
-    "Renderer",
-    "Views",
-]
-
 
 class DrawStage(IntEnum):
     """Stages of drawing a picture, in order; `eyas bench --stages` stops after each."""

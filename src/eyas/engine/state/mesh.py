@@ -6,8 +6,6 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["MARGIN", "Material", "Mesh", "Surface"]
-
 MARGIN = 0.275
 """Asphalt beside the lines of a `Surface.MARKING` [m]: half the gap between bars of a crossing."""
 

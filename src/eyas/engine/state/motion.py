@@ -7,8 +7,6 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SAMPLE", "ActorState", "ActorView", "Lamp", "Motion", "joined"]
-
 SAMPLE: Final = np.dtype(
     [
         ("x", np.float32),

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FARTHEST", "RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode", "network_problems"]
-
 FARTHEST = 1e5
 """Largest coordinate on a map [m]."""
 

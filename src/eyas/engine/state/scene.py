@@ -11,20 +11,6 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.terrain import Terrain
 
-__all__ = [
-    "ACTOR_OBJECT",
-    "DRONE_CLASS",
-    "LABELLED",
-    "LAST_PARKED",
-    "SKY_OBJECT",
-    "Colliders",
-    "Fixtures",
-    "Footways",
-    "Lamps",
-    "ObjectClass",
-    "Scene",
-]
-
 SKY_OBJECT = -1  # Object id of a pixel that shows the sky; kernels read it
 ACTOR_OBJECT = 1 << 16
 """Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are objects of the scene."""

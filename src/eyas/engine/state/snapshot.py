@@ -13,13 +13,6 @@ from numpy.typing import NDArray
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.lighting import LightState
 
-__all__ = [
-    "CameraState",
-    "Snapshot",
-    "TargetState",
-    "TrackerState",
-]
-
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -7,17 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 
-__all__ = [
-    "Plane",
-    "Terrain",
-    "ground_at",
-    "height_over",
-    "plane_at",
-    "relief_at",
-    "reliefs",
-    "slope_at",
-]
-
 
 class Terrain(NamedTuple):
     """The ground of a map: a floor, and a relief above it.

@@ -12,34 +12,6 @@ import typer
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.settings.preset import PRESETS
 
-__all__ = [
-    "POLICIES",
-    "SEVERAL",
-    "AsJson",
-    "ConfigFile",
-    "MapName",
-    "OnlyMaps",
-    "OnlyWeathers",
-    "Out",
-    "Overrides",
-    "Overwrite",
-    "Plots",
-    "Preset",
-    "Quiet",
-    "Ray",
-    "Resume",
-    "Seed",
-    "Trust",
-    "UntilIdle",
-    "Weather",
-    "Workers",
-    "by_policy",
-    "chosen_file",
-    "gathered",
-    "refuse_both",
-    "to_write",
-]
-
 ConfigFile = Annotated[
     Path | None,
     typer.Option(

@@ -7,8 +7,6 @@ from rich import progress as bar
 from rich.console import Console
 from rich.progress import Progress
 
-__all__ = ["frames_bar", "sumo_progress"]
-
 
 @contextmanager
 def sumo_progress() -> Iterator[Callable[[float], None]]:

@@ -6,8 +6,6 @@ import sys
 
 from eyas.engine.core.errors import one_line
 
-__all__ = ["lacks_memory", "say"]
-
 
 def say(line: str) -> None:
     """Print a line on stderr, unless its terminal is gone or its disk full."""

@@ -18,8 +18,6 @@ from eyas.engine.traffic.config import Source
 from eyas.engine.video.camera_flights import CameraFlights
 from eyas.engine.video.policy import PolicyPilot
 
-__all__ = ["Exact", "Mover", "RandomActions", "check_flight", "flight_of", "mover_of"]
-
 _EXACT, _RANDOM = "exact", "random"  # Values of `video.flight` beside camera paths
 
 

@@ -18,8 +18,6 @@ from eyas.engine.sim.flights.signals import STEP, sampled_at
 from eyas.engine.sim.simulation import Simulation
 from eyas.lanes import exact
 
-__all__ = ["CameraFlights"]
-
 Floats = NDArray[np.float64]
 
 _STEP_TICKS = round(STEP / PHYSICS_STEP)

@@ -19,8 +19,6 @@ from eyas.engine.exports.writer import (
 )
 from eyas.engine.recordings.export import EXPORTS
 
-__all__ = ["EpisodeFiles", "RecordedPaths", "paths_below", "read_complete"]
-
 _TRACKER = r"(DRONE|CAR)\d+"
 _EPISODE = rf"{_TRACKER}/episode\d+"
 _EXPORTED = rf"{EXPORTS}(/(.|\n)*)?"

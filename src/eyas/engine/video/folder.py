@@ -27,8 +27,6 @@ from eyas.engine.video.formats import writers_in
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE
 
-__all__ = ["VideoFolder", "check_folder", "open_folder", "recorded_seed"]
-
 SETTINGS = "config.json"
 ORIGIN = "version.json"
 """Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",

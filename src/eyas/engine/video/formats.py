@@ -16,8 +16,6 @@ from eyas.engine.recordings.recording import load
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.terminal.progress import frames_bar
 
-__all__ = ["formats_in", "with_writers", "write_formats", "writers_in"]
-
 _LOG = logging.getLogger("eyas")
 
 

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.settings.video import VideoConfig
 
-__all__ = ["FrameGrid", "RecordingEnd"]
-
 _SLACK = 1e-6  # Largest rounding error of a time in seconds, in ticks
 _NO_END = 2**62  # A tick that no recording reaches
 

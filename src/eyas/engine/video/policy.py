@@ -21,8 +21,6 @@ from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.trackers.gimbal_command import WIDTH
 
-__all__ = ["PolicyPilot"]
-
 _SEEDS = 2**62  # Seeds of policies are below it
 
 

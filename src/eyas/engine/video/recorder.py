@@ -38,8 +38,6 @@ from eyas.engine.state.draw import Picture
 from eyas.engine.video.episode import EpisodeFiles, RecordedPaths, paths_below, read_complete
 from eyas.engine.video.folder import VideoFolder
 
-__all__ = ["ReachedShares", "Recorder", "WriterThreads", "missed"]
-
 _NEAR = 0.05  # A share that differs by no more from what was asked is reached
 
 

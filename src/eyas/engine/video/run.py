@@ -34,8 +34,6 @@ from eyas.engine.video.formats import with_writers, write_formats, writers_in
 from eyas.engine.video.frame_grid import FrameGrid, RecordingEnd
 from eyas.engine.video.recorder import ReachedShares, Recorder, missed
 
-__all__ = ["run"]
-
 _LOG = logging.getLogger("eyas")
 _NEVER = 1e6  # A limit that no tracker reaches
 

@@ -9,8 +9,6 @@ from eyas.engine.core.config import Config
 from eyas.engine.core.named_code import NAMES_CODE
 from eyas.engine.core.variation import Variation, within
 
-__all__ = ["LightConfig", "WorldConfig", "WorldWindConfig", "world_of"]
-
 Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
 Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
 

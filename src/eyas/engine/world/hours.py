@@ -7,8 +7,6 @@ from typing import Any
 from eyas.engine.state.lighting import Lighting
 from eyas.lanes import exact
 
-__all__ = ["at_hour", "sun_at", "under_moon"]
-
 Colour = tuple[float, float, float]  # Linear red, green and blue; also a direction
 
 _LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)

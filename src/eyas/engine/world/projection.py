@@ -14,8 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 
-__all__ = ["Projection"]
-
 # The ellipsoid WGS 84: half axis [m], squared eccentricities.
 _A = 6378137.0
 _FLAT = 1 / 298.257223563  # Flattening of the ellipsoid WGS 84

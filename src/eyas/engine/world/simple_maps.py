@@ -1,7 +1,5 @@
 """The simple map that stands for each map and weather, for the first lessons of a training."""
 
-__all__ = ["simple_world"]
-
 _SKINS = {
     "citystreet": "grass",
     "desert": "desert",

@@ -11,27 +11,6 @@ from eyas.engine.core.registry import Registry
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.world.hours import at_hour, under_moon
 
-__all__ = [
-    "AUTUMN",
-    "CLEAR_DAY",
-    "CLEAR_NIGHT",
-    "DAY",
-    "DUSK",
-    "DUST",
-    "FOG",
-    "FOGGY",
-    "NIGHT",
-    "OVERCAST",
-    "RAIN",
-    "SNOW",
-    "WEATHERS",
-    "WINTER_DAY",
-    "Season",
-    "Weather",
-    "in_fog",
-    "unchanged",
-]
-
 
 class Season(StrEnum):
     """The state of plants, roofs and fields."""

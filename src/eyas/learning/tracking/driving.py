@@ -20,8 +20,6 @@ from eyas.engine.settings.env import EnvConfig
 from eyas.engine.state.motion import ActorState
 from eyas.learning.tracking.flights import episodes_by_day, protocol_of_batch
 
-__all__ = ["LOOK", "Drives", "driven"]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]

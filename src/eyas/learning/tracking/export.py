@@ -24,8 +24,6 @@ from eyas.learning.tracking.network import (
     DetectorNetwork,
 )
 
-__all__ = ["export", "scaled_pixels"]
-
 
 def export(
     network: DetectorNetwork,

@@ -16,8 +16,6 @@ from eyas.engine.targets.config import TargetName
 from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.shots import Shots
 
-__all__ = ["MAPS", "WEATHERS", "Pilot", "episodes_by_day", "flown", "protocol_of_batch"]
-
 Pilot = Oracle | Pupil
 
 MAPS = ("citystreet", "downtown", "village", "lake", "desert", "farmland")

@@ -9,8 +9,6 @@ from torch import Tensor, nn
 from eyas.benchmark.policies.tracker.course import HORIZONS, PAST
 from eyas.learning.tracking.driving import Drives
 
-__all__ = ["FARTHEST", "Forecast", "taught_forecast"]
-
 _WIDTH = 64  # Numbers of a hidden layer
 FARTHEST = 6.0  # Limit of the scaled numbers of a past: rare ones are no reason for wild answers
 _BATCH = 1024  # Pasts in a step

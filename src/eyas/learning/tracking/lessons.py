@@ -12,8 +12,6 @@ from eyas.learning.config import LESSON
 from eyas.learning.tracking.network import DetectorNetwork
 from eyas.learning.tracking.samples import GROUP, Sample, Samples
 
-__all__ = ["Loss", "Progress", "loss_of", "taught"]
-
 _GROUPS = LESSON // GROUP  # Groups in a step
 _SHOWN = 0.6  # Share of the other pictures of a group whose keys make the target's
 _UNKNOWN = 0.15  # Share of the pictures without any key

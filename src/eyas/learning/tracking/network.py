@@ -11,8 +11,6 @@ from torch import Tensor, nn
 
 from eyas.benchmark.policies.tracker.detector import STRIDE
 
-__all__ = ["MEAN", "SPREAD", "DetectorNetwork"]
-
 MEAN, SPREAD = 110.0, 60.0  # Mean and standard deviation of pixels by day
 OFFSET = 4.0  # Place within a cell for an output of 1 [pixels]
 

@@ -9,8 +9,6 @@ from eyas.engine.settings.env import EnvConfig
 from eyas.lanes import exact
 from eyas.learning.tracking.shots import Shots, projected
 
-__all__ = ["Oracle", "Pupil"]
-
 Floats = NDArray[np.float64]
 
 PERIOD = 0.128  # Time between two pictures [s]

@@ -9,8 +9,6 @@ from torch import Tensor
 
 from eyas.learning.tracking.shots import Shots
 
-__all__ = ["GROUP", "Sample", "Samples"]
-
 GROUP = 4
 """Pictures of one flight in a group: some of them show the target whose key others are given."""
 

@@ -12,8 +12,6 @@ from eyas.engine.core.files import write_atomic
 from eyas.engine.state.snapshot import Snapshot
 from eyas.lanes import exact
 
-__all__ = ["Shots", "load", "projected", "save"]
-
 Floats = NDArray[np.float32]
 
 

@@ -38,8 +38,6 @@ from eyas.learning.tracking.pilots import Oracle, Pupil
 from eyas.learning.tracking.samples import Samples
 from eyas.learning.tracking.shots import Shots, load, save
 
-__all__ = ["train"]
-
 Say = Callable[[str], None]
 
 

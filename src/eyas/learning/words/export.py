@@ -17,8 +17,6 @@ from eyas.learning.tracking.export import scaled_pixels
 from eyas.learning.tracking.network import OFFSET
 from eyas.learning.words.network import PARTS, PLAIN, ListenerNetwork
 
-__all__ = ["export"]
-
 
 def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, path: Path) -> None:
     """Write a network."""

@@ -12,8 +12,6 @@ from eyas.benchmark.policies.listener.detector import STRIDE
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import Scenes, Vehicles, chosen
 
-__all__ = ["Lesson", "Loss", "lesson", "loss_of"]
-
 _ENOUGH: Final = 0.35  # Share of a vehicle that must be visible for it to count as seen
 _WIDE: Final = 0.7  # Standard deviation of a peak [cells]
 

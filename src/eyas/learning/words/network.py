@@ -10,8 +10,6 @@ from torch import Tensor, nn
 from eyas.benchmark.policies.listener.detector import BODIES, NAMES, STRIDE
 from eyas.learning.tracking.network import MEAN, OFFSET, SPREAD
 
-__all__ = ["PARTS", "PLAIN", "ListenerNetwork"]
-
 PARTS = (1, 2, 4, len(NAMES), len(BODIES))
 """Numbers of a cell: vehicle, place, headings, colours, bodies."""
 

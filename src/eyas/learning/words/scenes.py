@@ -22,8 +22,6 @@ from eyas.engine.targets.colour_names import COLOUR_NAMES, colour_distances
 from eyas.engine.targets.grammar.in_view import InView, body_of
 from eyas.lanes import exact
 
-__all__ = ["PLACES", "SCENES", "Scenes", "Vehicles", "chosen", "drawn"]
-
 Floats = NDArray[np.float32]
 Item = TypeVar("Item")
 

@@ -21,8 +21,6 @@ from eyas.learning.words.lessons import Loss, lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import Scenes, drawn
 
-__all__ = ["LISTENER", "train"]
-
 LISTENER: Final = TrackerSettings(height=44.2, gain=0.3)
 """45 m above the road, and about 0.8 m less above the middles of vehicles."""
 

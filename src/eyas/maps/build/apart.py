@@ -2,8 +2,6 @@
 
 from eyas.lanes import exact
 
-__all__ = ["SpacedPoints"]
-
 
 class SpacedPoints:
     """Points that keep a distance; a new one is compared only with those in the squares around it.

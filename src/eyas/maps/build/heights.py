@@ -1,7 +1,5 @@
 """Heights that all parts of a flat map share."""
 
-__all__ = ["FLOOR_HEIGHT", "KERB_HEIGHT"]
-
 FLOOR_HEIGHT = -0.1
 """z of the lawn, on which buildings, trees and poles stand; as in the original [m]."""
 

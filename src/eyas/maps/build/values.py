@@ -17,30 +17,6 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.world.build.materials import FACADES, TEXTURES
 
-__all__ = [
-    "LARGEST_NUMBER",
-    "Area",
-    "ClassName",
-    "Colour",
-    "Cover",
-    "Curve",
-    "Facade",
-    "Heights",
-    "Line",
-    "MaterialRecord",
-    "Named",
-    "Natural",
-    "Numbers",
-    "Outline",
-    "Path",
-    "Place",
-    "Positive",
-    "Rows",
-    "Shape",
-    "Share",
-    "Unit",
-]
-
 LARGEST_NUMBER = 1e6  # Largest number of a plan: lengths are metres, and no map has 100 km
 
 Positive = Annotated[float, Gt(0.0)]  # A number above 0

@@ -19,8 +19,6 @@ from eyas.lanes import exact
 from eyas.maps.buildings import parts
 from eyas.maps.buildings.skyline import FLOOR
 
-__all__ = ["ROOF", "SIDE", "Cottage", "cottage_levels", "outline_at"]
-
 SIDE = 20.0  # Length of the walls [m]
 
 ROOF = 3.6  # Height of the roof above the eaves [m]

@@ -18,8 +18,6 @@ from eyas.maps.buildings.roof_shapes import sloping_roof
 from eyas.maps.buildings.skyline import FLOOR
 from eyas.maps.plan.plan import BuildingPart
 
-__all__ = ["chance_of", "mesh_of", "prisms_of"]
-
 _LOWEST = 0.3  # Lower walls are left out [m]
 
 _LEDGES = 0.08  # How far ledges may lie above or below the edge that they hide [m]

@@ -5,8 +5,6 @@ import numpy as np
 from eyas.engine.state.mesh import Material
 from eyas.engine.world.build.materials import material
 
-__all__ = ["roof_cover", "wall_tint"]
-
 Tint = tuple[float, float, float]
 
 # Factors on the facade's own colour, sRGB: from washed out to sooty, warm to cold.

@@ -12,8 +12,6 @@ from shapely import affinity
 from eyas.engine.world.build.millimetres import snapped
 from eyas.lanes import exact
 
-__all__ = ["BAY", "Lot", "divide", "footprint_in", "frame_angle", "largest", "turned"]
-
 BAY = 3.0  # Width of one window bay; walls are multiples of it where the lot allows [m]
 
 

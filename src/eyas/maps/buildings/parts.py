@@ -10,17 +10,6 @@ from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.world.build.materials import TEXTURES
 from eyas.lanes import exact
 
-__all__ = [
-    "PARAPET",
-    "flat_roof",
-    "ledge",
-    "pyramid_rise",
-    "pyramid_roof",
-    "rings",
-    "underside",
-    "window_wall",
-]
-
 PARAPET = 0.9  # Height of the wall around a flat roof [m]
 
 _PROUD = 0.015

@@ -13,8 +13,6 @@ from eyas.maps.buildings.lots import divide, footprint_in, frame_angle, largest,
 from eyas.maps.buildings.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
 from eyas.maps.plan.plan import BuildingPart
 
-__all__ = ["SETBACK", "place_buildings"]
-
 SETBACK = 4.4  # Least distance between a kerb and a building [m]
 
 _YARD = 0.8  # Part of the set-back that `footprint_in` itself keeps from the edge of every lot [m]

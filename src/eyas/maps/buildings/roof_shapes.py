@@ -19,8 +19,6 @@ from eyas.engine.world.build.materials import TEXTURES
 from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 
-__all__ = ["SHAPES", "fullness", "sloping_roof"]
-
 SHAPES = ("gabled", "hipped", "pyramidal", "skillion", "dome")
 
 _EAVES = 0.35  # By how much a roof stands out from the walls [m]

@@ -14,8 +14,6 @@ from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels, SceneBuilder
 from eyas.lanes import exact
 
-__all__ = ["UNITS", "add_rooftop"]
-
 _ROOM = {"stairs": 3.6, "plant": 5.2, "cooler": 1.8, "coolers": 3.4, "duct": 4.6,
          "skylights": 3.4, "tank": 2.0, "vents": 1.6, "mast": 1.2}  # fmt: skip
 """Radius of the free circle that each unit needs [m]."""

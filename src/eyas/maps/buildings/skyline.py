@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["FLOOR", "TOWER_SHARE", "evenly", "ground_areas", "storeys"]
-
 FLOOR = 3.0  # Height of a storey [m]
 
 TOWER_SHARE = 0.22  # Share of the buildings that stand on another one

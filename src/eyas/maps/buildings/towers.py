@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from eyas.lanes import exact
 from eyas.maps.buildings.lots import largest
 
-__all__ = ["STOREY", "Lot", "Part", "divided", "frontage", "stacked"]
-
 _THROUGH = (30.0, 54.0)  # Width of a lot that reaches from one street to the next [m]
 _STRETCH = (26.0, 58.0)  # Length of a stretch of the block with two rows of lots [m]
 _ROW_DEPTH = (0.33, 0.44)  # Depth of a row as a share of the block's; yards lie between two rows

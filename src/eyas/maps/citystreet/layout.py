@@ -32,8 +32,6 @@ from eyas.maps.roads import overpass
 from eyas.maps.roads.overpass import Pillar, pillars
 from eyas.maps.street.car_parks import CarPark, place_car_parks, place_rectangle
 
-__all__ = ["EXTENT", "FLOOR", "CityLayout", "lay_out"]
-
 FLOOR = (900.0, 900.0)  # Extent of the floor [m]
 
 EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))  # The floor

@@ -53,9 +53,6 @@ from eyas.maps.street.furniture import furniture_along
 from eyas.maps.street.lamps import lamps_along, lit_by
 from eyas.maps.street.parked_cars import CARS
 
-__all__ = ["make_plan"]
-
-
 _LAMPS = 48
 _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
 _LEGS = 9  # Number of pillars beyond the floor, below the descent of the elevated road

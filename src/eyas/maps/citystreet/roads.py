@@ -9,8 +9,6 @@ from eyas.engine.core.rng import stream
 from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.lanes import exact
 
-__all__ = ["NAME", "road_graph"]
-
 # `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "citystreet"

@@ -18,8 +18,6 @@ from eyas.maps.roads import overpass
 from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
 from eyas.maps.street.parked_cars import CARS
 
-__all__ = ["TREES", "clutter", "great_trees", "greenery", "no_lawn", "parked", "taken_area"]
-
 _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
 """Heights and least distance [m], and number of attempts on a square metre."""
 _MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)

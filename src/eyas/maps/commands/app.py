@@ -10,8 +10,6 @@ import typer
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.terminal.options import AsJson, OnlyMaps, OnlyWeathers, Out, Overwrite, to_write
 
-__all__ = ["app"]
-
 Name = Annotated[
     str, typer.Argument(help="Name of the map, the folder of an imported one, or a plan.")
 ]

@@ -18,16 +18,6 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.engine.world.maps.recipe import Original
 
-__all__ = [
-    "MapFacts",
-    "MapFigures",
-    "about",
-    "describe",
-    "figures_of",
-    "make_another",
-    "street_lines",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class MapFigures:

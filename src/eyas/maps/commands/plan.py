@@ -17,8 +17,6 @@ from eyas.maps.files import roads_in
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
 
-__all__ = ["named_file_problems", "write_plan_of"]
-
 
 def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
     """Write the complete plan of a map, and its streets where they are of no graph.

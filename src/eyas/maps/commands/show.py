@@ -17,8 +17,6 @@ from eyas.engine.traffic.config import TrafficConfig
 from eyas.engine.traffic.library import find_recording
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["run"]
-
 _MARGIN = 60.0  # Around streets and buildings [m]
 _SHARP = 2  # The picture is drawn this much larger, and made smaller at the end
 _PAPER, _BUILDING, _EDGE = (244, 243, 238), (176, 168, 160), (128, 120, 114)

@@ -17,8 +17,6 @@ from eyas.maps.buildings.cottages import SIDE, Cottage
 from eyas.maps.land.mounds import Mound, place_inside, place_ring, sizes
 from eyas.maps.land.outlines import blob
 
-__all__ = ["EXTENT", "FLOOR", "HALF", "DesertLayout", "Drift", "lay_out"]
-
 FLOOR = (982.0, 998.0)  # Extent of the floor [m]
 
 HALF = 710.0  # Half the side of the square that the dunes fill [m]

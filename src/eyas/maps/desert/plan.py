@@ -32,8 +32,6 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.street.lamps import lamps_along
 
-__all__ = ["DRIFT_HEIGHT", "DUNES", "SAND", "make_plan"]
-
 SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
 

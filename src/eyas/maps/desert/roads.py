@@ -12,8 +12,6 @@ from eyas.engine.world.build.millimetres import rounded
 from eyas.engine.world.roads.curves import arc
 from eyas.lanes import exact
 
-__all__ = ["CORNER", "NAME", "road_graph"]
-
 # `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "desert"

@@ -10,8 +10,6 @@ from eyas.maps.desert.layout import EXTENT, DesertLayout
 from eyas.maps.land.relief import Points, Relief, heights_of
 from eyas.maps.plants import gardens
 
-__all__ = ["scattered_over", "wheel_tracks"]
-
 _REACH = 100.0  # Distance from the roads as far as there are stones and plants of their own [m]
 _BESIDE, _BESIDE_BOULDERS = 2.8, 9.0  # Their least distance from a road [m]
 _GROUPS = (13.0, 0.008)

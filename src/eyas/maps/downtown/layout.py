@@ -22,8 +22,6 @@ from eyas.maps.downtown.roads import Cell, Grid, grid
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.things.railway import BESIDE, SECTION, Viaduct
 
-__all__ = ["EXTENT", "FLOOR", "DowntownLayout", "facade_of", "lay_out", "roof_of"]
-
 _HEIGHT = ((0.0, 6.0), (0.25, 19.0), (0.5, 28.0), (0.75, 58.0), (0.88, 105.0),
            (0.95, 190.0), (0.985, 290.0), (1.0, 436.0))  # fmt: skip
 """Share of the buildings and height [m]: quantiles of the original's downtown."""

@@ -55,8 +55,6 @@ from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.parked_cars import CARS
 from eyas.maps.things.subway import LONG, WIDE
 
-__all__ = ["make_plan"]
-
 _STEP = (72.0, 66.0)
 """Distances between the middles of neighbours, along the streets and the avenues [m]."""
 _REACH = 420.0  # Distance from the outermost roads to the farthest [m]

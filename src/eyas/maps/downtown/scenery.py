@@ -21,8 +21,6 @@ from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants import gardens
 from eyas.maps.things.skyways import FLOORS_UNDER, Skyway
 
-__all__ = ["DowntownScenery", "Kerbs", "Park", "crossing_lamps", "scenery_of"]
-
 _BAY_DEPTH, _BAY_LENGTH = 2.3, 6.1  # Size of a bay along a kerb [m]
 _FROM_CROSSING = 17.0  # Distance from the end of a street to the nearest bay [m]
 _BAYS = (4, 9)  # Bays in a row; between two rows the pavement reaches out to the kerb

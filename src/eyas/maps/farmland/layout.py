@@ -12,8 +12,6 @@ from eyas.engine.world.build.materials import material, without_snow
 from eyas.engine.world.weather import Season
 from eyas.maps.farmland.roads import ROAD_WIDTH
 
-__all__ = ["CROPS", "FLOOR", "SIDE", "VERGE", "Crop", "FieldLot", "lay_out"]
-
 FLOOR = (982.0, 998.0)  # Extent of the floor, as in the original [m]
 
 SIDE = 80.0  # Largest side of a field [m]

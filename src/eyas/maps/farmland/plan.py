@@ -23,9 +23,6 @@ from eyas.maps.plan.plan import (
     things,
 )
 
-__all__ = ["MOUNTAINS", "make_plan"]
-
-
 MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 """What stands beyond the fields."""
 

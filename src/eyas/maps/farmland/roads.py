@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.rng import stream
 from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 
-__all__ = ["NAME", "ROAD_WIDTH", "road_graph"]
-
 # `network.npz` here names the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "farmland"

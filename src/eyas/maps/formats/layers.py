@@ -20,8 +20,6 @@ from eyas.engine.world.maps.place import projection_of
 from eyas.engine.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
 from eyas.maps.commands.info import street_lines
 
-__all__ = ["CLASSES", "rasters_of", "write_layers"]
-
 CLASSES = {
     0: "ground", 1: "road", 2: "pavement", 3: "building", 4: "tree", 5: "structure", 6: "water",
 }  # fmt: skip

@@ -14,20 +14,6 @@ from eyas.engine.mesh.flat import flat_polygon
 from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.state.scene import Fixtures, ObjectClass, Scene
 
-__all__ = [
-    "Copies",
-    "Indexed",
-    "Part",
-    "Welded",
-    "copies_of",
-    "distinct",
-    "parts_of",
-    "prism",
-    "prototypes_of",
-    "subset",
-    "welded",
-]
-
 
 class Part(NamedTuple):
     """An object that is there once."""

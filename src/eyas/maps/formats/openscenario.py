@@ -24,8 +24,6 @@ from eyas.engine.world.maps import MAPS
 from eyas.lanes import exact
 from eyas.maps.formats.roads import opendrive_xml
 
-__all__ = ["ScenarioWriter"]
-
 NAME, ROADS = "traffic.xosc", "roads.xodr"
 _END = b"</OpenSCENARIO>\n"
 _VEHICLES = {

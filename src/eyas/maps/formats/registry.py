@@ -10,8 +10,6 @@ from typing import NamedTuple
 from eyas.engine.core.registry import Registry
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["MAP_FORMATS", "MapExport", "MapFormat", "export"]
-
 
 class MapExport(NamedTuple):
     """What is exported, and how fine."""

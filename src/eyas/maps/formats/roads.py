@@ -17,8 +17,6 @@ from eyas.engine.traffic.sumo import RATE, departures_and_types, options
 from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
 from eyas.engine.world.maps import MAPS
 
-__all__ = ["opendrive_xml", "sumo_files_of", "write_opendrive", "write_sumo"]
-
 
 def _files_of_network(
     name: str, network: bytes, config: TrafficConfig, duration: float

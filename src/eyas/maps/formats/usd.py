@@ -26,8 +26,6 @@ from eyas.maps.formats.meshes import copies_of, parts_of, prism, prototypes_of, 
 if TYPE_CHECKING:
     from pxr import Sdf, Usd
 
-__all__ = ["ENDINGS", "Materials", "write_usd"]
-
 _SHINING = {Surface.LAMP, Surface.SIGNAL}
 _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 

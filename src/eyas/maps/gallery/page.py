@@ -12,8 +12,6 @@ from PIL import Image, ImageDraw, ImageFont
 from eyas.engine.core.installed import installed_version
 from eyas.maps.gallery.still import Viewpoint
 
-__all__ = ["MARK", "PageEntry", "contact_sheet", "page", "png"]
-
 MARK = '<meta name="generator" content="eyas maps gallery">'
 """Text by which the page of a gallery is recognised."""
 

@@ -13,20 +13,6 @@ from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.engine.task.spawn import StartValues, start_pose
 from eyas.maps.gallery.still import StillScene, Viewpoint, is_inside, solids
 
-__all__ = [
-    "CAMERA",
-    "POSES",
-    "STOPS",
-    "Cars",
-    "all_cars",
-    "along",
-    "beside_most",
-    "horizon",
-    "on_open_roads",
-    "overview",
-    "stop",
-]
-
 CAMERA = 0.7854  # Horizontal field of view of the drone's camera [rad]
 POSES = ((22.0, 1.37, "down"), (15.0, 0.6, "ahead"))
 """Height [m], pitch [rad] and name of the drone's starts."""

@@ -29,8 +29,6 @@ from eyas.maps.gallery.places import (
 )
 from eyas.maps.gallery.still import StillScene, Viewpoint
 
-__all__ = ["INDEX", "SHEET", "choose_viewpoints", "conditions", "run"]
-
 _PLAIN = 2.0  # Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]
 
 

@@ -15,8 +15,6 @@ from eyas.engine.state.draw import Picture, Views
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT, Colliders, ObjectClass
 
-__all__ = ["StillScene", "Viewpoint", "is_inside", "solids"]
-
 
 def solids(colliders: Colliders) -> Iterator[tuple[shapely.Polygon, float, float]]:
     """Yield outline, bottom and top of each solid prism [m]."""

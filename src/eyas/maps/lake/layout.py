@@ -19,8 +19,6 @@ from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.plants.forest import SPECIES
 from eyas.maps.street.car_parks import CarPark, place_car_parks
 
-__all__ = ["EXTENT", "FLOOR", "LakeLayout", "Strip", "lay_out"]
-
 FLOOR = (5000.0, 5000.0)  # Extent of the floor, as in the original [m]
 EXTENT = shapely.box(-FLOOR[0] / 2, -FLOOR[1] / 2, FLOOR[0] / 2, FLOOR[1] / 2)
 

@@ -41,8 +41,6 @@ from eyas.maps.plants.forest import SPECIES, STAND
 from eyas.maps.street.lamps import lamps_along
 from eyas.maps.street.parked_cars import CARS
 
-__all__ = ["make_plan"]
-
 _SOIL = Material("soil", (0.97, 0.95, 0.95), Surface.HEATH)
 _SHORE = replace(_SOIL, surface=Surface.HEATH_SHORE)
 _WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)

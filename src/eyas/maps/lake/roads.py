@@ -10,8 +10,6 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 
-__all__ = ["COLUMNS", "NAME", "ROWS", "Lattice", "lattice", "road_graph"]
-
 # `network.npz` here names the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "lake"

@@ -14,8 +14,6 @@ from eyas.maps.plants import gardens
 from eyas.maps.plants.wild import BED
 from eyas.maps.things.jetties import BESIDE, LONG
 
-__all__ = ["SHORE_KINDS", "boats", "shore_life", "water_in"]
-
 # order: bytes of plans depend on it, which draw an index of it
 SHORE_KINDS = ("reeds 0", "reeds 1", "stones 2", "stones 3")
 """Kinds of what stands and lies along shores."""

@@ -19,20 +19,6 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.plan.plan import Flat
 
-__all__ = [
-    "PAVEMENT_WIDTH",
-    "asphalt",
-    "blob",
-    "edged",
-    "far_plain",
-    "lawn",
-    "pavement_area",
-    "plain",
-    "rectangle",
-    "verge_area",
-    "yards",
-]
-
 PAVEMENT_WIDTH = 2.6  # Distance from the kerb to the lawn [m]
 
 _VERGE = 1.5  # Width of the pavement along the outer side of the outer streets [m]

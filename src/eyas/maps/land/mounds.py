@@ -11,8 +11,6 @@ from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 from eyas.maps.build.values import Positive
 
-__all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
-
 _TRIES = 400
 """Number of places tried for each mound inside."""
 _APART = 0.52

@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 from eyas.engine.world.build.millimetres import rounded
 from eyas.lanes import exact
 
-__all__ = ["blob", "wavy"]
-
 Points = NDArray[np.float64]
 
 

@@ -15,8 +15,6 @@ from eyas.engine.world.roads.curves import TURN, arc
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.roads.overpass import DECK_WIDTH, path
 
-__all__ = ["CROPS", "access_road", "city_land", "descent", "fields"]
-
 _LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
 """Borders of the fields from the centre of a floor of 900 m; scaled with the floor [m]."""
 CROPS = (

@@ -16,17 +16,6 @@ from eyas.lanes import exact
 from eyas.maps.land.mounds import Mound, highest
 from eyas.maps.plan import plan
 
-__all__ = [
-    "Relief",
-    "heights_of",
-    "kinds_of",
-    "relief",
-    "relief_of",
-    "snow_over",
-    "surface_of",
-    "terrain_of",
-]
-
 _JITTER = 0.36
 """Most by which a point is moved from its place in the lattice, as a share of the spacing."""
 

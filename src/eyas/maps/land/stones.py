@@ -10,8 +10,6 @@ from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
 
-__all__ = ["BOULDER", "STONES", "boulder_levels", "stone_levels"]
-
 STONES = 1.5  # Radius of a scatter of stones [m]
 BOULDER = 0.8  # Height of the highest boulder [m]
 

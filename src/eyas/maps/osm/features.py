@@ -9,8 +9,6 @@ from annotated_types import Ge
 from eyas.maps.build.values import Area as Region
 from eyas.maps.build.values import Colour, Curve, Named, Outline
 
-__all__ = ["AREA_KINDS", "Area", "House", "Roof", "Survey"]
-
 Point = tuple[float, float]
 
 Roof = Literal["flat", "gabled", "hipped", "pyramidal", "skillion", "dome"]

@@ -10,8 +10,6 @@ from eyas.maps.osm.measures import Odd, colour, length, number
 from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import Shapes
 
-__all__ = ["houses_of"]
-
 _ROOFS: dict[str, Roof] = {
     "flat": "flat",
     "gabled": "gabled", "gambrel": "gabled", "saltbox": "gabled", "round": "gabled",

@@ -57,8 +57,6 @@ from eyas.maps.osm.streets import osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
 
-__all__ = ["ATTRIBUTION", "Report", "run"]
-
 
 @dataclass(slots=True)
 class Report:

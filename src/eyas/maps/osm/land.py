@@ -11,8 +11,6 @@ from eyas.maps.osm.reader import Tags
 from eyas.maps.osm.rings import Shapes
 from eyas.maps.osm.streets import is_street
 
-__all__ = ["add_land"]
-
 _KINDS: dict[tuple[str, str], str] = {
     **{("natural", kind): "water" for kind in ("water", "bay")},
     **{("landuse", kind): "water" for kind in ("basin", "reservoir")},

@@ -6,8 +6,6 @@ from collections.abc import Callable
 
 from eyas.maps.osm.reader import Tags
 
-__all__ = ["Odd", "colour", "length", "number"]
-
 Odd = Callable[[str], None]  # Called with the name of a tag whose value makes no sense
 
 Colour = tuple[float, float, float]

@@ -9,8 +9,6 @@ from xml.etree import ElementTree
 
 from eyas.engine.core.errors import ConfigError, DataFileError, MissingExtraError
 
-__all__ = ["Bounds", "OsmData", "Relation", "Tags", "Way", "covered", "read_osm", "read_pbf"]
-
 Tags = dict[str, str]
 Bounds = tuple[float, float, float, float]  # West, south, east and north, in degrees
 

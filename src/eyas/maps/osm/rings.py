@@ -10,8 +10,6 @@ from eyas.engine.world.projection import Projection
 from eyas.engine.world.roads.areas import polygons_of
 from eyas.maps.osm.reader import OsmData, Relation, Tags, Way
 
-__all__ = ["Shapes"]
-
 _LEAST = 0.5  # Areas below this are left out [m^2]
 
 

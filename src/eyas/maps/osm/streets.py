@@ -14,8 +14,6 @@ from eyas.engine.traffic.sumo_install import sumo_binary, sumo_environment
 from eyas.maps.osm.measures import Odd, number
 from eyas.maps.osm.reader import Bounds, OsmData, Tags, Way
 
-__all__ = ["OPTIONS", "is_street", "osm_network", "street_file"]
-
 _DRIVEN = re.compile(
     r"(motorway|trunk|primary|secondary|tertiary)(_link)?|unclassified|residential|living_street"
     r"|service|road"

@@ -37,8 +37,6 @@ from eyas.maps.things.fields import field_mesh
 from eyas.maps.things.kinds import SOLIDS, THINGS
 from eyas.maps.towns.completed import completed
 
-__all__ = ["PLANNER", "build_scene"]
-
 _NEAR = 80.0  # Reach of the ground that is cut into small squares beside streets [m]
 _SLOPE = 1.4  # Width of the slope around a heap [m]
 _SNOW_FRINGE = 12.0

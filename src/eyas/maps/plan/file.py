@@ -24,17 +24,6 @@ from eyas.maps.build.values import LARGEST_NUMBER
 from eyas.maps.plan.plan import Backdrop, Far, GroundCover, Hills, MapPlan, Things
 from eyas.maps.things.kinds import THINGS
 
-__all__ = [
-    "FORMAT",
-    "content_of",
-    "problems",
-    "read_plan",
-    "road_faults",
-    "schema",
-    "text_of",
-    "write_plan",
-]
-
 FORMAT = "eyas-plan-1"  # Value of `format` in the files of this version
 
 _LARGEST = 256 << 20  # Largest file that is read, unpacked [bytes]

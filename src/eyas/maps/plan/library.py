@@ -12,16 +12,6 @@ from eyas.maps.street.clutter import CLUTTER
 from eyas.maps.street.furniture import FURNITURE
 from eyas.maps.street.parked_cars import CARS
 
-__all__ = [
-    "CAR_KINDS",
-    "CLUTTER_KINDS",
-    "FURNITURE_KINDS",
-    "STREET_KINDS",
-    "houses",
-    "plant_kinds",
-    "wild_kinds",
-]
-
 CAR_KINDS = tuple(ThingKind(name=name, make="parked car", variant=k) for k, name in enumerate(CARS))
 CLUTTER_KINDS = tuple(ThingKind(name=name) for name in CLUTTER)
 FURNITURE_KINDS = tuple(ThingKind(name=name) for name in FURNITURE)

@@ -10,8 +10,6 @@ from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
 
-__all__ = ["COLOURS", "Crown", "in_autumn", "leaf_cards", "shell"]
-
 Array = NDArray[np.float64]
 
 _ATLAS = 2  # Clusters in each direction of the texture `leaves`

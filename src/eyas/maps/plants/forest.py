@@ -19,8 +19,6 @@ from eyas.engine.world.weather import Season
 from eyas.lanes import exact
 from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["FROSTED", "SPECIES", "STAND", "TREES", "Species", "stand_levels"]
-
 STAND = 10.0  # Side of the square of a stand [m]
 TREES = 20  # Trees in a stand: one on five square metres
 

@@ -12,17 +12,6 @@ from eyas.lanes import exact
 from eyas.maps.build.apart import SpacedPoints
 from eyas.maps.plants.shrubs import PIECE
 
-__all__ = [
-    "BORDERS",
-    "borders",
-    "clustered",
-    "paved_yards",
-    "row",
-    "scattered",
-    "small_trees",
-    "sown",
-]
-
 _APRON = 0.9  # Width of the paving at the foot of walls [m]
 _PATH = 2.2  # Width of a path to a door [m]
 _LONGEST_PATH = 16.0

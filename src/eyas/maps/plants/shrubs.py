@@ -13,8 +13,6 @@ from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
 from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["DECIDUOUS", "PIECE", "PLANTS"]
-
 PIECE = 4.0  # Length of a piece of a hedge or of a border of shrubs, along x [m]
 
 Array = NDArray[np.float64]

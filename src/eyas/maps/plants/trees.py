@@ -11,8 +11,6 @@ from eyas.engine.world.build.materials import material
 from eyas.lanes import exact
 from eyas.maps.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["CONES", "VARIANTS", "cone_tree_levels", "place_along", "street_tree_levels"]
-
 VARIANTS = 4  # Number of shapes; variants k and k + 4 differ only by chance
 
 Array = NDArray[np.float64]

@@ -12,8 +12,6 @@ from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
 from eyas.maps.plants.foliage import Crown, leaf_cards
 
-__all__ = ["BED", "WILD"]
-
 BED = 3.4  # Length of a piece of a bed of reeds, along x [m]
 
 Array = NDArray[np.float64]

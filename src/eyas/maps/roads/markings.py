@@ -15,8 +15,6 @@ from eyas.lanes import exact
 from eyas.maps.plan.plan import Paint
 from eyas.maps.roads.painting import RoadPaint, Stripe, stripes
 
-__all__ = ["crossings_of", "frame_of", "paint_of", "placed", "road_paint"]
-
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18  # Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]
 _CENTRE_LINE = 0.2

@@ -16,22 +16,6 @@ from eyas.engine.world.build.millimetres import rounded, unit
 from eyas.engine.world.roads.curves import arc
 from eyas.maps.build.values import Place, Unit
 
-__all__ = [
-    "BASE_HEIGHT",
-    "COLUMN_RADIUS",
-    "DECK_DEPTH",
-    "DECK_WIDTH",
-    "SOLID_BELOW",
-    "Pillar",
-    "carriageway_mesh",
-    "deck_area",
-    "deck_prisms",
-    "path",
-    "pillar_mesh",
-    "pillars",
-    "sides_mesh",
-]
-
 DECK_WIDTH = 14.0  # Distance between the walls [m]
 
 DECK_DEPTH = 1.5  # Distance from the surface down to the underside [m]

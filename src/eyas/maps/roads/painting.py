@@ -15,18 +15,6 @@ from eyas.engine.world.build.millimetres import length
 from eyas.engine.world.roads.areas import GRID, split_on_grid
 from eyas.maps.build.values import Line, Positive
 
-__all__ = [
-    "MARGIN_HEIGHT",
-    "PAINT_HEIGHT",
-    "WHITE",
-    "RoadPaint",
-    "Stripe",
-    "margins_of",
-    "mesh_of",
-    "painted",
-    "stripes",
-]
-
 PAINT_HEIGHT = 0.015
 """z of the paint: invisible, but enough to separate it from the asphalt at any distance [m]."""
 MARGIN_HEIGHT = 0.012

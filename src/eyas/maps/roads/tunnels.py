@@ -14,8 +14,6 @@ from eyas.engine.world.build.materials import TEXTURES
 from eyas.lanes import exact
 from eyas.maps.build.values import Place, Positive, Unit
 
-__all__ = ["HALF_WIDTH", "Tunnel", "tunnel_mesh", "tunnel_prisms"]
-
 HALF_WIDTH = 19.0
 """Distance from the middle of the road to the foot of the mound [m]."""
 

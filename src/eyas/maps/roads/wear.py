@@ -20,8 +20,6 @@ from eyas.engine.world.build.millimetres import unit
 from eyas.engine.world.roads.areas import GRID
 from eyas.lanes import exact
 
-__all__ = ["WEAR_HEIGHTS", "road_wear", "worn_lanes"]
-
 WEAR_HEIGHTS = (0.003, 0.006, 0.009)
 """z of tracks; of patches and oil; of lids and seals: between the asphalt and the paint [m]."""
 

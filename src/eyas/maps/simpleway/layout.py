@@ -12,8 +12,6 @@ from eyas.lanes import exact
 from eyas.maps.roads.painting import Stripe
 from eyas.maps.simpleway.roads import is_loop
 
-__all__ = ["FLOOR", "loop_lines", "paved", "sand_bars"]
-
 FLOOR = (7000.0, 5000.0)  # Extent of the floor, as in the original [m]
 _ROWS = 7  # Bars on each road
 _REACH = 1110.0  # Distance from the middle of a road to its first and last bar [m]

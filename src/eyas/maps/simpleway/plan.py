@@ -15,8 +15,6 @@ from eyas.maps.simpleway.layout import FLOOR, loop_lines, paved, sand_bars
 from eyas.maps.simpleway.roads import road_lines
 from eyas.maps.simpleway.scenery import SKINS, Skin
 
-__all__ = ["make_plan"]
-
 _BANK = 2.5  # Bare ground between a road and a strip, at least [m]
 _BAR_HEIGHT = 0.03  # z of the bars of sand [m]
 _SPOTS = 320

@@ -8,8 +8,6 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.engine.world.build.millimetres import rounded, unit
 from eyas.lanes import exact
 
-__all__ = ["NAME", "ROADS", "ROAD_WIDTH", "is_loop", "road_graph", "road_lines"]
-
 # `network.npz` here names the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "simpleway"

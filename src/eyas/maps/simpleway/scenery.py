@@ -12,8 +12,6 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.world.build.materials import material, without_snow
 from eyas.engine.world.build.millimetres import rounded
 
-__all__ = ["SKINS", "Patch", "Skin"]
-
 Points = NDArray[np.float64]
 
 _STRIP_REACH = 2000.0  # Distance from the middle of the map to the ends of coloured strips [m]

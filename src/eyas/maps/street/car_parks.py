@@ -12,8 +12,6 @@ from eyas.lanes import exact
 from eyas.maps.buildings.lots import frame_angle, turned
 from eyas.maps.land.ground import PAVEMENT_WIDTH
 
-__all__ = ["CarPark", "bays_in", "place_car_parks", "place_rectangle"]
-
 _MODULE = 17.0  # Depth of two rows of bays and the aisle between them [m]
 _BAY_LENGTH, _BAY_WIDTH = 5.2, 2.6
 _DRIVEWAY = 6.5

@@ -19,8 +19,6 @@ from eyas.engine.world.build.scene_builder import Levels
 from eyas.engine.world.street.bicycle import bicycle_levels
 from eyas.lanes import exact
 
-__all__ = ["CLUTTER"]
-
 _ABOVE: Final = 0.02  # Height of flat things above the ground, which keeps two surfaces apart [m]
 
 _LAYER: Final = 0.003

@@ -19,8 +19,6 @@ from eyas.engine.world.build.placed import Placed
 from eyas.engine.world.roads.areas import streets
 from eyas.lanes import exact
 
-__all__ = ["CITY_KERBS", "SHOP_FRONTS", "VILLAGE_KERBS", "Ground", "along_kerbs", "at_fronts"]
-
 _CLEAR: Final = 0.3  # Room between two things [m]
 
 _FROM_WALL: Final = 0.75

@@ -18,8 +18,6 @@ from eyas.engine.world.build.scene_builder import Levels
 from eyas.engine.world.roads.areas import streets
 from eyas.lanes import exact
 
-__all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels", "furniture_along"]
-
 BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3  # Size of a bale of hay [m]
 
 _HAY = material("crops_tan", (0.98, 0.9, 0.66))

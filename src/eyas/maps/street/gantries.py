@@ -8,8 +8,6 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
 
-__all__ = ["KINDS", "POST_RADIUS", "POST_TOP", "SPAN", "boards_of", "gantry_levels"]
-
 SPAN = 16.6  # Distance of the two posts, as in the original [m]
 
 POST_RADIUS = 0.2

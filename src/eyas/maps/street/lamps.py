@@ -16,16 +16,6 @@ from eyas.engine.world.roads.areas import streets
 from eyas.lanes import exact
 from eyas.maps.build.apart import SpacedPoints
 
-__all__ = [
-    "BEYOND_KERB",
-    "LIGHT",
-    "POLE_HEIGHT",
-    "POLE_RADIUS",
-    "lamp_levels",
-    "lamps_along",
-    "lit_by",
-]
-
 POLE_HEIGHT = 7.35  # Height of the poles, as in the original [m]
 
 POLE_RADIUS = 0.12  # Radius at the foot [m]

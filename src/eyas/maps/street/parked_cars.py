@@ -21,18 +21,6 @@ from eyas.engine.world.cars.shape import CarShape
 from eyas.engine.world.cars.wheels import wheel_levels
 from eyas.lanes import exact
 
-__all__ = [
-    "CARS",
-    "KINDS",
-    "TYPES",
-    "VARIANTS",
-    "CarType",
-    "ParkedKind",
-    "parked_car",
-    "parked_taxi",
-    "solid_size",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class CarType:

@@ -14,8 +14,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.render.textures.fields import SIZE
 from eyas.engine.world.build.materials import TEXTURES
 
-__all__ = ["FILE", "SHA256", "build_textures"]
-
 FILE = Path(__file__).with_name("textures.xz")
 
 SHA256 = "a7052a9f4d67592c764aea7416694476d9fa156e2e53f6182b9b9684e588d580"

@@ -12,8 +12,6 @@ from eyas.engine.world.weather import Season
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.plan.plan import Field
 
-__all__ = ["field_mesh"]
-
 _TRAMLINES = 20.0  # Distance from one pair of wheel tracks in a crop to the next [m]
 _TRACK, _GAUGE = 0.45, 1.8  # Width of a wheel track, and from its middle to that of the other [m]
 _HEADLAND = 5.0  # Distance from the edge of a field to the ends of its tracks [m]

@@ -19,8 +19,6 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import KERB_HEIGHT
 from eyas.maps.plan.plan import BuildingPart
 
-__all__ = ["add_fronts", "add_water_tank"]
-
 _SHOPS = ("facade_brick", "facade_red_white", "facade_old", "facade_plaster", "facade_stone")
 _BRICK = ("facade_brick", "facade_red_white", "facade_old")
 _AWNED, _ESCAPED = 0.5, 0.75

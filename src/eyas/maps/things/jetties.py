@@ -11,8 +11,6 @@ from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
 
-__all__ = ["BESIDE", "LONG", "boat_levels", "jetty_levels"]
-
 LONG = 9.0  # Length of a jetty, of which a part is over land
 BESIDE = 1.9  # From the middle of a jetty to that of a boat beside it
 

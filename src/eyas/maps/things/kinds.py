@@ -28,8 +28,6 @@ from eyas.maps.things import jetties, subway
 if TYPE_CHECKING:
     from eyas.maps.plan.plan import ThingKind
 
-__all__ = ["SOLIDS", "THINGS", "Thing"]
-
 Solid = Callable[[SceneBuilder, "ThingKind", Placed, int], None]
 """Adds what is solid of a copy of a kind: its pose, and its object."""
 

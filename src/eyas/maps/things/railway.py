@@ -18,8 +18,6 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.build.values import Heights, Place, Unit
 
-__all__ = ["BESIDE", "COLUMNS", "SECTION", "Viaduct", "add_railway"]
-
 _UNDER = 5.5
 """z of the underside: higher than any vehicle [m]."""
 _RAIL = 7.35

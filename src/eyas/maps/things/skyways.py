@@ -20,8 +20,6 @@ from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.build.values import Colour, Facade, Place, Positive
 from eyas.maps.buildings.skyline import FLOOR
 
-__all__ = ["FLOORS_UNDER", "RIM", "Skyway", "add_skyway"]
-
 FLOORS_UNDER = 2
 """Storeys under it."""
 RIM = 0.4

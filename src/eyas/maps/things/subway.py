@@ -11,8 +11,6 @@ from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
 
-__all__ = ["LONG", "WIDE", "entrance_levels"]
-
 LONG, WIDE = 4.6, 1.8  # Size of the opening, along the kerb and across [m]
 _GREEN = material("plain", (0.10, 0.27, 0.20))
 _PIT = material("plain", (0.05, 0.05, 0.06))

@@ -16,8 +16,6 @@ from eyas.maps.buildings.skyline import FLOOR
 from eyas.maps.osm.features import House, Roof
 from eyas.maps.plan.plan import Building, BuildingPart
 
-__all__ = ["building_of", "is_small"]
-
 Tint = tuple[float, float, float]
 
 

@@ -50,8 +50,6 @@ from eyas.maps.towns.buildings import building_of
 from eyas.maps.towns.crossings import kept_free, town_paint
 from eyas.maps.towns.layout import Occupied, Town, lay_out
 
-__all__ = ["completed"]
-
 _TREES = tuple(f"street tree {k}" for k in range(trees.VARIANTS))
 _WATER = Material("water", (0.16, 0.38, 0.50), Surface.WATER)
 _WATER_DEPTH = 0.15  # Depth of water below the road [m]

@@ -15,8 +15,6 @@ from eyas.maps.osm.features import Survey
 from eyas.maps.roads.markings import frame_of, placed
 from eyas.maps.roads.painting import Stripe, stripes
 
-__all__ = ["Crosswalk", "crosswalks_of", "kept_free", "town_paint"]
-
 _HALF = 1.6  # Half the width of a crossing [m]
 _ACROSS = 20.0  # Farthest kerb from where a street is crossed [m]
 _ROUND = 6.0

@@ -16,8 +16,6 @@ from eyas.maps.osm.features import AREA_KINDS, House, Survey
 from eyas.maps.towns.buildings import is_small
 from eyas.maps.towns.crossings import Crosswalk, crosswalks_of
 
-__all__ = ["Occupied", "Town", "lay_out"]
-
 _CLEARANCE = 4.6  # What begins higher than this may stand over a street [m]
 
 _FROM_ROAD = 0.35  # Distance from the asphalt to walls [m]

@@ -14,8 +14,6 @@ from eyas.engine.traffic.recording import Recording
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.traffic.smoothing import Tracks, runs, smooth
 
-__all__ = ["ClassFigures", "TrafficFacts", "about", "lines_of"]
-
 _STANDING = 0.1  # Vehicles slower than this stand [m/s]
 
 _LASTING = 60.0  # Tracks of this length can be followed for a long episode [s]

@@ -22,8 +22,6 @@ from eyas.engine.terminal.options import (
     to_write,
 )
 
-__all__ = ["app"]
-
 app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
 
 _MOST = 10_000  # Largest number of seeds at once

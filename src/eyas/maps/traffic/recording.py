@@ -51,8 +51,6 @@ from eyas.engine.world.maps.recipe import (
 )
 from eyas.engine.world.roads.network_file import save_network
 
-__all__ = ["RecordingJob", "record_all", "run", "run_canonical"]
-
 _LOOK = 0.2  # Time between two looks at the progress [s]
 
 _shares: Any = ()  # Completed share of each job, in memory that the processes share

@@ -21,8 +21,6 @@ from eyas.maps.plants import trees
 from eyas.maps.roads.tunnels import Tunnel
 from eyas.maps.village.roads import road_graph
 
-__all__ = ["EXTENT", "FLOOR", "HALF", "VillageLayout", "lay_out"]
-
 _TUNNEL = 40.0  # Length of a tunnel [m]
 _PAIRS, _SINGLE = 2, 6
 """Number of roads with two tunnels one after the other, and of those with one."""

@@ -43,8 +43,6 @@ from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.maps.village.roads import NAME
 from eyas.maps.village.scenery import grown, trodden, yard_things
 
-__all__ = ["GRASS", "VALLEY", "make_plan"]
-
 GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
 """The valley and its hills."""
 

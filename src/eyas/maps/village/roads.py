@@ -7,8 +7,6 @@ import numpy as np
 from eyas.engine.core.rng import stream
 from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 
-__all__ = ["NAME", "road_graph"]
-
 # `network.npz` and `signals.npz` here name the nodes and edges of `road_graph`;
 # `traffic*.npz` index the network's edges. Other names or another order make all anew.
 NAME = "village"

@@ -14,8 +14,6 @@ from eyas.maps.land.relief import Points, Relief, heights_of
 from eyas.maps.plants import gardens
 from eyas.maps.village.layout import VillageLayout
 
-__all__ = ["GRASS_KINDS", "STONE_KINDS", "grown", "trodden", "yard_things"]
-
 # order: bytes of plans depend on it, which draw an index of it
 GRASS_KINDS = ("green tuft 0", "green tuft 1", "dry tuft 0", "dry tuft 1")
 STONE_KINDS = ("stones 2", "stones 3", "boulder 2", "boulder 3")

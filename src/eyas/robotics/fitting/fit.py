@@ -21,8 +21,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.trackers.airframe import ORIGINAL
 from eyas.robotics.fitting.log import FlightLog
 
-__all__ = ["Fit", "FittedConstant", "fit"]
-
 Floats = NDArray[np.float64]
 
 _HELD_OUT = 0.25  # Share of the flight, its end, on which the fit is tried

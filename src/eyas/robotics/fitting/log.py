@@ -14,8 +14,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.engine.exports.episode_files import ROTOR_COLUMNS, SensorWriter
 
-__all__ = ["FlightLog", "read_log"]
-
 Floats = NDArray[np.float64]
 
 _LARGEST = 1 << 30  # Largest size of a file [bytes]

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 
 from eyas.robotics.fitting.fit import Fit, FittedConstant
 
-__all__ = ["lines", "record"]
-
 
 def lines(fit: Fit, mass: float | None, thrust_constant: float | None) -> Iterator[str]:
     """Yield lines that tell a fit.

@@ -11,8 +11,6 @@ from eyas.robotics.mavlink.pilot import Pilot
 from eyas.robotics.mavlink.readings import Instant
 from eyas.robotics.mavlink.setpoints import Goal
 
-__all__ = ["COMPONENT", "Autopilot", "refuse_missions"]
-
 _ACCEPTED, _UNSUPPORTED, _BAD_NUMBER = 0, 3, 13
 _ALL = 255
 

@@ -11,8 +11,6 @@ from eyas.robotics.mavlink.readings import Instant
 from eyas.robotics.mavlink.targets import Sighting
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
-__all__ = ["COMPONENT", "Camera", "Lens", "LockedSubject"]
-
 COMPONENT = 100  # Component id of the camera
 
 _IDLE, _ACTIVE, _ERROR = 0, 1, 2

@@ -9,8 +9,6 @@ from typing import Any, NamedTuple
 
 from eyas.robotics.mavlink.dialect import Packer, dialect
 
-__all__ = ["Command", "Component", "Fields", "Result"]
-
 Fields = dict[str, Any]  # The fields of a message, by name
 
 FASTEST = 0.001  # Shortest interval that may be asked for [s]

@@ -8,8 +8,6 @@ from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config
 from eyas.engine.settings.section import Section
 
-__all__ = ["HilConfig", "MavlinkConfig"]
-
 
 class HilConfig(Config):
     """Settings of `eyas serve --px4` and `--ardupilot`; also used: `mavlink.latitude`,

@@ -10,8 +10,6 @@ import numpy as np
 
 from eyas.engine.core.errors import MissingExtraError
 
-__all__ = ["Packer", "Parser", "StreamParser", "dialect"]
-
 
 def dialect() -> ModuleType:
     """Return the messages and constants of the dialect `common`.

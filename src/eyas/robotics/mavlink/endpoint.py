@@ -10,8 +10,6 @@ from typing import Any
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.robotics.mavlink.dialect import Parser
 
-__all__ = ["Endpoint", "parsed_address"]
-
 _LOG = logging.getLogger("eyas")
 
 _FORMS = "udp:HOST:PORT (send to it, and hear answers) or udpin:HOST:PORT (listen on it)"

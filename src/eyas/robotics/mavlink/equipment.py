@@ -8,8 +8,6 @@ from eyas.engine.sensors.table import SENSORS, further_sensors
 from eyas.engine.sim.config import SimConfig
 from eyas.robotics.mavlink.config import MavlinkConfig
 
-__all__ = ["FIELD", "PRESSURE", "equipped", "part_of"]
-
 Settings = TypeVar("Settings", bound=SimConfig)
 
 

@@ -24,8 +24,6 @@ from eyas.robotics.mavlink.targets import Sights, seen_in
 from eyas.robotics.mavlink.vehicle import Vehicle
 from eyas.robotics.mavlink.video import Stream, VideoSender
 
-__all__ = ["Fleet"]
-
 _LOG = logging.getLogger("eyas")
 
 _DATAGRAM = 1200  # Packets are gathered up to this size [bytes]

@@ -19,21 +19,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = [
-    "Geodesy",
-    "Quaternion",
-    "Vector",
-    "camera_angles",
-    "compass",
-    "of_angles",
-    "of_body",
-    "on_earth",
-    "swapped",
-    "to_frd",
-    "usable",
-    "wrapped",
-]
-
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 

@@ -12,8 +12,6 @@ from eyas.robotics.mavlink.component import Command, Component, Fields, Result
 from eyas.robotics.mavlink.frames import Vector, camera_angles, of_angles, on_earth, usable, wrapped
 from eyas.robotics.mavlink.readings import Instant
 
-__all__ = ["DEVICE", "Gimbal"]
-
 DEVICE = 154  # Component id of the gimbal
 
 _PITCH = (-1.5, 0.5)  # Limits of the pitch [rad]

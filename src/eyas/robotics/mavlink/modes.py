@@ -2,8 +2,6 @@
 
 from enum import Enum
 
-__all__ = ["Landed", "Mode"]
-
 
 class Mode(Enum):
     """A flight mode: PX4's main mode and sub mode."""

@@ -5,8 +5,6 @@ from typing import Any
 
 from eyas.robotics.mavlink.component import Component
 
-__all__ = ["DEFAULTS", "Parameters"]
-
 DEFAULTS: dict[str, float | int] = {
     "COM_DISARM_LAND": 2.0,  # on the ground, after landing, it disarms [s]
     "COM_DISARM_PRFLT": 10.0,  # armed, without taking off, it disarms [s]

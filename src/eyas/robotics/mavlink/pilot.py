@@ -11,8 +11,6 @@ from eyas.robotics.mavlink.modes import Landed, Mode
 from eyas.robotics.mavlink.parameters import Parameters
 from eyas.robotics.mavlink.setpoints import Goal, Limits, Wanted, toward
 
-__all__ = ["FEET", "Body", "Pilot"]
-
 FEET = 0.183
 """Height of the middle of the body over its feet, see `eyas.engine.trackers.airframe` [m]."""
 _STANDS = 0.1  # Height of the feet over the ground up to which a vehicle stands [m]

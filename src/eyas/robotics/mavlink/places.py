@@ -12,8 +12,6 @@ from eyas.engine.task.clearance import Margin
 from eyas.lanes import exact
 from eyas.robotics.mavlink.pilot import FEET
 
-__all__ = ["standing_places"]
-
 _FREE = 2.0  # Radius without things [m]
 _ROAD = 5.0  # Distance from the middle of the nearest lane [m]
 _APART = 4.0  # Least distance between two vehicles [m]

@@ -25,8 +25,6 @@ from eyas.robotics.mavlink.frames import (
 )
 from eyas.robotics.mavlink.pilot import Body
 
-__all__ = ["Instant", "Readings"]
-
 _accelerometer = interpreted(accelerometer)
 _rotate_back = interpreted(rotate_back)
 

@@ -6,8 +6,6 @@ from typing import NamedTuple, Protocol
 from eyas.lanes import exact
 from eyas.robotics.mavlink.frames import Vector, wrapped
 
-__all__ = ["Goal", "Limits", "Place", "Wanted", "toward"]
-
 _GAIN = 1.2  # Speed for a distance [1/s]
 _YAW_GAIN = 2.0  # Yaw rate for an error of the heading [1/s]
 _FASTEST_TURN = math.radians(90.0)  # [rad/s]

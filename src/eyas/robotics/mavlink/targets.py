@@ -9,8 +9,6 @@ from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import DrawStage, Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 
-__all__ = ["Sighting", "Sights"]
-
 _REACH = 0.03  # Largest distance of a clicked point from its object, as a share of the width
 
 

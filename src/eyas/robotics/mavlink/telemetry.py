@@ -10,8 +10,6 @@ from eyas.robotics.mavlink.modes import Mode
 from eyas.robotics.mavlink.pilot import Pilot
 from eyas.robotics.mavlink.readings import Instant
 
-__all__ = ["RATES", "Telemetry", "degrees_e7"]
-
 RATES = {
     "heartbeat": 1.0,
     "sys_status": 1.0,

@@ -14,8 +14,6 @@ from eyas.robotics.mavlink.readings import Instant, Readings
 from eyas.robotics.mavlink.targets import Sighting, Sights
 from eyas.robotics.mavlink.telemetry import Telemetry
 
-__all__ = ["Vehicle"]
-
 CUSTOM_MODE = 1  # `MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`
 _COMMANDS = ("COMMAND_LONG", "COMMAND_INT")
 

@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.codecs.pyav import pyav
 from eyas.engine.core.errors import ConfigError
 
-__all__ = ["RtpPacker", "Stream", "VideoSender"]
-
 _LONGEST = 1200  # Largest packet, well below what networks carry whole [bytes]
 _CLOCK = 90_000  # Clock of the time stamps [Hz]
 _TYPE = 96  # Payload type, the first of those that are free

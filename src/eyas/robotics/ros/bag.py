@@ -15,8 +15,6 @@ from eyas.robotics.ros.types import message_types
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-__all__ = ["RosbagMcapWriter", "RosbagWriter"]
-
 _DESCRIPTION = "metadata.yaml"
 
 

@@ -12,8 +12,6 @@ from eyas.engine.core.errors import ConfigError, MissingExtraError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-__all__ = ["Bus"]
-
 _WORDS = {**{"bool": bool, "string": str}, **{"octet": "uint8", "byte": "uint8", "char": "uint8"}}
 """Types of fields that have other names in Cyclone DDS."""
 _LATCHED = "/tf_static"

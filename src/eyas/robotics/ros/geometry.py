@@ -11,18 +11,6 @@ from eyas.engine.exports.boxes import box_of, quaternion_of
 from eyas.engine.exports.frame import CameraPose, RecordedBody, Subject
 from eyas.lanes import exact
 
-__all__ = [
-    "OPTICAL",
-    "STILL",
-    "Pose",
-    "camera_on_body",
-    "optical_matrix",
-    "picture_box",
-    "pose_of_body",
-    "pose_of_subject",
-    "rotation_of",
-]
-
 Floats = NDArray[np.float64]
 
 

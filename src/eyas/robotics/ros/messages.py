@@ -33,8 +33,6 @@ from eyas.robotics.ros.geometry import (
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-__all__ = ["NOWHERE", "TOPICS", "Messages", "nanoseconds"]
-
 Floats = NDArray[np.float64]
 Message = Any  # A message, of a class that `rosbags` makes of the text of its type
 

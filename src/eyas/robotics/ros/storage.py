@@ -14,8 +14,6 @@ from eyas.engine.core.files import part_path
 if TYPE_CHECKING:
     from mcap.writer import Writer as McapLibrary
 
-__all__ = ["McapStorage", "SqliteStorage", "Storage", "Topic", "described_bag"]
-
 _VERSION = 8  # Version of the description: the newest that all releases from Humble on read
 
 _LATCHED = (

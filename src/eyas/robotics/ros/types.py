@@ -8,8 +8,6 @@ from eyas.engine.core.errors import MissingExtraError
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-__all__ = ["message_types"]
-
 _VISION = {
     "Point2D": "float64 x\nfloat64 y\n",
     "Pose2D": "vision_msgs/Point2D position\nfloat64 theta\n",

@@ -14,8 +14,6 @@ from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.dialect import dialect
 from eyas.robotics.mavlink.endpoint import parsed_address
 
-__all__ = ["bound", "listening", "run"]
-
 
 def listening(text: str) -> socket.socket:
     """Return a socket that listens on `HOST:PORT`.

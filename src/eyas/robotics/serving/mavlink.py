@@ -12,8 +12,6 @@ from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.dialect import dialect
 from eyas.robotics.mavlink.endpoint import Endpoint
 
-__all__ = ["AS_FLOWN", "run"]
-
 _LOG = logging.getLogger("eyas")
 
 AS_FLOWN = updated(

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from eyas.robotics.ros.dds import Bus
     from eyas.robotics.ros.messages import Messages
 
-__all__ = ["AS_FLOWN", "HEARD", "Bridge", "run"]
-
 _LOG = logging.getLogger("eyas")
 
 AS_FLOWN = updated(

@@ -9,8 +9,6 @@ from eyas.benchmark.policies.listener.detector import BODIES, NAMES, Detections,
 from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.lanes import exact
 
-__all__ = ["Candidates", "TrackedVehicles"]
-
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 

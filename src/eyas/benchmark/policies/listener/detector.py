@@ -25,17 +25,6 @@ from eyas.engine.targets.colour_names import COLOUR_NAMES
 from eyas.engine.targets.grammar.in_view import BodyWord, body_of
 from eyas.lanes import exact
 
-__all__ = [
-    "BODIES",
-    "NAMES",
-    "OUTPUTS",
-    "STRIDE",
-    "Detections",
-    "VehicleDetector",
-    "body_sizes",
-    "shares",
-]
-
 Floats = NDArray[np.float64]
 Session = Any  # onnxruntime has no types
 

@@ -11,8 +11,6 @@ from eyas.engine.targets.grammar.claims import Bearing, Claim, MotionWord, Pictu
 from eyas.engine.targets.grammar.in_view import CAN_BE_CALLED, BodyWord
 from eyas.lanes import exact
 
-__all__ = ["judged"]
-
 Floats = NDArray[np.float64]
 
 _LEAST: Final = 1e-4  # Least probability of anything

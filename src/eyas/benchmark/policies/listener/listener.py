@@ -24,8 +24,6 @@ from eyas.engine.policies.policy import Decision, PolicyInput, Start
 from eyas.engine.targets.grammar.attributes import claim_of
 from eyas.engine.targets.grammar.claims import Claim
 
-__all__ = ["Listener"]
-
 Floats = NDArray[np.float64]
 
 _WATCHED: Final = 0.3  # Time of looking before the choice [s]

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["HORIZONS", "PAST", "Course"]
-
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 Mask = NDArray[np.bool_]

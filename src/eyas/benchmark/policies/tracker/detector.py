@@ -25,8 +25,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["OUTPUTS", "STRIDE", "Detector", "TargetDetection", "TargetPrior"]
-
 Floats = NDArray[np.float64]
 Session = Any  # onnxruntime has no types
 

@@ -6,8 +6,6 @@ from numpy.typing import NDArray
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.lanes import exact
 
-__all__ = ["Ground"]
-
 Floats = NDArray[np.float64]
 
 _HALF_WIDTH = float(exact.tan(0.5 * 0.7854))

@@ -9,8 +9,6 @@ from eyas.engine.core.errors import ConfigError, DataFileError
 from eyas.engine.policies.policy import env_config
 from eyas.engine.settings.env import EnvConfig
 
-__all__ = ["METADATA", "OBSERVED", "TRACKER", "env_as_trained", "metadata"]
-
 METADATA, TRACKER = "eyas", "eyas.tracker"
 """Keys: changes of the defaults of `env`, and the settings of a tracker."""
 

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["MotionFilter"]
-
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 

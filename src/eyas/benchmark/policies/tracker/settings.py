@@ -6,8 +6,6 @@ from pydantic import Field
 
 from eyas.engine.core.config import Config
 
-__all__ = ["FLOWN", "TrackerSettings"]
-
 Positive = Annotated[float, Field(gt=0.0, le=1e3)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 

@@ -7,8 +7,6 @@ from eyas.benchmark.policies.tracker.ground import Ground
 from eyas.engine.settings.env import EnvConfig
 from eyas.lanes import exact
 
-__all__ = ["Steering", "turned"]
-
 Floats = NDArray[np.float64]
 Rows = NDArray[np.int64]
 

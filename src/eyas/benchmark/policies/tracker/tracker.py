@@ -29,8 +29,6 @@ from eyas.engine.policies.policy import (
 )
 from eyas.lanes import exact
 
-__all__ = ["Tracker"]
-
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.int64]

@@ -18,8 +18,6 @@ from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import EyasError
 from eyas.engine.core.files import read_limited, refusals, user_path
 
-__all__ = ["KEY_VARIABLE", "MARK", "Mark", "content_hash", "fitting_mark", "signed"]
-
 MARK = "verified.json"  # The file
 
 KEY_VARIABLE = "EYAS_VERIFIER_KEY"

@@ -14,8 +14,6 @@ from eyas.benchmark.statistics.table_rows import TableRow, rows_of
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
 
-__all__ = ["run"]
-
 _LOG = logging.getLogger("eyas")
 
 FIRST_LINE = (

@@ -19,16 +19,6 @@ from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import ConfigError, DataFileError, EyasError
 
-__all__ = [
-    "CARD",
-    "ModelCard",
-    "Submission",
-    "complete_run",
-    "folders_in",
-    "read_card",
-    "submissions_in",
-]
-
 _LOG = logging.getLogger("eyas")
 _LARGEST = 1 << 20  # Largest size of the file with the timing [bytes]
 

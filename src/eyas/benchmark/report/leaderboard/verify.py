@@ -29,8 +29,6 @@ from eyas.engine.core.files import read_limited, write_atomic
 from eyas.engine.settings.env import EnvConfig
 from eyas.engine.settings.trust import code_of
 
-__all__ = ["Finding", "Verdict", "verify"]
-
 SHARE = 0.1  # Which part of the episodes is flown again, unless the user says so
 _LARGEST = 1 << 31  # Largest size of a file of records [bytes]
 _DATA = ".onnx"  # The ending of policies that are data: a graph of known operations

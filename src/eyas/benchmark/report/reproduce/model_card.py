@@ -7,8 +7,6 @@ from hashlib import sha256
 from eyas.benchmark.policies.shipped import card_of, file_of
 from eyas.benchmark.report.reproduce.tables import TABLES, flown_of
 
-__all__ = ["model_card"]
-
 _USE = (
     "As a baseline to compare trackers with, as a start for further training, and to show what "
     "Eyas teaches. It has seen drawn pictures only: whether it follows a real car has not been "

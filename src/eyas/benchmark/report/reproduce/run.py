@@ -21,8 +21,6 @@ from eyas.benchmark.statistics.table_rows import rows_of
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.identity.build import this_build
 
-__all__ = ["listing", "made", "markdown", "run", "write_expected"]
-
 
 def run(names: tuple[str, ...], out: Path, *, quiet: bool = False) -> bool:
     """Fly tables again, or what an interrupted run has left; print them; return whether all cells

@@ -12,18 +12,6 @@ from eyas.benchmark.policies.table import fingerprint
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import UnknownNameError
 
-__all__ = [
-    "TABLES",
-    "Expected",
-    "ExpectedRow",
-    "Row",
-    "Table",
-    "expected",
-    "flown_of",
-    "flown_with",
-    "table_named",
-]
-
 THREE_SETS = (1_000_000, 11_000_000, 21_000_000)
 """First seeds of three sets of episodes: one lucky set is then seen as one."""
 

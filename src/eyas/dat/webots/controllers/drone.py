@@ -14,8 +14,6 @@ from eyas.dat.webots.controllers.exchange import Exchange
 from eyas.dat.webots.controllers.ground import Ground, ground_of, settings_of
 from eyas.dat.webots.controllers.tracking import STEP, Camera, Target, Tracker, line
 
-__all__ = ["Drone", "main"]
-
 _GONE = 5_000.0  # East coordinate beyond which vehicles wait [m]
 _QUALITY = 100
 

@@ -7,8 +7,6 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["Exchange", "Request", "parsed"]
-
 _PAUSE = 0.0005  # Between two looks at a file [s]
 
 

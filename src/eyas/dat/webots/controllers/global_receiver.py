@@ -7,8 +7,6 @@ from typing import Any
 
 from eyas.dat.webots.controllers.ground import settings_of
 
-__all__ = ["main", "serve"]
-
 _STEP = 2  # [ms]
 _MOST = 1024  # Largest number of drones, as in Eyas
 _SPAWN = 'DEF {name} Drone {{ name "{name}" translation {at} {at} 0.15 controllerArgs [ "{k}" ] }}'

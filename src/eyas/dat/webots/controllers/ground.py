@@ -4,8 +4,6 @@ import json
 from pathlib import Path
 from typing import Any, NamedTuple
 
-__all__ = ["Ground", "ground_of", "settings_of"]
-
 
 class Ground(NamedTuple):
     """Heights of the ground, as the world file has them."""

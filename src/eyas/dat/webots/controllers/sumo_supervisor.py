@@ -13,8 +13,6 @@ from typing import Any
 
 from eyas.dat.webots.controllers.ground import Ground, ground_of, settings_of
 
-__all__ = ["Traffic", "main", "pose_of"]
-
 _STEP = 2  # [ms]
 _AWAY = 10_000.0
 

@@ -7,8 +7,6 @@ import math
 import random
 from typing import Any, NamedTuple
 
-__all__ = ["STEP", "Camera", "LowPass", "Target", "Tracker", "line"]
-
 STEP = 0.002  # Step of the physics [s]
 
 _GRAVITY = 9.81

@@ -18,8 +18,6 @@ from eyas.engine.core.cache.flat import Array, Json
 from eyas.lanes.container import packed, unpacked
 from eyas.lanes.trusted import open_at_once
 
-__all__ = ["Content", "array_file", "let_go", "map_arrays"]
-
 
 class Content(NamedTuple):
     """Content of a file."""

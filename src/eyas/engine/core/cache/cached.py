@@ -21,8 +21,6 @@ from eyas.engine.core.cache.folder import Kind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
 from eyas.lanes.trusted import cache_folder, not_kept, touch
 
-__all__ = ["cached", "key_of"]
-
 Thing = TypeVar("Thing")
 
 _LOG = logging.getLogger("eyas")

@@ -22,8 +22,6 @@ from eyas.lanes.folder import kernel_folder
 from eyas.lanes.text_index import FOLDER, SUFFIX
 from eyas.lanes.trusted import made_folder
 
-__all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
-
 _DAY = 86_400.0  # [s]
 _KERNELS_LAST = 30 * _DAY  # Time for which kernels are kept after their last use [s]
 _PARTS_LAST = _DAY

@@ -15,8 +15,6 @@ from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hin
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Array", "FlatError", "Json", "flatten", "restore"]
-
 Array = NDArray[np.generic]
 Json = None | bool | int | float | str | list["Json"] | dict[str, "Json"]
 Thing = TypeVar("Thing")

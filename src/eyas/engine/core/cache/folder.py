@@ -14,12 +14,6 @@ from enum import StrEnum
 
 from eyas.engine.core.errors import ConfigError
 
-__all__ = [
-    "LIMIT_VARIABLE",
-    "Kind",
-    "cache_limit",
-]
-
 LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"  # Environment variable: largest size of the cache
 _DEFAULT_LIMIT = 2 << 30  # 2 GiB: a few maps in several weathers [bytes]
 _UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}  # Powers of two

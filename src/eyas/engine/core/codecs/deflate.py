@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import PackedBundle, compiled, kernel
 
-__all__ = ["deflated"]
-
 _SYMBOLS = 286  # Bytes, the end (256), and lengths of runs from 257 on
 _END = 256  # Symbol of the end of a block (RFC 1951, 3.2.5)
 _MOST_BITS = 15  # Length of the longest code that deflate allows

@@ -6,8 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-__all__ = ["QUALITY", "jpeg_bytes"]
-
 QUALITY = 100  # The original's JPEG quality
 
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from eyas.engine.core.codecs.deflate import deflated
 from eyas.lanes import compiled
 
-__all__ = ["PAETH", "png_bytes"]
-
 i4 = np.int32  # kernels would make unsigned numbers of bytes
 
 _GREY, _COLOURS = 0, 2  # PNG's types of colour

@@ -7,8 +7,6 @@ from types import ModuleType
 
 from eyas.engine.core.errors import MissingExtraError
 
-__all__ = ["has_pyav", "pyav"]
-
 
 def pyav(purpose: str) -> ModuleType:
     """Return the module `av`.

@@ -18,8 +18,6 @@ from eyas.engine.core.identity.definitions import INDEX
 from eyas.engine.core.identity.program import definitions_in
 from eyas.lanes.text_index import SUFFIX
 
-__all__ = ["WORLD", "Build", "houses_of_results", "rooms_of", "this_build"]
-
 WORLD = frozenset(
     "lanes maps engine/behaviours engine/camera engine/core engine/custom engine/mesh "
     "engine/render engine/sensors engine/sim engine/state engine/targets engine/task "

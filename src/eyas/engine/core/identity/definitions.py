@@ -15,8 +15,6 @@ from typing import NamedTuple, cast
 from eyas.lanes.syntax import tree_of
 from eyas.lanes.text_index import TextIndex, digest_of
 
-__all__ = ["INDEX", "Definition", "read_definitions"]
-
 _PATH = re.compile(r"[a-z_]\w*(\.\w+)+:\w+")  # Texts that name code, `package.module:attribute`
 
 

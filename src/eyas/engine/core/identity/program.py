@@ -22,15 +22,6 @@ from eyas.engine.core.identity.definitions import INDEX, Definition
 from eyas.lanes.identity import language_hash
 from eyas.lanes.text_index import digest_of
 
-__all__ = [
-    "Place",
-    "UnknownCodeError",
-    "closure_of",
-    "code_of",
-    "definitions_in",
-    "definitions_of",
-]
-
 _OWN = __name__.partition(".")[0]  # The package, which is followed from everywhere
 _ROOM = __name__.rpartition(".")[0]
 _APART = (f"{_ROOM}.cache", f"{_ROOM}.errors", f"{_ROOM}.own_code", __name__)

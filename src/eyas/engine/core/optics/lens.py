@@ -22,23 +22,6 @@ from eyas.engine.core.optics import pinhole
 from eyas.lanes import compiled, exact, kernel
 from eyas.lanes.elementary import atan2, hypot, sin_cos
 
-__all__ = [
-    "BROWN",
-    "FISHEYE",
-    "NO_LENS",
-    "Lens",
-    "camera_matrix",
-    "coefficients",
-    "distorted",
-    "lens_of",
-    "places",
-    "principal_point",
-    "project",
-    "rays",
-    "undistorted",
-    "widest",
-]
-
 Floats = NDArray[np.float64]
 
 BROWN, FISHEYE = range(2)  # Values of `Lens.model`

@@ -5,8 +5,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["field_along", "focal_length", "intrinsics", "project", "rays"]
-
 
 def focal_length(width: int, fov: float) -> float:
     """Return the focal length [pixels]; a height and vertical field of view give the vertical one.

@@ -13,32 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.engine.state.mesh import Material, Surface
 
-__all__ = [
-    "BAND",
-    "BASE",
-    "BEAMS",
-    "BODYWORK",
-    "BOX_DOORS",
-    "BOX_ROOF",
-    "BOX_SIDE",
-    "CAB_SIDE",
-    "COOLER",
-    "FRONT",
-    "PLAIN",
-    "RAISED",
-    "REAR",
-    "REAR_WINDOW",
-    "SIDE",
-    "SIDE_PANE",
-    "SIDE_SHARES",
-    "STYLES",
-    "TOP",
-    "TOP_SHARES",
-    "WINDSCREEN",
-    "Region",
-    "body_paint",
-]
-
 _SIDE = 256  # Texels along a side of a texture
 BASE = 0.8  # Brightness of plain paint in the textures, linear: edges are brighter
 

@@ -9,22 +9,6 @@ side.
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.world.build.bodywork import RAISED, Region
 
-__all__ = [
-    "CLOTHES",
-    "FACE",
-    "HAIR",
-    "HIPS",
-    "LEG",
-    "NECK",
-    "PEOPLE_TEXTURES",
-    "SKIN",
-    "SLEEVE",
-    "TORSO",
-    "cloth",
-    "hair",
-    "skin",
-]
-
 TORSO = Region(4, 4, 252, 110)
 """Around a torso, from the hem to the neck: waist at .35, armpits at .7, shoulders at .85."""
 HIPS = Region(4, 118, 252, 150)  # Around the upper end of trousers, from the crotch to the belt

@@ -6,8 +6,6 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.world.build.bodywork import BODYWORK
 from eyas.engine.world.build.clothing import PEOPLE_TEXTURES
 
-__all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material", "without_snow"]
-
 FACADES = (
     "facade_concrete",
     "facade_brick",

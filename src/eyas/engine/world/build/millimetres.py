@@ -12,8 +12,6 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["dot", "length", "rounded", "snapped", "unit"]
-
 _DIGITS = 3  # Decimals of metres
 _STEP = 0.001  # One millimetre [m]
 

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from eyas.lanes import exact
 
-__all__ = ["Placed"]
-
 
 class Placed(NamedTuple):
     """A copy of a kind of thing."""

@@ -15,8 +15,6 @@ from eyas.engine.state.scene import ACTOR_OBJECT, Colliders, Fixtures, Lamps, Ob
 from eyas.engine.state.terrain import Terrain
 from eyas.lanes import exact
 
-__all__ = ["Levels", "Prototype", "SceneBuilder"]
-
 Levels = tuple[Mesh, ...]  # A shape in levels of detail, the finest first
 
 

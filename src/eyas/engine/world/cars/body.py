@@ -30,8 +30,6 @@ from eyas.engine.world.cars.shape import (
 from eyas.engine.world.cars.trim import AHEAD, add_bumpers, add_trimmings
 from eyas.engine.world.cars.wrap import Wrap
 
-__all__ = ["TRACK", "body_levels"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Detail:

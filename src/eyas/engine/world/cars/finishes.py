@@ -2,29 +2,6 @@
 
 from eyas.engine.state.mesh import Material, Surface
 
-__all__ = [
-    "BLACK_PAINT",
-    "BRIGHT",
-    "CLOTH",
-    "FREIGHT",
-    "GLASS",
-    "HEAD_LAMP",
-    "HIGH_BRAKE_LAMP",
-    "INDICATOR_LEFT",
-    "INDICATOR_RIGHT",
-    "PAINT",
-    "PANE",
-    "PLATE",
-    "RIM",
-    "ROOF_GLASS",
-    "SKIN_WHITE",
-    "STEEL",
-    "TAIL_LAMP",
-    "TRIM",
-    "TYRE",
-    "plain",
-]
-
 
 def plain(red: float, green: float, blue: float) -> Material:
     """Return a matt material, sRGB 0 to 1."""

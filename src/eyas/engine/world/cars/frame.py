@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-__all__ = ["Axle", "Frame"]
-
 
 @dataclass(frozen=True, slots=True)
 class Axle:

@@ -15,17 +15,6 @@ from eyas.engine.state.mesh import Material
 from eyas.engine.world.cars.finishes import PAINT
 from eyas.engine.world.cars.frame import Frame
 
-__all__ = [
-    "CarShape",
-    "arch_radius",
-    "coarse_stations",
-    "fine_stations",
-    "half_widths",
-    "height_at",
-    "middle_stations",
-    "sections",
-]
-
 Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
 

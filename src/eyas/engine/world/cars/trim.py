@@ -22,8 +22,6 @@ from eyas.engine.world.cars.shape import CarShape, arch_radius, half_widths, hei
 from eyas.engine.world.cars.wrap import Wrap
 from eyas.lanes import exact
 
-__all__ = ["AHEAD", "add_bumpers", "add_trimmings"]
-
 AHEAD = 0.04  # Depth of a bumper beyond the end of the body [m]
 _ASIDE = 0.025  # Depth of a bumper beyond the sides [m]
 _TOP = 0.565  # Height of its upper edge, as a share of that of the belt line above the floor

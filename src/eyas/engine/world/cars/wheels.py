@@ -9,8 +9,6 @@ from eyas.engine.state.mesh import Mesh
 from eyas.engine.world.cars.finishes import RIM, TRIM, TYRE
 from eyas.lanes import exact
 
-__all__ = ["DESIGNS", "wheel_levels"]
-
 DESIGNS = 4  # Number of designs of discs
 _DISC = 0.66  # Radius of the disc, as a share of the wheel's radius
 _SHOULDER = 0.92

@@ -21,8 +21,6 @@ from eyas.engine.world.build.bodywork import (
 from eyas.engine.world.cars.frame import Frame
 from eyas.engine.world.cars.shape import CarShape, arch_radius
 
-__all__ = ["Wrap"]
-
 Points = NDArray[np.float64]
 
 _DOOR = 0.5  # Side windows that are shorter are not those of doors [m]

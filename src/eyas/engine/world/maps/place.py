@@ -3,8 +3,6 @@
 from eyas.engine.world.maps.recipe import MapRecipe
 from eyas.engine.world.projection import Projection
 
-__all__ = ["projection_of"]
-
 
 def projection_of(recipe: MapRecipe) -> Projection | None:
     """Return where a map lies; None of those that lie nowhere, all but imported ones."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
     from eyas.engine.state.scene import Scene
     from eyas.engine.world.weather import Season
 
-__all__ = ["Planner", "planner"]
-
 
 class Planner(Protocol):
     """Makes scenes of plans."""

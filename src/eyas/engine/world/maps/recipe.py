@@ -20,25 +20,6 @@ from eyas.engine.world.weather import WEATHERS, Season, Weather, unchanged
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
 
-__all__ = [
-    "ATTRIBUTION_FILE",
-    "DENSE_FILE",
-    "MIXED_FILE",
-    "NETWORK_FILE",
-    "PLAN_FILE",
-    "PLAN_SUFFIXES",
-    "SIGNALS_FILE",
-    "SIGNALS_TRAFFIC_FILE",
-    "TEST_TOWNS",
-    "TRAFFIC_FILE",
-    "MapRecipe",
-    "Original",
-    "drivers_file",
-    "network_file",
-    "respawn_file",
-    "town_traffic_file",
-]
-
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 

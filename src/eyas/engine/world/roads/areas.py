@@ -16,22 +16,6 @@ from eyas.engine.world.build.millimetres import dot, rounded, snapped
 from eyas.engine.world.roads.curves import rounded_kerbs
 from eyas.lanes import exact
 
-__all__ = [
-    "GRID",
-    "Street",
-    "blocks",
-    "corners",
-    "corridors",
-    "joints",
-    "kerbstones",
-    "polygons_of",
-    "road_area",
-    "skirt",
-    "split_on_grid",
-    "streets",
-    "surface",
-]
-
 GRID = 32.0
 """Side of the squares into which large surfaces are cut, so that unseen ones are skipped [m]."""
 

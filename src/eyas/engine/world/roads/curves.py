@@ -7,8 +7,6 @@ from numpy.typing import NDArray
 from eyas.engine.world.build.millimetres import dot, rounded, snapped, unit
 from eyas.lanes import exact
 
-__all__ = ["TURN", "arc", "joined", "rounded_kerbs", "turn_reach"]
-
 TURN = 7.5
 """Smallest radius of a kerb, so that cars turn on asphalt; also the reach of slight bends [m]."""
 

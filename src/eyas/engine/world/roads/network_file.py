@@ -13,8 +13,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.state.roads import RoadNetwork, network_problems
 
-__all__ = ["load_network", "save_network"]
-
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """Timestamp of every member of the zip file, so that it does not differ from run to run."""
 

@@ -13,17 +13,6 @@ from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
 
-__all__ = [
-    "AXLES",
-    "CRANK",
-    "PAINTS",
-    "SADDLE",
-    "WHEEL_RADIUS",
-    "add_frame",
-    "add_wheel",
-    "bicycle_levels",
-]
-
 WHEEL_RADIUS: Final = 0.34  # 28-inch wheel with its tyre (ISO 5775-1: 622 mm rim) [m]
 AXLES: Final = (0.52, -0.52)  # x of the front and of the rear axle: a wheelbase of 1.04 m [m].
 CRANK: Final = (-0.10, 0.28)  # x and z of the axle of the cranks [m]

@@ -23,16 +23,6 @@ from eyas.lanes import exact
 if TYPE_CHECKING:
     from eyas.engine.world.roads.areas import Street
 
-__all__ = [
-    "POLE_HEIGHT",
-    "POLE_RADIUS",
-    "lens_levels",
-    "pole_at",
-    "signal_levels",
-    "signal_places",
-    "signals_along",
-]
-
 POLE_HEIGHT = 6.6  # Height of the top of a pole above the road [m]
 POLE_RADIUS = 0.13  # Radius at the foot [m]
 _ARM = 5.6  # Length of the arm over the road [m]

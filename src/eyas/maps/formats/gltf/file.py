@@ -14,8 +14,6 @@ from PIL import Image
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.lanes import exact
 
-__all__ = ["LIGHTS", "PLAIN", "UPRIGHT", "GltfFile", "light_factors"]
-
 _FLOAT, _UINT = 5126, 5125
 _ARRAYS, _INDICES = 34962, 34963
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942

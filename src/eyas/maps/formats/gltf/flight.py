@@ -23,8 +23,6 @@ from eyas.lanes import exact
 from eyas.maps.formats.gltf.file import GltfFile
 from eyas.maps.formats.gltf.world import add_world
 
-__all__ = ["SceneWriter", "box_mesh", "mover_mesh", "pose_of"]
-
 _TINTS = {
     ObjectClass.CAR: (0.85, 0.25, 0.2),
     ObjectClass.TRUCK: (0.9, 0.6, 0.2),

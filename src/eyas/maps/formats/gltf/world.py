@@ -15,8 +15,6 @@ from eyas.lanes import exact
 from eyas.maps.formats.gltf.file import LIGHTS, GltfFile
 from eyas.maps.formats.meshes import copies_of, parts_of, prototypes_of
 
-__all__ = ["CANDELAS", "add_lamps", "add_world", "towards", "write_gltf"]
-
 CANDELAS = 1500.0  # Intensity of a street lamp along its axis: some 10,000 lm in its cone [cd]
 
 

@@ -17,8 +17,6 @@ from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.sim.serving import Orders
 from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
 
-__all__ = ["ArduPilot", "Servos", "servos_of"]
-
 _LOG = logging.getLogger("eyas")
 
 _FORMS = {18_458: struct.Struct("<HHI16H"), 29_569: struct.Struct("<HHI32H")}

@@ -18,8 +18,6 @@ from eyas.robotics.mavlink.places import standing_places
 from eyas.robotics.mavlink.readings import Instant, Readings
 from eyas.robotics.mavlink.video import Stream, VideoSender
 
-__all__ = ["MOTORS", "Autopilot", "DrivenDrone"]
-
 _LOG = logging.getLogger("eyas")
 
 MOTORS = (0, 2, 1, 3)

@@ -19,8 +19,6 @@ from eyas.robotics.mavlink.dialect import Packer, StreamParser
 from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
-__all__ = ["Px4"]
-
 _LOG = logging.getLogger("eyas")
 
 STEPS = 2  # Physics steps between two `HIL_SENSOR`: PX4 wants them 250 times a second
