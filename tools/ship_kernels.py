@@ -207,25 +207,32 @@ def main() -> None:
     """Make the code, or check it."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="change nothing; fail if out of date")
-    parser.add_argument("--out", type=Path, default=ARCHIVE.parent, help="folder to write into")
+    parser.add_argument("--out", type=Path, help="folder to write into")
     options = parser.parse_args()
     if options.check:
         raise SystemExit(missing(read_archive(ARCHIVE)) or not_wide() or compiled())
-    options.out.mkdir(parents=True, exist_ok=True)
+
+    def place(archive: Path) -> Path:
+        """Return where an archive is written: where it ships, or in the folder that is named."""
+        if options.out is None:
+            return archive
+        options.out.mkdir(parents=True, exist_ok=True)
+        return options.out / archive.name
+
     with tempfile.TemporaryDirectory() as cache:
         variables = {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
         use_all(cache, variables)
         folder = Path(cache, "kernels", language_hash())
         files = set(folder.glob(f"*{SUFFIX}"))
         codes = codes_in(files)
-        (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
-        (options.out / modules.ARCHIVE.name).write_bytes(modules.archive_of(folder, DRAWING))
+        place(ARCHIVE).write_bytes(archive_of(codes))
+        place(modules.ARCHIVE).write_bytes(modules.archive_of(folder, DRAWING))
         use_all(cache, variables, MAKES_WIDE)
         wide = codes_in(set(folder.glob(f"*{SUFFIX}")) - files)
-        (options.out / WIDE_ARCHIVE.name).write_bytes(archive_of(wide))
+        place(WIDE_ARCHIVE).write_bytes(archive_of(wide))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
-        (options.out / ptx.ARCHIVE.name).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
+        place(ptx.ARCHIVE).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
     raise SystemExit(missing(codes))
 
 
