@@ -129,7 +129,11 @@ class Covers:
 
     def __init__(self, other):
         self.covered, self.over = other.covered, other.over
-        self.told, self.measure, self.figures = other.told, lambda *_: None, lambda _: {}
+        self.instruction, self.measure, self.figures = (
+            other.instruction,
+            lambda *_: None,
+            lambda _: {},
+        )
 
 
 def test_figures_of_flights_made_by_hand():

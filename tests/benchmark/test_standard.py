@@ -117,7 +117,8 @@ def test_unseen_is_flown_elsewhere_and_needs_no_sumo():
     code = (
         "import sys\n"
         "sys.modules.update(dict.fromkeys(['libsumo', 'sumo', 'sumolib', 'traci']))\n"
-        "from eyas.benchmark.plan.plan import EvaluationPlan, batches, fly_batch\n"
+        "from eyas.benchmark.flight.policy_runner import fly_batch\n"
+        "from eyas.benchmark.plan.plan import EvaluationPlan, batches\n"
         f"plan = EvaluationPlan(policy='hover', episodes=1, **{one})\n"
         "parts = batches(plan)\n"
         "part = [episode for part in parts for episode in part][:1]\n"

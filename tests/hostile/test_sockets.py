@@ -86,7 +86,7 @@ def messages_of_mavlink(common, vehicle):
     """
     kinds = {f"MAV_CMD_{name}" for part in vehicle._components.values() for name in part.answers}
     numbers = [at for at, entry in common.enums["MAV_CMD"].items() if entry.name in kinds]
-    heard = {kind for part in vehicle._components.values() for kind in part.heard}
+    heard = {kind for part in vehicle._components.values() for kind in part.handlers}
     wholes = (0, 1, -1, 255, 65535, 2**31 - 1, -(2**31), 900_000_000, 2**64 - 1)
     for name in sorted(heard | {"COMMAND_LONG", "COMMAND_INT"}):
         make = getattr(common, f"MAVLink_{name.lower()}_message")
@@ -292,7 +292,7 @@ def feed_ros(simulation, tmp_path, caplog):
         bus.next = [twist(1.0)]
         loop.hear(0.0)
         loop.step()
-        assert bridge._told["/cmd_vel"][0].tolist() == [1.0] * 6
+        assert bridge._velocities["/cmd_vel"][0].tolist() == [1.0] * 6
         assert is_sound(bridge.simulation)
 
 

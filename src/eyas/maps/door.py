@@ -27,7 +27,7 @@ HOUSE = House(
             "scene": "eyas.maps.formats.gltf.flight:SceneWriter",
             "openscenario": "eyas.maps.formats.openscenario:ScenarioWriter",
         },
-        "eyas.planner": {"plans": "eyas.maps.plan.build:PLANNER"},
+        "eyas.planner": {"plans": "eyas.maps.plan.planner:PLANNER"},
         "eyas.textures": {"painted": "eyas.maps.textures.shipped:build_textures"},
         "eyas.map_files": {"files": "eyas.maps.files:MAP_FILES"},
         "eyas.commands": {

@@ -7,8 +7,10 @@ import pytest
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.optics.pinhole import intrinsics
+from eyas.engine.exports import label
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.label import LabelWriter, label_of, read_labels
+from eyas.engine.exports.label_reading import reader_of
 from eyas.engine.exports.writer import Scores, Summary
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import model_index, sections_of
@@ -204,3 +206,11 @@ def test_labels_of_someone_else_are_refused_by_their_schema(written, frame, key,
     with pytest.raises(DataFileError, match=told) as raised:
         read_labels(path)
     assert "\n" not in str(raised.value)
+
+
+def test_a_later_field_is_not_asked_of_recordings_that_were_made_before():
+    field = replace(label._FRAME["frame"], later=True)
+    schema = label._schema_of({"frame": label._FRAME["frame"], "speed": field})
+    assert schema["required"] == ["frame"]
+    reader_of(schema).validate_json('{"frame": 0}')
+    reader_of(schema).validate_json('{"frame": 0, "speed": 0}')

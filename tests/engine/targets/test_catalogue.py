@@ -185,7 +185,7 @@ def test_a_new_car_in_one_file_of_the_package_is_everywhere(tmp_path):
     copy = tmp_path / "eyas"
     shutil.copytree(Path(eyas.__file__).parent, copy, copy_function=os.link,
                     ignore=shutil.ignore_patterns("__pycache__", "*.npz"))  # fmt: skip
-    (copy / "targets" / "vehicles" / "models" / "test_car.py").write_text(NEW_CAR)
+    (copy / "engine" / "targets" / "vehicles" / "models" / "test_car.py").write_text(NEW_CAR)
     asked = subprocess.run(
         [sys.executable, "-c", ASK], env=os.environ | {"PYTHONPATH": str(tmp_path)},
         capture_output=True, text=True, check=True,

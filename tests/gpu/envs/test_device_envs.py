@@ -151,7 +151,7 @@ def test_results_are_new_arrays_unless_it_is_told_otherwise():
         ({}, {"observation": {"parts": ["image", "depth"]}}, "env.observation.parts: 'depth'"),
         ({"verbose": True}, {}, "verbose: true"),
         ({}, {"mixture": [{"settings": {}}]}, "env.mixture"),
-        ({}, {"device": "abacus"}, "device: 'abacus' is not allowed: 'cuda', "),
+        ({}, {"device": "abacus"}, "device: 'abacus' is not allowed; known: cuda, host"),
     ],
 )
 def test_what_is_not_there_is_told_in_one_line(settings, choices, said):

@@ -120,6 +120,7 @@ class LabelField(NamedTuple):
     unit: str = ""
     frame: str = ""  # The frame of reference
     left_out: bool = False  # Whether a label has it only where it is not empty
+    later: bool = False  # Whether recordings of earlier versions lack it
 
 
 def _points(corners: Any) -> list[list[float | None]]:  # noqa: ANN401  # an array, or None
@@ -331,7 +332,7 @@ def _schema_of(fields: Mapping[str, LabelField]) -> dict[str, Any]:
             key: {**field.type.schema, "description": described(field)}
             for key, field in fields.items()
         },
-        "required": [key for key, field in fields.items() if not field.left_out],
+        "required": [key for key, field in fields.items() if not (field.left_out or field.later)],
         "additionalProperties": False,
     }
 

@@ -20,7 +20,7 @@ TRUST_VARIABLE = "EYAS_TRUST"
 
 
 def code_of(config: EyasConfig) -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name, as `eyas.engine.core.own_code.code_named`.
+    """Yield each piece of code that settings name, as `eyas.engine.core.named_code.code_named`.
 
     Those of mixtures and stages are included, where they differ from the common ones.
     """

@@ -28,14 +28,11 @@ from eyas.maps.land import ground, outskirts
 from eyas.maps.land.ground import asphalt
 from eyas.maps.land.relief import kinds_of, relief_of, snow_over, surface_of, terrain_of
 from eyas.maps.plan import plan as p
-from eyas.maps.plan.file import plan_of, text_of
-from eyas.maps.plan.plan import MapPlan
 from eyas.maps.roads import markings, overpass, painting, tunnels
 from eyas.maps.roads.wear import road_wear, worn_lanes
 from eyas.maps.things import fronts, railway, skyways
 from eyas.maps.things.fields import field_mesh
 from eyas.maps.things.kinds import SOLIDS, THINGS
-from eyas.maps.towns.completed import completed
 
 _NEAR = 80.0  # Reach of the ground that is cut into small squares beside streets [m]
 _SLOPE = 1.4  # Width of the slope around a heap [m]
@@ -364,19 +361,3 @@ _MAKERS: dict[type, Callable[[_Work, Any], None]] = {
     p.Skyways: _skyways,
     p.Railway: lambda work, layer: railway.add_railway(work.builder, layer.line),
 }
-
-
-class _Planner:
-    """See `eyas.engine.world.maps.planner.Planner`."""
-
-    def complete(self, plan: MapPlan, network: RoadNetwork) -> MapPlan:
-        return completed(plan, network)
-
-    def text_of(self, plan: MapPlan) -> str:
-        return text_of(plan)
-
-    def build(self, text: bytes, network: RoadNetwork, season: Season) -> Scene:
-        return build_scene(plan_of(text), network, season)
-
-
-PLANNER = _Planner()
