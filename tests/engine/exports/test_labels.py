@@ -209,7 +209,7 @@ def test_labels_of_someone_else_are_refused_by_their_schema(written, frame, key,
 
 
 def test_a_later_field_is_not_asked_of_recordings_that_were_made_before():
-    field = replace(label._FRAME["frame"], later=True)
+    field = label._FRAME["frame"]._replace(later=True)
     schema = label._schema_of({"frame": label._FRAME["frame"], "speed": field})
     assert schema["required"] == ["frame"]
     reader_of(schema).validate_json('{"frame": 0}')

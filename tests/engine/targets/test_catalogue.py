@@ -168,14 +168,14 @@ import numpy as np
 from eyas.cli.targets.listing import entries
 from eyas.engine.targets.catalogue import MODELS, kind_index, model_index, models_of
 from eyas.engine.targets.looks import LookSampler
-from eyas.engine.targets.words import Seen, distinguishing_phrase
+from eyas.engine.targets.words import ObjectInView, distinguishing_phrase
 
 car = model_index("TestCarSimple")
 print(car, [MODELS[m].name for m in models_of(kind_index("passenger"))][-1])
 print("TestCarSimple" in [line.name for line in entries()])
 sampler = LookSampler(np.zeros(100, np.int32))
 print(car in sampler.sample(np.random.default_rng(1))[0])
-seen = Seen(car, (0.74, 0.10, 0.09), 10.0, 0.0, 0.5, 25.0)
+seen = ObjectInView(car, (0.74, 0.10, 0.09), 10.0, 0.0, 0.5, 25.0)
 print(distinguishing_phrase(seen, [seen._replace(model=0), seen._replace(model=2)]))
 """
 
