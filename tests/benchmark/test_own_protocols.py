@@ -69,12 +69,11 @@ def test_each_protocol_of_the_table_has_the_name_under_which_it_is_found(name):
     assert protocol.name == name
 
 
-@pytest.mark.parametrize("name", POLICIES.built_in)
+# The networks of `nano` may not be given away, so they are not here.
+@pytest.mark.parametrize("name", [name for name in POLICIES.built_in if name != "nano"])
 def test_each_policy_of_the_table_can_be_opened_and_has_the_class_of_its_kind(name):
     if name in BOX_TRACKERS or name.endswith("-servo"):
         pytest.importorskip("cv2")
-    if name == "nano":
-        pytest.skip("its networks may not be given away")
     expected = {
         **dict.fromkeys(ORACLES, "privileged"),
         **dict.fromkeys(BOX_TRACKERS, "box"),
