@@ -23,21 +23,16 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 
 TESTS = (
-    *(
-        "tests/engine/core/cache",
-        "tests/engine/core/test_config.py",
-        "tests/engine/core/test_registry.py",
-    ),
-    *(
-        "tests/engine/core/test_variation.py",
-        "tests/engine/core/test_exact_everywhere.py",
-        "tests/settings",
-    ),
-    *(
-        "tests/engine/mesh",
-        "tests/engine/envs/test_tracking_env.py",
-        "tests/engine/exports/test_labels.py",
-    ),
+    "tests/engine/core/cache",
+    "tests/engine/core/test_config.py",
+    "tests/engine/core/test_registry.py",
+    "tests/engine/core/test_variation.py",
+    "tests/engine/core/test_exact_everywhere.py",
+    "tests/engine/settings",
+    "tests/dat/settings",
+    "tests/engine/mesh",
+    "tests/engine/envs/test_tracking_env.py",
+    "tests/engine/exports/test_labels.py",
 )
 """Quick tests that a plain install can run: they need no extras."""
 
