@@ -107,4 +107,4 @@ def test_a_page_comes_back_when_the_server_does(browser, serve):
         serve("--port", str(first.port))
         until(page, "!document.body.classList.contains('offline')")
         page.keyboard.down("ArrowUp")
-        until(page, "eyas.engine.state.speed > 5")
+        until(page, "eyas.state.speed > 5")

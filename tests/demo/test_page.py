@@ -38,16 +38,16 @@ def state(page):
 
 def stand_still(page):
     page.click("#reset")
-    until(page, "eyas.engine.state.steps < 500 && eyas.engine.state.speed === 0")
+    until(page, "eyas.state.steps < 500 && eyas.state.speed === 0")
 
 
 def test_held_keys_fly_and_the_picture_changes(page):
     stand_still(page)
     before, picture = state(page), page.locator("#picture").screenshot()
     page.keyboard.down("ArrowUp")
-    until(page, "eyas.engine.state.speed > 10")
+    until(page, "eyas.state.speed > 10")
     page.keyboard.up("ArrowUp")
-    until(page, "eyas.engine.state.speed < 0.1")
+    until(page, "eyas.state.speed < 0.1")
     assert state(page)["drone"][:2] != before["drone"][:2]
     assert page.locator("#picture").screenshot() != picture
     assert page.evaluate("eyas.latency") > 0
@@ -58,19 +58,19 @@ def test_shift_changes_the_meaning_of_arrows(page):
     height = state(page)["height"]
     page.keyboard.down("Shift")
     page.keyboard.down("ArrowUp")
-    until(page, f"eyas.engine.state.height > {height + 0.5}")
+    until(page, f"eyas.state.height > {height + 0.5}")
     page.keyboard.up("Shift")  # the arrow is still held, and flies forward now
-    until(page, "eyas.engine.state.speed > 5")
+    until(page, "eyas.state.speed > 5")
     page.keyboard.up("ArrowUp")
-    until(page, "eyas.engine.state.speed < 0.1 && eyas.engine.state.climb === 0")
+    until(page, "eyas.state.speed < 0.1 && eyas.state.climb === 0")
 
 
 def test_a_page_without_focus_lets_go(page):
     stand_still(page)
     page.keyboard.down("ArrowDown")
-    until(page, "eyas.engine.state.speed > 5")
+    until(page, "eyas.state.speed > 5")
     page.evaluate("window.dispatchEvent(new Event('blur'))")
-    until(page, "eyas.engine.state.speed < 0.1")
+    until(page, "eyas.state.speed < 0.1")
     page.keyboard.up("ArrowDown")
 
 
@@ -80,27 +80,27 @@ def test_buttons_on_the_screen_are_held_too(page):
     box = page.locator('[data-control="turn_left"]').bounding_box()
     page.mouse.move(box["x"] + 10, box["y"] + 10)
     page.mouse.down()
-    until(page, "eyas.engine.state.yaw_rate > 40")
+    until(page, "eyas.state.yaw_rate > 40")
     page.mouse.up()
-    until(page, "Math.abs(eyas.engine.state.yaw_rate) < 0.1")
+    until(page, "Math.abs(eyas.state.yaw_rate) < 0.1")
 
 
 def test_sliders_change_the_reward(page):
     page.click("#parked")
     for scale, right in [("4", "> 0.5"), ("0.1", "< 0.2"), ("4", "> 0.5")]:
         page.locator("#view_scale").fill(scale)
-        until(page, f"eyas.engine.state.target.parked && eyas.engine.state.reward {right}")
+        until(page, f"eyas.state.target.parked && eyas.state.reward {right}")
 
 
 def test_a_click_on_the_parked_car_follows_it(page):
     page.click("#parked")
-    until(page, "eyas.engine.state.target.parked && eyas.engine.state.marks")
+    until(page, "eyas.state.target.parked && eyas.state.marks")
     x, y = state(page)["marks"]["target"]
     page.click("#next")
-    until(page, "!eyas.engine.state.target.parked")
+    until(page, "!eyas.state.target.parked")
     box = page.locator("#picture").bounding_box()
     page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
-    until(page, "eyas.engine.state.target.parked")
+    until(page, "eyas.state.target.parked")
 
 
 COLOURS = """(() => {
@@ -120,7 +120,7 @@ def test_h264_shows_the_same_colours(page):
     shown = {}
     for coding, kind in [("h264", "delta"), ("jpeg", "jpeg")]:
         page.select_option("#coding", coding)
-        until(page, f"eyas.engine.state.picture === '{kind}' && !eyas.engine.state.marks")
+        until(page, f"eyas.state.picture === '{kind}' && !eyas.state.marks")
         time.sleep(1.0)  # some more frames, which sharpen what stands still
         shown[coding] = page.evaluate(COLOURS)
     page.click("#pause")
@@ -141,7 +141,7 @@ def test_a_page_that_cannot_decode_h264_goes_on_with_jpeg(page):
     page.select_option("#coding", "h264")
     until(page, "document.getElementById('coding').value === 'jpeg'")
     frame = state(page)["frame"]
-    until(page, f"eyas.engine.state.frame > {frame + 20} && eyas.engine.state.picture === 'jpeg'")
+    until(page, f"eyas.state.frame > {frame + 20} && eyas.state.picture === 'jpeg'")
 
 
 def test_a_slow_line_gets_h264_by_itself(browser, served):
@@ -153,7 +153,7 @@ def test_a_slow_line_gets_h264_by_itself(browser, served):
         until(page, "window.eyas !== undefined")
         if page.evaluate("document.getElementById('coding').disabled"):
             pytest.skip("this Chromium does not decode H.264")
-        until(page, "eyas.engine.state.picture === 'delta'")
+        until(page, "eyas.state.picture === 'delta'")
 
 
 def test_menus_change_the_weather(page):
@@ -166,7 +166,7 @@ def test_menus_change_the_weather(page):
 def test_menus_change_the_tracker_and_the_light(page):
     for menu, choice in [("tracker", "flown"), ("light", "dark"), ("hour", "9")]:
         page.select_option(f"#{menu}", choice)
-        until(page, f"eyas.engine.world.{menu} == '{choice}'", seconds=120)
+        until(page, f"eyas.world.{menu} == '{choice}'", seconds=120)
         assert page.locator(f"#{menu}").input_value() == choice
 
 
