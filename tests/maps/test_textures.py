@@ -9,7 +9,6 @@ from eyas.engine.core.errors import DataFileError
 from eyas.engine.render.textures.fields import fractal, source
 from eyas.engine.world.build.materials import FACADES, GROUND_FLOORS, TEXTURES
 from eyas.maps.textures import shipped
-from eyas.maps.textures.library import PAINTERS, painted_textures
 from eyas.maps.textures.shipped import build_textures
 
 
@@ -23,18 +22,6 @@ def test_every_name_has_a_texture_of_the_right_kind(textures):
     for image in textures.values():
         assert image.shape == (256, 256, 4)
         assert image.dtype == np.uint8
-
-
-def test_the_names_of_materials_and_painters_are_the_same():
-    assert PAINTERS.keys() == TEXTURES.keys()
-
-
-@pytest.mark.slow
-def test_what_ships_is_what_is_painted(textures):
-    painted = painted_textures()
-    assert all((painted[name] == image).all() for name, image in textures.items()), (
-        "run `python tools/ship_textures.py`"
-    )
 
 
 def test_a_damaged_file_is_told_in_a_line(tmp_path, monkeypatch):

@@ -6,7 +6,7 @@ import shapely
 
 from eyas.engine.state.mesh import Surface
 from eyas.maps.plants.trees import VARIANTS, place_along, street_tree_levels
-from eyas.maps.textures.plants import leaves
+from eyas.maps.textures.shipped import build_textures
 
 
 @pytest.fixture(scope="module", params=range(VARIANTS))
@@ -73,7 +73,7 @@ def hidden_share(mesh, radius, holes, cells=48):
 def test_a_crown_hides_what_stands_under_it_at_every_level(levels):
     levels = levels[:3]  # under the last one a car is a pixel
     half_width = np.abs(levels[0].positions[:, :2]).max()
-    holes = leaves()[..., 3] == 0
+    holes = build_textures()["leaves"][..., 3] == 0
     shares = [hidden_share(mesh, 0.75 * half_width, holes) for mesh in levels]
     assert min(shares) > 0.96
     whole = [hidden_share(mesh, 0.95 * half_width, holes) for mesh in levels]

@@ -3,7 +3,13 @@ import pytest
 
 from eyas.engine.render.textures.mipmap import linear
 from eyas.engine.world.build.bodywork import BASE, FRONT, RAISED, REAR, SIDE, STYLES, TOP
-from eyas.maps.textures.bodywork import bodywork
+from eyas.maps.textures.shipped import build_textures
+
+TEXTURES = build_textures()
+
+
+def bodywork(style):
+    return TEXTURES[f"bodywork_{style}"]
 
 
 def tones(style):

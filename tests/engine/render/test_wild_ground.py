@@ -8,7 +8,7 @@ from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.renderer import build_renderer
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.mesh import Material, Surface
-from eyas.maps.textures.land import sand
+from eyas.maps.textures.shipped import build_textures
 
 from ...kit.small_city import DAY, looking, scene_of
 
@@ -73,7 +73,7 @@ def test_a_path_is_trodden_inside_and_grass_at_its_edge(seen):
 def test_a_desert_has_ridges_across_its_wind(images, drawn, tmp_path):
     """Seen from 25 m; the wind blows at -35 degrees."""
     scene = scene_of([slope(Surface.DESERT, 0.6, "sand")], [0])
-    geometry = build_geometry(scene, PartLibrary(()), {**images, "sand": sand()})
+    geometry = build_geometry(scene, PartLibrary(()), {**images, "sand": build_textures()["sand"]})
     renderer = build_renderer(scene, geometry, DAY, cache=tmp_path)
     views = looking([(0.0, 0.0, 25.0)], pitch=1.5707, fov=0.9)
     sandy = drawn(renderer, views, size=(128, 128)).rgb[0].mean(axis=2)

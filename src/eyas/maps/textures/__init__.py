@@ -1,1 +1,1 @@
-"""The textures: painted by formula (`library.py`), and shipped as data (`shipped.py`)."""
+"""The textures, which `art/textures` paints and ships as data (`shipped.py`)."""

@@ -1,4 +1,4 @@
-"""The textures as they ship: what `library.py` paints, packed by `tools/ship_textures.py`.
+"""The textures as they ship: what `art/textures` paints, packed by `python -m art.ship`.
 
 To unpack them takes a seventh of the time of painting, and the engine needs no painter.
 """
@@ -21,7 +21,11 @@ SHA256 = "a7052a9f4d67592c764aea7416694476d9fa156e2e53f6182b9b9684e588d580"
 
 
 def build_textures() -> dict[str, NDArray[np.uint8]]:
-    """Return every texture of `eyas.engine.world.build.materials.TEXTURES`, see `painted_textures`.
+    """Return every texture of `eyas.engine.world.build.materials.TEXTURES`, by name.
+
+    Each is sRGB and alpha, shape (256, 256, 4), and repeats without a seam. Row 0 of an array is
+    the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
+    except for the holes of `leaves`, the glass of facades, people and `cloth`, where it is 0.
 
     Raises:
         DataFileError: The installation is damaged.

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import SIZE, Field, Picture, fractal, white
+from art.textures.fields import Picture
+from eyas.engine.render.textures.fields import SIZE, Field, fractal, white
 from eyas.lanes import exact
 
 BAY = 64  # Pixels in a bay and in a storey: 3 m

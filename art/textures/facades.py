@@ -5,18 +5,9 @@ each storey of the tile is one front of four bays; walls without windows.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import (
-    SIZE,
-    Picture,
-    fractal,
-    masonry,
-    mixed,
-    opaque,
-    painted,
-    source,
-    white,
-)
-from eyas.maps.textures.windows import BAY, Opening, Wall
+from art.textures.fields import Picture, masonry, mixed, opaque, painted
+from art.textures.windows import BAY, Opening, Wall
+from eyas.engine.render.textures.fields import SIZE, fractal, source, white
 
 Texture = NDArray[np.uint8]
 Colour = tuple[float, float, float]

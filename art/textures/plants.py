@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
+from art.textures.fields import mixed, opaque, painted
+from eyas.engine.render.textures.fields import SIZE, fractal, source, white
 from eyas.lanes import exact
 
 _CLUSTER = 128  # Side of one cluster of leaves; the texture holds two by two [pixels]

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from art.textures.brush import Line, Sheet, sheet_of, texture_of
 from eyas.engine.render.textures.fields import SIZE, fractal, source
 from eyas.engine.world.build.bodywork import (
     BAND,
@@ -30,7 +31,6 @@ from eyas.engine.world.build.bodywork import (
     TOP_SHARES,
     WINDSCREEN,
 )
-from eyas.maps.textures.brush import Line, Sheet, sheet_of, texture_of
 
 Texture = NDArray[np.uint8]
 

@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from art.textures.brush import Sheet, sheet_of, texture_of
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.engine.world.build.bodywork import BASE
 from eyas.engine.world.build.clothing import CLOTHES, FACE, HAIR, HIPS, LEG, NECK, SLEEVE, TORSO
 from eyas.lanes import exact
-from eyas.maps.textures.brush import Sheet, sheet_of, texture_of
 
 Texture = NDArray[np.uint8]
 

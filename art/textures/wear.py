@@ -3,10 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
+from art.textures.fields import mixed, opaque, painted
+from art.textures.ground import asphalt
+from eyas.engine.render.textures.fields import SIZE, fractal, source, white
 from eyas.engine.render.textures.mipmap import linear
 from eyas.lanes import exact
-from eyas.maps.textures.ground import asphalt
 
 Texture = NDArray[np.uint8]
 

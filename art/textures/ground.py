@@ -3,19 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.textures.fields import (
-    SIZE,
-    Picture,
-    blurred,
-    cracks,
-    fractal,
-    masonry,
-    mixed,
-    opaque,
-    painted,
-    source,
-    white,
-)
+from art.textures.fields import Picture, cracks, masonry, mixed, opaque, painted
+from eyas.engine.render.textures.fields import SIZE, blurred, fractal, source, white
 from eyas.lanes import exact
 
 Texture = NDArray[np.uint8]

@@ -1,15 +1,19 @@
 """All textures, painted by formula: no picture of others has to be licensed.
 
-What is painted here ships as data: after a change run `python tools/ship_textures.py`.
+What is painted here ships as data: after a change run `python -m art.ship textures`.
 """
 
+import lzma
 from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from art.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 from eyas.engine.world.build.materials import TEXTURES
-from eyas.maps.textures import bodywork, facades, ground, land, people, plants, roofs, wear
+from eyas.maps.textures.shipped import FILE
 
 
 def _plain() -> NDArray[np.uint8]:
@@ -88,3 +92,10 @@ def painted_textures() -> dict[str, NDArray[np.uint8]]:
     except for the holes of `leaves`, the glass of facades, people and `cloth`, where it is 0.
     """
     return {name: PAINTERS[name]() for name in TEXTURES}
+
+
+def pack_textures() -> tuple[dict[Path, bytes], str]:
+    """Return the file that ships, and the digest of its unpacked bytes."""
+    painted = painted_textures()
+    content = b"".join(painted[name].tobytes() for name in TEXTURES)
+    return {FILE: lzma.compress(content, preset=9)}, sha256(content).hexdigest()

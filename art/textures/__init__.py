@@ -1,0 +1,1 @@
+"""Painters of the textures, each by formula. Begin with `library.py`."""
