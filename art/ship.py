@@ -13,9 +13,15 @@ import re
 from pathlib import Path
 from types import ModuleType
 
+from art.cars.parked import pack_parked
+from art.catalogue import pack_models
 from art.textures.library import pack_textures
 
-SHIPMENTS = {"textures": ("eyas.maps.textures.shipped", pack_textures)}
+SHIPMENTS = {
+    "models": ("eyas.engine.targets.shapes", pack_models),
+    "parked": ("eyas.maps.street.parked_cars", pack_parked),
+    "textures": ("eyas.maps.textures.shipped", pack_textures),
+}
 """The module that reads each, with its digest as `SHA256`, and what makes its files and digest."""
 
 

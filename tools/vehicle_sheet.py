@@ -11,7 +11,7 @@ from PIL import Image
 
 from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
 from eyas.engine.targets.catalogue import MODELS
-from eyas.engine.targets.vehicles.vehicle import BODY_COLOURS
+from art.vehicles.vehicle import BODY_COLOURS
 
 BEARINGS = (np.pi, 2.4, -2.1, 0.6)
 FIELD = np.deg2rad(45.0)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from art.cars.parked import COLOURS as PARKED
 from eyas.benchmark.episodes import from_above
 from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch, episode_groups
@@ -23,7 +24,6 @@ from eyas.engine.targets.grammar.claims import Claim, fits
 from eyas.engine.targets.grammar.in_view import BodyWord
 from eyas.engine.targets.grammar.naming import PhraseKind
 from eyas.engine.targets.grammar.wording import WORDINGS, Wording
-from eyas.maps.street.parked_cars import _COLOURS as PARKED
 
 PROTOCOL = PROTOCOLS.get("referring")
 HOME = Place("citystreet", "day", "SUMO_VEHICLE")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.state.mesh import Surface
-from eyas.engine.targets.vehicles.models import VEHICLES
+from art.vehicles.models import VEHICLES
 from eyas.maps.street.parked_cars import (
     KINDS,
     TYPES,

@@ -21,9 +21,8 @@ from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture, Views
 from eyas.engine.state.motion import SAMPLE, Motion, joined
 from eyas.engine.state.scene import ObjectClass
-from eyas.engine.targets.catalogue import kind_index, models_of
+from eyas.engine.targets.catalogue import VEHICLE_KINDS, kind_index, models_of
 from eyas.engine.targets.rig import Rigs
-from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.engine.task.rules import lenient, make_rules
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.replay import Replay

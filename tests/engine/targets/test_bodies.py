@@ -8,8 +8,8 @@ from eyas.engine.mesh import shell
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.catalogue import MODELS, model_index
-from eyas.engine.targets.vehicles.models import VEHICLES
-from eyas.engine.world.cars.finishes import (
+from art.vehicles.models import VEHICLES
+from art.cars.finishes import (
     BLACK_PAINT,
     BRIGHT,
     HEAD_LAMP,
@@ -19,7 +19,7 @@ from eyas.engine.world.cars.finishes import (
     TAIL_LAMP,
     TRIM,
 )
-from eyas.engine.world.cars.wheels import wheel_levels
+from art.cars.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
 

@@ -20,8 +20,8 @@ from eyas.engine.targets.catalogue import (
     register,
 )
 from eyas.engine.targets.config import TargetName
-from eyas.engine.targets.vehicles.models import VEHICLES
-from eyas.engine.targets.vehicles.vehicle import BODY_COLOURS
+from art.vehicles.models import VEHICLES
+from art.vehicles.vehicle import BODY_COLOURS
 from eyas.engine.traffic.config import VehicleType
 
 ORIGINAL = {
@@ -154,7 +154,7 @@ def test_a_size_that_the_meshes_do_not_have_is_refused_before_anything_is_drawn(
 
 
 NEW_CAR = """
-from eyas.engine.targets.vehicles.models.toyota_prius import MODEL as _PRIUS
+from art.vehicles.models.toyota_prius import MODEL as _PRIUS
 from dataclasses import replace
 
 MODEL = replace(

@@ -10,11 +10,11 @@ from eyas.engine.state.mesh import Surface
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.catalogue import KINDS, MODELS, extent_of, kind_index, models_of
 from eyas.engine.targets.config import TargetName
-from eyas.engine.targets.jointed.cycle import frames_of
-from eyas.engine.targets.jointed.kinds import JOINTED_KINDS
-from eyas.engine.targets.jointed.people.people import PEOPLE
-from eyas.engine.targets.jointed.people.person import Posture
-from eyas.engine.targets.jointed.people.wardrobe import dress_of
+from art.jointed.cycle import frames_of
+from art.jointed.kinds import JOINTED_KINDS
+from art.jointed.people.people import PEOPLE
+from art.jointed.people.person import Posture
+from art.jointed.people.wardrobe import dress_of
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 

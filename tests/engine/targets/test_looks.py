@@ -4,7 +4,7 @@ import pytest
 from eyas.engine.core.rng import room_key, stream
 from eyas.engine.targets.catalogue import kind_index, models_of
 from eyas.engine.targets.looks import LookSampler, sample_looks
-from eyas.engine.targets.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
+from art.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.engine.traffic.config import VehicleType
 from eyas.lanes import interpreted
 from eyas.lanes.pcg64 import STATE, begin_stream

@@ -10,11 +10,11 @@ from eyas.engine.mesh.shell import DETAILS, Shell, levels_of
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.catalogue import KINDS, kind_index, models_of
 from eyas.engine.targets.colour_names import COLOUR_NAMES, colour_distances, colour_name
-from eyas.engine.targets.jointed.cycle import frames_of, shapes_of
-from eyas.engine.targets.jointed.extent import extents_of
-from eyas.engine.targets.jointed.people.people import PEDESTRIANS, PEOPLE
-from eyas.engine.targets.jointed.people.person import Build, Carried, Garment, Lower
-from eyas.engine.targets.jointed.people.wardrobe import colours_of, dress_of
+from art.jointed.cycle import frames_of, shapes_of
+from art.jointed.extent import extents_of
+from art.jointed.people.people import PEDESTRIANS, PEOPLE
+from art.jointed.people.person import Build, Carried, Garment, Lower
+from art.jointed.people.wardrobe import colours_of, dress_of
 
 COLOURS = KINDS[kind_index("Pedestrian")].colours
 CUTS = {(person.garment, person.cut): number for number, person in enumerate(PEOPLE)}

@@ -10,7 +10,7 @@ from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of, 
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs, part_library
 from eyas.engine.targets.vehicles.pose import STEER_LIMIT
-from eyas.engine.targets.vehicles.two_wheelers import LEAN_LIMIT
+from art.vehicles.two_wheelers import LEAN_LIMIT
 from eyas.engine.traffic.config import VehicleType
 
 TYPES = list(VehicleType)

@@ -10,7 +10,7 @@ from eyas.engine.state.terrain import Terrain
 from eyas.engine.targets.catalogue import kind_index, model_index
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
-from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
+from eyas.engine.targets.vehicles.pose import VEHICLE_AHEAD
 from eyas.engine.traffic import trailer
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.recorded import recorded_motion

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Is, Node, Value, proto
 from eyas.engine.exports.resting import resting_mesh
+from eyas.engine.targets.catalogue import VEHICLE_KINDS
 from eyas.engine.targets.kind import Kind, Model
 from eyas.engine.targets.quadrotor import quadrotor_levels
-from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.engine.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, YAW_JOINT
 
 DRONE, INTERFACE = "Drone", "SumoInterface"

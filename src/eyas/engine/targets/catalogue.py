@@ -1,11 +1,12 @@
 """The catalogue: all kinds of targets and all their models.
 
-A model is one entry in one file: vehicles in `vehicles/models`, robots in `jointed/robots`, people
-in the grammar `jointed/people/crowd.py`. A new kind is a file with its models and its rig, and one
-call of `register`.
+Vehicles, people and robots ship as data: `art/catalogue.py` makes them, of one file for each
+(`art/vehicles/models`, `art/jointed/robots`). A new kind is a file with its models and its rig, and
+one call of `register`.
 """
 
-from functools import cache
+from dataclasses import fields
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +15,11 @@ from eyas.engine.core.errors import ConfigError
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.bird import BIRD
 from eyas.engine.targets.habit import Habit
-from eyas.engine.targets.jointed.kinds import CYCLIST, JOINTED_KINDS
-from eyas.engine.targets.kind import Kind, Model, Section
+from eyas.engine.targets.jointed.rig import JointedRig, extent_at
+from eyas.engine.targets.kind import Kind, KindFacts, Model, Section
 from eyas.engine.targets.quadrotor import QUADROTOR
-from eyas.engine.targets.vehicles.kinds import VEHICLE_KINDS
+from eyas.engine.targets.shapes import Entry, read_entries
+from eyas.engine.targets.vehicles.rig import VehicleRig
 from eyas.lanes.elementary.arrays import cos
 
 Floats = NDArray[np.float64]
@@ -99,5 +101,19 @@ def sections_of(model: int) -> tuple[Section, ...]:
     return kind.sections[kind.models.index(MODELS[model])] if kind.sections else ()
 
 
-for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS, BIRD, CYCLIST):
+def _shipped(entry: Entry) -> Kind:
+    facts = {field.name: getattr(entry.facts, field.name) for field in fields(KindFacts)}
+    rig, extents = VehicleRig if entry.drives else JointedRig, entry.shapes.extents
+    extent = None if extents is None else partial(extent_at, extents)
+    return Kind(**facts, rig=partial(rig, entry.shapes), extent=extent)
+
+
+_ENTRIES = read_entries()
+
+VEHICLE_KINDS = tuple(_shipped(entry) for entry in _ENTRIES if entry.drives)
+"""All kinds of vehicles, in the order of `VehicleType`."""
+
+*_WALKERS, _CYCLIST = (_shipped(entry) for entry in _ENTRIES if not entry.drives)
+
+for _kind in (*VEHICLE_KINDS, QUADROTOR, *_WALKERS, BIRD, _CYCLIST):
     register(_kind)

@@ -59,28 +59,8 @@ class Model:
         if not all(side > 0.0 for side in self.size):
             raise ConfigError(f"targets: {self.name!r} is {self.size} m; allowed: above 0")
 
-    def check_meshes(
-        self,
-        # All points of the finest meshes of the resting model [m], shape (P, 3)
-        points: NDArray[np.floating],
-        tolerance: float,  # Share of the size that they may differ by
-        *,
-        antennas: bool = False,  # Whether something may stand out above
-    ) -> None:
-        """Raise a `ConfigError` if the meshes are not of the size that is said."""
-        ratio = np.ptp(points, axis=0) / self.size
-        wrong = np.abs(ratio - 1.0) > tolerance
-        wrong[2] &= not (antennas and ratio[2] > 1.0)
-        if wrong.any():
-            sides = " x ".join(f"{side:.2f}" for side in np.ptp(points, axis=0))
-            said = " x ".join(f"{side:.2f}" for side in self.size)
-            raise ConfigError(
-                f"targets: {self.name!r} says that it is {said} m, but its meshes are {sides} m; "
-                f"allowed: {tolerance:.0%} more or less; change its size, or its lines [m]"
-            )
 
-
-class Block(NamedTuple):
+class Solid(NamedTuple):
     """An upright box on the ground."""
 
     ahead: float
@@ -92,10 +72,10 @@ class Section(NamedTuple):
     """A rigid part of an articulated vehicle, and the upright box around it."""
 
     name: str  # "truck" or "trailer"
-    ahead: float  # See `Block`
-    size: tuple[float, float, float]  # See `Block`
+    ahead: float  # See `Solid`
+    size: tuple[float, float, float]  # See `Solid`
     towed: int  # 1 for a trailer, 0 for what pulls it, see `eyas.engine.traffic.trailer.folded`.
-    blocks: tuple[Block, ...]  # What is solid of it
+    blocks: tuple[Solid, ...]  # What is solid of it
 
 
 class Group(NamedTuple):
@@ -152,15 +132,14 @@ class Rig(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """A kind of target: everything that distinguishes it from other kinds."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KindFacts:
+    """What distinguishes a kind of target, but for how it is drawn."""
 
     name: str  # Name of the kind; for vehicles SUMO's class
     models: tuple[Model, ...]  # At least one model
     colours: tuple[Colour, ...]  # Body colours to draw from for each actor
     object_class: ObjectClass  # Class of its pixels
-    rig: Callable[[], Rig]  # Returns the rig of all its models
     ahead: float = 0.0
     """Distance of the middle, the point that the reward uses, ahead of the reference point [m]."""
     slowest: float = 0.01  # Speed below which it counts as standing [m/s]
@@ -171,8 +150,15 @@ class Kind:
     """Of each model what it consists of, if that is not one rigid body."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""
+    habit: Habit | None = None  # How it moves off the traffic by itself; None: it cannot
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind(KindFacts):
+    """A kind of target: everything that distinguishes it from other kinds."""
+
+    rig: Callable[[], Rig]  # Returns the rig of all its models
     extent: Callable[[str, float, float], NDArray[np.float64]] | None = None
     """Returns the box of a model at a moment, by its name, the way that it has travelled along the
     ground [m] and its speed [m/s]: least and largest x, y and z in the model frame [m], shape
     (2, 3). None: it is always that of its size."""
-    habit: Habit | None = None  # How it moves off the traffic by itself; None: it cannot

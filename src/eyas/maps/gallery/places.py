@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.engine.state.scene import ObjectClass, Scene
-from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
+from eyas.engine.targets.vehicles.pose import VEHICLE_AHEAD
 from eyas.engine.task.spawn import StartValues, start_pose
 from eyas.maps.gallery.still import StillScene, Viewpoint, is_inside, solids
 

@@ -1,6 +1,6 @@
 """Poses of the parts of people and robots.
 
-The frames of the parts through a cycle are in a table (`eyas.engine.targets.jointed.cycle`), so an
+The frames of the parts through a cycle are in a table (`art/jointed/cycle.py` makes it), so an
 actor costs the same however it walks: each part is read, put into the world, and perhaps rolled.
 """
 

@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.posing import ActorFrame, Slots
-from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.engine.traffic.trailer import folded
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
+
+VEHICLE_AHEAD = -1.0
+"""Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
+reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
 
 STEER_LIMIT = 0.6  # Largest steering angle [rad]
 

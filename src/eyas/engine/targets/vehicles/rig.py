@@ -1,162 +1,33 @@
 """The rig of vehicles: a body, wheels that roll and steer, and a trailer that swings."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.mesh.shell import levels_of
-from eyas.engine.state.mesh import Mesh
-from eyas.engine.targets.posing import PoseCall
-from eyas.engine.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicle
-from eyas.engine.targets.vehicles.vehicle import VEHICLE_AHEAD, Trailer, VehicleModel
-from eyas.engine.world.cars.frame import Axle
-from eyas.engine.world.cars.wheels import DESIGNS, wheel_levels
+from eyas.engine.mesh.shipped import read_block
+from eyas.engine.targets.shapes import FILE, Columns, Shapes, ShippedRig, records
+from eyas.engine.targets.vehicles.pose import AXLES, SLOT, VEHICLE_AHEAD, RigTable, pose_vehicle
 
 
-class VehicleRig:
-    """The rig of the models of one kind of vehicle.
+class VehicleArrays(NamedTuple):
+    """A `RigTable` as it ships."""
 
-    Attributes:
-        slots: As in `Rig`.
-        pose: As in `Rig`.
+    slot: Columns
+    axles: Columns
 
-    Args:
-        models: All models of a kind.
-    """
 
-    slots: int
+class VehicleRig(ShippedRig):
+    """The rig of the models of one kind of vehicle."""
 
-    def __init__(self, models: Sequence[VehicleModel]) -> None:
-        self._parts: list[_Part] = []
-        layouts = [_layouts(model, self._parts) for model in models]
-        self._models, self._layouts = models, layouts
-        self.slots = max(len(layout) for variants in layouts for layout in variants)
-        table = _tabulate(models, layouts, self.slots)
+    def __init__(self, shapes: Shapes) -> None:
+        arrays = read_block(FILE, shapes.table, VehicleArrays)
+        table = RigTable(records(arrays.slot, SLOT), records(arrays.axles, AXLES))
+        super().__init__(shapes, table, pose_vehicle)
         self._slots = table.slot
-        self.pose = PoseCall(table, pose_vehicle)
-
-    @property
-    def part_count(self) -> int:
-        """Total number of parts of all models."""
-        return len(self._parts)
-
-    def part_levels(self) -> list[tuple[Mesh, ...]]:
-        """Return the meshes of each part, the finest first.
-
-        Raises:
-            ValueError: A model is not of the size that it says.
-        """
-        levels = [_levels(part) for part in self._parts]
-        for model, variants in zip(self._models, self._layouts, strict=True):
-            for slots in variants:
-                placed = [levels[slot.part][0].positions + slot.offset for slot in slots]
-                model.check_meshes(np.concatenate(placed), 0.05)
-        return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
         slot = self._slots[self._slots["part"] >= 0]
         offset = np.sqrt(np.square(slot["x"]) + np.square(slot["y"]) + np.square(slot["z"]))
         return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
-
-
-def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
-    """Return the parts of a rig of models that are trailers, without their wheels."""
-    parts: list[_Part] = []
-    for model in models:
-        _layouts(model, parts)
-    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Towed))
-
-
-class _Wheels(NamedTuple):
-    radius: float
-    width: float
-    track: float  # Distance between the two wheels of an axle [m]; 0 for a single wheel
-    design: int  # Of the discs
-
-
-class _Body(NamedTuple):
-    vehicle: VehicleModel
-    variant: int  # 0 for `VehicleModel.body`, from 1 on for one of `VehicleModel.variants`.
-
-
-class _Towed(NamedTuple):
-    trailer: Trailer
-    vehicle: VehicleModel
-
-
-_Part = _Body | _Wheels | _Towed
-"""A body of a model, or wheels, which several models may share, or its trailer."""
-
-
-def _levels(part: _Part) -> tuple[Mesh, ...]:
-    if isinstance(part, _Wheels):
-        return wheel_levels(*part)
-    if isinstance(part, _Body):
-        vehicle, variant = part
-        return (vehicle.body, *vehicle.variants)[variant](vehicle)
-    shape, vehicle = part.trailer.shape, part.vehicle
-    return levels_of(lambda shell, detail: shape(shell, vehicle, detail))
-
-
-class _Slot(NamedTuple):
-    part: int
-    offset: tuple[float, float, float]
-    steered: bool = False
-    towed: bool = False
-
-
-def _layouts(vehicle: VehicleModel, parts: list[_Part]) -> list[list[_Slot]]:
-    """Return the slots of each variant of a model; add new parts to `parts`."""
-    return [_layout(vehicle, variant, parts) for variant in range(1 + len(vehicle.variants))]
-
-
-def _layout(vehicle: VehicleModel, variant: int, parts: list[_Part]) -> list[_Slot]:
-    """Return the slots of a variant of a model: its body and wheels, then its trailer and the
-    wheels of that; add new parts to `parts`.
-    """
-    slots = [_Slot(_index(_Body(vehicle, variant), parts), (0.0, 0.0, 0.0))]
-    design = variant % DESIGNS
-    for axle in sorted(vehicle.axles, key=lambda axle: axle.towed):
-        if axle.towed and not slots[-1].towed:
-            assert vehicle.trailer is not None
-            behind = _index(_Towed(vehicle.trailer, vehicle), parts)
-            slots.append(_Slot(behind, (0.0, 0.0, 0.0), towed=True))
-        # Steered wheels turn about their own middles, so each is a part; others are one per axle.
-        pair = 0.0 if axle.steered else axle.track
-        part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair, design), parts)
-        slots += [
-            _Slot(part, (axle.x, y, vehicle.wheel_radius), axle.steered, axle.towed)
-            for y in _places(axle)
-        ]
-    return slots
-
-
-def _index(part: _Part, parts: list[_Part]) -> int:
-    if part not in parts:
-        parts.append(part)
-    return parts.index(part)
-
-
-def _places(axle: Axle) -> tuple[float, ...]:
-    """Return y of an axle's parts [m]."""
-    return (axle.track / 2, -axle.track / 2) if axle.steered and axle.track else (0.0,)
-
-
-def _tabulate(
-    models: Sequence[VehicleModel], layouts: Sequence[list[list[_Slot]]], slots: int
-) -> RigTable:
-    most = max(len(variants) for variants in layouts)
-    table = RigTable(
-        slot=np.zeros((len(models), most, slots), SLOT),
-        axles=np.array([(m.wheel_radius, m.wheelbase, m.lean) for m in models], AXLES),
-    )
-    table.slot["part"] = -1
-    for model, variants in enumerate(layouts):
-        for variant in range(most):
-            for s, slot in enumerate(variants[variant % len(variants)]):
-                row = (slot.part, *slot.offset, slot.steered, slot.towed)
-                table.slot[model, variant, s] = row
-    return table

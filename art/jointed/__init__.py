@@ -1,0 +1,1 @@
+"""People and robots: their skeletons, shapes and motion. Begin with `figure.py`."""
