@@ -10,8 +10,7 @@ import numpy as np
 from PIL import Image
 
 from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
-from eyas.engine.targets.catalogue import MODELS
-from art.vehicles.vehicle import BODY_COLOURS
+from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index
 
 BEARINGS = (np.pi, 2.4, -2.1, 0.6)
 FIELD = np.deg2rad(45.0)
@@ -33,7 +32,8 @@ def row(stage: TargetStage, index: int, place: int) -> np.ndarray:
     for individual, bearing in enumerate(BEARINGS):
         pose = TargetPose(travelled=0.3, speed=5.0, individual=individual)
         camera = Camera(bearing=bearing, elevation=0.8, distance=distance, field_of_view=FIELD)
-        colour = BODY_COLOURS[(3 * place + 2 * individual) % len(BODY_COLOURS)]
+        colours = KINDS[kind_index("passenger")].colours
+        colour = colours[(3 * place + 2 * individual) % len(colours)]
         shown.append(cut(stage.draw(index, colour, [(pose, camera)], (480, 640))[0]))
     return np.concatenate(shown, axis=1)
 

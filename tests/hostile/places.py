@@ -157,6 +157,8 @@ OWN = {
     "gpu.cuda.code:_shipped": _PACKAGE,
     "lanes.modules:_shipped": _PACKAGE,
     "lanes.shipped:read_archive": _PACKAGE,
+    "engine.mesh.shipped:_opened": _PACKAGE,
+    "engine.mesh.shipped:read_block": _PACKAGE,
     "maps.textures.shipped:build_textures": _PACKAGE,
     "lanes.syntax:syntax_of": _PACKAGE,
     "lanes.text_index:TextIndex._brought": _PACKAGE,

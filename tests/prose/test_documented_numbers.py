@@ -8,9 +8,8 @@ import pytest
 
 from eyas import ATTRIBUTES
 from eyas.engine.sim.scenes import load_scene
-from eyas.engine.targets.catalogue import KINDS, habit_of, kind_index
+from eyas.engine.targets.catalogue import KINDS, VEHICLE_KINDS, habit_of, kind_index
 from eyas.engine.targets.config import TargetName
-from eyas.engine.targets.catalogue import VEHICLE_KINDS
 from eyas.engine.world.maps import MAPS
 from eyas.maps.commands.info import figures_of
 

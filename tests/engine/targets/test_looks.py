@@ -2,9 +2,8 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.rng import room_key, stream
-from eyas.engine.targets.catalogue import kind_index, models_of
+from eyas.engine.targets.catalogue import KINDS, kind_index, models_of
 from eyas.engine.targets.looks import LookSampler, sample_looks
-from art.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.engine.traffic.config import VehicleType
 from eyas.lanes import interpreted
 from eyas.lanes.pcg64 import STATE, begin_stream
@@ -21,7 +20,7 @@ def drawn(vehicle_type, colour=None, seed=3):
 def test_all_models_and_colours_of_a_class_appear(vehicle_type):
     model, colour = drawn(vehicle_type)
     assert set(model) == set(models_of(kind_index(vehicle_type)))
-    palette = MOTORCYCLE_COLOURS if vehicle_type == VehicleType.MOTORCYCLE else BODY_COLOURS
+    palette = KINDS[kind_index(vehicle_type)].colours
     assert set(map(tuple, colour)) == set(map(tuple, np.array(palette, np.float32)))
     assert (model.dtype, colour.dtype) == (np.int32, np.float32)
 

@@ -4,16 +4,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from art.vehicles.models import VEHICLES
+from art.vehicles.two_wheelers import LEAN_LIMIT
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of, register
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs, part_library
 from eyas.engine.targets.vehicles.pose import STEER_LIMIT
-from art.vehicles.two_wheelers import LEAN_LIMIT
 from eyas.engine.traffic.config import VehicleType
 
 TYPES = list(VehicleType)
+MADE = {vehicle.name: vehicle for vehicle in VEHICLES}
 
 
 @functools.cache
@@ -95,7 +97,7 @@ def test_wheels_roll_without_slip(vehicle_type, model):
     assert after[0, 0, 3] - before[0, 0, 3] == pytest.approx(step, abs=1e-6)
     pairs = (wheels(vehicle_type, parts, poses) for poses in (before, after))
     for (_, a), (_, b) in zip(*pairs, strict=True):
-        contact = a[:, :3].T @ [0.0, 0.0, -MODELS[model].wheel_radius]
+        contact = a[:, :3].T @ [0.0, 0.0, -MODELS[model].rise]
         moved = b[:, :3] @ contact + b[:, 3] - a[:, :3] @ contact - a[:, 3]
         assert moved == pytest.approx(np.zeros(3), abs=1e-5)
         assert not np.allclose(a[:, :3], b[:, :3], atol=1e-4)
@@ -109,7 +111,7 @@ def steer_of(pose):
 def test_front_wheels_steer_along_the_curve():
     model, speed, rate = own_models(VehicleType.PASSENGER)[0], 8.0, 0.5
     _, poses = one(VehicleType.PASSENGER, model, speed=speed, yaw_rate=rate, travelled=5.0)
-    expected = np.arctan(MODELS[model].wheelbase * rate / speed)
+    expected = np.arctan(MADE[MODELS[model].name].wheelbase * rate / speed)
     assert [steer_of(pose) for pose in poses] == pytest.approx([0, expected, expected, 0], abs=1e-6)
     assert expected > 0.1  # a left curve turns them to the left, which is counter-clockwise
     assert poses[1, 1, 3] > 0 > poses[2, 1, 3]
@@ -180,7 +182,7 @@ def test_models_with_fewer_wheels_leave_slots_empty_and_have_their_own_body():
         assert len(set(parts[:, 0])) == len(own)
         assert parts.max() < len(library_of(vehicle_type).parts)
         for a in range(7):
-            vehicle = MODELS[own[a % len(own)]]
+            vehicle = MADE[MODELS[own[a % len(own)]].name]
             axles, bodies = vehicle.axles, 1 + vehicle.articulated
             wheels = sum(2 if axle.steered and axle.track else 1 for axle in axles)
             assert (parts[a] >= 0).sum() == bodies + wheels

@@ -4,11 +4,6 @@ import itertools
 import numpy as np
 import pytest
 
-from eyas.engine.mesh import shell
-from eyas.engine.mesh.assembly import concatenate, transformed
-from eyas.engine.state.mesh import Surface
-from eyas.engine.targets.catalogue import MODELS, model_index
-from art.vehicles.models import VEHICLES
 from art.cars.finishes import (
     BLACK_PAINT,
     BRIGHT,
@@ -20,14 +15,19 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.wheels import wheel_levels
+from art.vehicles.models import VEHICLES
+from eyas.engine.mesh import shell
+from eyas.engine.mesh.assembly import concatenate, transformed
+from eyas.engine.state.mesh import Surface
 
-NAMES = [vehicle.name for vehicle in VEHICLES]
+BY_NAME = {vehicle.name: vehicle for vehicle in VEHICLES}
+NAMES = [*BY_NAME]
 
 
 @functools.cache
 def levels_of(name):
     """The bodies; of a truck with a trailer, both."""
-    vehicle = MODELS[model_index(name)]
+    vehicle = BY_NAME[name]
     bodies = vehicle.body(vehicle)
     if not vehicle.articulated:
         return bodies
@@ -39,7 +39,7 @@ def levels_of(name):
 @functools.cache
 def whole(name):
     """The finest body with its wheels."""
-    vehicle = MODELS[model_index(name)]
+    vehicle = BY_NAME[name]
     meshes = [levels_of(name)[0]]
     for axle in vehicle.axles:
         pose = np.eye(3, 4)
@@ -85,14 +85,14 @@ def first_hits(mesh, axis, sign, rays=24):
 def test_size_is_the_catalogues_within_five_centimetres(name):
     mesh = whole(name)
     low, high = mesh.positions.min(0), mesh.positions.max(0)
-    assert high - low == pytest.approx(MODELS[model_index(name)].size, abs=0.05)
+    assert high - low == pytest.approx(BY_NAME[name].size, abs=0.05)
     assert low[2] == pytest.approx(0.0, abs=1e-6)
     assert (low + high)[:2] / 2 == pytest.approx(np.zeros(2), abs=0.03)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_normals_agree_with_winding(name):
-    vehicle = MODELS[model_index(name)]
+    vehicle = BY_NAME[name]
     for mesh in (*levels_of(name), *wheel_levels(vehicle.wheel_radius, 0.2, 1.5)):
         assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0, abs=1e-4)
         against = np.einsum("ti,tci->tc", face_normals(mesh), mesh.normals[mesh.triangles])
@@ -132,7 +132,7 @@ def test_every_level_has_lamps_at_both_ends_on_both_sides(name):
             shining = np.array([material == lamp for material in mesh.palette])[mesh.materials]
             facing = np.where(shining, np.maximum(sign * normals[:, 0], 0), 0)
             reach = (sign * corners[shining, :, 0]).max(initial=0.0)
-            assert reach > 0.29 * MODELS[model_index(name)].length
+            assert reach > 0.29 * BY_NAME[name].length
             for side in (1, -1):
                 assert facing[side * corners[:, :, 1].mean(axis=1) > 0.01].sum() > least
 

@@ -5,20 +5,20 @@ import functools
 import numpy as np
 import pytest
 
+from art.jointed.cycle import frames_of
+from art.jointed.people.people import PEDESTRIANS, PEOPLE
+from art.jointed.people.person import Posture
+from art.jointed.people.wardrobe import dress_of
+from art.jointed.robots import ROBOTS
 from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.mesh import Surface
 from eyas.engine.state.motion import ActorState
-from eyas.engine.targets.catalogue import KINDS, MODELS, extent_of, kind_index, models_of
+from eyas.engine.targets.catalogue import MODELS, extent_of, kind_index, models_of
 from eyas.engine.targets.config import TargetName
-from art.jointed.cycle import frames_of
-from art.jointed.kinds import JOINTED_KINDS
-from art.jointed.people.people import PEOPLE
-from art.jointed.people.person import Posture
-from art.jointed.people.wardrobe import dress_of
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
 
-FIGURES = {model.name: model.figure for kind in JOINTED_KINDS for model in kind.models}
+FIGURES = {model.name: model.figure for model in (*PEDESTRIANS, *ROBOTS)}
 LOOKS = {person.name: person for person in (*PEOPLE[:8], *PEOPLE[8::8])}
 """People who wear each part, in each posture, at least once."""
 NAMES = sorted(name for name in FIGURES if name in LOOKS or not name.startswith("Pedestrian"))
@@ -73,11 +73,10 @@ def posed(name, **state):
 
 def test_every_target_of_the_original_is_a_kind_of_its_name():
     names = {name.value for name in TargetName} - {TargetName.SUMO_VEHICLE.value}
-    assert {kind.name for kind in JOINTED_KINDS} == names
-    assert {MODELS[m].kind for name in names for m in models_of(kind_index(name))} == names
-    for kind in JOINTED_KINDS:
-        assert kind.models[0].name == kind.models[0].typename == kind.name
-        assert KINDS[kind_index(kind.name)] is kind
+    assert {model.kind for model in (*PEDESTRIANS, *ROBOTS)} == names
+    for name in names:
+        first = MODELS[models_of(kind_index(name))[0]]
+        assert first.name == first.typename == first.kind == name
 
 
 @pytest.mark.slow

@@ -5,16 +5,11 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from eyas.engine.state.mesh import Surface
+from art.cars.parked import KINDS, TAXI, TYPES, levels_of, pack_parked
 from art.vehicles.models import VEHICLES
-from eyas.maps.street.parked_cars import (
-    KINDS,
-    TYPES,
-    VARIANTS,
-    parked_car,
-    parked_taxi,
-    solid_size,
-)
+from eyas.engine.state.mesh import Surface
+from eyas.maps.street import parked_cars
+from eyas.maps.street.parked_cars import VARIANTS, parked_car, parked_taxi, solid_size
 
 EACH = pytest.mark.parametrize("variant", range(0, VARIANTS, 3))
 
@@ -63,6 +58,19 @@ def test_front_wheels_are_turned_where_a_kind_says_so():
     straight, turned = KINDS.index(KINDS[0]), next(k for k, kind in enumerate(KINDS) if kind.steer)
     widths = [np.ptp(parked_car(k)[0].positions[:, 1]) for k in (straight, turned)]
     assert widths[1] > widths[0] + 0.01
+
+
+def test_what_ships_is_what_is_made():
+    for shipped, kind in ((parked_car(5), KINDS[5]), (parked_taxi(), TAXI)):
+        for mesh, made in zip(shipped, levels_of(kind), strict=True):
+            assert mesh.palette == made.palette
+            for name in ("positions", "normals", "uvs", "triangles", "materials"):
+                assert np.array_equal(getattr(mesh, name), getattr(made, name))
+
+
+@pytest.mark.slow
+def test_all_that_ships_is_what_is_made():
+    assert pack_parked()[1] == parked_cars.SHA256, "run `python -m art.ship parked`"
 
 
 def test_taxis_are_yellow():

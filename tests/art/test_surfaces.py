@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from art.cars.wheels import wheel_levels
+from art.vehicles.models import VEHICLES
 from eyas.engine.mesh.flat import quads
 from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.mesh import Material
-from art.vehicles.models import VEHICLES
-from art.cars.wheels import wheel_levels
 
 CLOSE = 0.01
 """Surfaces that face alike must be farther apart, or the same [m]."""

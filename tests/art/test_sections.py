@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from art.vehicles.models import VEHICLES
 from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
@@ -28,7 +29,7 @@ def test_vehicles_with_trailers_have_sections_and_no_others():
 
 @pytest.mark.parametrize("model", ARTICULATED)
 def test_a_section_is_as_large_as_its_mesh(model):
-    one = MODELS[model]
+    one = next(each for each in VEHICLES if each.name == MODELS[model].name)
     add = one.trailer.shape
     meshes = one.body(one), levels_of(lambda shell, detail: add(shell, one, detail))
     for section, levels in zip(sections_of(model), meshes, strict=True):
