@@ -25,7 +25,7 @@ from spellchecker import SpellChecker
 ROOT = Path(__file__).parents[1]
 OWN = ROOT / "tools/words.txt"
 PAGES = ("*.md", "docs/**/*.md", ".ci/*")
-CODE = ("src", "tests", "examples", "tools", "bench")
+CODE = ("src", "art", "tests", "examples", "tools", "bench")
 NO_PROSE = re.compile(
     r"""^\ *```.*?^\ *```      # blocks of code
     | ``.*?`` | `[^`]*`        # code in a line

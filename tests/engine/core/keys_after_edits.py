@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import eyas
+from eyas.engine.core.cache.cached import key_of
 from eyas.engine.core.identity import build, program
 from eyas.engine.render.bake import ambient, shadows
 from eyas.engine.render.pack import light
@@ -32,7 +33,7 @@ def keys() -> dict[str, str]:
         for what in vars(module).values():
             if hasattr(what, "cache_clear"):
                 what.cache_clear()
-    kinds = {kind.name: program.code_of(kind.rig) for kind in KINDS}
+    kinds = {kind.name: key_of(part_library, (kind,)) for kind in KINDS}
     makers = {
         "citystreet": MAPS.get("citystreet").plan,
         "downtown": MAPS.get("downtown").plan,

@@ -1,4 +1,4 @@
-"""The static world: recipes of maps, roads, bodies of cars, signals, weather. The makers of maps
+"""The static world: recipes of maps, roads, signals, weather. The makers of maps
 are in the house `maps`.
 
 May import: `mesh` and all rooms below.
