@@ -16,6 +16,7 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.frame import Frame
+from art.cars.regions import BODYWORK, body_paint
 from art.cars.shape import (
     CarShape,
     coarse_stations,
@@ -28,7 +29,6 @@ from art.cars.trim import AHEAD, add_bumpers, add_trimmings
 from art.cars.wrap import Wrap
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Mesh
-from eyas.engine.world.build.bodywork import BODYWORK, body_paint
 
 
 @dataclass(frozen=True, slots=True)

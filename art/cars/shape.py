@@ -41,7 +41,7 @@ class CarShape:
     roof: Material = PAINT  # Material of the roof
     rails: Material = PAINT  # Material of the edges of the roof and the pillars at its corners
     sill: Material = PAINT  # Material of the lowest part of the sides
-    bodywork: str = "hatch"  # Texture of its paint, see `build/bodywork.py`
+    bodywork: str = "hatch"  # Texture of its paint, see `regions.py`
     dark_bumpers: bool = False  # Whether the bumpers are not painted
     rack: bool = False  # Whether it has rails on the roof
     bed: Range | None = None  # Extent in x of an open bed behind the cab, under a dark cover

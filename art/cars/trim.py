@@ -14,12 +14,12 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.frame import Frame
+from art.cars.regions import COOLER, PLAIN, body_paint
 from art.cars.shape import CarShape, arch_radius, half_widths, height_at, sections
 from art.cars.wrap import Wrap
 from eyas.engine.mesh.panels import box_panels, cells
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material
-from eyas.engine.world.build.bodywork import COOLER, PLAIN, body_paint
 from eyas.lanes import exact
 
 AHEAD = 0.04  # Depth of a bumper beyond the end of the body [m]

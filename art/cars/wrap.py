@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from art.cars.frame import Frame
-from art.cars.shape import CarShape, arch_radius
-from eyas.engine.world.build.bodywork import (
+from art.cars.regions import (
     BAND,
     BEAMS,
     FRONT,
@@ -20,6 +19,7 @@ from eyas.engine.world.build.bodywork import (
     TOP_SHARES,
     WINDSCREEN,
 )
+from art.cars.shape import CarShape, arch_radius
 
 Points = NDArray[np.float64]
 

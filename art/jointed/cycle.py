@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from art.jointed.figure import Figure, Gait, Joint, Leg
-from eyas.engine.mesh.shell import Shape, Shell
+from art.parts import Shape
+from eyas.engine.mesh.shell import Shell
 from eyas.lanes import exact
 
 _FLAT = (0.15, 0.5)  # Part of the time on the ground during which the sole lies flat

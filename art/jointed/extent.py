@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from art.jointed.cycle import frames_of, shapes_of
 from art.jointed.figure import Figure
-from eyas.engine.mesh.shell import DETAILS, Shape, shell_of
+from art.parts import DETAILS, Shape, shell_of
 from eyas.engine.targets.jointed.rig import Extents
 
 INTERVALS = 32  # Of a cycle; within one, parts move along straight lines

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.mesh.shell import Shape
+from art.parts import Shape
 from eyas.lanes import exact
 
 Point = tuple[float, float, float]

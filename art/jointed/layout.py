@@ -9,7 +9,7 @@ from art.jointed.cycle import frames_of, shapes_of, skeleton_of, table_of
 from art.jointed.extent import INTERVALS, extents_of
 from art.jointed.model import JointedModel
 from art.packing import columns_of
-from eyas.engine.mesh.shell import levels_of
+from art.parts import levels_of
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.targets.jointed.pose import BODY, PART
 from eyas.engine.targets.jointed.rig import Extents, JointedArrays

@@ -1,6 +1,6 @@
 """Textures of the paint and the panes of vehicles: seams, frames, handles, grilles, dirt.
 
-Each is painted on a body of the usual size, see `eyas.engine.world.build.bodywork`, in metres.
+Each is painted on a body of the usual size, see `art.cars.regions`, in metres.
 """
 
 from collections.abc import Callable, Sequence
@@ -9,9 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from art.textures.brush import Line, Sheet, sheet_of, texture_of
-from eyas.engine.render.textures.fields import SIZE, fractal, source
-from eyas.engine.world.build.bodywork import (
+from art.cars.regions import (
     BAND,
     BASE,
     BEAMS,
@@ -31,6 +29,8 @@ from eyas.engine.world.build.bodywork import (
     TOP_SHARES,
     WINDSCREEN,
 )
+from art.textures.brush import Line, Sheet, sheet_of, texture_of
+from eyas.engine.render.textures.fields import SIZE, fractal, source
 
 Texture = NDArray[np.uint8]
 

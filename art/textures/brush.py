@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from art.cars.regions import BASE, Region
 from eyas.engine.render.textures.fields import SIZE, Field
-from eyas.engine.world.build.bodywork import BASE, Region
 from eyas.lanes import exact
 
 Line = Sequence[tuple[float, float]]

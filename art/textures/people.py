@@ -1,5 +1,5 @@
 """Textures of people: clothes with folds, faces and hair, see
-`eyas.engine.world.build.clothing`.
+`art.jointed.people.clothing`.
 """
 
 from collections.abc import Callable
@@ -8,10 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from art.cars.regions import BASE
+from art.jointed.people.clothing import CLOTHES, FACE, HAIR, HIPS, LEG, NECK, SLEEVE, TORSO
 from art.textures.brush import Sheet, sheet_of, texture_of
 from eyas.engine.render.textures.fields import SIZE, Field, blurred, fractal, source
-from eyas.engine.world.build.bodywork import BASE
-from eyas.engine.world.build.clothing import CLOTHES, FACE, HAIR, HIPS, LEG, NECK, SLEEVE, TORSO
 from eyas.lanes import exact
 
 Texture = NDArray[np.uint8]

@@ -19,6 +19,8 @@ from art.cars.finishes import (
     TRIM,
 )
 from art.cars.frame import Axle
+from art.cars.regions import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
+from art.parts import levels_of
 from art.vehicles.vehicle import (
     CAB,
     CHASSIS_BEHIND,
@@ -27,10 +29,9 @@ from art.vehicles.vehicle import (
     vehicle,
 )
 from eyas.engine.mesh.panels import fan
-from eyas.engine.mesh.shell import Shell, levels_of
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.traffic.config import VehicleType
 from eyas.engine.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
-from eyas.engine.world.build.bodywork import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
 from eyas.lanes import exact
 
 HALF = 1.25  # Half the width of cab and trailer [m]

@@ -8,8 +8,8 @@ import numpy as np
 from art.cars.frame import Axle
 from art.cars.wheels import DESIGNS, wheel_levels
 from art.packing import columns_of
+from art.parts import levels_of
 from art.vehicles.vehicle import Trailer, VehicleModel
-from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.mesh import Mesh
 from eyas.engine.targets.vehicles.pose import AXLES, SLOT, RigTable
 from eyas.engine.targets.vehicles.rig import VehicleArrays

@@ -15,8 +15,9 @@ from art.cars.finishes import (
     plain,
 )
 from art.cars.frame import Axle
+from art.parts import levels_of
 from art.vehicles.vehicle import VehicleModel, vehicle
-from eyas.engine.mesh.shell import Shell, levels_of
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.traffic.config import VehicleType
 
 LEAN_LIMIT = 0.2

@@ -4,6 +4,7 @@ import itertools
 import numpy as np
 import pytest
 
+from art import parts
 from art.cars.finishes import (
     BLACK_PAINT,
     BRIGHT,
@@ -16,7 +17,6 @@ from art.cars.finishes import (
 )
 from art.cars.wheels import wheel_levels
 from art.vehicles.models import VEHICLES
-from eyas.engine.mesh import shell
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.state.mesh import Surface
 
@@ -32,7 +32,7 @@ def levels_of(name):
     if not vehicle.articulated:
         return bodies
     add = vehicle.trailer.shape
-    trailers = shell.levels_of(lambda mesh, detail: add(mesh, vehicle, detail))
+    trailers = parts.levels_of(lambda mesh, detail: add(mesh, vehicle, detail))
     return [concatenate(pair) for pair in zip(bodies, trailers, strict=True)]
 
 

@@ -10,7 +10,7 @@ from art.jointed.people.people import PEDESTRIANS, PEOPLE
 from art.jointed.people.person import Posture
 from art.jointed.people.wardrobe import dress_of
 from art.jointed.robots import ROBOTS
-from eyas.engine.mesh.shell import levels_of
+from art.parts import levels_of
 from eyas.engine.state.mesh import Surface
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_index, models_of

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from art.parts import levels_of
 from art.vehicles.models import VEHICLES
-from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
 from eyas.engine.targets.kind import Looks

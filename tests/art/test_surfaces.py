@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from art.cars.wheels import wheel_levels
+from art.parts import levels_of
 from art.vehicles.models import VEHICLES
 from eyas.engine.mesh.flat import quads
-from eyas.engine.mesh.shell import levels_of
 from eyas.engine.state.mesh import Material
 
 CLOSE = 0.01

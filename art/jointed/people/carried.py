@@ -3,11 +3,12 @@
 from functools import cache
 
 from art.jointed.outlines import cylinder
+from art.jointed.people.clothing import LEG, TORSO, cloth
 from art.jointed.people.person import FOREARM, Build, Carried
 from art.jointed.people.surfaces import Row, wrapped
 from art.jointed.people.trunks import straps
-from eyas.engine.mesh.shell import Shape, Shell
-from eyas.engine.world.build.clothing import LEG, TORSO, cloth
+from art.parts import Shape
+from eyas.engine.mesh.shell import Shell
 
 _DARK = cloth(tint=(0.12, 0.12, 0.13))
 

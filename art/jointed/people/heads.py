@@ -6,10 +6,11 @@ Skin has the colour of one instance, hair or what covers it that of another.
 from collections.abc import Callable
 from functools import cache
 
+from art.jointed.people.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair, skin
 from art.jointed.people.person import Head
 from art.jointed.people.surfaces import Row, wrapped
-from eyas.engine.mesh.shell import DETAILS, Shape, Shell
-from eyas.engine.world.build.clothing import FACE, HAIR, NECK, SKIN, TORSO, cloth, hair, skin
+from art.parts import DETAILS, Shape
+from eyas.engine.mesh.shell import Shell
 
 _SIDES = (5, 7, 10)
 _BARE = skin(None)

@@ -3,6 +3,7 @@
 from enum import Enum
 from functools import cache
 
+from art.jointed.people.clothing import LEG, SKIN, SLEEVE, cloth, skin
 from art.jointed.people.person import (
     ANKLE,
     FOREARM,
@@ -17,10 +18,10 @@ from art.jointed.people.person import (
     Shoes,
 )
 from art.jointed.people.surfaces import Row, wrapped
-from eyas.engine.mesh.shell import DETAILS, Shape, Shell
+from art.parts import DETAILS, Shape
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material
 from eyas.engine.targets.kind import Colour
-from eyas.engine.world.build.clothing import LEG, SKIN, SLEEVE, cloth, skin
 
 THICKNESS = {Build.MAN: 1.02, Build.STOUT: 1.02, Build.WOMAN: 0.87, Build.CHILD: 0.87}
 """Factor on the thickness of limbs; two of them, so that there are few parts."""

@@ -127,7 +127,7 @@ class Person:
     lower_colour: Colour  # Of the trousers or the skirt
     shoes: Shoes = Shoes.LEATHER
     shoe_colour: Colour
-    cut: str = "plain"  # Texture of the garment, one of `eyas.engine.world.build.clothing.CLOTHES`.
+    cut: str = "plain"  # Texture of the garment, one of `art.jointed.people.clothing.CLOTHES`.
     inner_colour: Colour = (0.84, 0.83, 0.81)  # Of the shirt that shows in a jacket or a coat
     posture: Posture = Posture.FREE
     carried: Carried = Carried.NOTHING

@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from art.cars.regions import Region
 from eyas.engine.mesh.panels import cells, fan
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material
-from eyas.engine.world.build.bodywork import Region
 from eyas.lanes import exact
 
 _CREASE = 1.35  # Bodies of five sides are round, boxes are not [rad]

@@ -5,12 +5,13 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from art.jointed.people.clothing import HIPS, LEG, TORSO, cloth
 from art.jointed.people.person import Build, Carried, Garment, Lower
 from art.jointed.people.surfaces import Row, wrapped
-from eyas.engine.mesh.shell import Shape, Shell
+from art.parts import Shape
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material
 from eyas.engine.targets.kind import Colour
-from eyas.engine.world.build.clothing import HIPS, LEG, TORSO, cloth
 from eyas.lanes import exact
 
 Points = NDArray[np.float64]

@@ -16,7 +16,7 @@ from art.jointed.people.limbs import (
 )
 from art.jointed.people.person import Carried, Head, Lower, Person, Posture
 from art.jointed.people.trunks import chest, hips
-from eyas.engine.mesh.shell import Shape
+from art.parts import Shape
 from eyas.engine.targets.kind import Colour
 
 

@@ -10,7 +10,8 @@ from functools import partial
 from art.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from art.jointed.model import JointedModel
 from art.jointed.outlines import block, limb, matt, stack
-from eyas.engine.mesh.shell import Shape, Shell
+from art.parts import Shape
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.targets.colour_names import colour_name
 from eyas.engine.targets.habit import Behaviour, Habit

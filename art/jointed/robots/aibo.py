@@ -3,7 +3,8 @@
 from art.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from art.jointed.model import robot
 from art.jointed.outlines import limb, matt
-from eyas.engine.mesh.shell import Shape, Shell
+from art.parts import Shape
+from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.targets.config import TargetName
 from eyas.engine.targets.habit import Behaviour, Habit

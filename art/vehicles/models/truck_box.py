@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from art.cars.finishes import FREIGHT, SKIN_WHITE, TRIM
+from art.cars.regions import BOX_DOORS, BOX_ROOF, BOX_SIDE, PLAIN
 from art.vehicles.heavy import HALF, TRACTOR_BASE, facing, trailer_frame, truck
 from art.vehicles.vehicle import Trailer, VehicleModel
 from eyas.engine.mesh.shell import Shell
-from eyas.engine.world.build.bodywork import BOX_DOORS, BOX_ROOF, BOX_SIDE, PLAIN
 
 _STRIPE = replace(FREIGHT, tint=(0.68, 0.09, 0.09))
 

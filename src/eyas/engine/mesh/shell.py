@@ -1,7 +1,6 @@
 """Meshes of panels with smooth shading across gentle edges, for the bodies of vehicles."""
 
-from collections.abc import Callable, Sequence
-from functools import lru_cache
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -250,23 +249,3 @@ def _normals(
     total /= np.linalg.norm(total, axis=1, keepdims=True)
     smooth: NDArray[np.float64] = total.reshape(-1, 3, 3)
     return smooth
-
-
-Shape = Callable[[Shell, int], None]
-"""Adds the panels of a part to a shell, in the part's own frame. The number is the detail: 2 from
-near, 1, or 0 from afar; a part may be empty from afar."""
-
-DETAILS = (2, 1, 0)  # From near to afar, the order of levels of detail
-
-
-def levels_of(shape: Shape) -> tuple[Mesh, ...]:
-    """Return the meshes of a shape, the finest first."""
-    return tuple(shell_of(shape, detail).mesh() for detail in DETAILS)
-
-
-@lru_cache(maxsize=1024)  # people share most shapes, whose meshes and extents are both wanted
-def shell_of(shape: Shape, detail: int) -> Shell:
-    """Return the panels of a shape, which must not be changed."""
-    shell = Shell()
-    shape(shell, detail)
-    return shell

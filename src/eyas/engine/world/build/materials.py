@@ -3,9 +3,16 @@
 from dataclasses import replace
 
 from eyas.engine.state.mesh import Material, Surface
-from eyas.engine.world.build.bodywork import BODYWORK
-from eyas.engine.world.build.clothing import PEOPLE_TEXTURES
 
+_VEHICLES = (
+    *("bodywork_saloon", "bodywork_saloon_sunroof", "bodywork_saloon_worn"),
+    *("bodywork_hatch", "bodywork_hatch_sunroof", "bodywork_hatch_worn"),
+    *("bodywork_van", "bodywork_van_worn", "bodywork_bus", "freight", "panes"),
+)
+_PEOPLE = (
+    *("clothes_plain", "clothes_striped", "clothes_checked"),
+    *("clothes_jacket", "clothes_quilted", "clothes_coat", "heads"),
+)
 FACADES = (
     "facade_concrete",
     "facade_brick",
@@ -63,8 +70,8 @@ TEXTURES: dict[str, float] = {
     "brick": 4.0,
     "stone": 4.0,
     **dict.fromkeys(FACADES + GROUND_FLOORS, 12.0),
-    **dict.fromkeys((*BODYWORK, "panes"), 4.6),
-    **dict.fromkeys(PEOPLE_TEXTURES, 1.1),
+    **dict.fromkeys(_VEHICLES, 4.6),
+    **dict.fromkeys(_PEOPLE, 1.1),
 }
 """Size of one repeat of each texture [m]."""
 

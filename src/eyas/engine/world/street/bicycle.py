@@ -32,7 +32,7 @@ def add_wheel(shell: Shell, detail: int, middle: tuple[float, float] = (0.0, 0.0
 
     Args:
         shell: Shell to add it to.
-        detail: See `eyas.engine.mesh.shell.Shape`.
+        detail: 2 from near, 1, or 0 from afar.
         middle: x and z of its axle [m].
     """
     sides = (8, 11, 16)[detail]

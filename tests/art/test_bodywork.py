@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from art.cars.regions import BASE, FRONT, RAISED, REAR, SIDE, STYLES, TOP
 from eyas.engine.render.textures.mipmap import linear
-from eyas.engine.world.build.bodywork import BASE, FRONT, RAISED, REAR, SIDE, STYLES, TOP
 from eyas.maps.textures.shipped import build_textures
 
 TEXTURES = build_textures()

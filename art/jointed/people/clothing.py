@@ -1,13 +1,13 @@
 """Places of clothes, skin and hair in the textures of people, see
-`eyas.engine.world.build.bodywork`.
+`art.cars.regions`.
 
 Folds, seams, pockets and faces are painted, so they cost no triangles at any level of detail. What
 goes around a body runs from the middle of its back over its right side, its front and its left
 side.
 """
 
+from art.cars.regions import RAISED, Region
 from eyas.engine.state.mesh import Material, Surface
-from eyas.engine.world.build.bodywork import RAISED, Region
 
 TORSO = Region(4, 4, 252, 110)
 """Around a torso, from the hem to the neck: waist at .35, armpits at .7, shoulders at .85."""
@@ -22,7 +22,6 @@ SKIN = Region(4, 118, 124, 172)  # Bare limbs, around and upwards
 NECK = Region(132, 118, 252, 172)  # A neck, in the shade of the chin above
 HAIR = Region(4, 180, 252, 252)  # Around a head of hair, upwards
 CLOTHES = ("plain", "striped", "checked", "jacket", "quilted", "coat")  # Cuts and patterns
-PEOPLE_TEXTURES = (*(f"clothes_{cut}" for cut in CLOTHES), "heads")
 
 
 def cloth(cut: str = "plain", tint: tuple[float, float, float] | None = None) -> Material:
