@@ -1,14 +1,16 @@
-"""All vehicles, people and robots that ship: their kinds, with the arrays that draw them."""
+"""All vehicles, people, robots and fliers that ship: their kinds, and the arrays that draw them."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from art.bird import bird_parts
 from art.jointed.layout import JointedLayout
 from art.jointed.model import JointedModel
 from art.jointed.people.people import PEDESTRIANS
 from art.jointed.riders.cyclist import CYCLISTS
 from art.jointed.robots import ROBOTS
 from art.packing import Packer, joined
+from art.quadrotor import quadrotor_levels
 from art.vehicles.layout import VehicleLayout
 from art.vehicles.models import VEHICLES
 from art.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
@@ -16,7 +18,7 @@ from eyas.engine.core.cache.flat import flatten
 from eyas.engine.mesh.shipped import digest_of
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.kind import KindFacts
-from eyas.engine.targets.shapes import FILE, Entry, Shapes
+from eyas.engine.targets.shapes import FILE, Entry, Index, Shapes
 from eyas.engine.targets.vehicles.pose import VEHICLE_AHEAD
 from eyas.engine.traffic.config import VehicleType
 
@@ -32,7 +34,10 @@ CLASSES = {
 def pack_models() -> tuple[dict[Path, bytes], str]:
     """Return the file that ships, and the digest of its index."""
     packer = Packer()
-    index, _ = flatten(tuple(entries(packer)))
+    kinds = tuple(entries(packer))
+    fliers = {"quadrotor": [quadrotor_levels()], "bird": bird_parts()}
+    blocks = {name: packer.add(joined(parts)) for name, parts in fliers.items()}
+    index, _ = flatten(Index(kinds, blocks))
     return {FILE: packer.file(index)}, digest_of(index)
 
 

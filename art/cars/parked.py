@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from art.cars.bicycle import parked_bicycles
 from art.cars.body import TRACK, body_levels
 from art.cars.finishes import TRIM
 from art.cars.frame import Axle
@@ -298,7 +299,8 @@ def pack_parked() -> tuple[dict[Path, bytes], str]:
     """Return the file that ships, and the digest of its index."""
     packer = Packer()
     cars = packer.add(joined([levels_of(kind) for kind in (*KINDS, TAXI)]))
-    index, _ = flatten(Index(tuple(map(_solid_size, KINDS)), cars))
+    bicycles = packer.add(joined(parked_bicycles()))
+    index, _ = flatten(Index(tuple(map(_solid_size, KINDS)), cars, bicycles))
     return {FILE: packer.file(index)}, digest_of(index)
 
 

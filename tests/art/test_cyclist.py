@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from art.cars.bicycle import WHEEL_RADIUS
 from art.jointed.cycle import frames_of, shapes_of
 from art.jointed.riders.cyclist import CYCLISTS
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.catalogue import KINDS, extent_of, kind_index, model_index
-from eyas.engine.world.street.bicycle import WHEEL_RADIUS
 
 CYCLE = np.linspace(0.0, 1.0, 25)
 

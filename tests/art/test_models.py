@@ -18,7 +18,7 @@ from art.vehicles.layout import VehicleLayout
 from art.vehicles.models import VEHICLES
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.state.scene import ObjectClass
-from eyas.engine.targets.shapes import read_entries
+from eyas.engine.targets.shapes import read_index
 from eyas.engine.traffic.config import VehicleType
 
 ORIGINAL = {
@@ -55,7 +55,7 @@ def digests(entry):
     return entry.facts, entry.drives, [block and block.digest for block in entry.shapes]
 
 
-SHIPPED = {entry.facts.name: digests(entry) for entry in read_entries()}
+SHIPPED = {entry.facts.name: digests(entry) for entry in read_index().kinds}
 
 
 def test_a_few_kinds_are_what_is_made():

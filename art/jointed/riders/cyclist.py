@@ -7,6 +7,15 @@ of the cranks is 2.2 turns of the wheels (a chain of 40 to 18 teeth), so at 5 m/
 from dataclasses import dataclass
 from functools import partial
 
+from art.cars.bicycle import (
+    AXLES,
+    CRANK,
+    PAINTS,
+    SADDLE,
+    WHEEL_RADIUS,
+    add_frame,
+    add_wheel,
+)
 from art.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from art.jointed.model import JointedModel
 from art.jointed.outlines import block, limb, matt, stack
@@ -16,15 +25,6 @@ from eyas.engine.state.mesh import Material, Surface
 from eyas.engine.targets.colour_names import colour_name
 from eyas.engine.targets.habit import Behaviour, Habit
 from eyas.engine.targets.kind import Colour
-from eyas.engine.world.street.bicycle import (
-    AXLES,
-    CRANK,
-    PAINTS,
-    SADDLE,
-    WHEEL_RADIUS,
-    add_frame,
-    add_wheel,
-)
 
 _NAME = "Cyclist"
 

@@ -7,7 +7,7 @@ import pytest
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.mesh import shipped
 from eyas.engine.mesh.shipped import Meshes, index_of, read_block
-from eyas.engine.targets.shapes import FILE, SHA256, read_entries
+from eyas.engine.targets.shapes import FILE, SHA256, read_index
 
 
 @pytest.fixture
@@ -30,7 +30,7 @@ def test_a_file_with_a_wrong_bit_or_cut_off_is_refused(copy):
 def test_another_index_and_another_block_than_the_code_knows_are_refused(copy):
     with pytest.raises(DataFileError, match="damaged; install Eyas again"):
         index_of(copy, 64 * "0")
-    block = read_entries()[0].shapes.meshes
+    block = read_index().kinds[0].shapes.meshes
     assert read_block(copy, block, Meshes).split()
     for other in (block._replace(number=block.number + 2), block._replace(number=9999)):
         with pytest.raises(DataFileError, match="install Eyas again"):
@@ -39,5 +39,5 @@ def test_another_index_and_another_block_than_the_code_knows_are_refused(copy):
 
 def test_meshes_may_be_changed_by_who_reads_them():
     """For numba, arrays that cannot be written have another type."""
-    (mesh, *_) = read_block(FILE, read_entries()[0].shapes.meshes, Meshes).split()[0]
+    (mesh, *_) = read_block(FILE, read_index().kinds[0].shapes.meshes, Meshes).split()[0]
     assert mesh.positions.flags.writeable

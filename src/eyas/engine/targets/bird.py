@@ -1,22 +1,17 @@
 """A bird, which flies between camera and street: a body and two wings that beat."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.draw import DrawList
-from eyas.engine.state.mesh import Material, Mesh, Surface
+from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.motion import ActorState
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.kind import Group, Kind, Looks, Model
+from eyas.engine.targets.shapes import flier_levels
 from eyas.lanes import exact
-
-_FEATHERS = Material(surface=Surface.PAINT)
-_TIPS = Material(tint=(0.20, 0.20, 0.21), surface=Surface.PAINT)
-_BILL = Material(tint=(0.55, 0.38, 0.10))
 
 _MIDDLE = 0.35
 """Height of the body's middle over the reference point, below which wings do not beat [m]."""
@@ -28,51 +23,6 @@ frequency of birds in steady cruising flight, Journal of Experimental Biology 19
 _GLIDING = 11.0  # Beats from a glide to the next
 _GRAVITY = 9.81
 
-_HULL = (
-    (-0.26, 0.045, -0.005, 0.010),
-    (-0.16, 0.025, -0.020, 0.025),
-    (-0.02, 0.055, -0.055, 0.050),
-    (0.12, 0.050, -0.050, 0.045),
-    (0.19, 0.030, -0.025, 0.040),
-    (0.235, 0.020, -0.010, 0.025),
-)
-"""Sections from the tail to the head: forward, half width, bottom, top [m]."""
-
-_WING = ((0.0, 0.075, -0.065), (0.25, 0.085, -0.045), (0.42, 0.03, -0.075), (0.56, -0.075, -0.105))
-"""Sections of a wing: left of the shoulder, leading and trailing edge forward of it [m]."""
-
-
-def _body() -> Mesh:
-    shell = Shell()
-    shell.rings([_section(*section) for section in _HULL], _FEATHERS)
-    shell.box((0.235, -0.008, 0.0), (0.27, 0.008, 0.014), _BILL)
-    return shell.mesh()
-
-
-def _section(x: float, half: float, low: float, high: float) -> list[tuple[float, float, float]]:
-    """Return an outline, counter-clockwise as seen from ahead."""
-    middle, edge = 0.5 * (low + high), 0.6 * half
-    outline = [(-edge, high), (-half, middle), (-edge, low), (edge, low), (half, middle)]
-    return [(x, y, z) for y, z in [*outline, (edge, high)]]
-
-
-def _wing(side: float) -> Mesh:
-    """Return the left wing (side 1) or the right one (-1), from its shoulder."""
-    shell = Shell()
-    for inner, outer in pairwise(_WING):
-        (y, front, back), (over, front_over, back_over) = inner, outer
-        colour = _TIPS if outer is _WING[-1] else _FEATHERS
-        for up in (1.0, -1.0):
-            z = 0.004 * up
-            corners = [
-                (front, side * y, z),
-                (front_over, side * over, z),
-                (back_over, side * over, z),
-                (back, side * y, z),
-            ]
-            shell.quads(corners[::-1] if side * up < 0.0 else corners, colour)
-    return shell.mesh()
-
 
 class BirdRig:
     """Three parts: the body and the wings. It banks in turns, and glides now and then."""
@@ -82,7 +32,7 @@ class BirdRig:
 
     def part_levels(self) -> Sequence[tuple[Mesh, ...]]:
         """Return the meshes, see `Rig`."""
-        return [(_body(),), (_wing(1.0),), (_wing(-1.0),)]
+        return flier_levels("bird")
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of it is from its reference point, see `Rig` [m]."""

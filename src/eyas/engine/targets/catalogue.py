@@ -18,7 +18,7 @@ from eyas.engine.targets.habit import Habit
 from eyas.engine.targets.jointed.rig import JointedRig, extent_at
 from eyas.engine.targets.kind import Kind, KindFacts, Model, Section
 from eyas.engine.targets.quadrotor import QUADROTOR
-from eyas.engine.targets.shapes import Entry, read_entries
+from eyas.engine.targets.shapes import Entry, read_index
 from eyas.engine.targets.vehicles.rig import VehicleRig
 from eyas.lanes.elementary.arrays import cos
 
@@ -108,7 +108,7 @@ def _shipped(entry: Entry) -> Kind:
     return Kind(**facts, rig=partial(rig, entry.shapes), extent=extent)
 
 
-_ENTRIES = read_entries()
+_ENTRIES = read_index().kinds
 
 VEHICLE_KINDS = tuple(_shipped(entry) for entry in _ENTRIES if entry.drives)
 """All kinds of vehicles, in the order of `VehicleType`."""

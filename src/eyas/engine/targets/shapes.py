@@ -5,6 +5,7 @@ their arrays; each is read when something of its kind is drawn, or its box is as
 """
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +20,7 @@ from eyas.engine.targets.posing import PoseCall
 
 FILE = Path(__file__).with_name("models.eya")
 
-SHA256 = "5cb95ab1a57cd7fc348b4910bf646fb3fe7298b427ecdb9df8a9ec2d1389d0d2"
+SHA256 = "049b7c272b40436fb26e0784307b605ea8391b659586169a5f158b8fb62b9dfa"
 """Of its index, which has the digests of all arrays: it stands for them in the keys of what is made
 of models."""
 
@@ -43,9 +44,22 @@ class Entry(NamedTuple):
     shapes: Shapes
 
 
-def read_entries() -> tuple[Entry, ...]:
-    """Return the index: vehicles in the order of `VehicleType`, people, robots, the cyclist."""
-    return restore(tuple[Entry, ...], index_of(FILE, SHA256), ())
+class Index(NamedTuple):
+    """The index."""
+
+    kinds: tuple[Entry, ...]  # Vehicles in the order of `VehicleType`, people, robots, the cyclist
+    fliers: dict[str, Block]  # Meshes of the quadrotor and of the bird, whose rigs are their own
+
+
+@cache
+def read_index() -> Index:
+    """Return the index."""
+    return restore(Index, index_of(FILE, SHA256), ())
+
+
+def flier_levels(name: str) -> list[tuple[Mesh, ...]]:
+    """Return the meshes of the parts of `quadrotor` or `bird`, the finest first."""
+    return read_block(FILE, read_index().fliers[name], Meshes).split()
 
 
 class ShippedRig:

@@ -16,8 +16,8 @@ from eyas.engine.mesh.solids import box, cylinder, sphere
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.materials import material
 from eyas.engine.world.build.scene_builder import Levels
-from eyas.engine.world.street.bicycle import bicycle_levels
 from eyas.lanes import exact
+from eyas.maps.street.parked_cars import bicycle_levels
 
 _ABOVE: Final = 0.02  # Height of flat things above the ground, which keeps two surfaces apart [m]
 

@@ -1,4 +1,4 @@
-"""Cars that never leave their car parks: part of the scene, not of the traffic.
+"""Cars that never leave their car parks, and bicycles: part of the scene, not of the traffic.
 
 They ship as data: `art/cars/parked.py` makes them, packed by `python -m art.ship`.
 """
@@ -13,7 +13,7 @@ from eyas.engine.world.build.scene_builder import Levels
 
 FILE = Path(__file__).with_name("parked_cars.eya")
 
-SHA256 = "e7e9e974c38717cb68245b1008835486750a9fd818658fce53052c2ff935791c"
+SHA256 = "d0ea9d9a4b65061881819cf6a389895c7750012435b08455c9ecdab71d89e40c"
 """Of its index, which has the digest of its arrays: it stands for them in the keys of scenes."""
 
 VARIANTS = 32  # Number of kinds of cars; each is as frequent as another
@@ -26,7 +26,8 @@ class Index(NamedTuple):
     """The index of the file."""
 
     sizes: tuple[tuple[float, float, float], ...]  # Of the solid shapes of the kinds [m]
-    meshes: Block  # Of the kinds, and then of a taxi
+    cars: Block  # Meshes of the kinds, and then of a taxi
+    bicycles: Block
 
 
 def parked_car(variant: int) -> Levels:
@@ -50,6 +51,12 @@ def solid_size(variant: int) -> tuple[float, float, float]:
     return _index().sizes[variant]
 
 
+def bicycle_levels(which: int) -> Levels:
+    """Return a parked bicycle, one after the other in another paint, as `parked_car` does."""
+    bicycles = _bicycles()
+    return bicycles[which % len(bicycles)]
+
+
 @cache
 def _index() -> Index:
     return restore(Index, index_of(FILE, SHA256), ())
@@ -57,4 +64,9 @@ def _index() -> Index:
 
 @cache
 def _levels() -> list[Levels]:
-    return read_block(FILE, _index().meshes, Meshes).split()
+    return read_block(FILE, _index().cars, Meshes).split()
+
+
+@cache
+def _bicycles() -> list[Levels]:
+    return read_block(FILE, _index().bicycles, Meshes).split()

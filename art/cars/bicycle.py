@@ -78,14 +78,14 @@ def add_frame(shell: Shell, paint: Material, detail: int) -> None:
         shell.box((-0.72, -0.03, 0.74), (-0.69, 0.03, 0.785), _LENS)
 
 
-def bicycle_levels(which: int) -> Levels:
-    """Return a parked bicycle, in one of `PAINTS`."""
-    return _parked(which, 1), _parked(which, 0)
+def parked_bicycles() -> list[Levels]:
+    """Return a parked bicycle in each of `PAINTS`."""
+    return [(_parked(paint, 1), _parked(paint, 0)) for paint in PAINTS]
 
 
-def _parked(which: int, detail: int) -> Mesh:
+def _parked(paint: tuple[float, float, float], detail: int) -> Mesh:
     shell = Shell()
-    add_frame(shell, material("plain", PAINTS[which % len(PAINTS)]), detail)
+    add_frame(shell, material("plain", paint), detail)
     for x in AXLES:
         add_wheel(shell, detail, (x, WHEEL_RADIUS))
     return shell.mesh()
