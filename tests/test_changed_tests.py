@@ -18,7 +18,7 @@ def folders(*paths) -> set[str]:
     [
         ("src/eyas/robotics/loop.py", {"robotics", "cli"}),
         ("src/eyas/benchmark/api.py", {"benchmark", "learning", "datasets", "demo", "cli"}),
-        ("src/eyas/maps/osm/file.py", {"maps", "dat", "cli"}),
+        ("src/eyas/maps/osm/file.py", {"maps", "dat", "cli", "art"}),
         ("src/eyas/cli/app.py", {"cli"}),
     ],
 )
@@ -28,6 +28,13 @@ def test_a_change_in_a_house_runs_its_tests_and_those_of_houses_above(path, run)
 
 def test_a_change_below_all_runs_all_houses():
     assert set(TOOL["imports"]()) - {"__main__"} <= folders("src/eyas/lanes/exact.py")
+
+
+def test_what_draws_the_data_has_tests_of_its_own():
+    assert TOOL["chosen"](["art/cars/body.py", "tests/art/test_bodies.py"]) == (
+        "tests/art",
+        TOOL["PROSE"],
+    )
 
 
 def test_tests_of_a_house_are_its_own_business():

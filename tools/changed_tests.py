@@ -19,6 +19,8 @@ ALL = "tests --ignore=tests/prose"
 
 PROSE = "tests/prose"
 
+_ART = "art"  # The folder of what draws the data that ships; what it makes is in houses
+
 _PICTURES = (".jpg", ".png", ".svg", ".webp", ".mp4", ".ipynb")  # In docs, beside the pages
 
 
@@ -68,10 +70,15 @@ def chosen(paths: Iterable[str]) -> tuple[str, str]:
         elif path.startswith("src/eyas/") and len(inside) > 2:
             houses |= above(inside[1])
             code = prose = True  # pages are made of the code, and name it
-        elif top == "tests" and len(inside) > 1 and inside[0] in imports():
+        elif top == "tests" and len(inside) > 1 and inside[0] in {*imports(), _ART}:
             houses.add(inside[0])
+        elif top == _ART:
+            houses.add(_ART)
+            prose = True
         else:
             return ALL, PROSE
+    if code and "maps" in houses:  # it imports `engine` and `maps`
+        houses.add(_ART)
     folders = [f"tests/{house}" for house in sorted(houses) if (ROOT / "tests" / house).is_dir()]
     if code:  # what holds for all houses: public names, heads, readers that are fed anything
         folders += ["tests/hostile", *_of_all_houses()]
