@@ -66,9 +66,7 @@ def planned(recipe: Recipe) -> list[Part]:
 
 
 def sample_of(recipe: Recipe) -> Recipe:
-    """Return the recipe of a hundredth: as many kinds of parts as possible, of a few frames each,
-    and all maps of each split.
-    """
+    """Return the recipe of a hundredth: most kinds of parts, few frames each, all maps."""
     frames = min(recipe.episode_frames, 10)
     unit = frames * max(1, len(recipe.variants))
     episodes = max(1, math.ceil(recipe.frames / 100 / unit))

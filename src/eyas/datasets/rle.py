@@ -24,12 +24,10 @@ class _Runs(NamedTuple):
     ends: Ints  # Number of the pixel after the last, shape (R,)
 
 
-def encoded_masks(masks: NDArray[np.int32]) -> dict[int, tuple[str, int]]:
-    """Return for each object its code, and its area [pixels].
-
-    Args:
-        masks: The id of each pixel, 0 for none, shape (H, W).
-    """
+def encoded_masks(
+    masks: NDArray[np.int32],  # The id of each pixel, 0 for none, shape (H, W)
+) -> dict[int, tuple[str, int]]:
+    """Return for each object its code, and its area [pixels]."""
     if not masks.any():
         return {}
     runs = _runs(masks)

@@ -22,18 +22,13 @@ def make_plan(
     name: str,
     network: RoadNetwork,
     seed: int,
-    floor: tuple[float, float],
+    floor: tuple[float, float],  # Extent of the floor [m]
     cover: Material,
-    horizon: Horizon,
+    horizon: Horizon,  # Hills beyond the map
+    # The line between the two directions of a road
     centre: Literal["white", "double yellow"] = "white",
 ) -> MapPlan:
-    """Return roads on plain ground.
-
-    Args:
-        floor: Extent of the floor [m].
-        horizon: Hills beyond the map.
-        centre: The line between the two directions of a road.
-    """
+    """Return roads on plain ground."""
     roads = road_area(network)
     bare = shapely.difference(rectangle(*floor), roads)
     ground = _patchy(bare, floor, cover, stream(seed, f"{name} ground"))

@@ -131,9 +131,7 @@ class EpisodeBatch:
         return self._pixels
 
     def visible(self) -> NDArray[np.float64]:
-        """Return the share of each target that its camera sees now, shape (N,): 0 while the camera
-        is covered.
-        """
+        """Return the visible share of each target, shape (N,); 0 while the camera is covered."""
         return np.where(self.covered, 0.0, visible_shares(self.pixels()))
 
     def roads(self) -> list[RoadNetwork]:

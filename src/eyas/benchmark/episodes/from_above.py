@@ -34,13 +34,11 @@ class FromAbove(NamedTuple):
 
 
 def seen_from_above(
-    episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float
+    episodes: Sequence[EpisodeSpec],
+    protocol: Protocol,
+    period: float,  # Time from the start to the first look, and between two [s]
 ) -> FromAbove:
-    """Return what is seen of the targets of N episodes.
-
-    Args:
-        period: Time from the start to the first look, and between two [s].
-    """
+    """Return what is seen of the targets of N episodes."""
     if protocol.reference:  # its variants differ by cameras and air, which hide nothing
         plain = [episode._replace(variant="") for episode in episodes]
         alone = list(dict.fromkeys(plain))
@@ -80,9 +78,7 @@ def _seen(episodes: Sequence[EpisodeSpec], protocol: Protocol, period: float) ->
 
 
 def _look_at_targets(simulation: Simulation) -> None:
-    """Let drones that are carried by their targets have them in the middle, where a protocol has
-    staged starts beside them.
-    """
+    """Let drones carried by their targets have them in the middle where starts are staged."""
     pitch, offset = simulation.config.start.pitch, simulation.snapshot.episodes.start_offset
     assert isinstance(pitch, float), "staged starts have one pitch"
     back = exact.tan(abs(0.5 * math.pi - pitch)) * offset[:, 2]

@@ -51,9 +51,7 @@ def _chosen(
     first_seed: int,
     company: tuple[int, float],
 ) -> list[EpisodeSpec]:
-    """Return the first episodes of each place and direction in which at least so many others are
-    within a distance [m].
-    """
+    """Return the first episodes of each place and way with enough others within a distance [m]."""
     found = []
     for place in places:
         for turn in range(len(protocol.directions)):

@@ -41,9 +41,7 @@ target that stands."""
 def setting_out(
     episodes: Sequence[EpisodeSpec], protocol: Protocol, *, at_rest: bool
 ) -> list[bool]:
-    """Return whether the target of each episode stands at first, or drives, and then does something
-    else than to go on so.
-    """
+    """Return whether each target first stands, or drives, and then does not go on so."""
     seen = seen_from_above(episodes, protocol, _PERIOD)
     first = (seen.places[:, 1] - seen.places[:, 0]) / _PERIOD
     speed = np.asarray(exact.hypot(first[:, 0], first[:, 1]))

@@ -51,13 +51,11 @@ class Loss(NamedTuple):
     end: float  # When it can be seen again [s]
 
 
-def hidden_spans(shares: Floats, period: float = _PERIOD) -> list[Loss]:
-    """Return when a target is out of sight.
-
-    Args:
-        shares: Visible share of it at each look, as from `seen_from_above`, shape (K,).
-        period: Time between two looks [s].
-    """
+def hidden_spans(
+    shares: Floats,  # Visible share of it at each look, as from `seen_from_above`, shape (K,)
+    period: float = _PERIOD,  # Time between two looks [s]
+) -> list[Loss]:
+    """Return when a target is out of sight."""
     hidden = np.concatenate([[False], shares < LEAST_VISIBLE, [False]])
     edges = np.flatnonzero(hidden[1:] != hidden[:-1])
     spans: list[Loss] = []

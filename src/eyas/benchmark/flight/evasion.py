@@ -43,14 +43,12 @@ class Evasion(NamedTuple):
     end: float  # [s]
 
 
-def evasions_of(shares: Floats, places: Floats, period: float = _PERIOD) -> list[Evasion]:
-    """Return what a driver does, told from what is seen of his car at looks.
-
-    Args:
-        shares: Share of it that nothing hides, shape (K,).
-        places: Its centre, east and north [m], shape (K, 2).
-        period: Time between two looks [s].
-    """
+def evasions_of(
+    shares: Floats,  # Share of it that nothing hides, shape (K,)
+    places: Floats,  # Its centre, east and north [m], shape (K, 2)
+    period: float = _PERIOD,  # Time between two looks [s]
+) -> list[Evasion]:
+    """Return what a driver does, told from what is seen of his car at looks."""
     step = np.diff(places, axis=0)
     speed = np.asarray(exact.hypot(step[:, 0], step[:, 1])) / period
     found = [

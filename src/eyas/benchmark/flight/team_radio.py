@@ -31,9 +31,7 @@ class Radio:
         self._said = np.full((len(episodes), MESSAGE), np.nan)
 
     def heard(self) -> Floats:
-        """Return the latest messages of the mates of each, NaN before their first, shape
-        (N, T - 1, `MESSAGE`).
-        """
+        """Return the latest messages of the mates, NaN before any, shape (N, T - 1, `MESSAGE`)."""
         heard: Floats = self._said[self._mates]
         return heard
 

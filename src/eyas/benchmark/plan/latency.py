@@ -91,9 +91,7 @@ class SampledDelay:
 
 
 class Profiled:
-    """Sampled from the lognormal distribution with a system's mean and 95th percentile, by the seed
-    of each episode.
-    """
+    """Sampled by each episode's seed from a lognormal with a system's mean and 95th percentile."""
 
     def __init__(self, name: str) -> None:
         profile = PROFILES[name]

@@ -65,9 +65,7 @@ def painted(picture: NDArray[np.uint8], name: str) -> Mask:
 
 @cache
 def _seen_as(name: str) -> Mask:
-    """Return which of the colours that a camera sees may be paint of a name, shape (levels, levels,
-    levels).
-    """
+    """Return which colours that a camera sees may be paint of a name, one axis for each channel."""
     away = _from_names()
     own = away[list(COLOUR_NAMES).index(name)]
     mask: Mask = (own < _FROM_NAME) & (own < away.min(axis=0) + _UNSURE)
@@ -76,9 +74,7 @@ def _seen_as(name: str) -> Mask:
 
 @cache
 def _from_names() -> Floats:
-    """Return how far the colours that a camera sees are from the paint of each name, shape (names,
-    levels, levels, levels).
-    """
+    """Return how far the colours that a camera sees are from the paint of each name, 4 axes."""
     steps = (np.arange(_LEVELS) + 0.5) / _LEVELS
     seen = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
     bright = seen.sum(axis=-1)

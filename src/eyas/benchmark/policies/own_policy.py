@@ -137,7 +137,7 @@ def one_of(observation: Observation, row: int) -> Observation:
 
 
 def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
-    """Return a user's policy.
+    """Return a user's policy; raise ConfigError if there is no such thing, or it is none of these.
 
     Args:
         path: `package.module:name` of a function of one observation; of a function whose attribute

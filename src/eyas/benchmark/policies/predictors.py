@@ -30,9 +30,7 @@ class ConstantVelocity:
 
 
 class AlongLanes:
-    """The target goes on at its last speed in its lane, over junctions into the straightest one;
-    where there is no lane, straight on.
-    """
+    """The target goes on at its last speed in its lane, or straight on where there is none."""
 
     def begin(self, start: Start) -> None:
         """Take the lanes of the maps."""

@@ -16,9 +16,7 @@ TRAINED = Path(str(files("eyas.benchmark.policies"))) / "trained"
 
 
 class Card(Config):
-    """Where a policy is from, and what it cannot do; what it reaches stands in the tables of
-    `eyas reproduce`.
-    """
+    """Where a policy is from, and what it cannot do; `eyas reproduce` tells what it reaches."""
 
     title: str
     """What it has learned, in a few words."""

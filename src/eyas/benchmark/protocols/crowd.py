@@ -41,9 +41,7 @@ class CrowdScenario(Scenario):
             self._nearest[active, step // LOOK] = nearest[active]
 
     def figures(self, row: int) -> dict[str, float | None]:
-        """Return how often another has been followed instead, and the share of looks at which it
-        was the target.
-        """
+        """Return how often another was followed instead, and the share of looks at the target."""
         nearest, target = self._nearest[row], int(self._targets[row])
         return {
             "identity_switches": float(switches(nearest, target, self._least)),

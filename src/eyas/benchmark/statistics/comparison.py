@@ -92,9 +92,7 @@ def differences(
 def _difference(
     figure: Figure, pairs: Sequence[tuple[EpisodeRecord, EpisodeRecord]]
 ) -> Difference | None:
-    """Return the difference in those pairs that both have the figure, without its names; None if
-    there are none.
-    """
+    """Return the difference in those pairs that both have the figure; None if there are none."""
     records, first, second = [], [], []
     for one, other in pairs:
         old, new = figure.read(one), figure.read(other)

@@ -265,9 +265,7 @@ def restricted_mean_of(
 
 
 def _influence(times: ArrayLike, ended: ArrayLike, horizon: float) -> Floats:
-    """Return by how much each sample moves the restricted mean, times N: what Greenwood's formula
-    is the sum of the squares of.
-    """
+    """Return each sample's influence on the restricted mean, times N (Greenwood's formula)."""
     at, own = np.asarray(times, np.float64), np.asarray(ended, np.bool_)
     events, happened, at_risk = _events(times, ended)
     start, left = survival(times, ended)
@@ -297,9 +295,7 @@ def _largest_again(sums: Floats, total: int) -> float:
 
 
 def _student(degrees: int) -> float:
-    """Return how many standard errors an interval is wide on each side: the quantile of Student's
-    t, to 0.001 for four degrees or more.
-    """
+    """Return the 97.5 % quantile of Student's t, to 0.001 for four degrees or more."""
     more = 0.0
     for term in reversed(_STUDENT):
         more = (more + term) / degrees

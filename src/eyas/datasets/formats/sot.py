@@ -88,9 +88,7 @@ class Got10k(Sequences):
 
 
 def cover_levels(visible: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return GOT-10k's levels of visible shares: 0 for nothing, 8 for all, and in between one for
-    each 15 %, the seventh for the last 10 %.
-    """
+    """Return GOT-10k's levels of visible shares: 0 for none, one for each 15 %, 8 for all."""
     return np.digitize(visible, [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9], right=True) + (
         visible >= 1.0
     )

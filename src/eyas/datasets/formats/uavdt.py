@@ -74,9 +74,7 @@ def _levels(seen: SeenObject) -> tuple[int, int]:
 
 
 def _attributes(episode: RecordedEpisode) -> list[int]:
-    """Return whether it is daylight, night, fog; low, medium, high; seen from the front or behind,
-    from the side, from above; long.
-    """
+    """Return which attributes hold: daylight, night, fog; low, medium, high; views; long."""
     weather, labels = episode.config.world.weather, episode.labels
     night, fog = "night" in weather, "fog" in weather
     altitude = sorted(_altitude(label) for label in labels)[len(labels) // 2]

@@ -66,12 +66,9 @@ def make(
     plan: Plan,
     root: Path,
     making: Making,
-    recorded: Recorded | None = None,
+    recorded: Recorded | None = None,  # What records parts; None: the processes of this machine
 ) -> None:
     """Make a data set, or what is missing of it.
-
-    Args:
-        recorded: What records parts; None: the processes of this machine.
 
     Raises:
         EyasError: The recipe cannot be met, the folder is taken, or something cannot be written;
@@ -143,9 +140,7 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
 
 
 def _damaged(root: Path, plan: Plan) -> Iterator[Path]:
-    """Yield the files of a finished data set that have changed since; parts that have some are no
-    longer known as complete.
-    """
+    """Yield the changed files of a finished data set; their parts are no longer complete."""
     yield from damaged_files(root, read_json(root / DATASET_FILE, 1 << 28).get(SEALED))
     for name in plan.recipe.formats if plan.shard is None else ():
         found = damaged_export(exports_folder(root, name, None))

@@ -15,24 +15,22 @@ from eyas.engine.video.action import check_flight
 
 
 def run(
+    # `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON
     named: str | Mapping[str, Any],
     out: str,
     making: Making,
     *,
     sample: bool = False,
+    # Number of the shard, from 1, and of all shards; None: all of it
     shard: tuple[int, int] | None = None,
     ray: bool = False,
     trust: bool = False,
 ) -> None:
     """Make a data set, or what is missing of it.
 
-    Args:
-        named: `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON.
-        shard: Number of the shard, from 1, and of all shards; None: all of it.
-
     Raises:
-        EyasError: The recipe is wrong or cannot be met, the folder is taken, or something cannot
-            be written; one line.
+        EyasError: The recipe is wrong or cannot be met, the folder is taken, or something cannot be
+            written; one line.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
     if "://" in out:

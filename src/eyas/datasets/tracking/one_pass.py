@@ -35,9 +35,7 @@ class Track(NamedTuple):
 
 
 def true_boxes(episode: RecordedEpisode) -> Floats:
-    """Return the true boxes: left, top, width, height, hidden parts included, inside the picture
-    [pixels], shape (T, 4).
-    """
+    """Return left, top, width, height [pixels], hidden parts included, shape (T, 4)."""
     boxes = episode.array("target_box").astype(np.float64).reshape(-1, 4)
     boxes[:, 2:] -= boxes[:, :2]
     return boxes
@@ -131,13 +129,11 @@ class Figures(NamedTuple):
     success: float  # Area below OTB's success curve, the mean over episodes
 
 
-def figures_of(samples: Sequence[tuple[Floats, Floats]]) -> Figures | None:
-    """Return the figures of episodes; None if they have no frames.
-
-    Args:
-        samples: Overlaps and centre errors [pixels] of the chosen frames of each episode, both of
-            shape (K,).
-    """
+def figures_of(
+    # Overlaps and centre errors [pixels] of the chosen frames of each episode, both of shape (K,)
+    samples: Sequence[tuple[Floats, Floats]],
+) -> Figures | None:
+    """Return the figures of episodes; None if they have no frames."""
     chosen = [(overlap, error) for overlap, error in samples if len(overlap)]
     if not chosen:
         return None
@@ -157,12 +153,10 @@ def figures_of(samples: Sequence[tuple[Floats, Floats]]) -> Figures | None:
     )
 
 
-def _interval(sums: Floats) -> Interval | None:
-    """Return the interval of a mean over all frames: those of one episode are one observation.
-
-    Args:
-        sums: Sum and number of each episode's values, shape (E, 2).
-    """
+def _interval(
+    sums: Floats,  # Sum and number of each episode's values, shape (E, 2)
+) -> Interval | None:
+    """Return the interval of a mean over all frames: those of one episode are one observation."""
     mean = float(sums[:, 0].sum() / sums[:, 1].sum())
     clusters = clusters_of(range(len(sums)), [0] * len(sums))
     variance = 0.0

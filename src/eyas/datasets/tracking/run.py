@@ -62,7 +62,7 @@ def run(
     scoring: Scoring,
     out: Path,
     *,
-    workers: int | None = None,
+    workers: int | None = None,  # Number of processes; None: one for each core
     resume: bool = False,
     overwrite: bool = False,
     quiet: bool = True,
@@ -70,9 +70,6 @@ def run(
     """Score a tracker; write boxes and figures into `out`, and return the figures.
 
     The same tracker and episodes give the same bytes, with any number of processes.
-
-    Args:
-        workers: Number of processes; None: one for each core.
 
     Raises:
         EyasError: Something is wrong with the tracker, the recording or the folder; one line.
@@ -248,9 +245,7 @@ def _results(scoring: Scoring, episodes: Sequence[RecordedEpisode], out: Path) -
 def _scored(
     out: Path, episode: RecordedEpisode
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Return overlaps, centre errors, and which frames count: those with a visible target whose
-    box the tracker was not told, shapes (T,).
-    """
+    """Return overlaps, centre errors, and which frames count (visible, not told), shapes (T,)."""
     path = _boxes_file(out, episode)
     try:
         content = read_limited(path, _LARGEST_BOXES)

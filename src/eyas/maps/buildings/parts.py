@@ -22,25 +22,18 @@ _TILE = 12.0  # Size of one repeat of a facade, four bays and four storeys [m]
 
 
 def window_wall(
-    outline: Outline,
-    bottom: float,
-    top: float,
-    wall: Material,
+    outline: Outline,  # Corners [m]
+    bottom: float,  # z of the foot [m]
+    top: float,  # z of the upper edge [m]
+    wall: Material,  # Material with windows
+    # Bay and storey of the texture at which each wall starts, so that blinds differ from wall to
+    # wall, shape (K, 2)
     starts: NDArray[np.integer],
-    stretch: float = 1.0,
+    stretch: float = 1.0,  # Factor on the height of storeys
 ) -> Mesh:
     """Return walls whose windows meet corners and storeys in whole bays.
 
     Walls too short for a window show only the pier between two windows.
-
-    Args:
-        outline: Corners [m].
-        bottom: z of the foot [m].
-        top: z of the upper edge [m].
-        wall: Material with windows.
-        starts: Bay and storey of the texture at which each wall starts, so that blinds differ from
-            wall to wall, shape (K, 2).
-        stretch: Factor on the height of storeys.
     """
     mesh = walls(outline, bottom, top, wall, _TILE)
     length = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)

@@ -22,19 +22,15 @@ _SMALL = 200.0
 
 
 def place_buildings(
+    # Ground between streets, bounded by the kerbs, world frame [m]
     blocks: Sequence[shapely.Polygon],
-    count: int,
+    count: int,  # Number of buildings, towers included; a few fewer are placed if there is no room
     rng: np.random.Generator,
-    keep_free: shapely.Geometry,
+    keep_free: shapely.Geometry,  # Area where nothing may stand
 ) -> list[BuildingPart]:
     """Fill city blocks with buildings whose sizes are spread as in the original's street city.
 
     About a fifth are towers that stand on other buildings. No two share space.
-
-    Args:
-        blocks: Ground between streets, bounded by the kerbs, world frame [m].
-        count: Number of buildings, towers included; a few fewer are placed if there is no room.
-        keep_free: Area where nothing may stand.
     """
     towers = round(TOWER_SHARE * count)
     areas = np.sort(ground_areas(count - towers, rng))[::-1]

@@ -50,24 +50,15 @@ def fullness(shape: shapely.Polygon) -> float:
 
 
 def sloping_roof(
-    shape: shapely.Polygon,
-    kind: str,
-    eaves: float,
-    rise: float,
-    covers: tuple[Material, Material],
+    shape: shapely.Polygon,  # Footprint, with courtyards as holes [m]
+    kind: str,  # One of `SHAPES`
+    eaves: float,  # z of the eaves [m]
+    rise: float,  # Height of the roof [m]
+    covers: tuple[Material, Material],  # Materials of the slopes and of the walls below them
     *,
-    across: bool = False,
+    across: bool = False,  # Whether the ridge runs across the longer side
 ) -> Mesh:
-    """Return a roof with the walls between its eaves and its slopes.
-
-    Args:
-        shape: Footprint, with courtyards as holes [m].
-        kind: One of `SHAPES`.
-        eaves: z of the eaves [m].
-        rise: Height of the roof [m].
-        covers: Materials of the slopes and of the walls below them.
-        across: Whether the ridge runs across the longer side.
-    """
+    """Return a roof with the walls between its eaves and its slopes."""
     tiles, wall = covers
     if kind == "dome":
         return _dome(shape, eaves, rise, tiles)

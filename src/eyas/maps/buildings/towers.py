@@ -69,14 +69,12 @@ def divided(block: Box, core: float, rng: np.random.Generator) -> list[Lot]:
     return lots
 
 
-def frontage(block: Box, outer: tuple[bool, bool, bool, bool], depth: float) -> list[Box]:
-    """Return strips of a block along those of its sides that have a street.
-
-    Args:
-        block: The whole block [m].
-        outer: Whether the west, east, south and north side has one.
-        depth: Depth of the strips [m].
-    """
+def frontage(
+    block: Box,  # The whole block [m]
+    outer: tuple[bool, bool, bool, bool],  # Whether the west, east, south and north side has one
+    depth: float,  # Depth of the strips [m]
+) -> list[Box]:
+    """Return strips of a block along those of its sides that have a street."""
     west, south, east, north = block
     depth = min(depth, 0.46 * (north - south))
     strips: list[Box] = []

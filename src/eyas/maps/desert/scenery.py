@@ -26,14 +26,12 @@ _GAUGE, _RUT = 0.8, 0.25  # Half the distance of two ruts, and half the width of
 
 
 def scattered_over(
-    desert: DesertLayout, ground: Relief, taken: shapely.Geometry, rng: np.random.Generator
+    desert: DesertLayout,  # Where roads, houses and drifts are
+    ground: Relief,
+    taken: shapely.Geometry,  # Where nothing may lie [m]
+    rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return stones and plants in groups, too low to hide anything.
-
-    Args:
-        desert: Where roads, houses and drifts are.
-        taken: Where nothing may lie [m].
-    """
+    """Return stones and plants in groups, too low to hide anything."""
     sand = [drift.fringe for drift in desert.drifts]
     closed = shapely.buffer(shapely.union_all([taken, *sand, *desert.tongues]), _BESIDE)
     near = shapely.intersection(EXTENT, shapely.buffer(desert.roads, _REACH, quad_segs=2))

@@ -41,14 +41,11 @@ def water_in(shape: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygo
 
 
 def shore_life(
-    waters: list[shapely.Polygon], near: shapely.Geometry, rng: np.random.Generator
+    waters: list[shapely.Polygon],  # Ponds and lakes [m]
+    near: shapely.Geometry,  # Where they are seen [m]
+    rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return reeds and stones along shores.
-
-    Args:
-        waters: Ponds and lakes [m].
-        near: Where they are seen [m].
-    """
+    """Return reeds and stones along shores."""
     made: list[Placed] = []
     for water in waters:
         ring = shapely.geometry.polygon.orient(water).exterior
@@ -73,18 +70,12 @@ def shore_life(
 
 
 def boats(
-    waters: list[shapely.Polygon],
-    district: LakeLayout,
-    near: shapely.Geometry,
+    waters: list[shapely.Polygon],  # Ponds and lakes [m]
+    district: LakeLayout,  # Where roads are
+    near: shapely.Geometry,  # Where they are seen [m]
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return jetties, each with a boat beside it, and boats on land.
-
-    Args:
-        waters: Ponds and lakes [m].
-        district: Where roads are.
-        near: Where they are seen [m].
-    """
+    """Return jetties, each with a boat beside it, and boats on land."""
     made: list[Placed] = []
     for water in waters:
         ring = shapely.geometry.polygon.orient(water).exterior

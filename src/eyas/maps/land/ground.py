@@ -35,13 +35,11 @@ _PATCH = (12.0, 48.0)  # Mean radius of a patch [m]
 _FADE = 0.7  # Size of the inner part of a patch, whose tint is stronger, as a share of the patch
 
 
-def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:
-    """Return the pavements along the inner side of the kerbs of blocks.
-
-    Args:
-        blocks: Ground between kerbs [m].
-        cut: Driveways and other areas that interrupt pavements.
-    """
+def pavement_area(
+    blocks: Sequence[shapely.Polygon],  # Ground between kerbs [m]
+    cut: shapely.Geometry,  # Driveways and other areas that interrupt pavements
+) -> shapely.Geometry:
+    """Return the pavements along the inner side of the kerbs of blocks."""
     rings = [
         shapely.difference(block, shapely.buffer(block, -PAVEMENT_WIDTH, join_style="mitre"))
         for block in blocks
@@ -49,13 +47,11 @@ def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> s
     return shapely.difference(shapely.union_all(rings), cut)
 
 
-def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> shapely.Geometry:
-    """Return the narrow pavements between outer streets and open land.
-
-    Args:
-        outside: Ground outside the outer streets [m].
-        paved: Asphalt [m].
-    """
+def verge_area(
+    outside: Sequence[shapely.Polygon],  # Ground outside the outer streets [m]
+    paved: shapely.Geometry,  # Asphalt [m]
+) -> shapely.Geometry:
+    """Return the narrow pavements between outer streets and open land."""
     beside = shapely.buffer(paved, _VERGE, quad_segs=4)
     return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
 
@@ -81,20 +77,13 @@ def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generat
 
 
 def lawn(
-    extent: shapely.Polygon,
-    covered: shapely.Geometry,
+    extent: shapely.Polygon,  # The floor [m]
+    covered: shapely.Geometry,  # Area that is not lawn [m]
     rng: np.random.Generator,
-    mown: shapely.Geometry,
-    turn: float,
+    mown: shapely.Geometry,  # Area mown in swaths [m]
+    turn: float,  # Direction of the swaths [rad]
 ) -> list[Flat]:
-    """Return the floor where nothing else covers it, with dry and lush patches.
-
-    Args:
-        extent: The floor [m].
-        covered: Area that is not lawn [m].
-        mown: Area mown in swaths [m].
-        turn: Direction of the swaths [rad].
-    """
+    """Return the floor where nothing else covers it, with dry and lush patches."""
     rest = shapely.difference(extent, covered)
     parts = []
     # Where patches overlap, the stronger tint wins over the edge of a patch.
@@ -137,15 +126,13 @@ _CORNERS = 24
 
 
 def plain(
-    area: shapely.Geometry, near: shapely.Geometry, cover: Material, z: float = FLOOR_HEIGHT
+    area: shapely.Geometry,  # The ground [m]
+    # Where it is cut into small squares, so that those out of sight are skipped [m]
+    near: shapely.Geometry,
+    cover: Material,
+    z: float = FLOOR_HEIGHT,  # Its height [m]
 ) -> Mesh:
-    """Return level ground.
-
-    Args:
-        area: The ground [m].
-        near: Where it is cut into small squares, so that those out of sight are skipped [m].
-        z: Its height [m].
-    """
+    """Return level ground."""
     pieces = []
     # First into large squares: cutting small ones out of everything at once takes far longer.
     for piece in split_on_grid(area, _WIDE_CELL):
@@ -192,15 +179,13 @@ and from its own edge."""
 
 
 def edged(
-    area: shapely.Geometry, beside: shapely.Geometry | None, cover: Material, z: float
+    area: shapely.Geometry,  # The ground [m]
+    # From what the distance is measured; None: from the edge of the area inwards
+    beside: shapely.Geometry | None,
+    cover: Material,
+    z: float,  # Its height [m]
 ) -> Mesh:
-    """Return level ground of a material whose u is a distance.
-
-    Args:
-        area: The ground [m].
-        beside: From what the distance is measured; None: from the edge of the area inwards.
-        z: Its height [m].
-    """
+    """Return level ground of a material whose u is a distance."""
     if beside is None:
         edge, rings = shapely.boundary(area), [shapely.buffer(area, -inset) for inset in _INSETS]
         rings = [*rings, shapely.Polygon()]

@@ -80,31 +80,24 @@ def highest(mounds: Sequence[Mound], points: Points) -> tuple[Points, NDArray[np
 
 
 def sizes(
-    count: int, radius: tuple[float, float, float], rng: np.random.Generator
+    count: int,
+    radius: tuple[float, float, float],  # Smallest, median and largest [m]
+    rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Return radii, the largest first, spread between limits about a median [m].
-
-    Args:
-        radius: Smallest, median and largest [m].
-    """
+    """Return radii, the largest first, spread between limits about a median [m]."""
     share = (np.arange(count) + rng.uniform(0.2, 0.8, count)) / count
     return rounded(np.interp(share, (0.0, 0.5, 1.0), radius))[::-1]
 
 
 def place_inside(
-    radii: Sequence[float],
-    steepness: tuple[float, float],
-    room: shapely.Geometry,
+    radii: Sequence[float],  # Radii, the largest first [m]
+    steepness: tuple[float, float],  # Least and largest height, as a share of the radius
+    room: shapely.Geometry,  # Area that the mounds must keep to [m]
     rng: np.random.Generator,
 ) -> list[Mound]:
     """Return round mounds in the ground between roads, each as close to the edge as it can be.
 
     Where there is no room for one, a smaller one takes its place.
-
-    Args:
-        radii: Radii, the largest first [m].
-        steepness: Least and largest height, as a share of the radius.
-        room: Area that the mounds must keep to [m].
     """
     edge = shapely.boundary(room)
     shapely.prepare(room)
@@ -128,20 +121,13 @@ def place_inside(
 
 
 def place_ring(
-    radii: Sequence[float],
-    gaps: tuple[float, float],
-    steepness: tuple[float, float],
-    inside: shapely.Polygon,
+    radii: Sequence[float],  # Radii [m]
+    gaps: tuple[float, float],  # Least and largest distance of a foot from the area [m]
+    steepness: tuple[float, float],  # Least and largest height, as a share of the radius
+    inside: shapely.Polygon,  # The area [m]
     rng: np.random.Generator,
 ) -> list[Mound]:
-    """Return round mounds in a closed ring around an area.
-
-    Args:
-        radii: Radii [m].
-        gaps: Least and largest distance of a foot from the area [m].
-        steepness: Least and largest height, as a share of the radius.
-        inside: The area [m].
-    """
+    """Return round mounds in a closed ring around an area."""
     ring = shapely.get_exterior_ring(shapely.convex_hull(inside))
     middle = shapely.get_coordinates(ring.centroid)[0]
     made = []

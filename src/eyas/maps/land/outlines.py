@@ -11,19 +11,13 @@ Points = NDArray[np.float64]
 
 
 def blob(
-    middle: Points,
-    half: tuple[float, float],
-    turn: float,
+    middle: Points,  # Its middle [m], shape (2,)
+    half: tuple[float, float],  # Half its length and width [m]
+    turn: float,  # Direction of its length, counter-clockwise from east [rad]
     rng: np.random.Generator,
     corners: int = 40,
 ) -> shapely.Polygon:
-    """Return an uneven ellipse.
-
-    Args:
-        middle: Its middle [m], shape (2,).
-        half: Half its length and width [m].
-        turn: Direction of its length, counter-clockwise from east [rad].
-    """
+    """Return an uneven ellipse."""
     angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
     waves = 1.0 + (size * exact.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)

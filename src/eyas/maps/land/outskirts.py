@@ -40,18 +40,13 @@ Points = NDArray[np.float64]
 
 
 def fields(
-    size: tuple[float, float],
-    floor: float,
+    size: tuple[float, float],  # Extent of the floor [m]
+    floor: float,  # z of the floor [m]
     rng: np.random.Generator,
+    # What grows on them, and the share of each; the shares add up to 1
     crops: Sequence[tuple[Material, float]],
 ) -> Mesh:
-    """Return the land around the floor up to the horizon, a patchwork of large fields.
-
-    Args:
-        size: Extent of the floor [m].
-        floor: z of the floor [m].
-        crops: What grows on them, and the share of each; the shares add up to 1.
-    """
+    """Return the land around the floor up to the horizon, a patchwork of large fields."""
     half = np.array([*(-np.array(_LINES[::-1])), -150.0, 150.0, *_LINES])
     steps = len(half) - 1
     x, y = np.meshgrid(half * size[0] / 900.0, half * size[1] / 900.0, indexing="ij")
@@ -72,14 +67,12 @@ def fields(
     return concatenate(made)
 
 
-def access_road(foot: Points, onwards: Points, roads: shapely.Geometry) -> shapely.Geometry:
-    """Return the asphalt from a street to the foot of a ramp, in plan view.
-
-    Args:
-        foot: Middle of the lower end of the ramp [m], shape (2,).
-        onwards: Unit vector up the ramp, shape (2,).
-        roads: Asphalt of the streets [m].
-    """
+def access_road(
+    foot: Points,  # Middle of the lower end of the ramp [m], shape (2,)
+    onwards: Points,  # Unit vector up the ramp, shape (2,)
+    roads: shapely.Geometry,  # Asphalt of the streets [m]
+) -> shapely.Geometry:
+    """Return the asphalt from a street to the foot of a ramp, in plan view."""
     corner = rounded(foot - _BACK * onwards)
     street = shapely.get_coordinates(shapely.shortest_line(shapely.Point(corner), roads))[-1]
     bend = arc(foot, corner, street, _BEND)
@@ -113,18 +106,12 @@ def descent(middle: Points, floor: float) -> Points:
 
 
 def city_land(
-    size: tuple[float, float],
+    size: tuple[float, float],  # Extent of the floor [m]
     rng: np.random.Generator,
-    covers: Sequence[Material],
-    shares: Sequence[float],
+    covers: Sequence[Material],  # What covers them
+    shares: Sequence[float],  # The share of each; they add up to 1
 ) -> Mesh:
-    """Return the land around the floor of a city up to the horizon, in large patches.
-
-    Args:
-        size: Extent of the floor [m].
-        covers: What covers them.
-        shares: The share of each; they add up to 1.
-    """
+    """Return the land around the floor of a city up to the horizon, in large patches."""
     x = np.array([*(-np.array(_LAND_LINES[::-1])), -330.0, 330.0, *_LAND_LINES])
     y = np.where(np.abs(x) == _LAND_LINES[0], np.sign(x) * 0.5 * size[1], x)
     east, north = np.meshgrid(x, y, indexing="ij")

@@ -41,20 +41,15 @@ class Relief:
 
 
 def relief(
+    # Returns the heights above the floor [m] at points, shape (P, 2)
     heights: Callable[[Points], Points],
+    # Half the side of the square in the middle, and of the whole relief [m]
     half: tuple[float, float],
-    spacing: tuple[float, float],
-    flat: shapely.Geometry,
+    spacing: tuple[float, float],  # Distance between points in the middle and outside of it [m]
+    flat: shapely.Geometry,  # Area that no triangle may touch [m]
     rng: np.random.Generator,
 ) -> Relief:
-    """Return a rising ground as triangles, small ones in the middle of the map.
-
-    Args:
-        heights: Returns the heights above the floor [m] at points, shape (P, 2).
-        half: Half the side of the square in the middle, and of the whole relief [m].
-        spacing: Distance between points in the middle and outside of it [m].
-        flat: Area that no triangle may touch [m].
-    """
+    """Return a rising ground as triangles, small ones in the middle of the map."""
     inner = _lattice(half[0], spacing[0], rng)
     outer = _lattice(half[1], spacing[1], rng)
     outer = outer[np.abs(outer).max(axis=1) > half[0] + 0.4 * spacing[0]]
@@ -113,21 +108,16 @@ def heights_of(ground: Relief, points: Points) -> Points:
 
 def surface_of(
     ground: Relief,
-    floor: float,
-    cover: Sequence[Material],
+    floor: float,  # z of the floor [m]
+    cover: Sequence[Material],  # Materials
     kind: NDArray[np.integer],
     *,
+    # Whether light changes smoothly over the edges of triangles; otherwise each is flat
     smooth: bool = False,
+    # u of each point where the second cover has a distance there, shape (V,) [m]
     along: Points | None = None,
 ) -> Mesh:
-    """Return the surface of a relief.
-
-    Args:
-        floor: z of the floor [m].
-        cover: Materials.
-        smooth: Whether light changes smoothly over the edges of triangles; otherwise each is flat.
-        along: u of each point where the second cover has a distance there, shape (V,) [m].
-    """
+    """Return the surface of a relief."""
     normals = _normals(ground, smooth=smooth)
     made = []
     for index, material in enumerate(cover):

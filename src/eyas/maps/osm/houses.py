@@ -28,13 +28,11 @@ _HIGHEST = 900.0
 _PART = "building:part"
 
 
-def houses_of(shapes: Shapes, odd: Odd) -> list[House]:
-    """Return all buildings; one that is described by parts is replaced by these.
-
-    Args:
-        shapes: Polygons of the file.
-        odd: Told of tags whose values make no sense.
-    """
+def houses_of(
+    shapes: Shapes,  # Polygons of the file
+    odd: Odd,  # Told of tags whose values make no sense
+) -> list[House]:
+    """Return all buildings; one that is described by parts is replaced by these."""
     parts = [_house(tags, shape, _PART, odd) for tags, shape in shapes.areas(_is_part)]
     outlines = [_house(tags, shape, "building", odd) for tags, shape in shapes.areas(_is_house)]
     if not parts:

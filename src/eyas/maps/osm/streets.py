@@ -39,14 +39,12 @@ _TURNS = ("type", "restriction", "except")  # Tags of turn restrictions that net
 _SPEED = re.compile(r"\d{1,3}(\.\d+)?( ?(km/h|kmh|mph|knots))?")
 
 
-def street_file(data: OsmData, bounds: Bounds, odd: Odd) -> bytes:
-    """Return the streets for cars within an area, with signals and turn restrictions.
-
-    Args:
-        data: The content of the user's file.
-        bounds: The area; streets end at the last node within it.
-        odd: Told of tags whose values make no sense.
-    """
+def street_file(
+    data: OsmData,  # The content of the user's file
+    bounds: Bounds,  # The area; streets end at the last node within it
+    odd: Odd,  # Told of tags whose values make no sense
+) -> bytes:
+    """Return the streets for cars within an area, with signals and turn restrictions."""
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6">']
     pieces: list[tuple[int, tuple[int, ...], Tags]] = []
     for way in data.ways.values():

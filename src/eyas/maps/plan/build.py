@@ -45,14 +45,12 @@ _HIGHEST_UNITS = 170.0
 _LAMP_HEIGHTS = (6.75, 6.6)  # z of the lamps in a tunnel, and of their lights [m]
 
 
-def build_scene(plan: p.MapPlan, network: RoadNetwork, season: Season = Season.SUMMER) -> Scene:
-    """Return the scene of a plan.
-
-    Args:
-        plan: A complete plan, without what `eyas.maps.plan.file.problems` tells.
-        network: What SUMO has made of its roads.
-        season: Season of trees, crops and hills.
-    """
+def build_scene(
+    plan: p.MapPlan,  # A complete plan, without what `eyas.maps.plan.file.problems` tells
+    network: RoadNetwork,  # What SUMO has made of its roads
+    season: Season = Season.SUMMER,  # Season of trees, crops and hills
+) -> Scene:
+    """Return the scene of a plan."""
     work = _Work(plan, network, season)
     for layer in plan.layers:
         _MAKERS[type(layer)](work, layer)

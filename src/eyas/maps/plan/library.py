@@ -38,13 +38,10 @@ def wild_kinds(*makes: str, shapes: int = 2, looks: Sequence[int] = ()) -> tuple
 
 
 def houses(
-    cottages: Sequence[Cottage], looks: Sequence[tuple[Material, Material]]
+    cottages: Sequence[Cottage],
+    looks: Sequence[tuple[Material, Material]],  # Walls and roof of each look
 ) -> tuple[tuple[ThingKind, ...], list[Placed]]:
-    """Return detached houses: their kinds, and their places.
-
-    Args:
-        looks: Walls and roof of each look.
-    """
+    """Return detached houses: their kinds, and their places."""
     kinds, placed = {}, []
     for house in cottages:
         which = house.look % len(looks)

@@ -57,22 +57,16 @@ class Crown:
 
 
 def leaf_cards(
-    crown: Crown,
+    crown: Crown,  # Crown to cover
     count: int,
-    size: tuple[float, float],
+    size: tuple[float, float],  # Least and largest side of a card
+    # Factors on the leaves' colour, from the darkest (below, in clefts) to the lightest
     tints: tuple[tuple[float, float, float], ...],
     rng: np.random.Generator,
     *,
-    bent: bool,
+    bent: bool,  # Fold each card along its middle (4 triangles); otherwise flat (2 triangles)
 ) -> Mesh:
-    """Return cards with clusters of leaves on the outside of a crown.
-
-    Args:
-        crown: Crown to cover.
-        size: Least and largest side of a card.
-        tints: Factors on the leaves' colour, from the darkest (below, in clefts) to the lightest.
-        bent: Fold each card along its middle (4 triangles); otherwise flat (2 triangles).
-    """
+    """Return cards with clusters of leaves on the outside of a crown."""
     points, facing = crown.surface(count, rng)
     normals = crown.soft_normals(points, facing)
     side = rng.uniform(*size, count)
@@ -175,13 +169,11 @@ _PALE = {"leaves": "pale_leaves", "foliage": "pale_foliage"}
 _TWIGS: Tint = (0.46, 0.40, 0.34)  # Colour of a crown without leaves, seen from afar
 
 
-def in_autumn(levels: Levels, which: int) -> Levels:
-    """Return a plant in autumn, drawn without random numbers: what stands beside it stays.
-
-    Args:
-        levels: The plant in summer, the finest level of detail first.
-        which: Chooses one of `COLOURS`.
-    """
+def in_autumn(
+    levels: Levels,  # The plant in summer, the finest level of detail first
+    which: int,  # Chooses one of `COLOURS`
+) -> Levels:
+    """Return a plant in autumn, drawn without random numbers: what stands beside it stays."""
     colour, share = COLOURS[which % len(COLOURS)]
     return tuple(_turned(mesh, colour, share) for mesh in levels)
 

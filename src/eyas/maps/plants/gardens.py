@@ -29,15 +29,12 @@ Points = NDArray[np.float64]
 
 
 def paved_yards(
-    footprints: Sequence[Points], pavement: shapely.Geometry, keep_free: shapely.Geometry
+    # Corners of the buildings that stand on the ground, counter-clockwise
+    footprints: Sequence[Points],
+    pavement: shapely.Geometry,  # Pavements, to which paths lead [m]
+    keep_free: shapely.Geometry,  # Roads, pavements, car parks and pools [m]
 ) -> list[shapely.Geometry]:
-    """Return the paving around each building, its own ground included [m].
-
-    Args:
-        footprints: Corners of the buildings that stand on the ground, counter-clockwise.
-        pavement: Pavements, to which paths lead [m].
-        keep_free: Roads, pavements, car parks and pools [m].
-    """
+    """Return the paving around each building, its own ground included [m]."""
     shapes = np.array([shapely.Polygon(corners) for corners in footprints], object)
     free = shapely.get_parts(keep_free)
     shapely.prepare(free)
@@ -81,15 +78,12 @@ def _paths(
 
 
 def borders(
-    footprints: Sequence[Points], room: shapely.Geometry, floor: float, rng: np.random.Generator
+    footprints: Sequence[Points],  # Corners of buildings, counter-clockwise [m]
+    room: shapely.Geometry,  # Lawn on which plants may stand [m]
+    floor: float,  # z of the lawn [m]
+    rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return hedges and shrubs along walls.
-
-    Args:
-        footprints: Corners of buildings, counter-clockwise [m].
-        room: Lawn on which plants may stand [m].
-        floor: z of the lawn [m].
-    """
+    """Return hedges and shrubs along walls."""
     free = shapely.buffer(room, -_ROOM / 2)
     shapely.prepare(free)
     made: list[Placed] = []
@@ -104,20 +98,13 @@ def borders(
 
 
 def row(
-    plants: Sequence[str],
-    line: Points,
-    room: shapely.Geometry,
-    floor: float,
+    plants: Sequence[str],  # Kinds; one is chosen for each piece
+    line: Points,  # Both ends [m], shape (2, 2)
+    room: shapely.Geometry,  # Area in which pieces must lie [m]
+    floor: float,  # z of the lawn [m]
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return pieces of hedge or border along a line where there is room.
-
-    Args:
-        plants: Kinds; one is chosen for each piece.
-        line: Both ends [m], shape (2, 2).
-        room: Area in which pieces must lie [m].
-        floor: z of the lawn [m].
-    """
+    """Return pieces of hedge or border along a line where there is room."""
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(exact.atan2(along[1], along[0]))
     step = whole / max(round(whole / PIECE), 1)
@@ -158,20 +145,13 @@ def scattered(
 
 
 def sown(
-    spots: Points,
-    kinds: Sequence[str],
-    sizes: tuple[float, float],
-    z: float | Points,
+    spots: Points,  # Places [m], shape (K, 2)
+    kinds: Sequence[str],  # Kinds; one is chosen for each place
+    sizes: tuple[float, float],  # Least and largest scale
+    z: float | Points,  # Height of their feet [m], one or shape (K,)
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return a copy of one of some kinds at each place, turned at random.
-
-    Args:
-        spots: Places [m], shape (K, 2).
-        kinds: Kinds; one is chosen for each place.
-        sizes: Least and largest scale.
-        z: Height of their feet [m], one or shape (K,).
-    """
+    """Return a copy of one of some kinds at each place, turned at random."""
     spots, feet = rounded(spots), rounded(np.broadcast_to(np.asarray(z, np.float64), len(spots)))
     which = rng.integers(len(kinds), size=len(spots)).tolist()
     turns = np.round(rng.uniform(0.0, 2 * np.pi, len(spots)), 3).tolist()
@@ -181,40 +161,26 @@ def sown(
 
 
 def clustered(
-    centres: Points,
-    spread: float,
-    count: tuple[int, int],
-    room: shapely.Geometry,
+    centres: Points,  # Centres of the groups [m], shape (C, 2)
+    spread: float,  # Standard deviation about the centres [m]
+    count: tuple[int, int],  # Least and largest number in a group
+    room: shapely.Geometry,  # Area within which the points must lie [m]
     rng: np.random.Generator,
 ) -> Points:
-    """Return points in groups, shape (K, 2) [m].
-
-    Args:
-        centres: Centres of the groups [m], shape (C, 2).
-        spread: Standard deviation about the centres [m].
-        count: Least and largest number in a group.
-        room: Area within which the points must lie [m].
-    """
+    """Return points in groups, shape (K, 2) [m]."""
     groups = [c + exact.normal(rng, 0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
     return np.asarray(points[shapely.contains_xy(room, points)], np.float64)
 
 
 def small_trees(
-    places: Points,
-    heights: tuple[float, float],
-    floor: float,
-    kinds: Sequence[str],
+    places: Points,  # Positions of the trunks, shape (K, 2) [m]
+    heights: tuple[float, float],  # Least and largest height [m]
+    floor: float,  # z of the ground [m]
+    kinds: Sequence[str],  # Kinds; one is chosen for each tree
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return trees of random heights and kinds.
-
-    Args:
-        places: Positions of the trunks, shape (K, 2) [m].
-        heights: Least and largest height [m].
-        floor: z of the ground [m].
-        kinds: Kinds; one is chosen for each tree.
-    """
+    """Return trees of random heights and kinds."""
     made = []
     for x, y in places.tolist():
         height, turn = float(rng.uniform(*heights)), float(rng.uniform(0, 2 * np.pi))

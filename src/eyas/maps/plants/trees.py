@@ -108,18 +108,12 @@ def _wood(crown: Crown, rng: np.random.Generator, *, limbs: int, sides: int) -> 
 
 
 def place_along(
-    line: shapely.LineString,
-    spacing: tuple[float, float],
+    line: shapely.LineString,  # Line of the row [m]
+    spacing: tuple[float, float],  # Least and largest distance from one tree to the next [m]
     rng: np.random.Generator,
-    keep_free: shapely.Geometry,
+    keep_free: shapely.Geometry,  # Area without trunks; trees there are left out
 ) -> Array:
-    """Return the positions of the trees of a row, shape (K, 2) [m].
-
-    Args:
-        line: Line of the row [m].
-        spacing: Least and largest distance from one tree to the next [m].
-        keep_free: Area without trunks; trees there are left out.
-    """
+    """Return the positions of the trees of a row, shape (K, 2) [m]."""
     gaps = rng.uniform(*spacing, int(line.length / spacing[0]) + 2)
     along = np.cumsum(gaps) - gaps[0] * rng.uniform(0.3, 0.9)
     along = along[along < line.length - 0.3 * spacing[0]]

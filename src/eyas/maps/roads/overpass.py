@@ -44,15 +44,12 @@ Points = NDArray[np.float64]
 
 
 def path(
-    corners: ArrayLike, radii: Sequence[float], profile: Sequence[tuple[float, float]]
+    corners: ArrayLike,  # Points where the straight pieces would meet [m], shape (C, 2)
+    radii: Sequence[float],  # Radius of the arc at each corner except the first and last [m]
+    # Share of the whole length and z there [m], with smooth transitions between
+    profile: Sequence[tuple[float, float]],
 ) -> Points:
-    """Return the centre line of a road of straight pieces and arcs, shape (K, 3).
-
-    Args:
-        corners: Points where the straight pieces would meet [m], shape (C, 2).
-        radii: Radius of the arc at each corner except the first and last [m].
-        profile: Share of the whole length and z there [m], with smooth transitions between.
-    """
+    """Return the centre line of a road of straight pieces and arcs, shape (K, 3)."""
     points = rounded(corners)
     pieces = [points[:1]]
     for before, corner, after, radius in zip(
@@ -85,13 +82,11 @@ def carriageway_mesh(middle: Points) -> Mesh:
     )
 
 
-def sides_mesh(middle: Points, floor: float) -> Mesh:
-    """Return the walls and the underside of a deck; low parts stand on solid sides.
-
-    Args:
-        middle: Centre line from `path`.
-        floor: z of the ground [m].
-    """
+def sides_mesh(
+    middle: Points,  # Centre line from `path`
+    floor: float,  # z of the ground [m]
+) -> Mesh:
+    """Return the walls and the underside of a deck; low parts stand on solid sides."""
     pieces = [_swept(middle, _SECTION[1:], _CONCRETE, TEXTURES["concrete"])]
     # Where a ramp begins, the walls themselves reach into the floor.
     height = middle[:, 2] - floor
@@ -204,15 +199,13 @@ class Pillar:
         return self.place + np.outer([-0.5, 0.5], _COLUMN_GAP * self.across)
 
 
-def pillars(middle: Points, count: int, floor: float, roads: shapely.Geometry) -> list[Pillar]:
-    """Return pillars below the high part of the deck, evenly spaced where no road is in the way.
-
-    Args:
-        middle: Centre line from `path`.
-        count: Number of pillars; those without room beside a road are left out.
-        floor: z of the ground [m].
-        roads: Area where none may stand.
-    """
+def pillars(
+    middle: Points,  # Centre line from `path`
+    count: int,  # Number of pillars; those without room beside a road are left out
+    floor: float,  # z of the ground [m]
+    roads: shapely.Geometry,  # Area where none may stand
+) -> list[Pillar]:
+    """Return pillars below the high part of the deck, evenly spaced where no road is in the way."""
     high = np.flatnonzero(middle[:, 2] > floor + SOLID_BELOW + 1.0)
     if len(high) == 0:
         return []

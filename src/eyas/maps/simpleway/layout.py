@@ -35,14 +35,11 @@ def loop_lines(network: RoadNetwork) -> list[Stripe]:
 
 
 def sand_bars(
-    lines: NDArray[np.float64], roads: shapely.Geometry, rng: np.random.Generator
+    lines: NDArray[np.float64],  # Ends of the roads, shape (R, 2, 2) [m]
+    roads: shapely.Geometry,  # Asphalt [m]
+    rng: np.random.Generator,
 ) -> list[shapely.Polygon]:
-    """Return the sand on the asphalt [m].
-
-    Args:
-        lines: Ends of the roads, shape (R, 2, 2) [m].
-        roads: Asphalt [m].
-    """
+    """Return the sand on the asphalt [m]."""
     shapes: list[shapely.Geometry] = []
     for south, north in lines:
         for y in np.linspace(-_REACH, _REACH, _ROWS) + rng.uniform(-70.0, 70.0, _ROWS):

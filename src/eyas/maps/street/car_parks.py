@@ -32,18 +32,13 @@ class CarPark:
 
 
 def place_car_parks(
-    blocks: Sequence[shapely.Polygon],
+    blocks: Sequence[shapely.Polygon],  # Ground between kerbs [m]
+    # Length along the street and depth of each; those that fit nowhere are left out [m]
     sizes: Sequence[tuple[float, float]],
     rng: np.random.Generator,
-    keep_free: shapely.Geometry,
+    keep_free: shapely.Geometry,  # Area where none may be
 ) -> list[CarPark]:
-    """Return car parks beside streets, at most one in a block.
-
-    Args:
-        blocks: Ground between kerbs [m].
-        sizes: Length along the street and depth of each; those that fit nowhere are left out [m].
-        keep_free: Area where none may be.
-    """
+    """Return car parks beside streets, at most one in a block."""
     order = [blocks[int(index)] for index in rng.permutation(len(blocks))]
     made = []
     for size in sizes:
@@ -57,17 +52,12 @@ def place_car_parks(
 
 
 def place_rectangle(
-    block: shapely.Polygon,
-    size: tuple[float, float],
+    block: shapely.Polygon,  # Ground between kerbs [m]
+    size: tuple[float, float],  # Lengths along the side and away from it [m]
     rng: np.random.Generator,
-    keep_free: shapely.Geometry,
+    keep_free: shapely.Geometry,  # Area that it may not touch
 ) -> tuple[shapely.Polygon, float, int] | None:
     """Return a rectangle beside a long side of a block, in the block's frame.
-
-    Args:
-        block: Ground between kerbs [m].
-        size: Lengths along the side and away from it [m].
-        keep_free: Area that it may not touch.
 
     Returns:
         The rectangle, the direction of the block's frame [rad], and the side: 0 south, 1 north;

@@ -108,18 +108,12 @@ class _Standing:
 
 def along_kerbs(
     network: RoadNetwork,
-    grounds: Mapping[str, Ground],
-    rules: Sequence[_Rule],
+    grounds: Mapping[str, Ground],  # Where things may stand, by the names in the rules; prepared
+    rules: Sequence[_Rule],  # What stands there, the largest first
     rng: np.random.Generator,
-    apart: float = 1.0,
+    apart: float = 1.0,  # Factor on the distances between things of a rule
 ) -> list[Placed]:
-    """Return things along the kerbs of all streets.
-
-    Args:
-        grounds: Where things may stand, by the names in the rules; prepared.
-        rules: What stands there, the largest first.
-        apart: Factor on the distances between things of a rule.
-    """
+    """Return things along the kerbs of all streets."""
     standing, made = _Standing(), []
     for rule in rules:
         ground = grounds[rule.where]
@@ -136,20 +130,13 @@ def along_kerbs(
 
 
 def at_fronts(
-    footprints: Sequence[Points],
-    ground: Ground,
-    rules: Sequence[_Rule],
+    footprints: Sequence[Points],  # Corners of the houses, counter-clockwise [m]
+    ground: Ground,  # Where things may stand; prepared
+    rules: Sequence[_Rule],  # What stands there, the largest first
     rng: np.random.Generator,
-    apart: float = 1.0,
+    apart: float = 1.0,  # Factor on the distances between things of a rule
 ) -> list[Placed]:
-    """Return things before the walls of houses, with their backs to them.
-
-    Args:
-        footprints: Corners of the houses, counter-clockwise [m].
-        ground: Where things may stand; prepared.
-        rules: What stands there, the largest first.
-        apart: Factor on the distances between things of a rule.
-    """
+    """Return things before the walls of houses, with their backs to them."""
     standing, made = _Standing(), []
     for rule in rules:
         for corners in footprints:

@@ -173,18 +173,12 @@ _RULES = {
 
 def furniture_along(
     network: RoadNetwork,
-    pavement: shapely.Geometry,
-    keep_free: shapely.Geometry,
-    height: float,
+    pavement: shapely.Geometry,  # Area where furniture may stand [m]
+    keep_free: shapely.Geometry,  # Area where something else stands, people walk or cars drive [m]
+    height: float,  # z of the pavement [m]
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return what furnishes the pavements beside kerbs.
-
-    Args:
-        pavement: Area where furniture may stand [m].
-        keep_free: Area where something else stands, people walk or cars drive [m].
-        height: z of the pavement [m].
-    """
+    """Return what furnishes the pavements beside kerbs."""
     room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
     shapely.prepare(room)
     taken, made = np.zeros((0, 3)), []

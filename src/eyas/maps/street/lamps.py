@@ -39,14 +39,12 @@ _LENS = Material(tint=(1.0, 0.90, 0.72), surface=Surface.LAMP, emission=6.0)
 
 
 def lamps_along(
-    network: RoadNetwork, count: int, keep_free: shapely.Geometry, rng: np.random.Generator
+    network: RoadNetwork,
+    count: int,  # Number of lamps, if there is room
+    keep_free: shapely.Geometry,  # Area where no pole may stand
+    rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return street lamps on both sides of the roads, their arms over the road.
-
-    Args:
-        count: Number of lamps, if there is room.
-        keep_free: Area where no pole may stand.
-    """
+    """Return street lamps on both sides of the roads, their arms over the road."""
     feet, turns = _candidates(network)
     blocked = shapely.buffer(keep_free, _CLEAR)
     shapely.prepare(blocked)

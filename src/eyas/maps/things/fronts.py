@@ -52,14 +52,10 @@ def add_fronts(
     builder: SceneBuilder,
     building: BuildingPart,
     owner: int,
-    pavement: shapely.Geometry,
+    pavement: shapely.Geometry,  # Pavements, prepared [m]
     rng: np.random.Generator,
 ) -> None:
-    """Hang awnings and fire escapes on the walls of a building that face a street.
-
-    Args:
-        pavement: Pavements, prepared [m].
-    """
+    """Hang awnings and fire escapes on the walls of a building that face a street."""
     if building.facade not in _SHOPS:
         return
     cloth = int(rng.integers(len(_CLOTH)))
@@ -126,17 +122,12 @@ def _escape_levels() -> Levels:
 
 def add_water_tank(
     builder: SceneBuilder,
-    building: BuildingPart,
+    building: BuildingPart,  # The building or the part of it under the roof
     owner: int,
-    free: shapely.Geometry,
+    free: shapely.Geometry,  # Roof on which nothing stands yet [m]
     rng: np.random.Generator,
 ) -> shapely.Geometry:
-    """Add a tank to the roof of an old building; return the rest of the free roof.
-
-    Args:
-        building: The building or the part of it under the roof.
-        free: Roof on which nothing stands yet [m].
-    """
+    """Add a tank to the roof of an old building; return the rest of the free roof."""
     top = building.bottom + building.height
     fits = building.facade in _ON and _TOPS[0] < top < _TOPS[1] and building.roof == "flat"
     room = shapely.buffer(free, -2.6)

@@ -53,12 +53,10 @@ def _gaps() -> list[float]:
     return [-2.0 + 0.3 * (k + 1) for k in range(count - 1)]
 
 
-def boat_levels(look: int) -> Levels:
-    """Return a rowing boat with its bow at +x, the finest level of detail first.
-
-    Args:
-        look: Colour of its hull.
-    """
+def boat_levels(
+    look: int,  # Colour of its hull
+) -> Levels:
+    """Return a rowing boat with its bow at +x, the finest level of detail first."""
     hull = _HULLS[look % len(_HULLS)]
     benches = [box((0.22, 1.0, 0.04), (x, 0.0, 0.26), _INSIDE, 1.0) for x in (-0.9, 0.25)]
     oars = [box((2.1, 0.07, 0.05), (-0.2, y, 0.42), _INSIDE, 1.0) for y in (-0.36, 0.36)]

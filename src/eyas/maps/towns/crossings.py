@@ -46,15 +46,12 @@ class Crosswalk:
 
 
 def crosswalks_of(
-    network: RoadNetwork, roads: shapely.Geometry, walked: shapely.Geometry, features: Survey
+    network: RoadNetwork,
+    roads: shapely.Geometry,  # Their asphalt [m]
+    walked: shapely.Geometry,  # Sidewalks and the corners between them [m]
+    features: Survey,  # The crossings that are mapped, and those at traffic lights
 ) -> tuple[list[Crosswalk], shapely.Geometry]:
-    """Return all crossings, and the islands in their course [m].
-
-    Args:
-        roads: Their asphalt [m].
-        walked: Sidewalks and the corners between them [m].
-        features: The crossings that are mapped, and those at traffic lights.
-    """
+    """Return all crossings, and the islands in their course [m]."""
     shapely.prepare(roads)
     shapely.prepare(walked)
     wanted = [
@@ -144,7 +141,7 @@ def _same(line: Line, other: Line) -> bool:
 
 def town_paint(
     network: RoadNetwork,
-    roads: shapely.Geometry,
+    roads: shapely.Geometry,  # Their asphalt [m]
     crosswalks: Sequence[Crosswalk],
     signalled: Collection[str],
 ) -> tuple[list[Stripe], list[Stripe]]:
@@ -152,9 +149,6 @@ def town_paint(
 
     Real streets have ends, one-way parts and lanes that begin and end, so every street is painted
     by itself.
-
-    Args:
-        roads: Their asphalt [m].
     """
     every = streets(network)
     ways = {(street.start, street.end) for street in every}

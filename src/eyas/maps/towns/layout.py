@@ -61,15 +61,12 @@ class Town:
 
 
 def lay_out(
-    network: RoadNetwork, features: Survey, size: tuple[float, float], given: Occupied
+    network: RoadNetwork,
+    features: Survey,  # What the map tells besides
+    size: tuple[float, float],  # Extent of the floor [m]
+    given: Occupied,  # What is there already
 ) -> Town:
-    """Return which ground of a town is what.
-
-    Args:
-        features: What the map tells besides.
-        size: Extent of the floor [m].
-        given: What is there already.
-    """
+    """Return which ground of a town is what."""
     extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
     lanes, crossings = _lanes(network), _junctions(network)
     beside = shapely.buffer(lanes, features.sidewalks, join_style="mitre", mitre_limit=2.0)

@@ -150,22 +150,17 @@ _LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
 def run(
     world: WorldConfig,
     config: TrafficConfig,
-    duration: float,
+    duration: float,  # Time to record [s]
+    # The file; for several seeds the folder; None: `<map>-<seed>-<type>.npz` in the current folder
     path: Path | None,
     *,
+    # Seeds of SUMO and of the routes, one file for each; none: that of the settings
     seeds: Sequence[int] = (),
+    # Number of processes; None: one for each core, at most one for each seed
     workers: int | None = None,
-    overwrite: bool = False,
+    overwrite: bool = False,  # Whether existing files are replaced
 ) -> None:
     """Record traffic into files.
-
-    Args:
-        duration: Time to record [s].
-        path: The file; for several seeds the folder; None: `<map>-<seed>-<type>.npz` in the current
-            folder.
-        seeds: Seeds of SUMO and of the routes, one file for each; none: that of the settings.
-        workers: Number of processes; None: one for each core, at most one for each seed.
-        overwrite: Whether existing files are replaced.
 
     Raises:
         ConfigError: The duration or a seed is out of range.

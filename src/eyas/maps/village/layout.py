@@ -73,16 +73,11 @@ def _is_free(tunnel: Tunnel, others: Sequence[Tunnel], roads: shapely.Geometry) 
 
 def cottages_along(
     ways: Sequence[Street],
-    inside: shapely.Geometry,
-    keep_free: shapely.Geometry,
+    inside: shapely.Geometry,  # Area in which they stand [m]
+    keep_free: shapely.Geometry,  # Area where none may stand [m]
     rng: np.random.Generator,
 ) -> list[Cottage]:
-    """Return houses in clusters on both sides of roads.
-
-    Args:
-        inside: Area in which they stand [m].
-        keep_free: Area where none may stand [m].
-    """
+    """Return houses in clusters on both sides of roads."""
     sites = _sites(ways, rng)
     shapely.prepare(inside)
     free = shapely.buffer(keep_free, 3.9)

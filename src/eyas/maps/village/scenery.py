@@ -69,14 +69,12 @@ def _wandering(
 
 
 def grown(
-    valley: VillageLayout, ground: Relief, taken: shapely.Geometry, rng: np.random.Generator
+    valley: VillageLayout,  # Where roads are
+    ground: Relief,
+    taken: shapely.Geometry,  # Where nothing grows: paving, paths, water [m]
+    rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return tufts beside the roads, and stones in the meadows and on the feet of hills.
-
-    Args:
-        valley: Where roads are.
-        taken: Where nothing grows: paving, paths, water [m].
-    """
+    """Return tufts beside the roads, and stones in the meadows and on the feet of hills."""
     least, most = (shapely.buffer(valley.roads, far, quad_segs=3) for far in _BESIDE)
     spots = gardens.scattered(shapely.difference(most, shapely.union(least, taken)), *_TUFTS, rng)
     made = gardens.sown(spots, GRASS_KINDS, (0.7, 1.2), _feet(ground, spots, 0.03), rng)
@@ -106,16 +104,11 @@ _FROM_DOOR = 12.5  # Distance from the middle of a house to its bins and its bic
 
 def yard_things(
     cottages: Sequence[Cottage],
-    roads: shapely.Geometry,
-    free: shapely.Geometry,
+    roads: shapely.Geometry,  # Asphalt [m]
+    free: shapely.Geometry,  # Where nothing else stands [m]
     rng: np.random.Generator,
 ) -> list[Placed]:
-    """Return what stands about the houses.
-
-    Args:
-        roads: Asphalt [m].
-        free: Where nothing else stands [m].
-    """
+    """Return what stands about the houses."""
     walls = shapely.union_all([shapely.Polygon(house.outline) for house in cottages])
     made = []
     room = shapely.intersection(shapely.buffer(free, -_ROOM), shapely.buffer(walls, _REACH))

@@ -130,12 +130,10 @@ def body_sizes() -> Floats:
     return np.array(found)
 
 
-def shares(scores: Floats) -> Floats:
-    """Return logarithms of probabilities that add up to 1, shape (K, n).
-
-    Args:
-        scores: Such that are not normalised, shape (K, n).
-    """
+def shares(
+    scores: Floats,  # Such that are not normalised, shape (K, n)
+) -> Floats:
+    """Return logarithms of probabilities that add up to 1, shape (K, n)."""
     above = scores - scores.max(axis=1, keepdims=True, initial=-np.inf)
     found: Floats = above - exact.log(exact.exp(above).sum(axis=1, keepdims=True))
     return found

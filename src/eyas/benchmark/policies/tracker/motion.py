@@ -46,17 +46,14 @@ class MotionFilter:
         return self._state[:, _VELOCITY]
 
     def begin(
-        self, rows: Rows, place: Floats, velocity: Floats, spread: float, speed: Floats
+        self,
+        rows: Rows,  # K of the targets, shape (K,)
+        place: Floats,  # Where they are [m], shape (K, 2)
+        velocity: Floats,  # [m/s], shape (K, 2)
+        spread: float,  # Standard deviation of the places [m]
+        speed: Floats,  # That of the velocities [m/s], shape (K,)
     ) -> None:
-        """Begin with what is known of targets.
-
-        Args:
-            rows: K of the targets, shape (K,).
-            place: Where they are [m], shape (K, 2).
-            velocity: [m/s], shape (K, 2).
-            spread: Standard deviation of the places [m].
-            speed: That of the velocities [m/s], shape (K,).
-        """
+        """Begin with what is known of targets."""
         self._state[rows] = np.stack((place, velocity, np.zeros_like(place)), axis=1)
         self._variance[rows] = 0.0
         self._variance[rows, _PLACE, _PLACE] = spread * spread
@@ -76,17 +73,14 @@ class MotionFilter:
         self._variance[rows, _PLACE, _PLACE] = spread
 
     def expect(
-        self, rows: Rows, place: Floats, velocity: Floats, spread: Floats, speed: Floats
+        self,
+        rows: Rows,  # Which they are, shape (K,)
+        place: Floats,  # Where they should be [m], shape (K, 2)
+        velocity: Floats,  # [m/s], shape (K, 2)
+        spread: Floats,  # Standard deviation of the places [m], shape (K,)
+        speed: Floats,  # That of the velocities [m/s], shape (K,)
     ) -> None:
-        """Expect K targets where their courses lead.
-
-        Args:
-            rows: Which they are, shape (K,).
-            place: Where they should be [m], shape (K, 2).
-            velocity: [m/s], shape (K, 2).
-            spread: Standard deviation of the places [m], shape (K,).
-            speed: That of the velocities [m/s], shape (K,).
-        """
+        """Expect K targets where their courses lead."""
         spread = np.minimum(spread, self._widest)
         self.begin(rows, place, velocity, 0.0, speed)
         self._variance[rows, _PLACE, _PLACE] = np.square(spread)

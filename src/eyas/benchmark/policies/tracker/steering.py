@@ -45,20 +45,17 @@ class Steering:
 
     def steer(
         self,
-        rows: Rows,
+        rows: Rows,  # K of the drones, shape (K,)
+        # Where they are, east and north [m], (K, 2), and their heading [rad], (K,)
         pose: tuple[Floats, Floats],
         since: Floats,
+        # Where their targets are [m] and how these move [m/s], east and north, (K, 2)
         target: tuple[Floats, Floats],
     ) -> Floats:
         """Return commands ahead and to the left [m/s], shape (K, 2).
 
         Looks that are farther apart than an action lasts show how late actions are: the drone then
         flies on as it was told before, and the action lasts as long.
-
-        Args:
-            rows: K of the drones, shape (K,).
-            pose: Where they are, east and north [m], (K, 2), and their heading [rad], (K,).
-            target: Where their targets are [m] and how these move [m/s], east and north, (K, 2).
         """
         (place, yaw), (where, velocity) = pose, target
         late = np.where(since > 1.5 * self.period, since, 0.0)[:, None]

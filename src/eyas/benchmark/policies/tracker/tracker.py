@@ -115,17 +115,14 @@ class Tracker:
         return Decision(actions, failed)
 
     def look(
-        self, rows: Rows, pictures: NDArray[np.uint8], place: Floats, yaw: Floats, since: Floats
+        self,
+        rows: Rows,  # Which they are, shape (K,)
+        pictures: NDArray[np.uint8],  # What they see, shape (K, 3, H, W)
+        place: Floats,  # Where they are, east and north [m], shape (K, 2)
+        yaw: Floats,  # Their heading [rad], shape (K,)
+        since: Floats,  # Time since their last look [s], shape (K,); NaN: there was none
     ) -> None:
-        """Take what K drones see.
-
-        Args:
-            rows: Which they are, shape (K,).
-            pictures: What they see, shape (K, 3, H, W).
-            place: Where they are, east and north [m], shape (K, 2).
-            yaw: Their heading [rad], shape (K,).
-            since: Time since their last look [s], shape (K,); NaN: there was none.
-        """
+        """Take what K drones see."""
         new = np.isnan(since)
         if new.any():
             self._show(rows[new], place[new], yaw[new])

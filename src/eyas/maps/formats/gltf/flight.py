@@ -189,9 +189,7 @@ def _turn(rotation: Floats) -> tuple[float, ...]:
 
 
 def _lens(camera: CameraPose) -> tuple[_Pose, float]:
-    """Return the pose of a camera as glTF has it, right, up and back, and its vertical field of
-    view [rad].
-    """
+    """Return a camera's pose as glTF has it, and its vertical field of view [rad]."""
     forward, left, up = camera.rotation.T
     turn = _turn(np.column_stack([-left, up, -forward]))
     slope = 0.5 * camera.height / float(camera.intrinsics[1, 1])

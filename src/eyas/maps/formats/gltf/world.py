@@ -79,9 +79,7 @@ def _rounded(values: NDArray[np.generic]) -> list[float]:
 
 
 def towards(axis: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Return the shortest turn, as a quaternion x, y, z, w, from -z, where lights shine, to
-    a unit vector.
-    """
+    """Return the shortest turn from -z, where lights shine, to a unit vector, as x, y, z, w."""
     x, y, z = axis.astype(np.float64).tolist()
     if z > 1.0 - 1e-9:
         return np.array([1.0, 0.0, 0.0, 0.0])
