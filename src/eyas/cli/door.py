@@ -18,8 +18,6 @@ HOUSE = House(
             "about": "eyas.cli.about:about",
             "completion": "eyas.cli.completion:completion",
         },
-        "eyas.command_line": {
-            "eyas": "eyas.cli.main:main",
-        },
+        "eyas.command_line": {"eyas": "eyas.cli.main:main"},
     },
 )

@@ -168,10 +168,7 @@ def clear_cache(
 
 
 @cache_app.command("warm")
-def warm_cache(
-    map_name: OnlyMaps = None,
-    weather: OnlyWeathers = None,
-) -> None:
+def warm_cache(map_name: OnlyMaps = None, weather: OnlyWeathers = None) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""
     from eyas.cli.cache import run_warm
 

@@ -9,13 +9,7 @@ from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.render.kernels.bundles import Movers
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.views.actor_bounds import ActorBounds, bounds_of, make_rows
-from eyas.engine.sim.views.near_actors import (
-    CAMERA,
-    Listed,
-    ViewQuery,
-    column_actors,
-    kind_table,
-)
+from eyas.engine.sim.views.near_actors import CAMERA, Listed, ViewQuery, column_actors, kind_table
 from eyas.engine.sim.views.pictures import is_timed
 from eyas.engine.state.draw import NO_SPRAY
 from eyas.engine.state.lighting import LightState

@@ -74,10 +74,7 @@ def protocol_of_batch(rng: np.random.Generator, *, varied: bool, hides: bool = F
         "light": {"sun": {"uniform": [-0.3, 0.3]}},
     }
     if varied:
-        changes["start"] = {
-            "height": {"uniform": [18.0, 25.0]},
-            "pitch": {"uniform": [1.25, 1.42]},
-        }
+        changes["start"] = {"height": {"uniform": [18.0, 25.0]}, "pitch": {"uniform": [1.25, 1.42]}}
     protocol = LONG.changed(changes)
     return replace(protocol, alike=bool(rng.random() < _ALIKE), tells_solvable=False)
 
