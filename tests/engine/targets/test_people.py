@@ -5,7 +5,7 @@ import functools
 import numpy as np
 import pytest
 
-from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import Camera, TargetPose, TargetStage
 from eyas.engine.mesh.shell import DETAILS, Shell, levels_of
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.catalogue import KINDS, kind_index, models_of

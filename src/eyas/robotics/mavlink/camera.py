@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from eyas.lanes import exact
 from eyas.robotics.mavlink.component import Command, Component, Fields, Result
+from eyas.robotics.mavlink.fleet import Sighting
 from eyas.robotics.mavlink.gimbal import DEVICE
 from eyas.robotics.mavlink.readings import Instant
-from eyas.robotics.mavlink.targets import Sighting
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
 COMPONENT = 100  # Component id of the camera
