@@ -1,4 +1,4 @@
-"""The groups and keys of an `env_config.json`, also those of older versions and targets of one's own."""
+"""The groups and keys of an `env_config.json`, of older versions too, and targets of one's own."""
 
 import json
 import logging

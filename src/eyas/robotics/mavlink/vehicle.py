@@ -5,8 +5,8 @@ from typing import Any
 
 from eyas.lanes import exact
 from eyas.robotics.mavlink import autopilot, camera, gimbal
+from eyas.robotics.mavlink.camera import Sighting, Sights
 from eyas.robotics.mavlink.component import Component, Fields
-from eyas.robotics.mavlink.fleet import Sighting, Sights
 from eyas.robotics.mavlink.frames import Vector
 from eyas.robotics.mavlink.pilot import Mode, Parameters, Pilot
 from eyas.robotics.mavlink.readings import Instant, Readings
