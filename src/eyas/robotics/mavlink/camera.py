@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.state.draw import DrawStage, Picture
