@@ -35,9 +35,9 @@ from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.tracking import flights, lessons, training
+from eyas.learning.tracking.flights import Oracle
+from eyas.learning.tracking.lessons import Samples
 from eyas.learning.tracking.network import DetectorNetwork
-from eyas.learning.tracking.pilots import Oracle
-from eyas.learning.tracking.samples import Samples
 
 PLACES = (
     ("paper", "citystreet", "day", 24),

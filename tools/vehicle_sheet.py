@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import Camera, TargetPose, TargetStage
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index
 
 BEARINGS = (np.pi, 2.4, -2.1, 0.6)

@@ -126,8 +126,8 @@ if TYPE_CHECKING:
     from eyas.engine.world.weather import Weather as Weather
     from eyas.lanes import kernel as kernel
     from eyas.learning.algorithm import Algorithm as Algorithm
-    from eyas.learning.api import train as train
     from eyas.learning.rollout import Rollout as Rollout
+    from eyas.learning.run import train as train
     from eyas.maps.land.mounds import Mound as Mound
     from eyas.maps.osm.features import Survey as Survey
     from eyas.maps.plan.file import read_plan as read_plan

@@ -11,7 +11,7 @@ from art.jointed.people.people import PEDESTRIANS, PEOPLE
 from art.jointed.people.person import Build, Carried, Garment, Lower
 from art.jointed.people.wardrobe import colours_of, dress_of
 from art.parts import DETAILS, levels_of
-from eyas.cli.targets.stage import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import Camera, TargetPose, TargetStage
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.catalogue import KINDS, kind_index, models_of

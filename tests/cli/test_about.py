@@ -7,8 +7,8 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from eyas.cli.about import parts
 from eyas.cli.app import app
+from eyas.cli.tools import parts
 
 ROOT = Path(__file__).parents[2]
 

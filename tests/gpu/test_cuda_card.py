@@ -11,7 +11,7 @@ import pytest
 
 from eyas.gpu.cuda import CudaError, cuda_device, gpu_line
 from eyas.gpu.cuda.code import Ptx
-from eyas.gpu.cuda.kernels import function_of
+from eyas.gpu.cuda.device import function_of
 from eyas.lanes import claim, parallel
 from eyas.lanes.device import HostDevice
 from eyas.lanes.elementary import (

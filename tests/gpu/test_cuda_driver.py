@@ -18,9 +18,9 @@ import pytest
 
 from eyas.gpu.cuda import CudaDevice, CudaError, code, cuda_device, device, gpu_line
 from eyas.gpu.cuda.code import Ptx, archive_of
+from eyas.gpu.cuda.device import function_of
 from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.driver import VARIABLE, driver
-from eyas.gpu.cuda.kernels import function_of
 from eyas.lanes import PackedBundle, parallel
 from eyas.lanes.calls import _ENTRY
 from eyas.lanes.device import HostDevice

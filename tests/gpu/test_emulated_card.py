@@ -8,7 +8,7 @@ import pytest
 
 from eyas.gpu.cuda import CudaError, cuda_device
 from eyas.gpu.cuda.code import Ptx
-from eyas.gpu.cuda.kernels import function_of
+from eyas.gpu.cuda.device import function_of
 
 PROGRAM = """
 .version 8.0

@@ -28,7 +28,7 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.state.draw import Picture
-from eyas.robotics.mavlink.equipment import equipped
+from eyas.robotics.mavlink.readings import equipped
 from eyas.robotics.serving.mavlink import AS_FLOWN
 
 from .values import ABSURD, HUGE_WHOLE, NOT_FINITE, json_contents, mutated
@@ -110,7 +110,7 @@ def messages_of_mavlink(common, vehicle):
 
 def feed_mavlink(simulation, tmp_path, caplog):
     common = pytest.importorskip("pymavlink.dialects.v20.common")
-    from eyas.robotics.mavlink.dialect import Parser, _nearest
+    from eyas.robotics.mavlink.endpoint import Parser, _nearest
     from eyas.robotics.mavlink.fleet import Fleet
 
     sent, chance, parser = [], random.Random(1), Parser()

@@ -17,9 +17,8 @@ from eyas.benchmark.policies.tracker.motion import MotionFilter
 from eyas.benchmark.policies.tracker.tracker import Tracker
 from eyas.benchmark.protocols.table import protocol_named
 from eyas.learning.tracking import flights, lessons, training
-from eyas.learning.tracking.pilots import Oracle
-from eyas.learning.tracking.samples import GROUP, Samples
-from eyas.learning.tracking.shots import Shots
+from eyas.learning.tracking.flights import Oracle
+from eyas.learning.tracking.lessons import GROUP, Samples, Shots
 
 ROOT = Path(__file__).parents[2]
 

@@ -19,9 +19,8 @@ from eyas.engine.settings.file import load_settings
 from eyas.learning.algorithm import Learner, phases_of
 from eyas.learning.dagger import Dagger
 from eyas.learning.network import NetworkShape, TrackingNetwork
-from eyas.learning.rollout import Roller
+from eyas.learning.rollout import Roller, Teacher
 from eyas.learning.shards import TorchThreads
-from eyas.learning.teacher import Teacher
 from eyas.learning.trainer import train
 
 SMALL = validated(

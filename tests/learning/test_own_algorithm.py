@@ -13,7 +13,7 @@ from eyas.engine.core.config import updated, validated
 from eyas.engine.core.errors import EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.learning.algorithm import Algorithm
-from eyas.learning.registry import ALGORITHMS
+from eyas.learning.config import ALGORITHMS
 from eyas.learning.trainer import train
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -24,15 +24,12 @@ from eyas.engine.core.errors import ConfigError, DataFileError, OutputError
 from eyas.engine.policies.policy import env_config
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
-from eyas.learning.tracking import driving, flights, lessons, samples
-from eyas.learning.tracking.driving import driven
+from eyas.learning.tracking import driving, flights, lessons
+from eyas.learning.tracking.driving import Forecast, driven, taught_forecast
 from eyas.learning.tracking.export import export
-from eyas.learning.tracking.forecast import Forecast, taught_forecast
-from eyas.learning.tracking.lessons import loss_of, taught
+from eyas.learning.tracking.flights import Oracle, Pupil
+from eyas.learning.tracking.lessons import GROUP, Samples, Shots, load, loss_of, save, taught
 from eyas.learning.tracking.network import DetectorNetwork
-from eyas.learning.tracking.pilots import Oracle, Pupil
-from eyas.learning.tracking.samples import GROUP, Samples
-from eyas.learning.tracking.shots import Shots, load, save
 from eyas.learning.tracking.training import train
 
 SIZE = 24, 32
@@ -82,7 +79,7 @@ def test_it_learns_whose_key_it_is(monkeypatch):
     """
     colours = (250, 40, 40), (40, 40, 250)
     shots = [spots(colour=colour) for colour in colours]
-    monkeypatch.setattr(samples.Samples, "_changed", unchanged)
+    monkeypatch.setattr(lessons.Samples, "_changed", unchanged)
     margin = {}
     for impostors, apart in ((lessons._IMPOSTORS, lessons._APART), (0.0, 0.0)):
         monkeypatch.setattr(lessons, "_IMPOSTORS", impostors)

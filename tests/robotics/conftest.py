@@ -14,8 +14,8 @@ from eyas.engine.core.config import updated
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop
 from eyas.engine.sim.worlds import together
-from eyas.robotics.mavlink.equipment import equipped
 from eyas.robotics.mavlink.fleet import Fleet
+from eyas.robotics.mavlink.readings import equipped
 from eyas.robotics.serving.mavlink import AS_FLOWN
 
 SMALL = {"camera": {"width": 96, "height": 54}, "start": {"velocity": "rest"}}

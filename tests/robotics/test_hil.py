@@ -21,11 +21,11 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.serving import Loop, serve
 from eyas.engine.sim.worlds import together
 from eyas.engine.trackers.driven import driven_drone
-from eyas.robotics.mavlink.dialect import StreamParser
-from eyas.robotics.mavlink.equipment import equipped
+from eyas.robotics.mavlink.endpoint import StreamParser
 from eyas.robotics.mavlink.hil.ardupilot import ArduPilot, servos_of
 from eyas.robotics.mavlink.hil.drone import DrivenDrone
 from eyas.robotics.mavlink.hil.px4 import Px4
+from eyas.robotics.mavlink.readings import equipped
 from eyas.robotics.serving.hil import bound, listening
 from eyas.robotics.serving.mavlink import AS_FLOWN
 

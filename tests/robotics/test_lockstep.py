@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import common
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.sim.serving import serve
 from eyas.robotics.mavlink.endpoint import Endpoint
-from eyas.robotics.mavlink.modes import Mode
+from eyas.robotics.mavlink.pilot import Mode
 
 GCS = (255, 190)
 

@@ -6,7 +6,7 @@ import random
 import numpy as np
 import pytest
 
-from eyas.robotics.mavlink.modes import Landed, Mode
+from eyas.robotics.mavlink.pilot import Landed, Mode
 
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
 GCS, OTHER = (255, 190), (254, 190)
@@ -278,7 +278,7 @@ def test_the_camera_zooms(bench):
 def test_garbage_changes_nothing(bench):
     from pymavlink.dialects.v20 import common
 
-    from eyas.robotics.mavlink.dialect import Parser
+    from eyas.robotics.mavlink.endpoint import Parser
 
     rng, parser = random.Random(3), Parser()
     whole = common.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3).pack(common.MAVLink(None, 255, 190))

@@ -15,11 +15,9 @@ HOUSE = House(
             "bench": "eyas.cli.tools:bench",
             "verify": "eyas.cli.tools:verify",
             "doctor": "eyas.cli.tools:doctor",
-            "about": "eyas.cli.about:about",
+            "about": "eyas.cli.tools:about",
             "completion": "eyas.cli.completion:completion",
         },
-        "eyas.command_line": {
-            "eyas": "eyas.cli.main:main",
-        },
+        "eyas.command_line": {"eyas": "eyas.cli.main:main"},
     },
 )

@@ -172,7 +172,7 @@ def serve(
     load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     settings = load()
     if preset is None:
-        from eyas.dat.settings.runs import of_a_run
+        from eyas.dat.settings.dialect import of_a_run
 
         settings = of_a_run(settings)
         load = partial(_again, load, settings.seed)
@@ -187,7 +187,7 @@ def serve(
 
 def _again(load: Callable[[], "EyasConfig"], seed: int) -> "EyasConfig":
     """Return the settings of a server as they are now, for the same run."""
-    from eyas.dat.settings.runs import of_a_run
+    from eyas.dat.settings.dialect import of_a_run
 
     return of_a_run(load(), seed)
 

@@ -8,6 +8,6 @@ HOUSE = House(
         "eyas.devices": {
             "cuda": "eyas.gpu.envs.envs:DeviceEnvs",
             "host": "eyas.gpu.envs.envs:DeviceEnvs",
-        },
+        }
     },
 )

@@ -1,7 +1,8 @@
 """What kernels are compiled for: this processor, or graphics processors with a thread a lane.
 
 Both are numba's processor to numba; they differ in how code holds lanes. Modules of graphics
-processors get their real target only when all that a kernel calls is linked, in `eyas.gpu.ptx`.
+processors get their real target only when all that a kernel calls is linked, in
+`eyas.gpu.cuda.code`.
 """
 
 from collections.abc import Iterator

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import ConfigError, MissingExtraError
-from eyas.learning.config import TrainConfig
-from eyas.learning.registry import ALGORITHMS, SETTING
+from eyas.learning.config import ALGORITHMS, SETTING, TrainConfig
 
 try:
     import torch

@@ -1,6 +1,6 @@
-"""Settings of learning."""
+"""Settings of learning, and the learning algorithms by name."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from enum import StrEnum
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from eyas.engine.core.allowed import TextForm
 from eyas.engine.core.config import Config
 from eyas.engine.core.named_code import NAMES_CODE
+from eyas.engine.core.registry import Registry
 from eyas.engine.settings.section import Changes, Section
 from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.simple_maps import simple_world
@@ -319,3 +320,20 @@ class TrainConfig(Section):
                 "equal size"
             )
         return self
+
+
+SETTING = "train.method"
+
+ALGORITHMS: Registry[Callable[..., Any]] = Registry(
+    SETTING,
+    Callable,  # type: ignore[arg-type]  # a protocol of the standard library
+    {
+        "ppo": "eyas.learning.ppo:Ppo",
+        "dagger": "eyas.learning.dagger:Dagger",
+        "tracker": "eyas.learning.tracking.training:train",
+        "words": "eyas.learning.words.training:train",
+    },
+    group="eyas.algorithms",
+)
+"""Each is a subclass of `Algorithm`, which learns from rollouts, or a function that does a whole
+run with networks and data of its own: `train(config, folder, *, resume, say) -> Path`."""

@@ -5,17 +5,13 @@ from eyas.engine.core.doors import House
 HOUSE = House(
     results=True,
     brings={
-        "eyas.settings": {
-            "train": "eyas.learning.config:TrainConfig",
-        },
+        "eyas.settings": {"train": "eyas.learning.config:TrainConfig"},
         "eyas.presets": {
             "eyas": "eyas.learning:presets/eyas.json",
             "eyas-words": "eyas.learning:presets/eyas-words.json",
             "fast": "eyas.learning:presets/fast.json",
             "paper": "eyas.learning:presets/paper.json",
         },
-        "eyas.commands": {
-            "train": "eyas.learning.commands:train",
-        },
+        "eyas.commands": {"train": "eyas.learning.commands:train"},
     },
 )

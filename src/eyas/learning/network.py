@@ -6,6 +6,8 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from eyas.engine.core.errors import ConfigError
+
 ACTIONS = 7
 HOVER = 6  # The action that stands for "none yet"; the network sees it as zeros
 
@@ -132,3 +134,22 @@ class TrackingNetwork(nn.Module):
                 nn.init.orthogonal_(weight, 1.0, generator)
             nn.init.zeros_(self.memory.bias_ih)
             nn.init.zeros_(self.memory.bias_hh)
+
+
+def torch_device(name: str | None) -> torch.device:
+    """Return where the network of a run is.
+
+    On a graphics processor, PyTorch is told to choose convolutions that give the same each time.
+
+    Raises:
+        ConfigError: PyTorch cannot use it.
+    """
+    if name in (None, "host"):
+        return torch.device("cpu")
+    if not torch.cuda.is_available():
+        build = torch.version.cuda or "none, it is PyTorch's build for processors"
+        raise ConfigError(
+            f"train.device: '{name}' cannot be used by PyTorch {torch.__version__} (CUDA: {build})"
+        )
+    torch.backends.cudnn.deterministic = True
+    return torch.device(name)

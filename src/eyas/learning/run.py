@@ -1,12 +1,13 @@
-"""Training: a run of `eyas.learning`, which needs an extra."""
+"""Training, from Python and from the command line; all else of the house needs an extra."""
 
 from pathlib import Path
+from typing import Unpack
 
 from eyas.engine.core.errors import ConfigError, MissingExtraError
 from eyas.engine.core.own_code import running
+from eyas.engine.envs.choice import EnvChoices, Source, chosen_settings
 from eyas.engine.settings.config import EyasConfig
-from eyas.learning.config import TrainConfig
-from eyas.learning.registry import ALGORITHMS, SETTING
+from eyas.learning.config import ALGORITHMS, SETTING, TrainConfig
 
 
 def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: bool) -> Path:
@@ -54,3 +55,28 @@ def _refuse_spread(config: EyasConfig, *, ray: bool) -> None:
 
 def _say(line: str) -> None:
     print(line, flush=True)
+
+
+def train(
+    config: Source = None,
+    out: Path | str = "runs/train",
+    *,
+    resume: bool = False,
+    quiet: bool = True,
+    **choices: Unpack[EnvChoices],
+) -> Path:
+    """Train a policy, like `eyas train` (extra `train`); return the path of its ONNX file.
+
+    Args:
+        config: The settings, see `make_config`.
+        out: The folder of the run.
+        resume: Whether a run in the folder is continued.
+        quiet: Whether no progress is printed.
+        choices: Settings by keyword.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    from eyas.learning.run import run
+
+    return run(chosen_settings(config, **choices), Path(out), resume=resume, quiet=quiet, ray=False)

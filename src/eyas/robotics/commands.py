@@ -45,9 +45,8 @@ def fit_log(
             raise ConfigError(f"{name}: {value} is not allowed: a number above 0")
     if mass is not None and thrust_constant is not None:
         raise ConfigError("--mass and --thrust-constant: only one of them, which gives the other")
-    from eyas.robotics.fitting.fit import fit
+    from eyas.robotics.fitting.fit import fit, lines, record
     from eyas.robotics.fitting.log import read_log
-    from eyas.robotics.fitting.report import lines, record
 
     found = fit(read_log(log))
     if as_json:

@@ -3,7 +3,7 @@
 import pytest
 
 from eyas.dat.settings.adapter import from_original
-from eyas.dat.settings.runs import of_a_run
+from eyas.dat.settings.dialect import of_a_run
 from eyas.engine.core.config import updated
 from eyas.engine.settings.config import EyasConfig
 
@@ -31,7 +31,7 @@ def test_routes_are_updated_where_the_file_says_so():
 
 
 def test_without_sumo_a_run_begins_somewhere_in_the_recording_that_ships(monkeypatch):
-    monkeypatch.setattr("eyas.dat.settings.runs._sumo", lambda: False)
+    monkeypatch.setattr("eyas.dat.settings.dialect._sumo", lambda: False)
     begin = original(update=True)
     first, second = of_a_run(begin, 5), of_a_run(begin, 6)
     assert first.start.warm_up_steps != second.start.warm_up_steps

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Node, world
-from eyas.dat.webots.world import scene_nodes, sky_nodes
+from eyas.dat.webots.world import Shapes, scene_nodes, sky_nodes
 from eyas.engine.exports.resting import resting_mesh
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.sim.scenes import load_scene

@@ -4,8 +4,7 @@ import os
 import pytest
 
 from eyas.dat.wire.client_session import AnswerFile, ClientSession
-from eyas.dat.wire.codec import HOVER, Action
-from eyas.dat.wire.exchange import Names
+from eyas.dat.wire.exchange import HOVER, Action, Names
 
 
 @pytest.fixture

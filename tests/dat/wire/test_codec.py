@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from eyas.dat.wire.codec import Action, packet_line, parse_action
+from eyas.dat.wire.exchange import Action, packet_line, parse_action
 from eyas.engine.core.errors import ActionError
 
 

@@ -6,9 +6,8 @@ import time
 
 import pytest
 
-from eyas.dat.wire.codec import HOVER, RESET
 from eyas.dat.wire.config import WireConfig
-from eyas.dat.wire.exchange import Exchange, Pause
+from eyas.dat.wire.exchange import HOVER, RESET, Exchange, Pause
 from eyas.dat.wire.server import Server, Service
 from eyas.engine.sim.serving import serve as serve_by
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eyas.dat.wire.codec import HOVER, RESET, Action
+from eyas.dat.wire.exchange import HOVER, RESET, Action
 from eyas.dat.wire.tracker_group import TrackerGroup
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.sensors.config import LidarConfig

@@ -20,7 +20,7 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.schema import config_schema
 from eyas.engine.task.packets import BASIC_FIELDS
-from eyas.robotics.mavlink.equipment import FIELD, PRESSURE, equipped, part_of
+from eyas.robotics.mavlink.readings import FIELD, PRESSURE, equipped, part_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 PATH = "own_sensor:MAGNETOMETER"

@@ -11,13 +11,12 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.trackers.kinds import tracker_of
-from eyas.gpu.ptx import ptx_of
+from eyas.gpu.cuda.code import ptx_of
 from eyas.gpu.render.device_views import StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
-from eyas.gpu.sim.near import empty_slots, list_actors
 from eyas.gpu.sim.signals import shown_part, signal_times
 from eyas.gpu.sim.simulation import DeviceSimulation
-from eyas.gpu.sim.view import DeviceView
+from eyas.gpu.sim.view import DeviceView, empty_slots, list_actors
 from eyas.lanes import interpreted
 from eyas.lanes.device import HostDevice
 

@@ -13,12 +13,13 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from eyas.cli.bench.camera import camera_table, measure_camera
 from eyas.cli.bench.device import measure_device
 from eyas.cli.bench.measurement import Measurement, measurement_table, timed, why_not
 from eyas.cli.bench.pictures import (
     BY_DAY,
     OTHER_WEATHERS,
+    camera_table,
+    measure_camera,
     measure_horizon,
     measure_pictures,
     measure_stages,

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eyas.dat.settings.adapter import original_key_of, save_original
-from eyas.dat.settings.runs import AGENT_STEPS, started_later
+from eyas.dat.settings.dialect import AGENT_STEPS, started_later
 from eyas.dat.wire.config import WireConfig
 from eyas.dat.wire.exchange import SETTINGS_FILE, Exchange
 from eyas.dat.wire.server import Server, Service

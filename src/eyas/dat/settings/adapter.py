@@ -10,8 +10,7 @@ from typing import Any
 
 from eyas.dat.settings.entries import Optional, OriginalEntry, Values
 from eyas.dat.settings.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
-from eyas.dat.settings.layout import Nested, check_kinds, every_key, flat, nested, renewed
-from eyas.dat.settings.own_target import CUSTOM
+from eyas.dat.settings.layout import CUSTOM, Nested, check_kinds, every_key, flat, nested, renewed
 from eyas.engine.core.config import Problem, updated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.files import write_atomic

@@ -20,9 +20,8 @@ from eyas.dat.webots.protos import (
     pool,
     vehicle_protos,
 )
-from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Node, Value, world
-from eyas.dat.webots.world import scene_nodes, sky_nodes
+from eyas.dat.webots.world import Shapes, scene_nodes, sky_nodes
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.sim.scenes import load_scene, load_textures
@@ -37,7 +36,7 @@ _PROJECT = Path("Webots_Simulation", "traffic_project")
 _PREFIX = "eyas.dat.webots.controllers."
 _CONTROLLERS = {
     "global_receiver": ("ground",),
-    "drone": ("exchange", "ground", "tracking"),
+    "drone": ("ground", "tracking"),
     "sumo_supervisor": ("ground",),
 }
 """What each imports."""

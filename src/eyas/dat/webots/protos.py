@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from eyas.dat.webots.shapes import Shapes
 from eyas.dat.webots.vrml import Is, Node, Value, proto
+from eyas.dat.webots.world import Shapes
 from eyas.engine.exports.resting import resting_mesh
 from eyas.engine.targets.catalogue import VEHICLE_KINDS
 from eyas.engine.targets.kind import Kind, Model

@@ -10,8 +10,7 @@ from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from eyas.dat.wire.codec import HOVER, Action, parse_action
-from eyas.dat.wire.exchange import RARE, Names
+from eyas.dat.wire.exchange import HOVER, RARE, Action, Names, parse_action
 from eyas.engine.core.errors import ActionError, OutputError
 from eyas.engine.core.files import refusals, write_atomic
 

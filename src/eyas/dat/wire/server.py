@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from eyas.dat.wire.announcements import Announcements
 from eyas.dat.wire.client_session import AnswerFile, ClientSession
-from eyas.dat.wire.codec import RESET
 from eyas.dat.wire.config import WireConfig
-from eyas.dat.wire.exchange import Exchange, Pause
+from eyas.dat.wire.exchange import RESET, Exchange, Pause
 from eyas.engine.core.errors import (
     ConfigError,
     DataFileError,

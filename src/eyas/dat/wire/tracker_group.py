@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eyas.dat.wire.codec import Action, packet_line
+from eyas.dat.wire.exchange import Action, packet_line
 from eyas.engine.core.codecs.jpeg import jpeg_bytes
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.sim.serving import Orders

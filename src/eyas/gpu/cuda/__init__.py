@@ -3,9 +3,8 @@
 Nothing else in this room imports it: it is for those who want such a device.
 """
 
-from eyas.gpu.cuda.cards import gpu_line
 from eyas.gpu.cuda.device import CudaDevice, cuda_device
-from eyas.gpu.cuda.driver import CudaError
+from eyas.gpu.cuda.driver import CudaError, gpu_line
 from eyas.gpu.cuda.memory import CudaArray
 
 __all__ = ["CudaArray", "CudaDevice", "CudaError", "cuda_device", "gpu_line"]

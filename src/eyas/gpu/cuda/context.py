@@ -9,15 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.gpu.cuda.cards import card, gib
-from eyas.gpu.cuda.driver import OUT_OF_MEMORY, CudaError, driver
+from eyas.gpu.cuda.driver import OUT_OF_MEMORY, CudaError, card, driver, gib
 
 
 class Context:
     """The primary context of a graphics processor, which PyTorch uses too.
 
     Args:
-        ordinal: See `eyas.gpu.cuda.cards.card`.
+        ordinal: See `eyas.gpu.cuda.driver.card`.
 
     Attributes:
         name: Of the card.

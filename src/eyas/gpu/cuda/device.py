@@ -10,20 +10,91 @@ import os
 import threading
 import weakref
 from collections.abc import Callable, Sequence
-from ctypes import c_uint64, c_void_p
-from typing import Any
+from ctypes import byref, c_int, c_uint64, c_void_p
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from eyas.gpu.cuda.bundles import Blocks, CudaBundle
+from eyas.gpu.cuda.code import Ptx, ptx_code
 from eyas.gpu.cuda.context import Context, Memory
-from eyas.gpu.cuda.driver import driver
-from eyas.gpu.cuda.kernels import Function, Functions
+from eyas.gpu.cuda.driver import CudaError, driver
 from eyas.gpu.cuda.memory import CudaArray
 from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
+
+_LOCAL_BYTES, _REGISTERS = 3, 4  # CU_FUNC_ATTRIBUTE_LOCAL_SIZE_BYTES and _NUM_REGS
+
+_ERROR_LOG, _ERROR_LOG_SIZE = 5, 6  # CU_JIT_ERROR_LOG_BUFFER and _SIZE_BYTES
+
+
+class Function(NamedTuple):
+    """A kernel, compiled for a card."""
+
+    handle: c_void_p
+    name: str
+    registers: int  # Of a thread
+    local: int  # Memory of a thread beside its registers [bytes]
+
+
+class Functions:
+    """The kernels of a context, each compiled at its first call."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._lock = threading.Lock()
+        self._of_call: weakref.WeakKeyDictionary[ParallelCall, dict[Any, Function]]
+        self._of_call = weakref.WeakKeyDictionary()
+        self._loaded: dict[Ptx, Function] = {}
+
+    def function(
+        self, call: ParallelCall, bundles: tuple[CudaBundle, ...], threads: int
+    ) -> Function:
+        """Return a kernel for bundles of these kinds; see `eyas.lanes.device.Device.launch`."""
+        kinds = tuple([bundle.kind for bundle in bundles])
+        known = self._of_call.get(call)
+        found = None if known is None else known.get((kinds, threads))
+        if found is not None:
+            return found
+        types = tuple([bundle.types for bundle in bundles])
+        ptx = ptx_code(call, types, kinds, threads)
+        with self._lock:
+            if ptx not in self._loaded:
+                self._loaded[ptx] = function_of(self._context, ptx, call.function.__name__)
+            self._of_call.setdefault(call, {})[kinds, threads] = self._loaded[ptx]
+        return self._loaded[ptx]
+
+
+def function_of(
+    context: Context,  # Where it is to run
+    ptx: Ptx,  # The kernel
+    name: str,  # Its name for people
+) -> Function:
+    """Have the driver compile a kernel, or find it in its cache.
+
+    Raises:
+        CudaError: The driver refuses it; its log is in the message.
+    """
+    log = ctypes.create_string_buffer(8192)
+    options = (c_int * 2)(_ERROR_LOG, _ERROR_LOG_SIZE)
+    values = (c_void_p * 2)(ctypes.addressof(log), len(log))
+    text = ctypes.create_string_buffer(ptx.text)  # with a zero at its end
+    module, handle = c_void_p(), c_void_p()
+    doing = f"compiling {name} for {context.name}"
+    with context.current() as call:
+        try:
+            call("cuModuleLoadDataEx", byref(module), text, 2, options, values, doing=doing)
+        except CudaError as error:
+            said = log.value.decode(errors="replace").strip()
+            raise CudaError(f"{error}\n{said}" if said else str(error), error.code) from None
+        call("cuModuleGetFunction", byref(handle), module, ptx.entry.encode(), doing=doing)
+        registers, local = c_int(), c_int()
+        call("cuFuncGetAttribute", byref(registers), _REGISTERS, handle)
+        call("cuFuncGetAttribute", byref(local), _LOCAL_BYTES, handle)
+    return Function(handle, name, registers.value, local.value)
+
 
 _SPARE = 4096  # Size of the memory where empty arrays are [bytes], see `eyas.lanes.bundles`.
 
@@ -34,7 +105,7 @@ class CudaDevice:
     Several threads may use it.
 
     Args:
-        ordinal: See `eyas.gpu.cuda.cards.card`.
+        ordinal: See `eyas.gpu.cuda.driver.card`.
 
     Attributes:
         name: Of the card.
@@ -221,7 +292,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def cuda_device(
-    ordinal: int = 0,  # See `eyas.gpu.cuda.cards.card`
+    ordinal: int = 0,  # See `eyas.gpu.cuda.driver.card`
 ) -> CudaDevice:
     """Return a graphics processor of NVIDIA: one object for each in a process.
 

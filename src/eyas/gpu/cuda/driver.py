@@ -8,8 +8,10 @@ import ctypes
 import os
 from ctypes import POINTER, c_char_p, c_float, c_int, c_size_t, c_ubyte, c_uint, c_uint64, c_void_p
 from functools import cache
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
+from eyas.gpu.cuda.code import OLDEST
 from eyas.lanes.trusted import OWNER
 
 VARIABLE = f"{OWNER.upper()}_LIBCUDA"
@@ -160,3 +162,81 @@ def driver() -> Driver:
         if error.code == _NO_DEVICE:
             raise CudaError("there is no graphics processor of NVIDIA", error.code) from None
         raise
+
+
+_MAJOR, _MINOR = 75, 76  # CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR and _MINOR
+
+_VERSION = Path("/sys/module/nvidia/version")
+"""Where Linux tells the version of the driver; its library knows only that of its interface."""
+
+
+class Card(NamedTuple):
+    """What the driver says about a graphics processor."""
+
+    handle: int
+    name: str
+    memory: int  # [bytes]
+    capability: tuple[int, int]
+    cards: int  # How many graphics processors there are
+
+    def check(self) -> None:
+        """Raise a `CudaError` if it is too old."""
+        if self.capability < OLDEST:
+            raise CudaError(
+                f"{self.name} has compute capability {_dotted(self.capability)}; "
+                f"needed is {_dotted(OLDEST)} or more"
+            )
+
+
+def card(
+    ordinal: int,  # Its number, as the driver counts those that it shows (`CUDA_VISIBLE_DEVICES`)
+) -> Card:
+    """Return what the driver says about a graphics processor.
+
+    Raises:
+        CudaError: There is none.
+    """
+    number = driver().number
+    count = number("cuDeviceGetCount")
+    if not 0 <= ordinal < count:
+        raise CudaError(f"there is no graphics processor {ordinal}; the driver shows {count}")
+    handle = number("cuDeviceGet", ordinal)
+    name = ctypes.create_string_buffer(256)
+    driver().call("cuDeviceGetName", name, len(name), handle)
+    memory = number("cuDeviceTotalMem_v2", handle, kind=c_size_t)
+    major = number("cuDeviceGetAttribute", _MAJOR, handle)
+    minor = number("cuDeviceGetAttribute", _MINOR, handle)
+    return Card(handle, name.value.decode(), memory, (major, minor), count)
+
+
+def gpu_line(
+    ordinal: int = 0,  # See `card`
+) -> str:
+    """Return in one line what graphics processor there is, or why none can be used.
+
+    Processes that are forked later from this one cannot use it; others can.
+    """
+    try:
+        found = card(ordinal)
+        found.check()
+        version = driver().number("cuDriverGetVersion")
+    except CudaError as error:
+        return str(error)
+    parts = [found.name, gib(found.memory), f"compute capability {_dotted(found.capability)}"]
+    cuda = f"CUDA {version // 1000}.{version % 1000 // 10}"
+    try:
+        parts.append(f"driver {_VERSION.read_text().strip()} ({cuda})")
+    except OSError:  # such as Linux in Windows
+        parts.append(cuda)
+    if found.cards > 1:
+        parts.append(f"number {ordinal} of {found.cards}")
+    return ", ".join(parts)
+
+
+def gib(size: int) -> str:
+    """Return a size in bytes for people."""
+    return f"{size / 2**30:.2f} GiB"
+
+
+def _dotted(capability: tuple[int, int]) -> str:
+    return "{}.{}".format(*capability)

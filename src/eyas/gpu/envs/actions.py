@@ -17,7 +17,7 @@ from eyas.engine.envs.actions import (
     turn_commands,
 )
 from eyas.engine.envs.mixed_batch import array_of
-from eyas.gpu.envs.tensors import is_tensor, torch_of
+from eyas.gpu.envs.observation import is_tensor, torch_of
 from eyas.lanes import parallel
 from eyas.lanes.device import Device
 

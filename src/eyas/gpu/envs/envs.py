@@ -17,10 +17,8 @@ from eyas.engine.sim.build import assets_of, tracker_in
 from eyas.engine.sim.worlds import each_alone
 from eyas.gpu.envs.actions import DeviceActions
 from eyas.gpu.envs.devices import device_of, drawer_of
-from eyas.gpu.envs.observation import DeviceObserver
-from eyas.gpu.envs.tensors import as_bool, copied, tensor_of
-from eyas.gpu.sim.records import downloaded
-from eyas.gpu.sim.simulation import DeviceSimulation
+from eyas.gpu.envs.observation import DeviceObserver, as_bool, copied, tensor_of
+from eyas.gpu.sim.simulation import DeviceSimulation, downloaded
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes.device import Device
 

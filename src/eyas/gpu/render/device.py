@@ -136,11 +136,7 @@ class DeviceRenderer:
         device, views, (few, many) = self._device, size.views, size.members
         chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
         instances = min(fixtures + slots * (2 if size.measured else 1), MOST_INSTANCES)
-        plane = (
-            views,
-            size.height * size.down,
-            (size.width + -size.width % WIDTH) * size.across,
-        )
+        plane = (views, size.height * size.down, (size.width + -size.width % WIDTH) * size.across)
         none = (views, 0, 0)
         listed = chunks + instances
         records = -(-RECORDS_PER_ROW * plane[1] // WIDTH) * WIDTH

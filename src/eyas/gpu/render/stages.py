@@ -11,15 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.render.kernels.bundles import (
-    Band,
-    Geometry,
-    Light,
-    Movers,
-    Output,
-    Scratch,
-    Task,
-)
+from eyas.engine.render.kernels.bundles import Band, Geometry, Light, Movers, Output, Scratch, Task
 from eyas.engine.render.kernels.draw import band_of, light_at, no_glass, write_colours, write_facts
 from eyas.engine.render.kernels.light.casters import cast_light
 from eyas.engine.render.kernels.scalars import i8

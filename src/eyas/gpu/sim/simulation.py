@@ -1,20 +1,28 @@
-"""N trackers, each in a world of its own, whose state lies on a device."""
+"""N trackers, each in a world of its own, whose state lies on a device; episodes are drawn here."""
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import chain
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.optics.pinhole import field_along, focal_length
 from eyas.engine.sensors.config import SensorsConfig
 from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
+from eyas.engine.sim.episodes import Episodes, Sampler
 from eyas.engine.sim.latency import is_always_0
+from eyas.engine.sim.light import LightChanges
 from eyas.engine.sim.simulation import rules_of
+from eyas.engine.sim.starts import starts_in
 from eyas.engine.sim.step import Orders, StepSurroundings
 from eyas.engine.sim.stepper import step_kernels, step_state
+from eyas.engine.sim.worlds import Worlds, each_alone
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.posing import PoseCall
@@ -22,10 +30,126 @@ from eyas.engine.task.config import Crash
 from eyas.engine.task.done import DoneReason
 from eyas.engine.trackers.gimbal_command import WITH_GIMBAL, with_gimbal
 from eyas.engine.trackers.tracker import Tracker
-from eyas.gpu.sim.episodes import HostEpisodes
 from eyas.gpu.sim.flight import FEW, START, Flown, Focal, Starts, flight_calls
-from eyas.gpu.sim.records import Mirrored, uploaded
 from eyas.lanes.device import Device
+
+Chosen = NDArray[np.int64]
+
+
+class HostEpisodes:
+    """Draws the episodes of N trackers, each in a world of its own.
+
+    Attributes:
+        episodes: What draws them.
+        worlds: The worlds, whose looks change in place.
+        snapshot: The state before the first reset; later only what is drawn is set.
+        memory: What the trackers remember; later only what is drawn is set, see `sampled_of`.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,  # The settings
+        assets: Assets,  # Map and traffic
+        tracker: Tracker,  # The kind of the trackers
+        count: int,  # N
+        size: tuple[int, int],  # Height and width of the pictures [pixels]
+    ) -> None:
+        self._size, self._aspect = size, config.camera.height / config.camera.width
+        self.worlds = Worlds(config, assets, each_alone(count))
+        self.snapshot = Snapshot.create(count)
+        wind = config.world.wind
+        light = LightChanges(config.light, assets.lighting, self.snapshot.light, wind)
+        samplers: list[Sampler] = [] if wind is None else [light.blow]
+        self.memory = tracker.memory(count, assets.scene.terrain)
+        self._sampled = None if tracker.sample is None else tracker.sampled
+        if tracker.sample is not None:
+            samplers.insert(0, partial(tracker.sample, self.memory))
+        traffic, snapshot = assets.traffic, self.snapshot
+        starts = starts_in(assets, snapshot, self.worlds, shared_target=config.same_target)
+        self.episodes = Episodes(config, traffic, self.worlds, light, snapshot, samplers, starts)
+
+    def begin(self, trackers: Chosen) -> NDArray[Any]:
+        """Draw episodes, and return them as rows of `START`, shape (K,).
+
+        Raises:
+            SpawnError: A tracker has no possible target.
+        """
+        pitch = self.episodes.begin(trackers)
+        _, cameras, targets, episodes, light = self.snapshot
+        rows = np.zeros(len(trackers), START)
+        rows["tracker"], rows["pitch"] = trackers, pitch
+        rows["number"], rows["tick"] = episodes.number[trackers], episodes.tick[trackers]
+        rows["actor"], rows["model"] = targets.actor[trackers], targets.model[trackers]
+        for axis, name in enumerate(("ahead", "left", "up", "heading")):
+            rows[name] = episodes.start_offset[trackers, axis]
+        rows["field_of_view"] = cameras.field_of_view[trackers]
+        fields, which = np.unique(rows["field_of_view"], return_inverse=True)
+        focal = np.array([self._focal(field) for field in fields.tolist()]).reshape(-1, 2)
+        rows["focal_x"], rows["focal_y"] = focal[which].T
+        for name in light._fields:
+            rows[name] = getattr(light, name)[trackers]
+        return rows
+
+    def sampled_of(self, memory: Any) -> list[Any]:  # noqa: ANN401  # the trackers' record
+        """Return those arrays of a memory, here or on a device, in which episodes are drawn."""
+        return [] if self._sampled is None else arrays_of(attrgetter(self._sampled)(memory))
+
+    def _focal(self, field: float) -> tuple[float, float]:
+        """Return the focal lengths of pictures that show a camera's whole view [pixels]."""
+        height, width = self._size
+        vertical = field_along(field, self._aspect)
+        return focal_length(width, field), focal_length(height, vertical)
+
+
+def uploaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # a record, an array or a number
+    """Return a record, a tuple of arrays, of numbers and of other such tuples, with copies of its
+    arrays on a device.
+    """
+    if isinstance(record, np.ndarray):
+        return device.upload(record)
+    if not isinstance(record, tuple):
+        return record
+    parts = [uploaded(device, part) for part in record]
+    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def downloaded(device: Device, record: Any) -> Any:  # noqa: ANN401  # as above
+    """Return such a record with copies here of its arrays on a device."""
+    if not isinstance(record, tuple):
+        return device.read(record) if hasattr(record, "shape") else record
+    parts = [downloaded(device, part) for part in record]
+    return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
+
+
+def arrays_of(record: Any) -> list[Any]:  # noqa: ANN401  # as above
+    """Return all arrays of a record, here or on a device."""
+    if isinstance(record, tuple):
+        return [array for part in record for array in arrays_of(part)]
+    return [record] if hasattr(record, "shape") else []
+
+
+class Mirrored:
+    """An array on a device that only the host writes: what does not change is not uploaded again.
+
+    Attributes:
+        array: The array on the device.
+
+    Args:
+        device: The device.
+        content: What is in it at first.
+    """
+
+    def __init__(self, device: Device, content: NDArray[Any]) -> None:
+        self.array = device.upload(content)
+        self._device, self._content = device, content.copy()
+
+    def write(self, values: NDArray[Any]) -> None:
+        """Write the first rows."""
+        known = self._content[: len(values)]
+        if not np.array_equal(known, values):
+            known[:] = values
+            self._device.write(self.array, known)
+
 
 _CAMERA = ("width", "height", "field_of_view", "samples", "mount")
 """Settings of the camera that may have any value."""
@@ -82,9 +206,6 @@ def _drawn(assets: Assets) -> Refused:
     for kind, cast in zip(assets.rigs.kinds, assets.rigs.casts, strict=True):
         if not isinstance(cast.rig.pose, PoseCall):
             yield f"custom or airborne: a '{kind.name}'", "vehicles, people and robots"
-
-
-Chosen = NDArray[np.int64]
 
 
 class DeviceSimulation:

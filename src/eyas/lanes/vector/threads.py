@@ -14,7 +14,7 @@ from eyas.lanes.vector import WIDTH
 _I1, _I32, _I64, _VOID = ir.IntType(1), ir.IntType(32), ir.IntType(64), ir.VoidType()
 
 RECORD = "worker_record"
-"""Name of places on the stack that hold the same for all lanes, see `eyas.gpu.ptx`."""
+"""Name of places on the stack that hold the same for all lanes, see `eyas.gpu.cuda.code`."""
 
 _SEGMENT = ((32 - WIDTH) << 8) | 31
 """Operand of a shuffle that stays within the lanes of a worker (PTX ISA, `shfl.sync`)."""

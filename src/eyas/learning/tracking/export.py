@@ -12,7 +12,7 @@ from eyas.benchmark.policies.tracker.metadata import TRACKER
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.engine.settings.env import EnvConfig
 from eyas.learning.export import Graph, write_model
-from eyas.learning.tracking.forecast import FARTHEST, Forecast
+from eyas.learning.tracking.driving import FARTHEST, Forecast
 from eyas.learning.tracking.network import (
     CELL,
     MEAN,

@@ -28,15 +28,11 @@ from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, readable
 from eyas.learning.config import TrackerTraining, TrainConfig
-from eyas.learning.tracking.driving import Drives, driven
+from eyas.learning.tracking.driving import Drives, Forecast, driven, taught_forecast
 from eyas.learning.tracking.export import export
-from eyas.learning.tracking.flights import Pilot, flown
-from eyas.learning.tracking.forecast import Forecast, taught_forecast
-from eyas.learning.tracking.lessons import taught
+from eyas.learning.tracking.flights import Oracle, Pilot, Pupil, flown
+from eyas.learning.tracking.lessons import Samples, Shots, load, save, taught
 from eyas.learning.tracking.network import DetectorNetwork
-from eyas.learning.tracking.pilots import Oracle, Pupil
-from eyas.learning.tracking.samples import Samples
-from eyas.learning.tracking.shots import Shots, load, save
 
 Say = Callable[[str], None]
 

@@ -103,10 +103,7 @@ def _changed(
 
 
 def _around(
-    place: NDArray[np.float32],
-    picture: NDArray[np.int64],
-    count: int,
-    grid: tuple[int, int],
+    place: NDArray[np.float32], picture: NDArray[np.int64], count: int, grid: tuple[int, int]
 ) -> NDArray[np.float32]:
     """Return peaks at places, shape (count, C)."""
     peaks = np.zeros((count, *grid), np.float32)

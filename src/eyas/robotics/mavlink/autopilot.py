@@ -6,8 +6,7 @@ from typing import Any
 
 from eyas.robotics.mavlink.component import Command, Component, Result
 from eyas.robotics.mavlink.frames import Vector, compass, on_earth, swapped, usable
-from eyas.robotics.mavlink.modes import Landed, Mode
-from eyas.robotics.mavlink.pilot import Pilot
+from eyas.robotics.mavlink.pilot import Landed, Mode, Pilot
 from eyas.robotics.mavlink.readings import Instant
 from eyas.robotics.mavlink.setpoints import Goal
 

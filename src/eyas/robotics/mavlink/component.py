@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-from eyas.robotics.mavlink.dialect import Packer, dialect
+from eyas.robotics.mavlink.endpoint import Packer, dialect
 
 Fields = dict[str, Any]  # The fields of a message, by name
 

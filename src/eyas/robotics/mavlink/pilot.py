@@ -3,13 +3,134 @@ velocity that is commanded. Eyas' frames; nothing of MAVLink.
 """
 
 import math
-from typing import NamedTuple
+import struct
+from enum import Enum
+from typing import Any, NamedTuple
 
 from eyas.lanes import exact
+from eyas.robotics.mavlink.component import Component
 from eyas.robotics.mavlink.frames import Vector
-from eyas.robotics.mavlink.modes import Landed, Mode
-from eyas.robotics.mavlink.parameters import Parameters
 from eyas.robotics.mavlink.setpoints import Goal, Limits, Wanted, toward
+
+
+class Mode(Enum):
+    """A flight mode: PX4's main mode and sub mode."""
+
+    POSITION = (3, 0)  # A stick moves it
+    TAKEOFF = (4, 2)
+    HOLD = (4, 3)
+    RETURN = (4, 5)
+    LAND = (4, 6)
+    FOLLOW = (4, 8)  # It follows what `FOLLOW_TARGET` tells
+    OFFBOARD = (6, 0)  # A program outside tells where or how fast to fly
+
+    @property
+    def custom(self) -> int:
+        """The mode as `HEARTBEAT.custom_mode`."""
+        main, sub = self.value
+        return main << 16 | sub << 24
+
+    @property
+    def automatic(self) -> bool:
+        """Whether it goes on without a ground station."""
+        return self in (Mode.TAKEOFF, Mode.HOLD, Mode.RETURN, Mode.LAND)
+
+    @classmethod
+    def of(cls, main: int, sub: int) -> "Mode | None":
+        """Return the mode of PX4's numbers; None if there is none here."""
+        return next((mode for mode in cls if mode.value == (main, sub)), None)
+
+
+class Landed(Enum):
+    """Whether a vehicle stands or flies, by MAVLink's `MAV_LANDED_STATE`."""
+
+    GROUND = 1
+    AIR = 2
+    TAKEOFF = 3
+    LANDING = 4
+
+
+DEFAULTS: dict[str, float | int] = {
+    "COM_DISARM_LAND": 2.0,  # on the ground, after landing, it disarms [s]
+    "COM_DISARM_PRFLT": 10.0,  # armed, without taking off, it disarms [s]
+    "COM_DL_LOSS_T": 10,  # without a ground station's heartbeat, it holds [s]
+    "COM_OF_LOSS_T": 1.0,  # without a set point in offboard mode, it holds [s]
+    "FLW_TGT_ALT_M": 0,  # it, _FA, _MAX_VEL and _RS have no effect; MAVSDK sets them
+    "FLW_TGT_DST": 8.0,  # distance kept from what it follows [m]
+    "FLW_TGT_HT": 8.0,  # height over the place of take-off while it follows [m]
+    "FLW_TGT_FA": 180.0,
+    "FLW_TGT_MAX_VEL": 5.0,
+    "FLW_TGT_RS": 0.1,
+    "MIS_TAKEOFF_ALT": 2.5,  # height of take-off [m]
+    "MPC_ACC_HOR": 5.0,  # [m/s^2]
+    "MPC_LAND_SPEED": 0.7,  # [m/s]
+    "MPC_TKO_SPEED": 1.5,  # [m/s]
+    "MPC_XY_CRUISE": 5.0,  # on the way to a place [m/s]
+    "MPC_XY_VEL_MAX": 12.0,  # [m/s]
+    "MPC_Z_VEL_MAX_DN": 1.5,  # [m/s]
+    "MPC_Z_VEL_MAX_UP": 3.0,  # [m/s]
+    "RTL_RETURN_ALT": 30.0,  # least height on the way home [m]
+    "SYS_AUTOSTART": 4001,  # a quadrotor
+}
+"""Whole numbers are of the type INT32, others of REAL32."""
+
+_REAL, _WHOLE = 9, 6
+
+
+class Parameters:
+    """Answers MAVLink's parameter protocol.
+
+    Attributes:
+        values: The values by name; they change in place.
+    """
+
+    def __init__(self) -> None:
+        self.values = dict(DEFAULTS)
+
+    def __getitem__(self, name: str) -> float:
+        return float(self.values[name])
+
+    def answer(self, component: Component, message: Any) -> None:  # noqa: ANN401  # pymavlink's
+        """Answer a request for one or all, or a change."""
+        names = list(self.values)
+        match message.get_type():
+            case "PARAM_REQUEST_LIST":
+                for name in names:
+                    self._tell(component, name)
+            case "PARAM_REQUEST_READ":
+                at = message.param_index
+                name = names[at] if 0 <= at < len(names) else message.param_id
+                if name in self.values:
+                    self._tell(component, name)
+            case "PARAM_SET" if message.param_id in self.values:
+                self._set(message.param_id, message.param_value, message.param_type)
+                self._tell(component, message.param_id)
+
+    def _set(self, name: str, value: float, kind: int) -> None:
+        """Change a parameter; one of the wrong type, or below 0, stays, and is told as it is."""
+        whole = isinstance(self.values[name], int)
+        if kind != (_WHOLE if whole else _REAL):
+            return
+        new: float | int = value
+        if whole:
+            (new,) = struct.unpack("<i", struct.pack("<f", value))
+        if 0.0 <= new <= 1e6:  # no for what is not a number
+            self.values[name] = new
+
+    def _tell(self, component: Component, name: str) -> None:
+        value = self.values[name]
+        whole = isinstance(value, int)
+        if whole:  # its bits in the place of those of a float, as the capabilities say
+            (value,) = struct.unpack("<f", struct.pack("<i", value))
+        component.send(
+            "param_value",
+            param_id=name.encode(),
+            param_value=value,
+            param_type=_WHOLE if whole else _REAL,
+            param_count=len(self.values),
+            param_index=list(self.values).index(name),
+        )
+
 
 FEET = 0.183
 """Height of the middle of the body over its feet, see `eyas.engine.trackers.airframe` [m]."""

@@ -6,8 +6,7 @@ from typing import Any
 
 from eyas.lanes import exact
 from eyas.robotics.mavlink.component import Component, Fields
-from eyas.robotics.mavlink.modes import Mode
-from eyas.robotics.mavlink.pilot import Pilot
+from eyas.robotics.mavlink.pilot import Mode, Pilot
 from eyas.robotics.mavlink.readings import Instant
 
 RATES = {

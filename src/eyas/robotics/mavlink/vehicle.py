@@ -5,13 +5,11 @@ from typing import Any
 
 from eyas.lanes import exact
 from eyas.robotics.mavlink import autopilot, camera, gimbal
+from eyas.robotics.mavlink.camera import Sighting, Sights
 from eyas.robotics.mavlink.component import Component, Fields
 from eyas.robotics.mavlink.frames import Vector
-from eyas.robotics.mavlink.modes import Mode
-from eyas.robotics.mavlink.parameters import Parameters
-from eyas.robotics.mavlink.pilot import Pilot
+from eyas.robotics.mavlink.pilot import Mode, Parameters, Pilot
 from eyas.robotics.mavlink.readings import Instant, Readings
-from eyas.robotics.mavlink.targets import Sighting, Sights
 from eyas.robotics.mavlink.telemetry import Telemetry
 
 CUSTOM_MODE = 1  # `MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`

@@ -11,8 +11,7 @@ from eyas.engine.sim.serving import serve
 from eyas.engine.trackers.config import TrackerConfig, TrackerKind
 from eyas.engine.world.maps import MAPS
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.dialect import dialect
-from eyas.robotics.mavlink.endpoint import parsed_address
+from eyas.robotics.mavlink.endpoint import dialect, parsed_address
 
 
 def listening(text: str) -> socket.socket:
@@ -89,10 +88,10 @@ def run(config: EyasConfig, *, px4: str | None = None, ardupilot: str | None = N
         from eyas.engine.sim.build import build_simulation, in_one_wind
         from eyas.engine.sim.worlds import together
         from eyas.engine.trackers.driven import driven_drone
-        from eyas.robotics.mavlink.equipment import equipped
         from eyas.robotics.mavlink.hil.ardupilot import ArduPilot
         from eyas.robotics.mavlink.hil.drone import DrivenDrone
         from eyas.robotics.mavlink.hil.px4 import Px4
+        from eyas.robotics.mavlink.readings import equipped
 
         tracker = driven_drone(in_one_wind(config))
         config = equipped(config, MavlinkConfig.of(config), noisy=True)

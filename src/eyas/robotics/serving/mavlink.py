@@ -9,8 +9,7 @@ from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.serving import serve
 from eyas.engine.world.maps import MAPS
 from eyas.robotics.mavlink.config import MavlinkConfig
-from eyas.robotics.mavlink.dialect import dialect
-from eyas.robotics.mavlink.endpoint import Endpoint
+from eyas.robotics.mavlink.endpoint import Endpoint, dialect
 
 _LOG = logging.getLogger("eyas")
 
@@ -47,8 +46,8 @@ def run(config: EyasConfig, addresses: Sequence[str]) -> None:
         # Slow to import, so only when all else is right.
         from eyas.engine.sim.build import build_simulation
         from eyas.engine.sim.worlds import together
-        from eyas.robotics.mavlink.equipment import equipped
         from eyas.robotics.mavlink.fleet import Fleet
+        from eyas.robotics.mavlink.readings import equipped
 
         settings = MavlinkConfig.of(config)
         config = equipped(config, settings)

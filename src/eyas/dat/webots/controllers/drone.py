@@ -5,14 +5,83 @@ does. An action and a reset last the same number of steps, which is also the cam
 """
 
 import math
+import os
 import random
 import sys
+import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from eyas.dat.webots.controllers.exchange import Exchange
 from eyas.dat.webots.controllers.ground import Ground, ground_of, settings_of
 from eyas.dat.webots.controllers.tracking import STEP, Camera, Target, Tracker, line
+
+_PAUSE = 0.0005  # Between two looks at a file [s]
+
+
+class Request(NamedTuple):
+    """What a client asks for."""
+
+    command: tuple[float, float, float, float]
+    """Forward [m/s], left [m/s], up [m per 2 ms], counter-clockwise [rad/s]."""
+    reset: bool
+
+
+def parsed(line: str) -> Request:
+    """Return the request of a line `a0,a1,a2,a3,r`."""
+    forward, left, up, turn, reset = map(float, line.split(","))
+    return Request((forward, left, up, turn), reset == 1.0)
+
+
+class Exchange:
+    """The files of one tracker.
+
+    Args:
+        folder: The project's `Files2Alg`.
+        name: Of the tracker, such as `DRONE0`.
+    """
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self._action = folder / f"{name}_AlgAction.txt"
+        self._answers = [
+            folder / f"{name}_{part}"
+            for part in ("Ctrl2Global.txt", "RewardParams.txt", "PointCloud.txt")
+        ]
+        self.picture = folder / f"{name}_VideoFrame.jpeg"
+
+    def request(self) -> Request:
+        """Wait for the client's action; take it."""
+        while True:
+            try:
+                text = self._action.read_text(encoding="ascii")
+            except FileNotFoundError:
+                text = ""
+            if text.endswith("\n"):  # else it is being written
+                self._action.unlink()
+                return parsed(text)
+            time.sleep(_PAUSE)
+
+    def answer(self, lines: list[str | None]) -> None:
+        """Give the basic, the reward and the radar packet, as far as there are any, each after the
+        one before was read.
+        """
+        for path, text in zip(self._answers, lines, strict=True):
+            if text is not None:
+                part = path.with_suffix(".part")
+                part.write_text(text + "\n", encoding="ascii")
+                _given(part, path)
+
+    def show(self, part: Path) -> None:
+        """Give the picture that a file holds."""
+        _given(part, self.picture)
+
+
+def _given(part: Path, path: Path) -> None:
+    while path.exists():
+        time.sleep(_PAUSE)
+    os.replace(part, path)
+    while path.exists():
+        time.sleep(_PAUSE)
+
 
 _GONE = 5_000.0  # East coordinate beyond which vehicles wait [m]
 _QUALITY = 100

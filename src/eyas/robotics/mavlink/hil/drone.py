@@ -13,8 +13,8 @@ from eyas.engine.state.draw import Picture
 from eyas.engine.trackers.driven import WEIGHT
 from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.endpoint import parsed_address
+from eyas.robotics.mavlink.fleet import standing_places
 from eyas.robotics.mavlink.frames import Geodesy
-from eyas.robotics.mavlink.places import standing_places
 from eyas.robotics.mavlink.readings import Instant, Readings
 from eyas.robotics.mavlink.video import Stream, VideoSender
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from eyas.engine.sim.serving import Orders
 from eyas.lanes import exact
-from eyas.robotics.mavlink.dialect import Packer, StreamParser
+from eyas.robotics.mavlink.endpoint import Packer, StreamParser
 from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
