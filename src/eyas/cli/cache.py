@@ -49,11 +49,10 @@ def run_info(*, as_json: bool = False) -> None:
     Console().print(table)
 
 
-def run_clear(kind: str | None) -> None:
+def run_clear(
+    kind: str | None,  # Delete only entries of this kind; None: all
+) -> None:
     """Delete the contents of the cache, and print how much space that freed.
-
-    Args:
-        kind: Delete only entries of this kind; None: all.
 
     Raises:
         UnknownNameError: There is no such kind.

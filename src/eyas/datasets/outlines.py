@@ -15,12 +15,11 @@ Mask = NDArray[np.bool_]
 Point = tuple[int, int]
 
 
-def outlines(masks: Sequence[Mask]) -> list[NDArray[np.int64]]:
+def outlines(
+    masks: Sequence[Mask],  # Each of shape (H, W), with at least one pixel
+) -> list[NDArray[np.int64]]:
     """Return for each mask one polygon around all its parts and holes, joined by lines of no width:
     the corners of pixels that it passes, column and row, shape (K, 2).
-
-    Args:
-        masks: Each of shape (H, W), with at least one pixel.
     """
     # All side by side, with an empty column between them.
     lefts = np.concatenate([[1], np.cumsum([mask.shape[1] + 1 for mask in masks]) + 1]).tolist()
@@ -88,12 +87,11 @@ def _paths(points: list[Point], upright: list[int]) -> list[list[Point]]:
     return loops
 
 
-def least_rectangles(masks: Sequence[Mask]) -> list[NDArray[np.float64]]:
+def least_rectangles(
+    masks: Sequence[Mask],  # Each of shape (H, W), with at least one pixel
+) -> list[NDArray[np.float64]]:
     """Return the corners of the rectangle of the least area around the pixels of each mask,
     clockwise in the picture: column and row, shape (4, 2).
-
-    Args:
-        masks: Each of shape (H, W), with at least one pixel.
     """
     points = [_ends_of_rows(mask) for mask in masks]
     owners = np.repeat(np.arange(len(masks)), [len(each) for each in points])

@@ -64,13 +64,12 @@ class CodingChoice:
     def _begin(self, now: float) -> None:
         self._begun, self._taken, self._count = now, 0.0, 0
 
-    def arrive(self, taken: float, now: float) -> None:
-        """Take an answer to a frame; decide anew from time to time.
-
-        Args:
-            taken: Time from sending the frame, without what the page has taken for it [s].
-            now: The time [s].
-        """
+    def arrive(
+        self,
+        taken: float,  # Time from sending the frame, without what the page has taken for it [s]
+        now: float,  # The time [s]
+    ) -> None:
+        """Take an answer to a frame; decide anew from time to time."""
         if self._settling > 0:
             self._settling -= 1
             self._begin(now)

@@ -89,21 +89,14 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 def run_browser(
-    session: Session,
+    session: Session,  # What is flown
     host: str,
-    listening: socket.socket,
+    listening: socket.socket,  # Its socket, see `listen`
     *,
-    browser: bool,
-    say: Callable[[str], None],
+    browser: bool,  # Whether to open a browser, where there is one
+    say: Callable[[str], None],  # Prints the line with the address
 ) -> None:
-    """Serve the demo's page until it is interrupted.
-
-    Args:
-        session: What is flown.
-        listening: Its socket, see `listen`.
-        browser: Whether to open a browser, where there is one.
-        say: Prints the line with the address.
-    """
+    """Serve the demo's page until it is interrupted."""
     from eyas.demo.server import DemoServer
 
     open_with_a_chase(session)
@@ -123,14 +116,12 @@ def _has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def run_headless(session: Session, seconds: float, say: Callable[[str], None]) -> None:
-    """Hover, and print the reward in real time as the original's console does.
-
-    Args:
-        session: What is flown.
-        seconds: How long.
-        say: Prints a line.
-    """
+def run_headless(
+    session: Session,  # What is flown
+    seconds: float,  # How long
+    say: Callable[[str], None],  # Prints a line
+) -> None:
+    """Hover, and print the reward in real time as the original's console does."""
     begun = time.monotonic()
     session.clock.skip(begun)
     for line in range(1, round(seconds * LINES) + 1):

@@ -148,13 +148,12 @@ class Viewer:
         """Whether a frame could be sent now."""
         return len(self._unseen) < IN_FLIGHT
 
-    def acknowledge(self, number: int, spent: float) -> None:
-        """Take that a frame, and all before it, are shown.
-
-        Args:
-            number: Of the frame.
-            spent: Time from its arrival until then [s].
-        """
+    def acknowledge(
+        self,
+        number: int,  # Of the frame
+        spent: float,  # Time from its arrival until then [s]
+    ) -> None:
+        """Take that a frame, and all before it, are shown."""
         while self._unseen and self._unseen[0] <= number:
             self._unseen.popleft()
         sent, now = self._sent.pop(number, None), time.monotonic()

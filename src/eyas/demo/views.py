@@ -135,15 +135,14 @@ class Screen:
             _outline(trackers.position[0] + part @ turn, cameras, width, height) for part in _BODY
         ]
 
-    def actor_at(self, x: float, y: float, width: int, height: int) -> int | None:
-        """Return the actor nearest to a place in the picture, if one is close.
-
-        Args:
-            x: From the left edge, in shares of the width.
-            y: From the upper edge, in shares of the height.
-            width: Of the picture [pixels].
-            height: Of the picture [pixels].
-        """
+    def actor_at(
+        self,
+        x: float,  # From the left edge, in shares of the width
+        y: float,  # From the upper edge, in shares of the height
+        width: int,  # Of the picture [pixels]
+        height: int,  # Of the picture [pixels]
+    ) -> int | None:
+        """Return the actor nearest to a place in the picture, if one is close."""
         picture = Picture.create(1, height, width, object_id=True)
         cameras = self.cameras(width, height)
         self._flight.simulation.draw_from(np.zeros(1, np.int32), cameras, picture, overlay=False)

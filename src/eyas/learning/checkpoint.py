@@ -77,13 +77,12 @@ class RunFolder:
         save_settings(config, self._config)
 
     def save(
-        self, progress: TrainingProgress, parts: Mapping[str, Stateful], code: Sequence[str] = ()
+        self,
+        progress: TrainingProgress,
+        parts: Mapping[str, Stateful],  # What learns, `network` among them
+        code: Sequence[str] = (),
     ) -> None:
-        """Write a checkpoint and the curve.
-
-        Args:
-            parts: What learns, `network` among them.
-        """
+        """Write a checkpoint and the curve."""
         data = io.BytesIO()
         torch.save(
             {

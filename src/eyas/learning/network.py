@@ -77,13 +77,12 @@ class TrackingNetwork(nn.Module):
             features = memory = self.memory(features, memory)
         return *self.heads(features), memory
 
-    def features(self, picture: Tensor, told: Tensor) -> Tensor:
-        """Return what is seen, shape (B, hidden).
-
-        Args:
-            picture: uint8, shape (B, C, H, W).
-            told: The last action, shape (B, 6).
-        """
+    def features(
+        self,
+        picture: Tensor,  # uint8, shape (B, C, H, W)
+        told: Tensor,  # The last action, shape (B, 6)
+    ) -> Tensor:
+        """Return what is seen, shape (B, hidden)."""
         return torch.relu(self.layer(torch.cat([self._seen(picture), told], 1)))
 
     def _seen(self, picture: Tensor) -> Tensor:
@@ -107,13 +106,12 @@ class TrackingNetwork(nn.Module):
         """Return logits (B, 7) and values (B,)."""
         return self.policy(features), self.value(features)[:, 0]
 
-    def next_state(self, action: Tensor, memory: Tensor) -> Tensor:
-        """Return the state for the next decision, shape (B, `shape.state`).
-
-        Args:
-            action: The actions taken, shape (B,).
-            memory: The memory from `forward`.
-        """
+    def next_state(
+        self,
+        action: Tensor,  # The actions taken, shape (B,)
+        memory: Tensor,  # The memory from `forward`
+    ) -> Tensor:
+        """Return the state for the next decision, shape (B, `shape.state`)."""
         told = nn.functional.one_hot(action, ACTIONS)[:, :HOVER].float()
         return torch.cat([told, memory], 1)
 

@@ -70,11 +70,10 @@ def episodes_of(
     ]
 
 
-def seed_sets(text: str) -> tuple[int, ...]:
+def seed_sets(
+    text: str,  # The seeds with commas between them, or a number of sets, up to 100
+) -> tuple[int, ...]:
     """Return the first seed of each set of episodes that a user asks for.
-
-    Args:
-        text: The seeds with commas between them, or a number of sets, up to 100.
 
     Raises:
         ConfigError: It is something else.

@@ -51,12 +51,11 @@ def setting_out(
     return fits
 
 
-def leaves_its_way(places: NDArray[np.float64]) -> NDArray[np.bool_]:
+def leaves_its_way(
+    places: NDArray[np.float64],  # Of each at K looks, east and north [m], shape (N, K, 2)
+) -> NDArray[np.bool_]:
     """Return whether N targets soon are elsewhere than where they would be if they went on as at
     first, shape (N,).
-
-    Args:
-        places: Of each at K looks, east and north [m], shape (N, K, 2).
     """
     seen = places[:, : round(_WITHIN / _PERIOD)]
     step = seen[:, 1] - seen[:, 0]

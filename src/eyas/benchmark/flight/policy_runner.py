@@ -77,13 +77,10 @@ to the last argument how long each call of the policy has taken [s], if this mac
 def fly_batch(
     plan: EvaluationPlan,
     episodes: list[EpisodeSpec],
-    answers: list[float] | None = None,
+    answers: list[float] | None = None,  # Gets how long each call of the policy has taken [s]
     watcher: Watcher | None = None,
 ) -> Iterator[list[EpisodeRecord]]:
     """Yield the records of a batch, whenever some of its episodes end.
-
-    Args:
-        answers: Gets how long each call of the policy has taken [s].
 
     Raises:
         EyasError: The policy cannot be loaded, or a setting is not supported.

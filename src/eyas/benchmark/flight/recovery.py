@@ -126,15 +126,13 @@ def recovery_figures(losses: Sequence[Loss], sees: Mask, period: float) -> dict[
     }
 
 
-def time_to_see(sees: Mask, end: float, period: float, limit: float = SEARCH_LIMIT) -> float | None:
-    """Return the time from an instant until a target is seen steadily [s]; None: it takes longer.
-
-    Args:
-        sees: Whether it is seen at each look, shape (K,).
-        end: The instant [s].
-        period: Time between two looks [s].
-        limit: Longest time [s].
-    """
+def time_to_see(
+    sees: Mask,  # Whether it is seen at each look, shape (K,)
+    end: float,  # The instant [s]
+    period: float,  # Time between two looks [s]
+    limit: float = SEARCH_LIMIT,  # Longest time [s]
+) -> float | None:
+    """Return the time from an instant until a target is seen steadily [s]; None: it takes longer."""
     first, steady = round(end / period), round(_STEADY / period)
     for start in range(first, min(first + round(limit / period), len(sees) - steady) + 1):
         if sees[start : start + steady].all():

@@ -88,12 +88,11 @@ def _from_names() -> Floats:
     return np.array(found)
 
 
-def coloured(picture: NDArray[np.uint8], colour: Floats) -> Mask:
-    """Return which pixels have about the hue of a colour that the camera has seen, shape (H, W).
-
-    Args:
-        colour: 0 to 255, shape (3,).
-    """
+def coloured(
+    picture: NDArray[np.uint8],
+    colour: Floats,  # 0 to 255, shape (3,)
+) -> Mask:
+    """Return which pixels have about the hue of a colour that the camera has seen, shape (H, W)."""
     bright = picture.sum(axis=2, dtype=np.float64)
     shares = picture / np.maximum(bright, 1.0)[..., None]
     near: Mask = np.abs(shares - colour / colour.sum()).sum(axis=2) < _CHROMA

@@ -112,12 +112,11 @@ sequences, which cannot be seeded, so that its boxes depend on what was tracked 
 BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")  # Names of all
 
 
-def box_tracker(said: str, setting: str = "--tracker") -> Callable[[], BoxTracker]:
+def box_tracker(
+    said: str,  # A name of `BOX_TRACKERS`, or `package.module:Class`
+    setting: str = "--tracker",  # What names it, for messages
+) -> Callable[[], BoxTracker]:
     """Return what makes a box tracker for a sequence.
-
-    Args:
-        said: A name of `BOX_TRACKERS`, or `package.module:Class`.
-        setting: What names it, for messages.
 
     Raises:
         EyasError: There is no such tracker, or it cannot be used here.

@@ -21,17 +21,16 @@ def actions_of_oracles(asked: object) -> str:
 
 
 def flown_over(
-    state: Snapshot, places: Floats, velocities: Floats, env: EnvConfig
+    state: Snapshot,
+    places: Floats,  # The points, east and north [m], shape (N, 2)
+    velocities: Floats,  # How they move [m/s], shape (N, 2)
+    env: EnvConfig,
 ) -> NDArray[np.int64] | Floats:
     """Return the actions that bring drones over points that move.
 
     Seven actions jump by their whole speed, which a drone on a flight controller cannot follow: it
     swings, and is lost. Velocities are those of the points, and steer where the drone is told to
     be, not where it is: else what it cannot follow at once would be asked for twice.
-
-    Args:
-        places: The points, east and north [m], shape (N, 2).
-        velocities: How they move [m/s], shape (N, 2).
 
     Returns:
         Numbers of actions, shape (N,), or velocities, shape (N, 4).

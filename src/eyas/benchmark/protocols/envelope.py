@@ -53,13 +53,12 @@ class Envelope:
                     f"{-limit:g} to {limit:g}"
                 )
 
-    def held(self, commands: Floats, heights: Floats) -> Floats:
-        """Return commands whose climbs and descents end at the limits of height.
-
-        Args:
-            commands: Forward, left, up [m per 2 ms], turn, shape (N, 4).
-            heights: Of the drones above the ground [m], shape (N,).
-        """
+    def held(
+        self,
+        commands: Floats,  # Forward, left, up [m per 2 ms], turn, shape (N, 4)
+        heights: Floats,  # Of the drones above the ground [m], shape (N,)
+    ) -> Floats:
+        """Return commands whose climbs and descents end at the limits of height."""
         steps = _RESPONSE / PHYSICS_STEP
         up, down = (
             np.maximum(room, 0.0) / steps

@@ -188,13 +188,12 @@ class Protocol:
         content += [] if self.stage is None else [_name_of(self.stage)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
-    def settings_of(self, episode: EpisodeSpec, env: EnvConfig) -> EyasConfig:
-        """Return the settings of an episode.
-
-        Args:
-            episode: The episode.
-            env: What the policy sees and how it acts.
-        """
+    def settings_of(
+        self,
+        episode: EpisodeSpec,  # The episode
+        env: EnvConfig,  # What the policy sees and how it acts
+    ) -> EyasConfig:
+        """Return the settings of an episode."""
         place = episode.place
         map_name, map_seed = place.town
         changes: dict[str, Any] = {

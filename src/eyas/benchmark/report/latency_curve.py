@@ -27,21 +27,17 @@ class _Point(TypedDict):
 
 
 def run_curve(
-    plan: EvaluationPlan,
+    plan: EvaluationPlan,  # The plan; it must not have a latency of its own
     out: Path,
     *,
     resume: bool,
     overwrite: bool,
-    plots: bool,
+    plots: bool,  # Whether `latency.png` is drawn
     quiet: bool,
     runner: Runner = run_here,
 ) -> list[EpisodeRecord]:
     """Evaluate at each latency, in a folder of its own, and write `latency.json`; return all
     records.
-
-    Args:
-        plan: The plan; it must not have a latency of its own.
-        plots: Whether `latency.png` is drawn.
 
     Raises:
         EyasError: A setting is wrong, or a folder is taken.

@@ -132,12 +132,11 @@ def told_apart(found: Sequence[Difference], figure: str) -> str:
     )
 
 
-def text_of(found: Sequence[Difference], rank: str) -> str:
-    """Return a table as text, and below it whether the two are told apart.
-
-    Args:
-        rank: The protocol's first figure; the other is TSR.
-    """
+def text_of(
+    found: Sequence[Difference],
+    rank: str,  # The protocol's first figure; the other is TSR
+) -> str:
+    """Return a table as text, and below it whether the two are told apart."""
     lines = [("", "n", "figure", "A", "B", "B - A", "95 %", "B larger")]
     lines += [
         (

@@ -89,12 +89,11 @@ class Clusters:
         sums: Floats = np.bincount(self.of, influence, minlength=self.count).astype(np.float64)
         return sums
 
-    def variance(self, influence: Floats) -> float:
-        """Return the variance of a figure's mean.
-
-        Args:
-            influence: By how much each sample moves the figure, times N, shape (N,).
-        """
+    def variance(
+        self,
+        influence: Floats,  # By how much each sample moves the figure, times N, shape (N,)
+    ) -> float:
+        """Return the variance of a figure's mean."""
         sums, total = self.sums(influence), 0.0
         for stratum in np.unique(self.strata):
             own = sums[self.strata == stratum]
@@ -188,14 +187,13 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
 
 
 def difference_interval(
-    differences: Floats, clusters: Clusters, high: float | None
+    differences: Floats,  # Shape (N,)
+    clusters: Clusters,
+    high: float | None,
 ) -> Interval | None:
     """Return the interval of the mean of N paired differences; None if it cannot be had.
 
     Student's, with a variance that knows of rare large differences which the sample may lack.
-
-    Args:
-        differences: Shape (N,).
     """
     if clusters.count < FEWEST:
         return None

@@ -85,12 +85,11 @@ def _views(pictures: PictureBatch) -> tuple[CpuRenderer, Views, DrawList]:
     return renderer, *kept.last
 
 
-def measure_device(device: Device, seconds: float) -> Iterator[Measurement]:
-    """Measure pictures of several numbers, sizes and weathers.
-
-    Args:
-        seconds: Time to measure each [s].
-    """
+def measure_device(
+    device: Device,
+    seconds: float,  # Time to measure each [s]
+) -> Iterator[Measurement]:
+    """Measure pictures of several numbers, sizes and weathers."""
     for pictures in ON_DEVICES:
         yield measure_on_device(device, pictures, seconds)
 

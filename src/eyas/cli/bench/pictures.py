@@ -44,14 +44,13 @@ class StageTime:
     share: float  # Share of the time of the whole picture
 
 
-def measure_stages(seconds: float) -> list[StageTime]:
+def measure_stages(
+    seconds: float,  # Time to measure each size [s]
+) -> list[StageTime]:
     """Return the times of all stages for each of `SIZES`.
 
     A stage's time is the time to draw up to its end, less the time to draw up to its start.
     The measurements alternate, so that other load on the machine affects all of them alike.
-
-    Args:
-        seconds: Time to measure each size [s].
     """
     times = []
     for views, width, height in SIZES:
@@ -132,12 +131,11 @@ OTHER_WEATHERS = (
 )
 
 
-def measure_pictures(pictures: PictureBatch, seconds: float) -> Measurement:
-    """Return the measurement of drawing pictures.
-
-    Args:
-        seconds: Time to measure [s].
-    """
+def measure_pictures(
+    pictures: PictureBatch,
+    seconds: float,  # Time to measure [s]
+) -> Measurement:
+    """Return the measurement of drawing pictures."""
     config = SimConfig(
         camera=CameraConfig(samples=pictures.samples), world=WorldConfig(weather=pictures.weather)
     )
@@ -214,12 +212,10 @@ class CameraCost:
     ratio: float  # Over that of a pinhole's, the median of measurements side by side
 
 
-def measure_camera(seconds: float) -> list[CameraCost]:
-    """Return the cost of camera models, measured by turns with a pinhole.
-
-    Args:
-        seconds: Time to measure each [s].
-    """
+def measure_camera(
+    seconds: float,  # Time to measure each [s]
+) -> list[CameraCost]:
+    """Return the cost of camera models, measured by turns with a pinhole."""
     everyone = np.arange(_VIEWS, dtype=np.int32)
     picture = Picture.create(_VIEWS, _SIDE, _SIDE)
     simulations = []

@@ -46,14 +46,12 @@ _ALIKE = {
 others, a client is not heard, counts wrongly, or waits for ever."""
 
 
-def tell_disagreements(config: EyasConfig, root: Path, settings: Path) -> None:
-    """Warn of each value in the clients' files that is not that of the server.
-
-    Args:
-        config: Settings of the server.
-        root: Folder with the original's `Alg_Base`.
-        settings: The `env_config.json` that clients read.
-    """
+def tell_disagreements(
+    config: EyasConfig,  # Settings of the server
+    root: Path,  # Folder with the original's `Alg_Base`
+    settings: Path,  # The `env_config.json` that clients read
+) -> None:
+    """Warn of each value in the clients' files that is not that of the server."""
     ours = _ours(config)
     for path, keys, group in (
         (settings, {key: key for key in _SHARED}, None),

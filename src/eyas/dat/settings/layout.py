@@ -188,16 +188,13 @@ def own_target_folders(file: Path | None) -> tuple[Path, ...]:
 
 
 def with_own_target(
-    values: Nested, folders: Sequence[Path]
+    values: Nested,  # Keys of the original, and perhaps `custom`
+    folders: Sequence[Path],  # Where to look for files, in this order
 ) -> tuple[dict[str, Any], dict[str, Any] | None]:
     """Return the original's keys without a name that it does not know, and what that name means.
 
     A name that is not a kind of target is that of the settings `custom` beside it, or of files in
     one of the folders: `<name>.proto` or a mesh, `<name>.csv`, or both. No code is looked for.
-
-    Args:
-        values: Keys of the original, and perhaps `custom`.
-        folders: Where to look for files, in this order.
 
     Returns:
         The keys, and the settings `custom`; None if there are none.

@@ -24,13 +24,12 @@ _MOST = {"passenger": 40}  # How many of a class a world holds, and of any other
 _OTHERS = 10
 
 
-def vehicle_protos(shapes: dict[str, Shapes]) -> Iterator[tuple[str, str]]:
+def vehicle_protos(
+    shapes: dict[str, Shapes],  # Filled with the maker of each file, which tells its textures
+) -> Iterator[tuple[str, str]]:
     """Yield the name and text of the PROTO of each model of a vehicle.
 
     The origin is where the original's is: at the reference point, as high as the wheels' middles.
-
-    Args:
-        shapes: Filled with the maker of each file, which tells its textures.
     """
     for model in (model for kind in VEHICLE_KINDS for model in kind.models):
         shapes[model.name] = Shapes("../worlds/textures", "color")
@@ -99,16 +98,15 @@ def interface_proto() -> str:
     return proto(INTERFACE, "Drives the vehicles by SUMO", fields, body)
 
 
-def drone_proto(width: int, height: int, field_of_view: float) -> str:
+def drone_proto(
+    width: int,  # Of the picture [pixels]
+    height: int,  # Of the picture [pixels]
+    field_of_view: float,  # Horizontal [rad]
+) -> str:
     """Return the PROTO of the drone, with its sensors and its camera on a gimbal of three axes.
 
     It has no `Physics`: its controller puts it where its commands lead, as in the original's mode
     under a supervisor. Joints and their places are the original's.
-
-    Args:
-        width: Of the picture [pixels].
-        height: Of the picture [pixels].
-        field_of_view: Horizontal [rad].
     """
     body = Node(
         "Robot",

@@ -118,14 +118,12 @@ _SUN = 2.7  # Intensity of the original's sun, which by a clear day has the colo
 _GROUND = {ObjectClass.GROUND, ObjectClass.WATER}  # What is drawn by the node `land`
 
 
-def sky_nodes(title: str, light: Lighting, notice: str) -> list[Node]:
-    """Return the nodes about the world as a whole: settings, view, sky, sun and fog.
-
-    Args:
-        title: Name of the world.
-        light: Light and air.
-        notice: Whose data the map is made of.
-    """
+def sky_nodes(
+    title: str,  # Name of the world
+    light: Lighting,  # Light and air
+    notice: str,  # Whose data the map is made of
+) -> list[Node]:
+    """Return the nodes about the world as a whole: settings, view, sky, sun and fog."""
     sky = [0.5 * (a + b) for a, b in zip(light.zenith_colour, light.horizon_colour, strict=True)]
     told = ["Made by Eyas for Webots R2023b, where its authors have not seen it run.", *[notice]]
     nodes = [

@@ -174,11 +174,10 @@ HOVER = Action((0.0, 0.0, 0.0, 0.0), reset=False)
 RESET = HOVER._replace(reset=True)  # What clients send first
 
 
-def parse_action(line: bytes) -> Action:
+def parse_action(
+    line: bytes,  # Four numbers, and 1 for a reset or 0
+) -> Action:
     r"""Return the action of a line `a0,a1,a2,a3,r`, without its line break.
-
-    Args:
-        line: Four numbers, and 1 for a reset or 0.
 
     Raises:
         ActionError: It is something else.

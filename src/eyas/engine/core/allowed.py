@@ -41,13 +41,11 @@ class _Limits:
     below: float | None = None
 
 
-def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
-    """Describe the values a field of this type takes, for example `a whole number from 1 to 500`.
-
-    Args:
-        annotation: The type, as in `FieldInfo.annotation`.
-        metadata: Its limits, as in `FieldInfo.metadata`.
-    """
+def describe(
+    annotation: object,  # The type, as in `FieldInfo.annotation`
+    metadata: Sequence[object] = (),  # Its limits, as in `FieldInfo.metadata`
+) -> str:
+    """Describe the values a field of this type takes, for example `a whole number from 1 to 500`."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return describe(parts[0], parts[1:])

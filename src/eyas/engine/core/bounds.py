@@ -20,13 +20,12 @@ def limited(values: Floats, most: float) -> Floats:
     return np.clip(np.where(np.isnan(values), 0.0, values), -most, most)
 
 
-def checked(values: Floats, most: float, what: str) -> Floats:
+def checked(
+    values: Floats,  # Numbers, of any shape
+    most: float,  # As above
+    what: str,  # What they are, for the error
+) -> Floats:
     """Return numbers from -`most` to `most`.
-
-    Args:
-        values: Numbers, of any shape.
-        most: As above.
-        what: What they are, for the error.
 
     Raises:
         EyasError: One is NaN or infinite.

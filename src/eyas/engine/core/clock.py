@@ -6,11 +6,10 @@ PHYSICS_RATE = 500  # Physics steps per second [Hz]
 PHYSICS_STEP = 1.0 / PHYSICS_RATE  # Length of a physics step [s]; kernels read it
 
 
-def physics_steps(control_frequency: float) -> int:
+def physics_steps(
+    control_frequency: float,  # Actions per second [Hz], 1 to 500
+) -> int:
     """Return how many physics steps one action lasts: the whole part of `500 / control_frequency`.
-
-    Args:
-        control_frequency: Actions per second [Hz], 1 to 500.
 
     Raises:
         ConfigError: The frequency is out of range.

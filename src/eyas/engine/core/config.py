@@ -125,13 +125,12 @@ def unknown_keys(problems: Sequence[Problem]) -> Problem | None:
 Model = TypeVar("Model", bound=Config)
 
 
-def validated(model: type[Model], values: Mapping[str, Any], root: str = "") -> Model:
+def validated(
+    model: type[Model],  # Class of the settings
+    values: Mapping[str, Any],  # Nested dictionaries, as read from JSON
+    root: str = "",  # Path to put before each key in messages
+) -> Model:
     """Return the settings with the given values.
-
-    Args:
-        model: Class of the settings.
-        values: Nested dictionaries, as read from JSON.
-        root: Path to put before each key in messages.
 
     Raises:
         ConfigError: One line: path, value, allowed values, the nearest known key.

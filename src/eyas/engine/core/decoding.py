@@ -147,17 +147,14 @@ def decoded_arrays(
 
 
 def npz_arrays(
-    data: bytes, largest: int, names: Collection[str] | None = None
+    data: bytes,  # Content of the file
+    largest: int,  # Largest number of bytes of all arrays together
+    names: Collection[str] | None = None,  # The arrays that are wanted; None: all
 ) -> dict[str, NDArray[Any]]:
     """Return the arrays of a `.npz` file, read-only.
 
     `numpy.load` makes arrays of the size that their headers claim before it reads them, and
     decompresses whatever there is. Here every size is known and checked first.
-
-    Args:
-        data: Content of the file.
-        largest: Largest number of bytes of all arrays together.
-        names: The arrays that are wanted; None: all.
 
     Raises:
         ValueError: The file is damaged or too large, or has other content than arrays of numbers or

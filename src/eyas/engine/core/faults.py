@@ -18,12 +18,11 @@ class FaultLog:
         self._reported, self._silent = -_BETWEEN, 0
 
     @contextmanager
-    def guard(self, what: str) -> Iterator[None]:
-        """Run a block; whatever error it raises becomes a line.
-
-        Args:
-            what: The message that it handles, such as `COMMAND_LONG of 255/190`.
-        """
+    def guard(
+        self,
+        what: str,  # The message that it handles, such as `COMMAND_LONG of 255/190`
+    ) -> Iterator[None]:
+        """Run a block; whatever error it raises becomes a line."""
         try:
             yield
         except Exception as error:  # what is wrong with a message is not known before

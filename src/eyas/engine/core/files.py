@@ -83,12 +83,11 @@ def user_path(text: str) -> Path:
         raise DataFileError(f"{text}: cannot read: {error}") from error
 
 
-def read_limited(path: Path, largest: int) -> bytes:
+def read_limited(
+    path: Path,  # The file
+    largest: int,  # Largest allowed size [bytes]
+) -> bytes:
     """Return the content of a file.
-
-    Args:
-        path: The file.
-        largest: Largest allowed size [bytes].
 
     Raises:
         DataFileError: The file is missing or unreadable, too large, or no ordinary file: a device

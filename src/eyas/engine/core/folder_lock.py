@@ -27,16 +27,15 @@ _LOG = logging.getLogger("eyas")
 
 
 @contextmanager
-def folder_lock(folder: Path, doing: str) -> Iterator[None]:
+def folder_lock(
+    folder: Path,  # The folder
+    doing: str,  # What the process does in it, for messages, such as `recording into it`
+) -> Iterator[None]:
     """Lock a folder for this process; the folder is made if it does not exist.
 
     The system releases the lock when the process ends for any reason, so the file of a killed
     process blocks no other. Without file locks (on Windows and on some network file systems), a
     warning is logged instead.
-
-    Args:
-        folder: The folder.
-        doing: What the process does in it, for messages, such as `recording into it`.
 
     Raises:
         OutputError: Another process holds the lock, or writing failed.

@@ -14,12 +14,11 @@ from traceback import extract_tb
 from eyas.engine.core.errors import ConfigError, nearest
 
 
-def imported(path: str, setting: str) -> object:
+def imported(
+    path: str,  # `package.module:attribute`
+    setting: str,  # The setting that names it, for messages
+) -> object:
     """Return the object at a path; ordinary errors raised by its module pass through.
-
-    Args:
-        path: `package.module:attribute`.
-        setting: The setting that names it, for messages.
 
     Raises:
         ConfigError: There is no such object, or its module tries to end the program.

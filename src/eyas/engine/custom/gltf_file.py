@@ -31,12 +31,11 @@ _JSON = 0x4E4F534A  # Kind of a chunk: "JSON"
 _MODES = (4, 5)  # Modes of primitives that are read: triangles, and strips of them
 
 
-def mended_gltf(path: Path, largest: int) -> tuple[bytes, str]:
+def mended_gltf(
+    path: Path,  # The file, `.gltf` or `.glb`
+    largest: int,  # Largest size of it, of a file beside it, and of all numbers [bytes]
+) -> tuple[bytes, str]:
     """Return the content of a file whose accessors are plain, and a line about what is left out.
-
-    Args:
-        path: The file, `.gltf` or `.glb`.
-        largest: Largest size of it, of a file beside it, and of all numbers [bytes].
 
     Raises:
         ValueError: It is damaged, or needs an extension that is not read; the line names it.

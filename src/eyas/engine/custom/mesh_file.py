@@ -154,15 +154,13 @@ def _joined(parts: Sequence[Triangles]) -> Triangles:
     )
 
 
-def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
-    """Return a shape in metres, on the ground, its middle above the origin.
-
-    Args:
-        shape: As in the file.
-        up: The file's axis that is up: `y` as in glTF, or `z`.
-        turn: Angle by which it is turned, counter-clockwise from above [rad].
-        scale: Metres in the file's unit.
-    """
+def placed(
+    shape: Triangles,  # As in the file
+    up: str,  # The file's axis that is up: `y` as in glTF, or `z`
+    turn: float,  # Angle by which it is turned, counter-clockwise from above [rad]
+    scale: float,  # Metres in the file's unit
+) -> Triangles:
+    """Return a shape in metres, on the ground, its middle above the origin."""
     axes = _GLTF if up == "y" else np.eye(3)
     cosine, sine = exact.cos(turn), exact.sin(turn)
     axes = exact.product(
@@ -262,15 +260,11 @@ def _textured(
 
 
 def _looked_up(
-    pixels: NDArray[np.uint8], factor: NDArray[np.float64], uv: NDArray[np.float64]
+    pixels: NDArray[np.uint8],  # The texture, shape (H, W, 3)
+    factor: NDArray[np.float64],  # By which its colours are multiplied, shape (3,)
+    uv: NDArray[np.float64],  # Coordinates in it of the corners of the triangles, shape (T, 3, 2)
 ) -> NDArray[np.float64]:
-    """Return the texture at four points of each triangle, shape (4, T, 3).
-
-    Args:
-        pixels: The texture, shape (H, W, 3).
-        factor: By which its colours are multiplied, shape (3,).
-        uv: Coordinates in it of the corners of the triangles, shape (T, 3, 2).
-    """
+    """Return the texture at four points of each triangle, shape (4, T, 3)."""
     height, width = pixels.shape[:2]
     u, v = np.moveaxis(exact.product(_INSIDE, uv), (2, 1), (0, 1))
     column = np.floor(u * width).astype(np.int64) % width

@@ -39,20 +39,13 @@ class Places(NamedTuple):
 
 
 def custom_motion(
-    config: CustomConfig,
-    places: Places,
-    ground: Ground,
-    clock: SampleClock,
-    rng: np.random.Generator,
+    config: CustomConfig,  # The target
+    places: Places,  # When and where it begins, if it moves by a behaviour
+    ground: Ground,  # The map
+    clock: SampleClock,  # Number of samples, and their rate
+    rng: np.random.Generator,  # Source of random numbers
 ) -> Motion:
     """Return the motion of the user's targets.
-
-    Args:
-        config: The target.
-        places: When and where it begins, if it moves by a behaviour.
-        ground: The map.
-        clock: Number of samples, and their rate.
-        rng: Source of random numbers.
 
     Raises:
         EyasError: The target cannot be used, or the map has no room for it: one line.

@@ -51,16 +51,13 @@ class MovesItself(Protocol):
 
     @abstractmethod
     def tracks(
-        self, scene: Scene, time: NDArray[np.float64], count: int, rng: np.random.Generator
+        self,
+        scene: Scene,  # The map
+        time: NDArray[np.float64],  # The times, ten a second [s], shape (S,)
+        count: int,  # Number of bodies
+        rng: np.random.Generator,  # Source of random numbers; the same seed gives the same ways
     ) -> NDArray[np.float64]:
-        """Return x, y [m] and heading [rad] of some bodies at all times, shape (S, count, 3).
-
-        Args:
-            scene: The map.
-            time: The times, ten a second [s], shape (S,).
-            count: Number of bodies.
-            rng: Source of random numbers; the same seed gives the same ways.
-        """
+        """Return x, y [m] and heading [rad] of some bodies at all times, shape (S, count, 3)."""
         ...
 
 

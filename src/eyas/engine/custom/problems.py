@@ -72,15 +72,11 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
 
 
 def of_trajectory(
-    trajectory: Trajectory, size: tuple[float, float], map_name: str
+    trajectory: Trajectory,  # The trajectory
+    size: tuple[float, float],  # Extent of the map in x and y; its middle is the origin [m]
+    map_name: str,  # Its name
 ) -> Iterator[Finding]:
-    """Yield what is wrong with a trajectory on a map.
-
-    Args:
-        trajectory: The trajectory.
-        size: Extent of the map in x and y; its middle is the origin [m].
-        map_name: Its name.
-    """
+    """Yield what is wrong with a trajectory on a map."""
     steps = trajectory.steps()
     for k in trajectory.jumps().tolist()[:3]:
         seconds = trajectory.time[k] - trajectory.time[k - 1]

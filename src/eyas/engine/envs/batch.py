@@ -165,12 +165,11 @@ class Batch:
                 self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
         self._simulation.reset(chosen)
 
-    def begin_together(self, seed: int | None = None) -> None:
-        """Begin new episodes of all trackers in their shared world, at any time of its traffic.
-
-        Args:
-            seed: The seed whose sequence of episodes begins; None: it continues.
-        """
+    def begin_together(
+        self,
+        seed: int | None = None,  # The seed whose sequence of episodes begins; None: it continues
+    ) -> None:
+        """Begin new episodes of all trackers in their shared world, at any time of its traffic."""
         simulation, episodes = self._simulation, self._simulation.snapshot.episodes
         if seed is not None:
             self._seed = seed

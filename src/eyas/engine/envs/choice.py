@@ -107,14 +107,11 @@ def episode_settings(config: EyasConfig, options: Mapping[str, Any] | None) -> E
 
 
 def checked_options(
-    options: Mapping[str, Any] | None, allowed: Collection[str], advice: str = ""
+    options: Mapping[str, Any] | None,  # What a caller gives; None: none
+    allowed: Collection[str],  # The names of those that there are
+    advice: str = "",  # What to use in the place of others
 ) -> Mapping[str, Any]:
     """Return the options of a reset.
-
-    Args:
-        options: What a caller gives; None: none.
-        allowed: The names of those that there are.
-        advice: What to use in the place of others.
 
     Raises:
         EyasError: They are no dictionary, or there is no such option; one line.

@@ -129,12 +129,11 @@ def masked(info: Info, mask: Mask) -> Info:
     return told
 
 
-def sensor_state(simulation: Simulation, out: NDArray[np.float32]) -> None:
+def sensor_state(
+    simulation: Simulation,  # N trackers
+    out: NDArray[np.float32],  # Shape (N, 19)
+) -> None:
     """Write position, velocity, felt acceleration, angular velocity, orientation and Euler angles,
     as the agents see them.
-
-    Args:
-        simulation: N trackers.
-        out: Shape (N, 19).
     """
     out[:] = simulation.view.packets()[0][:, SENSOR_COLUMNS]

@@ -259,13 +259,12 @@ class Observer:
         sensors.count(chosen.astype(np.int64), counts)
         planes[chosen] = counts
 
-    def copy_to(self, out: Observation, rows: NDArray[np.integer] | slice) -> None:
-        """Copy the latest observation of each tracker.
-
-        Args:
-            out: Observations, each array with a leading axis.
-            rows: Place of each tracker on that axis, shape (N,).
-        """
+    def copy_to(
+        self,
+        out: Observation,  # Observations, each array with a leading axis
+        rows: NDArray[np.integer] | slice,  # Place of each tracker on that axis, shape (N,)
+    ) -> None:
+        """Copy the latest observation of each tracker."""
         if not isinstance(out, Mapping):
             out[rows] = next(iter(self._latest.values()))
             return
@@ -277,13 +276,12 @@ class Observer:
             words[rows] = self._words
             out[_Parts.WORDS] = tuple(words.tolist())
 
-    def tell(self, words: Sequence[str], attributes: NDArray[np.float32]) -> None:
-        """Tell all trackers something else than the truth from now on, also in later episodes.
-
-        Args:
-            words: A phrase for each.
-            attributes: What these say, shape (N, A).
-        """
+    def tell(
+        self,
+        words: Sequence[str],  # A phrase for each
+        attributes: NDArray[np.float32],  # What these say, shape (N, A)
+    ) -> None:
+        """Tell all trackers something else than the truth from now on, also in later episodes."""
         self._names_targets = False
         for tracker, own in enumerate(words):
             self._say(tracker, own, attributes[tracker])

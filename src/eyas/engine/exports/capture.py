@@ -268,15 +268,13 @@ def _whole_box(moment: Moment, actor: int) -> Floats:
     return np.zeros(4) if moment.whole_box is None else moment.whole_box[actor].copy()
 
 
-def others_of(moment: Moment, tracker: int, picture: Picture, view: int) -> tuple[Subject, ...]:
-    """Return all visible objects except the tracker's target, in the order of their ids.
-
-    Args:
-        moment: What is known, with the actors that the picture shows.
-        tracker: The tracker of the picture.
-        picture: The picture, with the boxes and pixels of all actors.
-        view: The tracker's row in `picture`.
-    """
+def others_of(
+    moment: Moment,  # What is known, with the actors that the picture shows
+    tracker: int,  # The tracker of the picture
+    picture: Picture,  # The picture, with the boxes and pixels of all actors
+    view: int,  # The tracker's row in `picture`
+) -> tuple[Subject, ...]:
+    """Return all visible objects except the tracker's target, in the order of their ids."""
     assert picture.actor_pixels is not None
     visible = picture.actor_pixels[view, :, 0] > 0
     visible[moment.shown.targets.actor[tracker]] = False

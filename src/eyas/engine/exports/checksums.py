@@ -33,13 +33,12 @@ def checksum_lines(sums: Mapping[str, str]) -> bytes:
     return "".join(f"{digest}  {name}\n" for name, digest in sorted(sums.items())).encode()
 
 
-def seal_folder(folder: Path, aside: Collection[str]) -> str:
+def seal_folder(
+    folder: Path,  # The folder
+    aside: Collection[str],  # Names of files and folders in it that are left out
+) -> str:
     """Write the checksums of all files of a folder, which are then on the disk; return the SHA-256
     of that file.
-
-    Args:
-        folder: The folder.
-        aside: Names of files and folders in it that are left out.
 
     Raises:
         OutputError: The disk has not taken them.

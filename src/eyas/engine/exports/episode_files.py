@@ -161,17 +161,16 @@ def _events(frame: Frame) -> NDArray[np.void]:
     return frame.events
 
 
-def evt2(events: NDArray[np.void], size: tuple[int, int], frames: int) -> bytes:
+def evt2(
+    events: NDArray[np.void],  # In the order of time, see `eyas.engine.camera.esim.EVENT`
+    size: tuple[int, int],  # Width and height [pixels]
+    frames: int,  # Number of frames of the episode; ours, as a comment
+) -> bytes:
     """Return a raw file of format EVT 2.0 (Prophesee, Metavision SDK documentation, "EVT 2.0").
 
     Words of 32 bits, the lowest byte first. Those of events have the polarity in bits 28 to 31, the
     lowest six bits of the time [us] in 22 to 27, the column in 11 to 21 and the row in 0 to 10;
     before them, each time that they change, come the upper 28 bits of the time.
-
-    Args:
-        events: In the order of time, see `eyas.engine.camera.esim.EVENT`.
-        size: Width and height [pixels].
-        frames: Number of frames of the episode; ours, as a comment.
     """
     width, height = size
     head = (

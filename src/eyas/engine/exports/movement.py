@@ -68,13 +68,12 @@ def box_corners(
     return _raised(plan, height, centre, yaw, motion)
 
 
-def posed_corners(centre: Floats, yaw: float, motion: Movement) -> Floats | None:
+def posed_corners(
+    centre: Floats,  # Middle of the body, at the height of its reference point [m], shape (3,)
+    yaw: float,  # Heading [rad]
+    motion: Movement,  # Its extent, and how it stands
+) -> Floats | None:
     """Return the corners of the box around the limbs of a person or robot at this moment.
-
-    Args:
-        centre: Middle of the body, at the height of its reference point [m], shape (3,).
-        yaw: Heading [rad].
-        motion: Its extent, and how it stands.
 
     Returns:
         In the order of `box_corners`, shape (8, 3); None of what is rigid.

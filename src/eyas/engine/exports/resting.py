@@ -15,14 +15,13 @@ from eyas.engine.targets.rig import Rigs
 
 
 @lru_cache(maxsize=64)
-def resting_mesh(model: str, detail: int) -> Mesh:
+def resting_mesh(
+    model: str,  # Its name
+    detail: int,  # Level of detail; 0 is the finest
+) -> Mesh:
     """Return a model as one mesh, standing still, white where it is painted.
 
     x is forward, y left, z up; the origin is its reference point on the ground.
-
-    Args:
-        model: Its name.
-        detail: Level of detail; 0 is the finest.
     """
     index = model_index(model)
     kind = kind_index(MODELS[index].kind)

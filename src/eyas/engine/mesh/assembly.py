@@ -46,13 +46,11 @@ def concatenate(meshes: Sequence[Mesh]) -> Mesh:
     )
 
 
-def transformed(mesh: Mesh, pose: NDArray[np.floating]) -> Mesh:
-    """Return the mesh transformed by a pose.
-
-    Args:
-        mesh: The mesh.
-        pose: Rotation (times a uniform scale) and translation, shape (3, 4).
-    """
+def transformed(
+    mesh: Mesh,  # The mesh
+    pose: NDArray[np.floating],  # Rotation (times a uniform scale) and translation, shape (3, 4)
+) -> Mesh:
+    """Return the mesh transformed by a pose."""
     linear = np.asarray(pose[:, :3], np.float64)
     positions = exact.product(mesh.positions, linear.T) + pose[:, 3]
     normals = exact.product(mesh.normals, (linear / exact.cbrt(exact.determinant(linear))).T)

@@ -31,12 +31,10 @@ def closed(rings: ArrayLike) -> Points:
     return np.concatenate([r, r[:, :1]], axis=1)
 
 
-def halves(quads: ArrayLike) -> Points:
-    """Return the triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then all second.
-
-    Args:
-        quads: Shape (Q, 4, D).
-    """
+def halves(
+    quads: ArrayLike,  # Shape (Q, 4, D)
+) -> Points:
+    """Return the triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then all second."""
     corners = np.asarray(quads, np.float64)
     return corners[:, _HALVES].swapaxes(0, 1).reshape(-1, 3, corners.shape[2])
 
@@ -57,14 +55,12 @@ def fan(ring: ArrayLike, middle: Sequence[float] | None = None) -> Points:
     return np.stack([np.tile(middle, (len(r), 1)), r, np.roll(r, -1, axis=0)], axis=1)
 
 
-def box_panels(low: Sequence[float], high: Sequence[float], taper: float = 0.0) -> Points:
-    """Return the faces of a box between two corners, shape (6, 4, 3).
-
-    Args:
-        low: Smallest x, y and z.
-        high: Largest x, y and z.
-        taper: Distance by which the top is inset on all four sides.
-    """
+def box_panels(
+    low: Sequence[float],  # Smallest x, y and z
+    high: Sequence[float],  # Largest x, y and z
+    taper: float = 0.0,  # Distance by which the top is inset on all four sides
+) -> Points:
+    """Return the faces of a box between two corners, shape (6, 4, 3)."""
     (x0, y0, z0), (x1, y1, z1), t = low, high, taper
     bottom = np.array([(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)])
     top = np.array(

@@ -30,24 +30,15 @@ def box(size: Sequence[float], centre: Sequence[float], material: Material, tile
 
 
 def cylinder(
-    radius: tuple[float, float],
-    height: tuple[float, float],
-    sides: int,
-    material: Material,
+    radius: tuple[float, float],  # Radius at the bottom and at the top [m]
+    height: tuple[float, float],  # z of the bottom and of the top [m]
+    sides: int,  # Number of sides
+    material: Material,  # Material of all faces
     *,
-    cap: bool = False,
-    tile: float = 1.0,
+    cap: bool = False,  # Whether to close the top and the bottom
+    tile: float = 1.0,  # Length that one repeat of the texture covers [m]
 ) -> Mesh:
-    """Return a truncated cone around z.
-
-    Args:
-        radius: Radius at the bottom and at the top [m].
-        height: z of the bottom and of the top [m].
-        sides: Number of sides.
-        material: Material of all faces.
-        cap: Whether to close the top and the bottom.
-        tile: Length that one repeat of the texture covers [m].
-    """
+    """Return a truncated cone around z."""
     angle = np.arange(sides + 1) * (2 * np.pi / sides)
     ring = np.column_stack([exact.cos(angle), exact.sin(angle)])
     slope = (radius[0] - radius[1]) / max(height[1] - height[0], 1e-9)

@@ -64,13 +64,12 @@ class Canvas:
         last = np.clip(np.ceil(np.asarray(high) + margin), 0, limit).astype(int)
         return slice(first[1], last[1]), slice(first[0], last[0])
 
-    def plane(self, normal: ArrayLike, where: tuple[slice, slice]) -> NDArray[np.float32]:
-        """Return normal times ray for each pixel of a window; rays have length 1 along the axis.
-
-        Args:
-            normal: Camera frame: forward, left, up, shape (3,).
-            where: Rows and columns.
-        """
+    def plane(
+        self,
+        normal: ArrayLike,  # Camera frame: forward, left, up, shape (3,)
+        where: tuple[slice, slice],  # Rows and columns
+    ) -> NDArray[np.float32]:
+        """Return normal times ray for each pixel of a window; rays have length 1 along the axis."""
         forward, left, up = np.asarray(normal, np.float64)
         if self.lens is not None:
             ray = self._rays[where]
@@ -141,11 +140,9 @@ def _lens_of(numbers: NDArray[np.float64]) -> Lens:
     return Lens(int(numbers[0]), *numbers[1:].tolist())
 
 
-def cover(inside: NDArray[np.floating]) -> NDArray[np.floating]:
-    """Return how much of a pixel lies inside a straight edge, 0 to 1.
-
-    Args:
-        inside: Distance of its centre from the edge, positive inside [pixels].
-    """
+def cover(
+    inside: NDArray[np.floating],  # Distance of its centre from the edge, positive inside [pixels]
+) -> NDArray[np.floating]:
+    """Return how much of a pixel lies inside a straight edge, 0 to 1."""
     covered: NDArray[np.floating] = np.clip(inside + 0.5, 0.0, 1.0)
     return covered

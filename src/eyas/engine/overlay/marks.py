@@ -35,14 +35,12 @@ Triangles = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Corners [m], shape (T, 3, 3), and colours, shape (T, 3)."""
 
 
-def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
-    """Return a cut gem, standing on its tip.
-
-    Args:
-        tip: Its lowest point, world frame [m], shape (3,).
-        height: Height of the gem [m].
-        turn: Rotation about its axis [rad].
-    """
+def gem(
+    tip: NDArray[np.float64],  # Its lowest point, world frame [m], shape (3,)
+    height: float,  # Height of the gem [m]
+    turn: float,  # Rotation about its axis [rad]
+) -> Solid:
+    """Return a cut gem, standing on its tip."""
     angles = turn + np.arange(GEM_SIDES) * (2.0 * np.pi / GEM_SIDES)
     girdle = np.column_stack([exact.cos(angles), exact.sin(angles), np.ones(GEM_SIDES)])
     girdle *= GEM_RADIUS, GEM_RADIUS, GEM_GIRDLE
@@ -55,13 +53,11 @@ def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
     return _solid(parts, np.eye(3) * height, tip)
 
 
-def drone(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Solid:
-    """Return a quadrotor.
-
-    Args:
-        position: Its middle, world frame [m], shape (3,).
-        rotation: Body to world, shape (3, 3).
-    """
+def drone(
+    position: NDArray[np.float64],  # Its middle, world frame [m], shape (3,)
+    rotation: NDArray[np.float64],  # Body to world, shape (3, 3)
+) -> Solid:
+    """Return a quadrotor."""
     parts = [
         _prism(8, (0.0, 0.0), (0.3, 0.17), (-0.09, 0.07), BODY_COLOUR),
         _prism(8, (0.24, 0.0), (0.07, 0.08), (-0.05, 0.03), NOSE_COLOUR),

@@ -149,14 +149,12 @@ def with_depth(picture: Picture) -> Picture:
     return replace(picture, depth=np.empty(picture.rgb.shape[:3], np.float32))
 
 
-def paint_overlays(views: Views, overlays: Sequence[Overlay], picture: Picture) -> None:
-    """Draw over the colours of a picture; its other arrays do not change.
-
-    Args:
-        views: The V cameras with which the picture was drawn.
-        overlays: One for each view.
-        picture: With colours and depths.
-    """
+def paint_overlays(
+    views: Views,  # The V cameras with which the picture was drawn
+    overlays: Sequence[Overlay],  # One for each view
+    picture: Picture,  # With colours and depths
+) -> None:
+    """Draw over the colours of a picture; its other arrays do not change."""
     assert picture.rgb is not None
     assert picture.depth is not None
     for v, overlay in enumerate(overlays):

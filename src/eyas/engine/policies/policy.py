@@ -142,12 +142,11 @@ def settings_in(path: Path, place: str, settings: object) -> Mapping[str, Any]:
     return settings
 
 
-def env_config(settings: Mapping[str, Any], changes: Mapping[str, Any] | None = None) -> EnvConfig:
+def env_config(
+    settings: Mapping[str, Any],  # Changes of the defaults that belong to the policy
+    changes: Mapping[str, Any] | None = None,  # Changes of the user's, which win
+) -> EnvConfig:
     """Return what a policy sees and does.
-
-    Args:
-        settings: Changes of the defaults that belong to the policy.
-        changes: Changes of the user's, which win.
 
     Raises:
         ConfigError: A setting is wrong.

@@ -31,12 +31,11 @@ def visible_shares(pixels: NDArray[Any]) -> NDArray[np.float64]:
     return shares
 
 
-def nearest_to_middle(simulation: Simulation) -> NDArray[np.int64]:
+def nearest_to_middle(
+    simulation: Simulation,  # K trackers, each with a world of its own
+) -> NDArray[np.int64]:
     """Return which actor is nearest to the middle of each picture, hidden or not, shape (K,); -1 if
     there is none in it.
-
-    Args:
-        simulation: K trackers, each with a world of its own.
     """
     cameras, camera = simulation.snapshot.cameras, simulation.config.camera
     actors = ActorState.create(simulation.count, simulation.actors)

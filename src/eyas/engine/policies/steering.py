@@ -38,15 +38,14 @@ def towards(offset: Floats, env: EnvConfig, period: float = PERIOD) -> NDArray[n
     return np.where(far, action, _HOVER).astype(np.int64)
 
 
-def pixel_offset(column: Floats, row: Floats, size: tuple[int, int]) -> Floats:
+def pixel_offset(
+    column: Floats,  # From the left edge [pixels], shape (N,)
+    row: Floats,  # From the upper edge [pixels], shape (N,)
+    size: tuple[int, int],  # Height and width of the picture [pixels]
+) -> Floats:
     """Return how far ahead and to the left of the picture's middle points are on the ground.
 
     The camera is taken to look straight down from 22 m.
-
-    Args:
-        column: From the left edge [pixels], shape (N,).
-        row: From the upper edge [pixels], shape (N,).
-        size: Height and width of the picture [pixels].
 
     Returns:
         [m], shape (N, 2).
@@ -58,20 +57,13 @@ def pixel_offset(column: Floats, row: Floats, size: tuple[int, int]) -> Floats:
 
 
 def ground_offset(
-    column: Floats,
-    row: Floats,
-    size: tuple[int, int],
-    height: float = 45.0,
-    pitch: float = 1.37,
+    column: Floats,  # From the left edge [pixels], shape (N,)
+    row: Floats,  # From the upper edge [pixels], shape (N,)
+    size: tuple[int, int],  # Height and width of the picture [pixels]
+    height: float = 45.0,  # Of the camera above the ground [m]; that of the protocol `referring`
+    pitch: float = 1.37,  # Of the camera, positive down [rad]
 ) -> Floats:
     """Return how far ahead and to the left of the picture's middle points are on level ground.
-
-    Args:
-        column: From the left edge [pixels], shape (N,).
-        row: From the upper edge [pixels], shape (N,).
-        size: Height and width of the picture [pixels].
-        height: Of the camera above the ground [m]; that of the protocol `referring`.
-        pitch: Of the camera, positive down [rad].
 
     Returns:
         [m], shape (N, 2).

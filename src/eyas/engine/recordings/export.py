@@ -353,14 +353,12 @@ def _by_folder(sums: Mapping[str, str]) -> dict[str, dict[str, str]]:
     return folders
 
 
-def exports_folder(recording: Path, name: str, out: Path | None) -> Path:
-    """Return the folder of an export, by default in that of the recording.
-
-    Args:
-        recording: The folder of the recording.
-        name: The format.
-        out: Folder of all exports; None: the recording's `exports`.
-    """
+def exports_folder(
+    recording: Path,  # The folder of the recording
+    name: str,  # The format
+    out: Path | None,  # Folder of all exports; None: the recording's `exports`
+) -> Path:
+    """Return the folder of an export, by default in that of the recording."""
     return (out or recording / EXPORTS) / name.rpartition(":")[2].lower()
 
 

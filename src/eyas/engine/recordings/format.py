@@ -121,17 +121,14 @@ class Job:
             shutil.copyfile(picture, part)
 
     def place_all(
-        self, episode: RecordedEpisode, folder: str, first: int, digits: int, prefix: str = ""
+        self,
+        episode: RecordedEpisode,  # The episode
+        folder: str,  # The folder's path in the export
+        first: int,  # Number of the first picture
+        digits: int,  # Digits of the numbers
+        prefix: str = "",  # What stands before the numbers
     ) -> None:
-        """Put the pictures of an episode into a folder of the export.
-
-        Args:
-            episode: The episode.
-            folder: The folder's path in the export.
-            first: Number of the first picture.
-            digits: Digits of the numbers.
-            prefix: What stands before the numbers.
-        """
+        """Put the pictures of an episode into a folder of the export."""
         ending = picture_ending(episode)
         for frame in episode:
             name = f"{prefix}{numbered(frame, first, digits, ending)}"

@@ -30,14 +30,13 @@ class Dialect(Protocol):
         """
         ...
 
-    def changed(self, config: EyasConfig, changes: Nested, path: Path | None) -> EyasConfig:
-        """Return settings with some of its keys changed; errors as from `read`.
-
-        Args:
-            config: The settings.
-            changes: Its keys.
-            path: The file that the settings come from; None: there is none.
-        """
+    def changed(
+        self,
+        config: EyasConfig,  # The settings
+        changes: Nested,  # Its keys
+        path: Path | None,  # The file that the settings come from; None: there is none
+    ) -> EyasConfig:
+        """Return settings with some of its keys changed; errors as from `read`."""
         ...
 
     def check(self, config: EyasConfig) -> None:
@@ -119,13 +118,12 @@ def originals_named(config: EyasConfig) -> Iterator[None]:
         raise
 
 
-def of_a_run(config: EyasConfig, seed: int | None = None) -> EyasConfig:
+def of_a_run(
+    config: EyasConfig,  # The settings
+    seed: int | None = None,  # See `Dialect.of_a_run`
+) -> EyasConfig:
     """Return the settings of one run, where a file of a dialect leaves its seed and traffic open.
 
     Others are returned as they are.
-
-    Args:
-        config: The settings.
-        seed: See `Dialect.of_a_run`.
     """
     return config if config.original is None else spoken("original").of_a_run(config, seed)

@@ -171,12 +171,11 @@ class Worlds:
         self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
         return actors, self.looks.model[self.of[tracker]]
 
-    def lamps_around(self, tick: int) -> NDArray[np.uint8] | None:
-        """Return what the actors signal at a time, a `Lamp` each, shape (A,); None: nobody does.
-
-        Args:
-            tick: Time of a world in physics steps.
-        """
+    def lamps_around(
+        self,
+        tick: int,  # Time of a world in physics steps
+    ) -> NDArray[np.uint8] | None:
+        """Return what the actors signal at a time, a `Lamp` each, shape (A,); None: nobody does."""
         motion = self._assets.traffic.motion
         if not motion.lamps.size:
             return None

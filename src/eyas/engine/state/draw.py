@@ -130,13 +130,12 @@ class Views:
             float(down[view]) if isinstance(down, np.ndarray) else down,
         )
 
-    def focal(self, height: int, width: int) -> NDArray[np.float64]:
-        """Return the focal length along rows and along columns [pixels], shape (V, 2).
-
-        Args:
-            height: Height of the pictures [pixels].
-            width: Width of the pictures [pixels].
-        """
+    def focal(
+        self,
+        height: int,  # Height of the pictures [pixels]
+        width: int,  # Width of the pictures [pixels]
+    ) -> NDArray[np.float64]:
+        """Return the focal length along rows and along columns [pixels], shape (V, 2)."""
         focal = np.empty((len(self.position), 2))
         focal[:, 0] = _focal_lengths(width, self.field_of_view)
         focal[:, 1] = focal[:, 0]

@@ -43,12 +43,11 @@ class Plane(NamedTuple):
     rise_north: float  # Rise of the plane per metre north
 
 
-def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def reliefs(
+    terrain: Terrain,  # The ground
+    points: NDArray[np.float64],  # East and north [m], shape (..., 2)
+) -> NDArray[np.float64]:
     """Return the height above the floor at points, as `relief_at` does.
-
-    Args:
-        terrain: The ground.
-        points: East and north [m], shape (..., 2).
 
     Returns:
         Heights [m], shape (...).
@@ -68,15 +67,14 @@ def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64
 
 
 @kernel
-def relief_at(terrain: Terrain, x: float, y: float) -> float:
+def relief_at(
+    terrain: Terrain,  # The ground
+    x: float,  # East [m]
+    y: float,  # North [m]
+) -> float:
     """Return the height above the floor at a point [m], linear between the points of the grid.
 
     Beyond the raster, the height of its nearest edge applies.
-
-    Args:
-        terrain: The ground.
-        x: East [m].
-        y: North [m].
     """
     if terrain.relief.shape[0] == 0:
         return 0.0

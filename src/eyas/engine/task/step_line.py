@@ -72,14 +72,12 @@ class StepLine:
             raise DataFileError(f"{line[:60]!r} is not the line of a step") from None
 
 
-def step_line(snapshot: Snapshot, tracker: int, name: str) -> str:
-    """Return the line of a tracker's last step, without a line break.
-
-    Args:
-        snapshot: The state after the step.
-        tracker: The tracker.
-        name: Name of the tracker.
-    """
+def step_line(
+    snapshot: Snapshot,  # The state after the step
+    tracker: int,  # The tracker
+    name: str,  # Name of the tracker
+) -> str:
+    """Return the line of a tracker's last step, without a line break."""
     episodes = snapshot.episodes
     return str(
         StepLine(
@@ -110,12 +108,11 @@ class EpisodeLines:
         self._told = np.ones(count, np.bool_)
         self._steps = np.zeros(count, np.int64)
 
-    def after(self, snapshot: Snapshot) -> Iterator[str]:
-        """Yield the lines of the episodes that have ended since the last call.
-
-        Args:
-            snapshot: The state after an action.
-        """
+    def after(
+        self,
+        snapshot: Snapshot,  # The state after an action
+    ) -> Iterator[str]:
+        """Yield the lines of the episodes that have ended since the last call."""
         episodes = snapshot.episodes
         begun = episodes.number != self._number
         for tracker in np.flatnonzero(begun & ~self._told).tolist():

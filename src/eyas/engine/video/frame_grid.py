@@ -48,13 +48,12 @@ class FrameGrid:
         """Frames of each tracker's episode up to now, shape (N,)."""
         return self._frames
 
-    def due(self, tick: int, step_count: NDArray[np.integer]) -> NDArray[np.int32]:
-        """Return the trackers that have a frame at this tick, and count these frames.
-
-        Args:
-            tick: 2 ms steps since the start of the run.
-            step_count: 2 ms steps since each tracker's reset, shape (N,).
-        """
+    def due(
+        self,
+        tick: int,  # 2 ms steps since the start of the run
+        step_count: NDArray[np.integer],  # 2 ms steps since each tracker's reset, shape (N,)
+    ) -> NDArray[np.int32]:
+        """Return the trackers that have a frame at this tick, and count these frames."""
         if not self._soonest <= tick <= self.last_tick:
             return np.zeros(0, np.int32)
         ready = step_count > self._warm_up_steps

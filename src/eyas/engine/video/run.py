@@ -278,13 +278,12 @@ class RecordingProgress:
         """Frames drawn per second of wall time [Hz]."""
         return self.frames / max(time.perf_counter() - self._start, 1e-9)
 
-    def show(self, share: float, frames: int) -> None:
-        """Show the progress.
-
-        Args:
-            share: Share of the simulated time that is done, 0 to 1.
-            frames: Number of frames drawn.
-        """
+    def show(
+        self,
+        share: float,  # Share of the simulated time that is done, 0 to 1
+        frames: int,  # Number of frames drawn
+    ) -> None:
+        """Show the progress."""
         self.frames = frames
         self._bar.update(self._task, completed=share, frames=frames, rate=self.rate)
 

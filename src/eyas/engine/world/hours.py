@@ -57,18 +57,17 @@ _STARLIGHT = 0.35
 """Share of the night's ambient light that is not the moon's, but the stars' and the town's."""
 
 
-def under_moon(night: Lighting, hour: float, age: float) -> Lighting:
+def under_moon(
+    night: Lighting,  # The night under a full moon
+    hour: float,  # 0 to 24
+    age: float,  # Of the moon, as a share of a month, 0 new, 0.5 full
+) -> Lighting:
     """Return the light of a night with moon and stars where an hour has them.
 
     The moon lags behind the sun by its age, and stands as high in the south as the sun does half a
     year from a full moon. Its light falls off with the phase angle as Allen's formula says
     (Krisciunas and Schaefer, A model of the brightness of moonlight, 1991): a half moon gives a
     tenth of a full one.
-
-    Args:
-        night: The night under a full moon.
-        hour: 0 to 24.
-        age: Of the moon, as a share of a month, 0 new, 0.5 full.
     """
     lag = 2.0 * math.pi * age
     moon = _seen_at(math.radians(15.0 * (hour - 12.0)) - lag, _DECLINATION * float(exact.cos(lag)))
@@ -101,14 +100,12 @@ def _limb(moon: Colour, sun: Colour) -> Colour:
     return (x / length, y / length, z / length) if length > 1e-6 else (1.0, 0.0, 0.0)
 
 
-def at_hour(by_day: Lighting, by_night: Lighting, hour: float) -> Lighting:
-    """Return the light of an hour, 0 to 24: of the day, the night, or the twilight between them.
-
-    Args:
-        by_day: Light and air while the sun is up.
-        by_night: The same while it is deep below the horizon.
-        hour: The hour.
-    """
+def at_hour(
+    by_day: Lighting,  # Light and air while the sun is up
+    by_night: Lighting,  # The same while it is deep below the horizon
+    hour: float,  # The hour
+) -> Lighting:
+    """Return the light of an hour, 0 to 24: of the day, the night, or the twilight between them."""
     direction = sun_at(hour)
     height = math.degrees(float(exact.asin(direction[2])))
     if height >= _LOW_SUN:

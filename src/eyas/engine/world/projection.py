@@ -38,12 +38,11 @@ class Projection:
         place = f"+lat_0={self.latitude:.7f} +lon_0={self.longitude:.7f}"
         return f"+proj=tmerc {place} +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +no_defs"
 
-    def metres(self, places: ArrayLike) -> _Numbers:
-        """Return places as east and north at whole millimetres [m], shape (K, 2).
-
-        Args:
-            places: Longitude and latitude in degrees, shape (K, 2).
-        """
+    def metres(
+        self,
+        places: ArrayLike,  # Longitude and latitude in degrees, shape (K, 2)
+    ) -> _Numbers:
+        """Return places as east and north at whole millimetres [m], shape (K, 2)."""
         degrees = np.asarray(places, np.float64).reshape(-1, 2)
         return rounded(np.stack(self._metres(degrees[:, 0], degrees[:, 1]), axis=1))
 
@@ -64,12 +63,11 @@ class Projection:
         bow = square / 2 + (5 - t + 9 * c + 4 * c * c) * (square * square) / 24
         return east, _meridian(phi) - _start(self.latitude) + n * slope * bow
 
-    def degrees(self, points: ArrayLike) -> _Numbers:
-        """Return the longitude and latitude of points, in degrees, shape (K, 2).
-
-        Args:
-            points: East and north [m], shape (K, 2).
-        """
+    def degrees(
+        self,
+        points: ArrayLike,  # East and north [m], shape (K, 2)
+    ) -> _Numbers:
+        """Return the longitude and latitude of points, in degrees, shape (K, 2)."""
         goal = np.asarray(points, np.float64).reshape(-1, 2)
         if len(goal) == 1:  # arrays of one number are slow to compute with
             return np.array([self._degrees(*goal[0].tolist())])

@@ -161,13 +161,11 @@ _HIDDEN = {"demand": "keep_alive", "drivers": "hiding"}
 
 
 def flown(
-    make: Callable[[np.random.Generator], Pilot], batches: range, seed: int
+    make: Callable[[np.random.Generator], Pilot],
+    batches: range,  # Numbers of the batches; each depends on its number and the seed only
+    seed: int,
 ) -> Iterator[Shots]:
-    """Yield the pictures of batches of flights.
-
-    Args:
-        batches: Numbers of the batches; each depends on its number and the seed only.
-    """
+    """Yield the pictures of batches of flights."""
     for number in batches:
         rng = stream(seed, "tracking flights", number)
         pilot = make(rng)

@@ -50,12 +50,11 @@ class Shots(NamedTuple):
         return cls(*(np.concatenate([padded(each) for each in part]) for part in parts))
 
 
-def projected(state: Snapshot, size: tuple[int, int]) -> Floats:
-    """Return where the targets' centres are in pictures of 4 to 3, shape (N, 2).
-
-    Args:
-        size: Height and width [pixels].
-    """
+def projected(
+    state: Snapshot,
+    size: tuple[int, int],  # Height and width [pixels]
+) -> Floats:
+    """Return where the targets' centres are in pictures of 4 to 3, shape (N, 2)."""
     cameras = state.cameras
     away = state.targets.centre - cameras.position
     forward, left, up = np.moveaxis(exact.product(away[:, None], cameras.rotation)[:, 0], -1, 0)

@@ -50,13 +50,12 @@ class Loss(NamedTuple):
 
 
 def lesson(
-    scenes: Scenes, rows: NDArray[np.int64], grid: tuple[int, int], rng: np.random.Generator
+    scenes: Scenes,
+    rows: NDArray[np.int64],  # Which are chosen, shape (B,)
+    grid: tuple[int, int],
+    rng: np.random.Generator,
 ) -> Lesson:
-    """Return some pictures, mirrored, lighter or darker.
-
-    Args:
-        rows: Which are chosen, shape (B,).
-    """
+    """Return some pictures, mirrored, lighter or darker."""
     vehicles = _chosen(scenes.vehicles, rows)
     picture, mirror = _changed(scenes.picture[rows].astype(np.float32), rng)
     size = np.array(picture.shape[:1:-1], np.float32)

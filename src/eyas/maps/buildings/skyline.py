@@ -23,15 +23,14 @@ def ground_areas(count: int, rng: np.random.Generator) -> NDArray[np.float64]:
 
 
 def storeys(
-    side: NDArray[np.float64], base: NDArray[np.int64], rng: np.random.Generator
+    side: NDArray[np.float64],  # Square root of the footprints' areas [m], shape (B,)
+    base: NDArray[np.int64],
+    rng: np.random.Generator,
 ) -> NDArray[np.int64]:
     """Return the number of storeys of each building, counted from the ground.
 
     The drawn heights are assigned at random, with better chances for wide buildings and towers; a
     building that carries a tower is low, and none is more than 7 times as high as wide.
-
-    Args:
-        side: Square root of the footprints' areas [m], shape (B,).
     """
     is_tower = base >= 0
     carries = np.isin(np.arange(len(side)), base[is_tower])

@@ -46,13 +46,12 @@ class Lot:
         return (west + east) / 2, (south + north) / 2
 
 
-def divided(block: Box, core: float, rng: np.random.Generator) -> list[Lot]:
-    """Return the lots of a block.
-
-    Args:
-        block: Ground within the building lines, in the frame of the grid [m].
-        core: 0 in an old quarter to 1 among the towers, where lots are larger.
-    """
+def divided(
+    block: Box,  # Ground within the building lines, in the frame of the grid [m]
+    core: float,  # 0 in an old quarter to 1 among the towers, where lots are larger
+    rng: np.random.Generator,
+) -> list[Lot]:
+    """Return the lots of a block."""
     west, south, east, north = block
     lots: list[Lot] = []
     at = west

@@ -84,12 +84,11 @@ def storeys(lots: Sequence[Lot], rng: np.random.Generator) -> NDArray[np.int64]:
     return np.maximum(np.round(made / STOREY), 2).astype(np.int64)
 
 
-def facade_of(height: float, rng: np.random.Generator) -> tuple[str, Tint]:
-    """Return the facade of a building and the factor on its colour.
-
-    Args:
-        height: Height of the building [m].
-    """
+def facade_of(
+    height: float,  # Height of the building [m]
+    rng: np.random.Generator,
+) -> tuple[str, Tint]:
+    """Return the facade of a building and the factor on its colour."""
     table = _OLD if height < 36.0 else _MIDDLE if height < 110.0 else _TALL
     shares = np.array([odds for _, odds in table])
     kind = table[int(rng.choice(len(table), p=shares / shares.sum()))][0]
@@ -118,12 +117,11 @@ _STEPPED = ("facade_brick", "facade_stone", "facade_concrete", "facade_plaster",
 _PYRAMID = 0.4  # Share of the stepped towers with a roof that rises to a point
 
 
-def inner_blocks(grid: Grid, sharp: list[shapely.Polygon]) -> dict[Cell, Box]:
-    """Return the ground between the kerbs of each block, in the frame of the grid [m].
-
-    Args:
-        sharp: Ground between streets, with sharp corners, world frame [m].
-    """
+def inner_blocks(
+    grid: Grid,
+    sharp: list[shapely.Polygon],  # Ground between streets, with sharp corners, world frame [m]
+) -> dict[Cell, Box]:
+    """Return the ground between the kerbs of each block, in the frame of the grid [m]."""
     found: dict[Cell, Box] = {}
     for block in sharp:
         west, south, east, north = turned(block, -grid.turn).bounds

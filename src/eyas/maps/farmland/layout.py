@@ -64,13 +64,12 @@ class FieldLot:
     shade: float  # Factor on its colour, near 1
 
 
-def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[FieldLot]:
-    """Return the fields in the cells and in a ring around them; neighbours differ.
-
-    Args:
-        x: Middles of the roads that run north, from the west [m].
-        y: Middles of the roads that run east, from the south [m].
-    """
+def lay_out(
+    x: Sequence[float],  # Middles of the roads that run north, from the west [m]
+    y: Sequence[float],  # Middles of the roads that run east, from the south [m]
+    rng: np.random.Generator,
+) -> list[FieldLot]:
+    """Return the fields in the cells and in a ring around them; neighbours differ."""
     columns, rows = _spans(x), _spans(y)
     made: list[FieldLot] = []
     kinds = np.full((len(columns) + 1, len(rows) + 1), -1)

@@ -70,12 +70,11 @@ def copies_of(scene: Scene) -> Iterator[Copies]:
         yield Copies(name, ObjectClass(kind), prototype, fixtures.pose[ours])
 
 
-def prototypes_of(fixtures: Fixtures, detail: int) -> list[Mesh]:
-    """Return the mesh of each prototype, without vertices that no triangle has.
-
-    Args:
-        detail: Level of detail; 0 is the finest.
-    """
+def prototypes_of(
+    fixtures: Fixtures,
+    detail: int,  # Level of detail; 0 is the finest
+) -> list[Mesh]:
+    """Return the mesh of each prototype, without vertices that no triangle has."""
     chosen = [levels[min(detail, len(levels) - 1)] for levels in fixtures.levels]
     return [subset(mesh, np.arange(len(mesh.triangles))) for mesh in chosen]
 
@@ -103,12 +102,11 @@ class Welded(NamedTuple):
     across: Floats  # Unit vectors on the faces, shape (T, 3)
 
 
-def welded(mesh: Mesh, step: float = 0.0) -> Welded:
-    """Return a mesh with every point once, without triangles that have no area.
-
-    Args:
-        step: Numbers are rounded to whole multiples of this; 0: they stay as they are.
-    """
+def welded(
+    mesh: Mesh,
+    step: float = 0.0,  # Numbers are rounded to whole multiples of this; 0: they stay as they are
+) -> Welded:
+    """Return a mesh with every point once, without triangles that have no area."""
     points, where = distinct(_rounded(mesh.positions, step))
     faces = where[mesh.triangles]
     corners = points.astype(np.float64)[faces]

@@ -53,12 +53,11 @@ class PageEntry:
         return f"{self.map_name}-{self.weather}"
 
 
-def page(shown: Sequence[PageEntry], sheet: str) -> str:
-    """Return the page, which needs only the pictures beside it.
-
-    Args:
-        sheet: Name of the file of the contact sheet.
-    """
+def page(
+    shown: Sequence[PageEntry],
+    sheet: str,  # Name of the file of the contact sheet
+) -> str:
+    """Return the page, which needs only the pictures beside it."""
     what = " &middot; ".join(f'<a href="#{_id(one)}">{_heading(one)}</a>' for one in shown)
     sections = "\n".join(_section(one) for one in shown)
     return f"""<!DOCTYPE html>

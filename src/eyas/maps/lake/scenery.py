@@ -27,12 +27,11 @@ _WITH_JETTY = 0.6  # Share of the waters near roads that have a jetty
 _ASHORE = 0.4  # Share of the jetties with another boat on land
 
 
-def water_in(shape: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon:
-    """Return the water in a basin: within its outline, with round corners and an uneven shore.
-
-    Args:
-        shape: The basin [m].
-    """
+def water_in(
+    shape: shapely.Polygon,  # The basin [m]
+    rng: np.random.Generator,
+) -> shapely.Polygon:
+    """Return the water in a basin: within its outline, with round corners and an uneven shore."""
     cut, kept, depth = _POND if shape.area < 2e4 else _LAKE
     smooth = shapely.buffer(shapely.buffer(shape, -cut, quad_segs=4), kept, quad_segs=6)
     inside = shapely.buffer(shape, -0.3, join_style="mitre")

@@ -62,13 +62,12 @@ def asphalt(area: shapely.Geometry, *, light: bool = False) -> Flat:
     return Flat(area=area, z=0.0, cover=cover, sides=material("concrete"))
 
 
-def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> list[Flat]:
-    """Return the paving around buildings, level with the lawn.
-
-    Args:
-        areas: Paving of each building [m].
-        turn: Direction of the streets [rad].
-    """
+def yards(
+    areas: Sequence[shapely.Geometry],  # Paving of each building [m]
+    turn: float,  # Direction of the streets [rad]
+    rng: np.random.Generator,
+) -> list[Flat]:
+    """Return the paving around buildings, level with the lawn."""
     kinds = rng.choice(len(_YARDS), len(areas)).tolist()
     return [
         Flat(area=area, cover=_YARDS[kind], turn=turn, cells="whole")
@@ -141,24 +140,22 @@ def plain(
     return flat_polygons(pieces, z, cover, TEXTURES[cover.texture])
 
 
-def far_plain(floor: tuple[float, float], cover: Material) -> Mesh:
-    """Return the ground beyond a floor, up to the horizon.
-
-    Args:
-        floor: Extent of the floor [m].
-    """
+def far_plain(
+    floor: tuple[float, float],  # Extent of the floor [m]
+    cover: Material,
+) -> Mesh:
+    """Return the ground beyond a floor, up to the horizon."""
     ring = shapely.difference(rectangle(_FAR, _FAR), rectangle(*floor))
     pieces = split_on_grid(ring, _FAR_CELL)
     return flat_polygons(pieces, FLOOR_HEIGHT - _BELOW, cover, TEXTURES[cover.texture])
 
 
-def blob(middle: NDArray[np.float64], radius: float, rng: np.random.Generator) -> shapely.Polygon:
-    """Return a round shape with an uneven outline, such as a lake.
-
-    Args:
-        middle: Its middle, shape (2,) [m].
-        radius: Its mean radius [m].
-    """
+def blob(
+    middle: NDArray[np.float64],  # Its middle, shape (2,) [m]
+    radius: float,  # Its mean radius [m]
+    rng: np.random.Generator,
+) -> shapely.Polygon:
+    """Return a round shape with an uneven outline, such as a lake."""
     angle = np.linspace(0.0, 2 * np.pi, _CORNERS, endpoint=False)
     phase, swing = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.05, 0.16, (3, 1))
     waves = 1.0 + (swing * exact.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)

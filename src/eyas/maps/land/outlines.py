@@ -31,13 +31,12 @@ def blob(
     )
 
 
-def wavy(shape: shapely.Polygon, depth: float, rng: np.random.Generator) -> shapely.Polygon:
-    """Return a shape whose outline wanders to both sides.
-
-    Args:
-        shape: The shape, with a smooth outline [m].
-        depth: Largest distance from the old outline [m].
-    """
+def wavy(
+    shape: shapely.Polygon,  # The shape, with a smooth outline [m]
+    depth: float,  # Largest distance from the old outline [m]
+    rng: np.random.Generator,
+) -> shapely.Polygon:
+    """Return a shape whose outline wanders to both sides."""
     ring = shapely.get_coordinates(shapely.segmentize(shapely.get_exterior_ring(shape), 5.0))[:-1]
     along = np.linspace(0.0, 2 * np.pi, len(ring), endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (6, 1)), rng.uniform(0.08, 0.25, (6, 1))

@@ -88,12 +88,11 @@ def access_road(
     return max(parts, key=shapely.area)
 
 
-def descent(middle: Points, floor: float) -> Points:
+def descent(
+    middle: Points,  # Centre line of the road so far, shape (K, 3) [m]
+    floor: float,  # z of the ground [m]
+) -> Points:
     """Return the continuation of an elevated road from its end, straight and down to the ground.
-
-    Args:
-        middle: Centre line of the road so far, shape (K, 3) [m].
-        floor: z of the ground [m].
 
     Returns:
         Centre line of the descent, shape (K, 3) [m].

@@ -71,14 +71,13 @@ def relief(
     )
 
 
-def terrain_of(ground: Relief, floor: float, half: float, spacing: float = 4.0) -> Terrain:
-    """Return the raster of a relief.
-
-    Args:
-        floor: z of the floor [m].
-        half: Half the side of the raster [m].
-        spacing: Distance between its points [m].
-    """
+def terrain_of(
+    ground: Relief,
+    floor: float,  # z of the floor [m]
+    half: float,  # Half the side of the raster [m]
+    spacing: float = 4.0,  # Distance between its points [m]
+) -> Terrain:
+    """Return the raster of a relief."""
     count = int(np.ceil(2 * half / spacing)) + 1
     axis = -half + spacing * np.arange(count)
     x, y = (a.ravel() for a in np.meshgrid(axis, axis))
@@ -87,12 +86,11 @@ def terrain_of(ground: Relief, floor: float, half: float, spacing: float = 4.0) 
     return Terrain(floor, rows, -half, -half, spacing)
 
 
-def heights_of(ground: Relief, points: Points) -> Points:
-    """Return the height of a relief above the floor at points, 0 beside it [m].
-
-    Args:
-        points: East and north [m], shape (P, 2).
-    """
+def heights_of(
+    ground: Relief,
+    points: Points,  # East and north [m], shape (P, 2)
+) -> Points:
+    """Return the height of a relief above the floor at points, 0 beside it [m]."""
     corners = ground.corners
     tree = shapely.STRtree(shapely.polygons(corners[..., :2]))
     point, cell = tree.query(shapely.points(points), predicate="intersects")

@@ -28,12 +28,11 @@ _CUTS = 6  # Planes at which a stone has broken
 Array = NDArray[np.float64]
 
 
-def stone_levels(rng: np.random.Generator, look: int) -> Levels:
-    """Return a scatter of stones, the finest level of detail first; the last one is empty.
-
-    Args:
-        look: Kind of rock.
-    """
+def stone_levels(
+    rng: np.random.Generator,
+    look: int,  # Kind of rock
+) -> Levels:
+    """Return a scatter of stones, the finest level of detail first; the last one is empty."""
     share = rng.uniform(0.0, 1.0, _COUNT)
     least, most = _SIZES
     radii = np.sort(least / (1.0 - share * (1.0 - least / most)))[::-1]
@@ -54,12 +53,11 @@ def stone_levels(rng: np.random.Generator, look: int) -> Levels:
     return first(_COUNT, 3), first(5, 0), Mesh.none()
 
 
-def boulder_levels(rng: np.random.Generator, look: int) -> Levels:
-    """Return a boulder with a few stones at its foot, the finest level of detail first.
-
-    Args:
-        look: Kind of rock.
-    """
+def boulder_levels(
+    rng: np.random.Generator,
+    look: int,  # Kind of rock
+) -> Levels:
+    """Return a boulder with a few stones at its foot, the finest level of detail first."""
     cover, radius = _LOOKS[look % len(_LOOKS)], 0.62 * BOULDER
     spots, sizes = rng.uniform(-1.1, 1.1, (5, 2)), rng.uniform(0.08, 0.24, 5)
     shapes = [_breaks(rng) for _ in range(6)]

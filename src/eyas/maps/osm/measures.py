@@ -15,14 +15,13 @@ _FEET = re.compile(r"(\d+(?:\.\d+)?)\s*'\s*(?:(\d+(?:\.\d+)?)\s*\"?)?")
 _LENGTH = re.compile(r"~?\s*(-?\d+(?:[.,]\d+)?)\s*([a-z']*)")
 
 
-def length(tags: Tags, key: str, limits: tuple[float, float], odd: Odd) -> float | None:
-    """Return the length that a tag tells, in metres.
-
-    Args:
-        key: The one to read; absent, odd or outside of the limits: None.
-        limits: Least and largest believable value [m].
-        odd: Told of a value that is not believed.
-    """
+def length(
+    tags: Tags,
+    key: str,  # The one to read; absent, odd or outside of the limits: None
+    limits: tuple[float, float],  # Least and largest believable value [m]
+    odd: Odd,  # Told of a value that is not believed
+) -> float | None:
+    """Return the length that a tag tells, in metres."""
     text = tags.get(key)
     if text is None:
         return None

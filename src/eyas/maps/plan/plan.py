@@ -548,13 +548,12 @@ class MapPlan:
     is complete."""
 
 
-def things(placed: Sequence[Placed], kinds: Sequence[str] = (), solid: str = "") -> Things:
-    """Return the layer of things at their places.
-
-    Args:
-        kinds: Names of kinds that come first, whether any is placed or not.
-        solid: See `Things.solid`.
-    """
+def things(
+    placed: Sequence[Placed],
+    kinds: Sequence[str] = (),  # Names of kinds that come first, whether any is placed or not
+    solid: str = "",  # See `Things.solid`
+) -> Things:
+    """Return the layer of things at their places."""
     names = list(dict.fromkeys([*kinds, *(one.kind for one in placed)]))
     index = {name: number for number, name in enumerate(names)}
     return Things(

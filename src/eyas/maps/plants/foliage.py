@@ -123,19 +123,12 @@ def _brightness(crown: Crown, points: Array, facing: Array) -> Array:
 
 def shell(
     crown: Crown,
-    subdivisions: int,
-    shrink: float,
-    tint: tuple[float, float, float],
-    tiles: float = 2.0,
+    subdivisions: int,  # Subdivisions of its icosphere
+    shrink: float,  # Size of the inside, as a share of the crown
+    tint: tuple[float, float, float],  # Factor on the leaves' colour
+    tiles: float = 2.0,  # Repeats of the texture in the radius
 ) -> Mesh:
-    """Return the dark inside of a crown: one closed surface, seen through gaps between the cards.
-
-    Args:
-        subdivisions: Subdivisions of its icosphere.
-        shrink: Size of the inside, as a share of the crown.
-        tint: Factor on the leaves' colour.
-        tiles: Repeats of the texture in the radius.
-    """
+    """Return the dark inside of a crown: one closed surface, seen through gaps between the cards."""
     mesh = sphere(subdivisions, Material("foliage", tint, Surface.CROWN))
     way = np.asarray(mesh.positions, np.float64)
     reach = np.zeros(len(way))

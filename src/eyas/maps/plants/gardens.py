@@ -121,13 +121,12 @@ def row(
 
 
 def scattered(
-    room: shapely.Geometry, apart: float, density: float, rng: np.random.Generator
+    room: shapely.Geometry,  # The shape [m]
+    apart: float,  # Least distance between two points [m]
+    density: float,
+    rng: np.random.Generator,
 ) -> Points:
     """Return points within a shape.
-
-    Args:
-        room: The shape [m].
-        apart: Least distance between two points [m].
 
     Returns:
         Shape (K, 2) [m].

@@ -67,14 +67,13 @@ class Tunnel:
 
 
 def tunnel_mesh(
-    tunnel: Tunnel, floor: float, outside: Material, inside: Material, rng: np.random.Generator
+    tunnel: Tunnel,
+    floor: float,  # z of the ground [m]
+    outside: Material,
+    inside: Material,  # Material of the opening and of both fronts
+    rng: np.random.Generator,
 ) -> Mesh:
-    """Return the mound over the road and the rock inside of it.
-
-    Args:
-        floor: z of the ground [m].
-        inside: Material of the opening and of both fronts.
-    """
+    """Return the mound over the road and the rock inside of it."""
     at = np.linspace(-0.5, 0.5, _SECTIONS) * tunnel.length
     lumps = _lumps(rng)
     # The ends are lower and uneven, so that no two fronts are alike.

@@ -140,11 +140,10 @@ _PAINT = 0.12  # Width of a line between bays [m]
 Bays = NDArray[np.float64]
 
 
-def bays_in(area: shapely.Geometry) -> tuple[Bays, list[shapely.Polygon]]:
+def bays_in(
+    area: shapely.Geometry,  # The car park in plan view [m]
+) -> tuple[Bays, list[shapely.Polygon]]:
     """Return bays that lie within a car park, and the paint between them.
-
-    Args:
-        area: The car park in plan view [m].
 
     Returns:
         Centre of each bay [m] and heading of a car in it [rad], shape (K, 3); lines [m].

@@ -30,13 +30,12 @@ class Index(NamedTuple):
     bicycles: Block
 
 
-def parked_car(variant: int) -> Levels:
+def parked_car(
+    variant: int,  # Index in `CARS`
+) -> Levels:
     """Return a car, the finest level of detail first.
 
     It stands on the origin and faces along x; lengths are in metres.
-
-    Args:
-        variant: Index in `CARS`.
     """
     return _levels()[variant]
 

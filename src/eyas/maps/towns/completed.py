@@ -114,14 +114,13 @@ _FROM_END = 8.0  # Least distance of lamps from the end of a street [m]
 _CHANCES = ("town trees", "town gardens")
 
 
-def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
+def completed(
+    plan: MapPlan,  # The plan; one without a survey is complete already
+    network: RoadNetwork,  # What SUMO has made of its roads
+) -> MapPlan:
     """Return a plan with layers for all that its survey knows, and for what usually is there.
 
     Its own layers stay in front of them. The same plan is completed in the same way each time.
-
-    Args:
-        plan: The plan; one without a survey is complete already.
-        network: What SUMO has made of its roads.
     """
     known, seed = plan.survey, plan.seed
     if known is None:

@@ -255,13 +255,12 @@ def _speed_error(log: FlightLog, force: Floats, first: int, ahead: float) -> flo
     return _root_mean_square(missed[ends[inside]] - missed[starts[inside]])
 
 
-def lines(fit: Fit, mass: float | None, thrust_constant: float | None) -> Iterator[str]:
-    """Yield lines that tell a fit.
-
-    Args:
-        mass: Of the drone, where it is known [kg].
-        thrust_constant: Thrust of a rotor over its squared rate, where it is known.
-    """
+def lines(
+    fit: Fit,
+    mass: float | None,  # Of the drone, where it is known [kg]
+    thrust_constant: float | None,  # Thrust of a rotor over its squared rate, where it is known
+) -> Iterator[str]:
+    """Yield lines that tell a fit."""
     yield f"flight of {fit.seconds:.1f} s at {fit.rate:.0f} Hz; the last quarter is held out"
     yield _row("thrust / (mass rate^2)", fit.thrust, "m")
     yield _row("drag area / mass", fit.drag, "m^2/kg")

@@ -71,12 +71,10 @@ def of_angles(roll: float, pitch: float, yaw: float) -> Quaternion:
     )
 
 
-def camera_angles(rotation: NDArray[np.float64]) -> Vector:
-    """Return roll to the right, pitch up and yaw clockwise from north of a camera [rad].
-
-    Args:
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-    """
+def camera_angles(
+    rotation: NDArray[np.float64],  # Camera to world; columns forward, left, up, shape (3, 3)
+) -> Vector:
+    """Return roll to the right, pitch up and yaw clockwise from north of a camera [rad]."""
     east, north, up = (float(part) for part in rotation[:, 0])
     pitch = float(exact.asin(min(max(up, -1.0), 1.0)))
     roll = float(exact.atan2(rotation[2, 1], rotation[2, 2]))

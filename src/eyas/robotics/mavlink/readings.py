@@ -214,16 +214,14 @@ class Instant:
         return *geodesy.degrees(place[0], place[1]), geodesy.altitude + place[2]
 
     def place_of(
-        self, latitude: float, longitude: float, altitude: float, *, relative: bool
+        self,
+        latitude: float,  # [degrees]
+        longitude: float,  # [degrees]
+        altitude: float,  # Above mean sea level, or above the origin if `relative` [m]
+        *,
+        relative: bool,  # As above
     ) -> Vector:
-        """Return a place on the earth as one of the world [m].
-
-        Args:
-            latitude: [degrees]
-            longitude: [degrees]
-            altitude: Above mean sea level, or above the origin if `relative` [m].
-            relative: As above.
-        """
+        """Return a place on the earth as one of the world [m]."""
         geodesy = self._readings.geodesy
         up = self.origin[2] if relative else -geodesy.altitude
         return *geodesy.place(latitude, longitude), altitude + up

@@ -196,14 +196,13 @@ class McapStorage(Storage):
         self._part.unlink(missing_ok=True)
 
 
-def described_bag(file: str, kind: str, topics: Sequence[Topic], frames: int) -> bytes:
-    """Return the content of `metadata.yaml`. It is JSON, which is YAML too.
-
-    Args:
-        file: Name of the bag's file.
-        topics: All topics, with the times of their messages.
-        frames: Number of frames; ours, among the data that anyone may add.
-    """
+def described_bag(
+    file: str,  # Name of the bag's file
+    kind: str,
+    topics: Sequence[Topic],  # All topics, with the times of their messages
+    frames: int,  # Number of frames; ours, among the data that anyone may add
+) -> bytes:
+    """Return the content of `metadata.yaml`. It is JSON, which is YAML too."""
     times = [time for topic in topics for time in topic.times]
     first, last = min(times, default=0), max(times, default=0)
     span: dict[str, Any] = {

@@ -78,12 +78,11 @@ def optical_matrix(camera: CameraPose) -> Floats:
     return matrix
 
 
-def picture_box(box: NDArray[np.int32]) -> tuple[float, float, float, float]:
+def picture_box(
+    box: NDArray[np.int32],  # Left, top, right, bottom, the last two exclusive, shape (4,)
+) -> tuple[float, float, float, float]:
     """Return the centre and the size of a box [pixels], x, y, width, height; the centre of pixel
     (0, 0) is at (0, 0).
-
-    Args:
-        box: Left, top, right, bottom, the last two exclusive, shape (4,).
     """
     left, top, right, bottom = box.tolist()
     return (

@@ -31,11 +31,10 @@ _VISION = {
 """Fields of vision_msgs 4, as in ROS 2 from Humble on; `rosbags` does not have them."""
 
 
-def message_types(purpose: str) -> "Typestore":
+def message_types(
+    purpose: str,  # What needs them, for the message of the error
+) -> "Typestore":
     """Return the types: those of ROS 2 Jazzy, which are the same from Humble to Lyrical.
-
-    Args:
-        purpose: What needs them, for the message of the error.
 
     Raises:
         MissingExtraError: The extra `ros` is not installed.

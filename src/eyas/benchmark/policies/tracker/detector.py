@@ -106,14 +106,13 @@ class Detector:
         return TargetDetection(place, spread, belief, keys[np.arange(len(best)), best], ahead)
 
 
-def _moments(shares: Floats, places: Floats) -> tuple[Floats, Floats]:
+def _moments(
+    shares: Floats,  # Of the cells, which add up to 1, shape (N, C)
+    places: Floats,  # Output of the network, shape (N, C, 3)
+) -> tuple[Floats, Floats]:
     """Return the mean of places, (N, 2), and its standard deviation in each axis, (N,).
 
     Of a target that is half hidden the cells disagree, each surer of its own place than it may be.
-
-    Args:
-        shares: Of the cells, which add up to 1, shape (N, C).
-        places: Output of the network, shape (N, C, 3).
     """
     where = places[..., :2]
     mean = (shares[..., None] * where).sum(axis=1)

@@ -60,13 +60,12 @@ class MotionFilter:
         self._variance[rows, _VELOCITY, _VELOCITY] = np.square(speed)
         self._variance[rows, _ACCELERATION, _ACCELERATION] = np.square(self.acceleration[rows])
 
-    def stop(self, rows: Rows, speed: float) -> None:
-        """Expect K targets to stand or to move from where they are now, in any direction.
-
-        Args:
-            rows: Which they are, shape (K,).
-            speed: Standard deviation of their velocities [m/s].
-        """
+    def stop(
+        self,
+        rows: Rows,  # Which they are, shape (K,)
+        speed: float,  # Standard deviation of their velocities [m/s]
+    ) -> None:
+        """Expect K targets to stand or to move from where they are now, in any direction."""
         spread = self._variance[rows, _PLACE, _PLACE]
         still = np.zeros((len(rows), 2))
         self.begin(rows, self.place[rows], still, 0.0, np.full(len(rows), speed))

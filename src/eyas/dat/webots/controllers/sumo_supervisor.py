@@ -18,16 +18,12 @@ _AWAY = 10_000.0
 
 
 def pose_of(
-    front: tuple[float, float], angle: float, length: float, offset: tuple[float, float]
+    front: tuple[float, float],  # Of its front bumper, as SUMO has it [m]
+    angle: float,  # Of SUMO, clockwise from north [deg]
+    length: float,  # Of the vehicle [m]
+    offset: tuple[float, float],  # Of the network [m]
 ) -> tuple[float, float, float]:
-    """Return east and north of a vehicle's middle [m] and its heading [rad].
-
-    Args:
-        front: Of its front bumper, as SUMO has it [m].
-        angle: Of SUMO, clockwise from north [deg].
-        length: Of the vehicle [m].
-        offset: Of the network [m].
-    """
+    """Return east and north of a vehicle's middle [m] and its heading [rad]."""
     yaw = math.radians(90.0 - angle)
     x = front[0] - offset[0] - 0.5 * length * math.cos(yaw)
     y = front[1] - offset[1] - 0.5 * length * math.sin(yaw)

@@ -26,13 +26,11 @@ class Content(NamedTuple):
     arrays: list[Array]
 
 
-def array_file(content: Content, name: str) -> list[bytes | memoryview]:
-    """Return the pieces of a file, in order.
-
-    Args:
-        content: What it holds.
-        name: The name that it gets; under another one, it is not read.
-    """
+def array_file(
+    content: Content,  # What it holds
+    name: str,  # The name that it gets; under another one, it is not read
+) -> list[bytes | memoryview]:
+    """Return the pieces of a file, in order."""
     table = [[array.dtype.str, array.shape] for array in content.arrays]
     return packed([name, table, content.flat], map(_bytes_of, content.arrays))
 

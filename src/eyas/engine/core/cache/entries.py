@@ -64,13 +64,12 @@ def entries(folder: Path) -> list[Entry]:
     return sorted(found, key=lambda entry: entry.used)
 
 
-def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) -> None:
+def write_entry(
+    path: Path,  # `<folder>/<kind>/<name>`, with a name of the form of its kind
+    pieces: Iterable[bytes | memoryview],  # Content of the entry
+    limit: int,  # Largest size of the cache [bytes]
+) -> None:
     """Write an entry completely or not at all; remove others if the cache becomes too large.
-
-    Args:
-        path: `<folder>/<kind>/<name>`, with a name of the form of its kind.
-        pieces: Content of the entry.
-        limit: Largest size of the cache [bytes].
 
     Raises:
         OSError: The file cannot be written.

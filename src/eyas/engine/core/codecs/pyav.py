@@ -8,11 +8,10 @@ from types import ModuleType
 from eyas.engine.core.errors import MissingExtraError
 
 
-def pyav(purpose: str) -> ModuleType:
+def pyav(
+    purpose: str,  # What needs it, for example `video.writers: 'mp4'`
+) -> ModuleType:
     """Return the module `av`.
-
-    Args:
-        purpose: What needs it, for example `video.writers: 'mp4'`.
 
     Raises:
         MissingExtraError: It is not installed.

@@ -60,15 +60,13 @@ class Build(Config):
         return sha256(said.encode()).hexdigest()[:12]
 
     def difference(
-        self, other: "Build", *, without: Collection[str] = (), libraries: bool = False
+        self,
+        other: "Build",  # The other build
+        *,
+        without: Collection[str] = (),  # Rooms, and houses with all their rooms, that do not matter
+        libraries: bool = False,  # Whether the libraries of networks matter
     ) -> str:
-        """Return what differs from another build in words; nothing if nothing does.
-
-        Args:
-            other: The other build.
-            without: Rooms, and houses with all their rooms, that do not matter.
-            libraries: Whether the libraries of networks matter.
-        """
+        """Return what differs from another build in words; nothing if nothing does."""
         rooms = sorted(self.rooms.keys() | other.rooms.keys())
         differ = [room for room in rooms if self.rooms.get(room) != other.rooms.get(room)]
         differences = [room for room in differ if not _lies_in(room, without)]

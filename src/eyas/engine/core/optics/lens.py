@@ -247,13 +247,11 @@ def coefficients(lens: Lens) -> list[float]:
     return [lens.k1, lens.k2, lens.p1, lens.p2, lens.k3]
 
 
-def places(lens: Lens, directions: Floats) -> Floats:
-    """Return where directions are shown on the plane behind the lens, right and down, (..., 2).
-
-    Args:
-        lens: The lens.
-        directions: Right, down and ahead, see `distorted`, shape (..., 3).
-    """
+def places(
+    lens: Lens,  # The lens
+    directions: Floats,  # Right, down and ahead, see `distorted`, shape (..., 3)
+) -> Floats:
+    """Return where directions are shown on the plane behind the lens, right and down, (..., 2)."""
     place = np.empty((*directions.shape[:-1], 2))
     _distort_all(lens, np.array(directions.reshape(-1, 3), np.float64), place.reshape(-1, 2))
     return place
@@ -292,15 +290,12 @@ def project(
 
 
 def rays(
-    rotation: ArrayLike, size: tuple[int, int], fields: tuple[float, float | None], lens: Lens
+    rotation: ArrayLike,  # Camera to world; columns forward, left, up, shape (3, 3)
+    size: tuple[int, int],  # Width and height of the picture [pixels]
+    fields: tuple[float, float | None],  # See `project`
+    lens: Lens,  # The lens
 ) -> Floats:
     """Return the direction of each pixel's centre: it shows the point `position + depth * ray`.
-
-    Args:
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        size: Width and height of the picture [pixels].
-        fields: See `project`.
-        lens: The lens.
 
     Returns:
         Directions, world frame, of length 1 along the optical axis, shape (height, width, 3); NaN
@@ -328,14 +323,12 @@ def _focal(size: tuple[int, int], fields: tuple[float, float | None]) -> tuple[f
     return across, across if fields[1] is None else pinhole.focal_length(size[1], fields[1])
 
 
-def widest(lens: Lens, size: tuple[float, float], focal: tuple[float, float]) -> float:
-    """Return the largest tangent from the optical axis, aside or upright, that a picture shows.
-
-    Args:
-        lens: The lens.
-        size: Width and height of the picture [pixels].
-        focal: Focal length along rows and along columns [pixels].
-    """
+def widest(
+    lens: Lens,  # The lens
+    size: tuple[float, float],  # Width and height of the picture [pixels]
+    focal: tuple[float, float],  # Focal length along rows and along columns [pixels]
+) -> float:
+    """Return the largest tangent from the optical axis, aside or upright, that a picture shows."""
     (width, height), (column, row) = size, principal_point(lens, *size)
     edge = np.linspace(0.0, 1.0, 9)
     sides = np.concatenate(

@@ -16,13 +16,11 @@ def focal_length(width: int, fov: float) -> float:
     return float(0.5 * width / exact.tan(0.5 * fov))
 
 
-def field_along(fov: float, ratio: float) -> float:
-    """Return the field of view along the other sides of a picture [rad].
-
-    Args:
-        fov: Field of view along two sides [rad].
-        ratio: Length of the other sides over the length of these.
-    """
+def field_along(
+    fov: float,  # Field of view along two sides [rad]
+    ratio: float,  # Length of the other sides over the length of these
+) -> float:
+    """Return the field of view along the other sides of a picture [rad]."""
     return float(2.0 * exact.atan(exact.tan(0.5 * fov) * ratio))
 
 
@@ -41,24 +39,15 @@ def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:
 
 
 def project(
-    points: ArrayLike,
-    position: ArrayLike,
-    rotation: ArrayLike,
-    width: int,
-    height: int,
-    fov: float,
-    vertical_fov: float | None = None,
+    points: ArrayLike,  # World frame [m], shape (..., 3)
+    position: ArrayLike,  # Optical centre, world frame [m], shape (3,)
+    rotation: ArrayLike,  # Camera to world; columns forward, left, up, shape (3, 3)
+    width: int,  # Width of the picture [pixels]
+    height: int,  # Height of the picture [pixels]
+    fov: float,  # Horizontal field of view [rad]
+    vertical_fov: float | None = None,  # Vertical field of view [rad]; None for square pixels
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return where points appear in a picture.
-
-    Args:
-        points: World frame [m], shape (..., 3).
-        position: Optical centre, world frame [m], shape (3,).
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        width: Width of the picture [pixels].
-        height: Height of the picture [pixels].
-        fov: Horizontal field of view [rad].
-        vertical_fov: Vertical field of view [rad]; None for square pixels.
 
     Returns:
         Column and row [pixels] (pixel (0, 0) has its centre at (0.5, 0.5)) and the distance along
@@ -76,16 +65,13 @@ def project(
 
 
 def rays(
-    rotation: ArrayLike, width: int, height: int, fov: float, vertical_fov: float | None = None
+    rotation: ArrayLike,  # Camera to world; columns forward, left, up, shape (3, 3)
+    width: int,  # Width of the picture [pixels]
+    height: int,  # Height of the picture [pixels]
+    fov: float,  # Horizontal field of view [rad]
+    vertical_fov: float | None = None,  # Vertical field of view [rad]; None for square pixels
 ) -> NDArray[np.float64]:
     """Return the direction of each pixel's centre: it shows the point `position + depth * ray`.
-
-    Args:
-        rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        width: Width of the picture [pixels].
-        height: Height of the picture [pixels].
-        fov: Horizontal field of view [rad].
-        vertical_fov: Vertical field of view [rad]; None for square pixels.
 
     Returns:
         Directions, world frame, of length 1 along the optical axis, shape (height, width, 3).

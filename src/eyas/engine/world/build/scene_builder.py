@@ -113,15 +113,12 @@ class SceneBuilder:
         self._cylinders.append((place, radius, bottom, top, owner))
 
     def build(
-        self, network: RoadNetwork, lamps: Lamps | None = None, horizon: Horizon | None = None
+        self,
+        network: RoadNetwork,  # The roads
+        lamps: Lamps | None = None,  # Street lamps; None: none
+        horizon: Horizon | None = None,  # Hills beyond the map; None: those of most maps
     ) -> Scene:
-        """Return the scene of everything that was added.
-
-        Args:
-            network: The roads.
-            lamps: Street lamps; None: none.
-            horizon: Hills beyond the map; None: those of most maps.
-        """
+        """Return the scene of everything that was added."""
         counts = [len(mesh.triangles) for mesh in self._meshes]
         poses = [pose for _, pose, _ in self._copies]
         return Scene(

@@ -55,12 +55,10 @@ def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
     return f"traffic{town}-seed-{traffic_seed}.npz"
 
 
-def drivers_file(drivers: str) -> str:
-    """Return the file in a map's package with the canonical traffic of drivers who want to be lost.
-
-    Args:
-        drivers: How they behave, a value of `traffic.drivers`.
-    """
+def drivers_file(
+    drivers: str,  # How they behave, a value of `traffic.drivers`
+) -> str:
+    """Return the file in a map's package with the canonical traffic of drivers who want to be lost."""
     return f"traffic-{drivers}.npz"
 
 

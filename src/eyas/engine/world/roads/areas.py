@@ -116,13 +116,10 @@ def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Po
 
 
 def blocks(
-    roads: shapely.Geometry, extent: shapely.Polygon
+    roads: shapely.Geometry,  # Asphalt [m]
+    extent: shapely.Polygon,  # The whole floor [m]
 ) -> tuple[list[shapely.Polygon], list[shapely.Polygon]]:
     """Return the ground between roads.
-
-    Args:
-        roads: Asphalt [m].
-        extent: The whole floor [m].
 
     Returns:
         Blocks with roads all round, and the ground outside the outer roads.
@@ -132,13 +129,11 @@ def blocks(
     return closed, [part for part in left_over if part.exterior.intersects(extent.exterior)]
 
 
-def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.Polygon]:
-    """Return a shape cut along the lines of a square grid through the origin.
-
-    Args:
-        shape: Polygons [m].
-        cell: Distance between the lines [m].
-    """
+def split_on_grid(
+    shape: shapely.Geometry,  # Polygons [m]
+    cell: float = GRID,  # Distance between the lines [m]
+) -> list[shapely.Polygon]:
+    """Return a shape cut along the lines of a square grid through the origin."""
     if shapely.get_num_coordinates(shape) < _FEW:
         return _split(shape, cell)
     # First into large squares: cutting small ones out of everything at once takes far longer.
@@ -176,17 +171,13 @@ def surface(
 
 
 def kerbstones(
-    shape: shapely.Geometry, z: float, road: shapely.Geometry, material: Material, tile: float
+    shape: shapely.Geometry,  # Polygons beside the road [m]
+    z: float,  # Height [m]
+    road: shapely.Geometry,  # Asphalt [m]
+    material: Material,  # Material of the stones, whose rows run along the edge
+    tile: float,  # Size of one repeat of the texture [m]
 ) -> Mesh:
-    """Return the tops of kerbs: their stones follow the edge of the road, joints across it.
-
-    Args:
-        shape: Polygons beside the road [m].
-        z: Height [m].
-        road: Asphalt [m].
-        material: Material of the stones, whose rows run along the edge.
-        tile: Size of one repeat of the texture [m].
-    """
+    """Return the tops of kerbs: their stones follow the edge of the road, joints across it."""
     flat = surface(shape, z, material, tile)
     corners = flat.positions[flat.triangles].astype(np.float64)
     if len(corners) == 0:

@@ -13,16 +13,15 @@ TURN = 7.5
 Points = NDArray[np.float64]
 
 
-def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
+def arc(
+    before: Points,  # Any point on the straight piece before the corner
+    corner: Points,  # Point where the straight pieces would meet
+    after: Points,  # Any point on the straight piece after the corner
+    radius: float,  # Radius of the arc [m]
+) -> Points:
     """Return an arc that touches both sides of a corner, in steps of 5° or less, shape (K, 2) [m].
 
     Its points are at whole millimetres.
-
-    Args:
-        before: Any point on the straight piece before the corner.
-        corner: Point where the straight pieces would meet.
-        after: Any point on the straight piece after the corner.
-        radius: Radius of the arc [m].
     """
     back, onwards = unit(before - corner), unit(after - corner)
     half = 0.5 * exact.acos(np.clip(dot(back, onwards), -1.0, 1.0))

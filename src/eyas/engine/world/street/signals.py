@@ -94,12 +94,11 @@ def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     return concatenate([_steel(8), *heads]), concatenate([_steel(3), *heads[:-1]])
 
 
-def lens_levels(*, covers: bool = False) -> tuple[tuple[Mesh, ...], ...]:
-    """Return the lenses that shine, over those of `signal_levels`, for each aspect.
-
-    Args:
-        covers: Whether they hide amber that shines there and should not.
-    """
+def lens_levels(
+    *,
+    covers: bool = False,  # Whether they hide amber that shines there and should not
+) -> tuple[tuple[Mesh, ...], ...]:
+    """Return the lenses that shine, over those of `signal_levels`, for each aspect."""
     levels = []
     for shining in _ASPECTS:
         stuffs = {lens: _SHINING[lens] for lens in shining}

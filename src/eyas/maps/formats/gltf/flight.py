@@ -37,12 +37,11 @@ _TINTS = {
 _SIDES = np.array([(axis, sign) for axis in range(3) for sign in (-1.0, 1.0)])
 
 
-def box_mesh(size: tuple[float, float, float], kind: ObjectClass) -> Mesh:
-    """Return a box about the origin, length along x, width along y, in the colour of a class.
-
-    Args:
-        size: Length, width, height [m].
-    """
+def box_mesh(
+    size: tuple[float, float, float],  # Length, width, height [m]
+    kind: ObjectClass,
+) -> Mesh:
+    """Return a box about the origin, length along x, width along y, in the colour of a class."""
     positions, normals = [], []
     for axis, sign in _SIDES.tolist():
         normal = np.zeros(3)
@@ -81,12 +80,11 @@ def pose_of(subject: Subject) -> tuple[Floats, Floats]:
     return subject.position - motion.rise * np.array([0.0, 0.0, 1.0]), axes
 
 
-def mover_mesh(subject: Subject, colour: tuple[float, ...]) -> Mesh:
-    """Return the mesh of a moving object in the frame of `pose_of`; its limbs and wheels rest.
-
-    Args:
-        colour: Of its body, sRGB.
-    """
+def mover_mesh(
+    subject: Subject,
+    colour: tuple[float, ...],  # Of its body, sRGB
+) -> Mesh:
+    """Return the mesh of a moving object in the frame of `pose_of`; its limbs and wheels rest."""
     if any(model.name == subject.type for model in MODELS):
         return painted(resting_mesh(subject.type, _MOVER_DETAIL), colour)
     place, axes = pose_of(subject)
