@@ -132,7 +132,7 @@ def time_to_see(
     period: float,  # Time between two looks [s]
     limit: float = SEARCH_LIMIT,  # Longest time [s]
 ) -> float | None:
-    """Return the time from an instant until a target is seen steadily [s]; None: it takes longer."""
+    """Return the time from an instant until a target is seen steadily [s]; None: longer."""
     first, steady = round(end / period), round(_STEADY / period)
     for start in range(first, min(first + round(limit / period), len(sees) - steady) + 1):
         if sees[start : start + steady].all():

@@ -45,7 +45,7 @@ def describe(
     annotation: object,  # The type, as in `FieldInfo.annotation`
     metadata: Sequence[object] = (),  # Its limits, as in `FieldInfo.metadata`
 ) -> str:
-    """Describe the values a field of this type takes, for example `a whole number from 1 to 500`."""
+    """Describe the values a field of this type takes, such as `a whole number from 1 to 500`."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return describe(parts[0], parts[1:])

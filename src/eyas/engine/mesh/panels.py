@@ -34,7 +34,7 @@ def closed(rings: ArrayLike) -> Points:
 def halves(
     quads: ArrayLike,  # Shape (Q, 4, D)
 ) -> Points:
-    """Return the triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then all second."""
+    """Return triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then all second."""
     corners = np.asarray(quads, np.float64)
     return corners[:, _HALVES].swapaxes(0, 1).reshape(-1, 3, corners.shape[2])
 

@@ -67,7 +67,7 @@ def highest(
     mounds: Sequence[Mound],  # The mounds; where some overlap, the highest counts
     points: Points,  # East and north [m], shape (P, 2)
 ) -> tuple[Points, NDArray[np.intp]]:
-    """Return the height of the ground above the floor [m], and the mound that makes it; -1: none."""
+    """Return the height of the ground above the floor [m], and the mound under it; -1: none."""
     best, owner = np.zeros(len(points)), np.full(len(points), -1, np.intp)
     for index, mound in enumerate(mounds):
         near = np.flatnonzero(np.abs(points - (mound.x, mound.y)).max(axis=1) < mound.radius)

@@ -128,7 +128,7 @@ def shell(
     tint: tuple[float, float, float],  # Factor on the leaves' colour
     tiles: float = 2.0,  # Repeats of the texture in the radius
 ) -> Mesh:
-    """Return the dark inside of a crown: one closed surface, seen through gaps between the cards."""
+    """Return the dark inside of a crown: a closed surface, seen through gaps between the cards."""
     mesh = sphere(subdivisions, Material("foliage", tint, Surface.CROWN))
     way = np.asarray(mesh.positions, np.float64)
     reach = np.zeros(len(way))

@@ -58,7 +58,7 @@ def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
 def drivers_file(
     drivers: str,  # How they behave, a value of `traffic.drivers`
 ) -> str:
-    """Return the file in a map's package with the canonical traffic of drivers who want to be lost."""
+    """Return the file in a map's package with the traffic of drivers who want to be lost."""
     return f"traffic-{drivers}.npz"
 
 
