@@ -11,8 +11,7 @@ from art.jointed.model import JointedModel
 from art.packing import columns_of
 from art.parts import levels_of
 from eyas.engine.state.mesh import Mesh
-from eyas.engine.targets.jointed.pose import BODY, PART
-from eyas.engine.targets.jointed.rig import Extents, JointedArrays
+from eyas.engine.targets.jointed.rig import BODY, PART, Extents, JointedArrays
 from eyas.lanes import exact
 
 

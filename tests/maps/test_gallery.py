@@ -18,7 +18,6 @@ from eyas.engine.world.config import WorldConfig
 from eyas.engine.world.maps import MAPS
 from eyas.maps.citystreet import CITYSTREET
 from eyas.maps.gallery import run as gallery
-from eyas.maps.gallery.page import PageEntry, page
 from eyas.maps.gallery.places import (
     all_cars,
     before_spans,
@@ -27,7 +26,7 @@ from eyas.maps.gallery.places import (
     on_open_roads,
     stop,
 )
-from eyas.maps.gallery.run import choose_viewpoints
+from eyas.maps.gallery.run import PageEntry, choose_viewpoints, page
 from eyas.maps.gallery.still import StillScene
 
 pytestmark = pytest.mark.slow  # what its tests share takes long to make

@@ -7,8 +7,7 @@ import shapely.ops
 
 from eyas.engine.behaviours import ground
 from eyas.engine.behaviours.ground import Ground
-from eyas.engine.behaviours.scripted import STROLL
-from eyas.engine.behaviours.waiting import waiting_spots
+from eyas.engine.behaviours.scripted import STROLL, waiting_spots
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.variation import Mirrored, Uniform
 from eyas.engine.sim.scenes import load_scene

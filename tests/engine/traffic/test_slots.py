@@ -1,5 +1,5 @@
 from eyas.engine.traffic.config import VehicleType
-from eyas.engine.traffic.entrance import ActorSlots
+from eyas.engine.traffic.sumo import ActorSlots
 
 CAR, BUS = VehicleType.PASSENGER, VehicleType.BUS
 

@@ -14,14 +14,75 @@ from eyas.engine.core.doors import brought, brought_object, installed
 from eyas.engine.core.errors import ConfigError, EyasError, UnknownNameError
 from eyas.engine.core.rng import checked_seed
 from eyas.engine.envs.batch import Outcome, Truth
-from eyas.engine.envs.choice import EnvChoices, Source, checked_options, chosen_settings, first_seed
+from eyas.engine.envs.choice import (
+    EnvChoices,
+    Source,
+    checked_options,
+    chosen_settings,
+    first_seed,
+    steps_per_action,
+)
 from eyas.engine.envs.information import Info, by_term, masked
 from eyas.engine.envs.mixed_batch import MixedBatch
 from eyas.engine.envs.notebook import LONGEST_STRIP, strip_html
 from eyas.engine.envs.observation import Observation
-from eyas.engine.envs.sub_env import SubEnv
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes.device import Device
+
+# One environment of N, as `call`, `get_attr` and `set_attr` of the vector environment see it.
+
+
+class SubEnv:
+    """One of N environments. It has the attributes that libraries ask for by name, and any that
+    `set_attr` gives it.
+    """
+
+    def __init__(self, whole: "EyasVectorEnv", index: int) -> None:
+        self._whole = whole
+        self.index = index
+        self.metadata, self.render_mode = whole.metadata, whole.render_mode
+        self.observation_space = whole.single_observation_space
+        self.action_space = whole.single_action_space
+
+    @property
+    def config(self) -> EyasConfig:
+        """The settings of this environment."""
+        return self._whole.config_of(self.index)
+
+    @property
+    def spec(self) -> Any:  # noqa: ANN401  # Gymnasium's
+        """The specification, which `gymnasium.make_vec` adds later."""
+        return self._whole.spec
+
+    @property
+    def _max_episode_steps(self) -> int:
+        """Largest number of actions in an episode; LeRobot asks for it by this name."""
+        return -(-self.config.done.total_steps // steps_per_action(self.config))
+
+    @property
+    def task(self) -> str:
+        """The task in words; LeRobot's name."""
+        return "track"
+
+    @property
+    def task_description(self) -> str:
+        """The task in a sentence; LeRobot's name."""
+        world = self.config.world
+        target = self._whole.words_of(self.index)
+        return (
+            f"Keep the target, {target}, in view of the drone's camera "
+            f"({world.map}, {world.weather})."
+        )
+
+    @property
+    def unwrapped(self) -> "SubEnv":
+        """This environment, which wraps none."""
+        return self
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Return the camera's picture in its configured size, shape (H, W, 3)."""
+        return self._whole.render_one(self.index)
+
 
 Mask = NDArray[np.bool_]
 Seed = int | Sequence[int | None] | None
@@ -220,7 +281,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:  # noqa: ANN401  # anything
         """Return an attribute of each environment, or call it if it is a method.
 
-        The attributes are those of `eyas.engine.envs.sub_env.SubEnv`.
+        The attributes are those of `eyas.engine.envs.vector_env.SubEnv`.
         """
         values = self.get_attr(name)
         return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
