@@ -36,14 +36,13 @@ class Audience(Protocol):
 
 
 class FlightThread:
-    """Flies what is in a session, for an audience.
+    """Flies what is in a session, for an audience."""
 
-    Args:
-        session: What is flown.
-        audience: Those who watch.
-    """
-
-    def __init__(self, session: Session, audience: Audience) -> None:
+    def __init__(
+        self,
+        session: Session,  # What is flown
+        audience: Audience,  # Those who watch
+    ) -> None:
         self.session = session
         self._audience, self._faults = audience, FaultLog()
         self._inbox: queue.SimpleQueue[Message | None] = queue.SimpleQueue()

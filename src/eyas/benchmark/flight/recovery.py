@@ -28,14 +28,13 @@ Mask = NDArray[np.bool_]
 
 
 class RecoveryScenario(Scenario):
-    """Covers cameras where the protocol does so, and measures what happens after losses.
-
-    Args:
-        protocol: Their protocol; its variants, if it has some, are lengths of covers.
-    """
+    """Covers cameras where the protocol does so, and measures what happens after losses."""
 
     def __init__(
-        self, batch: EpisodeBatch, protocol: Protocol, episodes: Sequence[EpisodeSpec]
+        self,
+        batch: EpisodeBatch,
+        protocol: Protocol,  # Their protocol; its variants, if it has some, are lengths of covers
+        episodes: Sequence[EpisodeSpec],
     ) -> None:
         super().__init__(batch.count)
         self._batch, self._period = batch, protocol.period

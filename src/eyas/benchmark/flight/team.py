@@ -27,14 +27,13 @@ Mask = NDArray[np.bool_]
 
 
 class TeamScenario(Scenario):
-    """Covers the camera of one drone of each team for a while, and measures what the team sees.
-
-    Args:
-        protocol: Their protocol; its variants are the drones of a team.
-    """
+    """Covers the camera of one drone of each team for a while, and measures what the team sees."""
 
     def __init__(
-        self, batch: EpisodeBatch, protocol: Protocol, episodes: Sequence[EpisodeSpec]
+        self,
+        batch: EpisodeBatch,
+        protocol: Protocol,  # Their protocol; its variants are the drones of a team
+        episodes: Sequence[EpisodeSpec],
     ) -> None:
         super().__init__(batch.count)
         self._batch, self._size, self._period = batch, len(protocol.variants), protocol.period

@@ -104,18 +104,13 @@ Signature = tuple[int, int, int] | None
 
 
 class SettingsSource:
-    """Settings that are read anew when their file has changed.
-
-    Args:
-        path: Their file; None: they never change.
-        load: Reads them again.
-    """
+    """Settings that are read anew when their file has changed."""
 
     def __init__(
         self,
         config: EyasConfig,
-        path: Path | None = None,
-        load: Callable[[], EyasConfig] | None = None,
+        path: Path | None = None,  # Their file; None: they never change
+        load: Callable[[], EyasConfig] | None = None,  # Reads them again
     ) -> None:
         self._config = config
         self._path, self._load = path, load

@@ -129,17 +129,16 @@ class Observer:
         space: The space of one observation.
         visible: Share of each target that the latest picture shows, if it is measured, shape (N,).
 
-    Args:
-        config: What is observed.
-        simulation: The N trackers.
-        measures: Whether targets are measured in the pictures, for teachers.
-
     Raises:
         ConfigError: As `observation_space`.
     """
 
     def __init__(
-        self, config: ObservationConfig, simulation: Simulation, *, measures: bool = False
+        self,
+        config: ObservationConfig,  # What is observed
+        simulation: Simulation,  # The N trackers
+        *,
+        measures: bool = False,  # Whether targets are measured in the pictures, for teachers
     ) -> None:
         sim = simulation.config
         self.space = observation_space(config, sim)

@@ -337,15 +337,14 @@ class PerFrameWriter(Writer):
 
 
 class FrameFiles(EpisodeWriter):
-    """The files of one episode.
+    """The files of one episode."""
 
-    Args:
-        folder: The episode's folder.
-        name: See `PerFrameWriter.name`.
-        encoded: Returns the bytes of a frame's file.
-    """
-
-    def __init__(self, folder: Path, name: str, encoded: Callable[[Frame], bytes]) -> None:
+    def __init__(
+        self,
+        folder: Path,  # The episode's folder
+        name: str,  # See `PerFrameWriter.name`
+        encoded: Callable[[Frame], bytes],  # Returns the bytes of a frame's file
+    ) -> None:
         self._folder, self._name, self._encoded = folder, name, encoded
 
     def add(self, frame: Frame) -> None:

@@ -28,16 +28,14 @@ class Canvas:
         depth: Distance along the optical axis at the pixels' centres [m], shape (H, W).
         unit: Width of the thinnest strokes [pixels], for a picture of this size.
         lens: The lens; None: a pinhole.
-
-    Args:
-        views: The cameras.
-        v: Index of the view.
-        rgb: Its picture, shape (H, W, 3); not changed.
-        depth: As above.
     """
 
     def __init__(
-        self, views: Views, v: int, rgb: NDArray[np.uint8], depth: NDArray[np.float32]
+        self,
+        views: Views,  # The cameras
+        v: int,  # Index of the view
+        rgb: NDArray[np.uint8],  # Its picture, shape (H, W, 3); not changed
+        depth: NDArray[np.float32],  # As above
     ) -> None:
         self.depth = depth
         self.height, self.width = depth.shape

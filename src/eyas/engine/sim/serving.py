@@ -125,13 +125,12 @@ def serve(face: Face, *, until_idle: float = math.inf) -> None:
 
 
 class Loop:
-    """One turn after the other: hear, order, move, answer.
+    """One turn after the other: hear, order, move, answer."""
 
-    Args:
-        face: The protocol, open.
-    """
-
-    def __init__(self, face: Face) -> None:
+    def __init__(
+        self,
+        face: Face,  # The protocol, open
+    ) -> None:
         self._face, self._clock, self._faults = face, _Clock(face.relief), FaultLog()
         self._heard = self._beaten = time.monotonic()
         self._stands: float | None = None  # since when time stands still [s, monotonic]

@@ -94,13 +94,12 @@ def step_line(
 
 
 class EpisodeLines:
-    """Tells each episode of N trackers in one line, when it has ended.
+    """Tells each episode of N trackers in one line, when it has ended."""
 
-    Args:
-        names: Their names.
-    """
-
-    def __init__(self, names: Sequence[str]) -> None:
+    def __init__(
+        self,
+        names: Sequence[str],  # Their names
+    ) -> None:
         count = len(names)
         self._names = names
         self._number = np.full(count, -1, np.int64)

@@ -25,14 +25,13 @@ _EXPORTED = rf"{EXPORTS}(/(.|\n)*)?"
 
 
 class RecordedPaths:
-    """Knows the files of writers, their folders, and the names of unfinished files.
+    """Knows the files of writers, their folders, and the names of unfinished files."""
 
-    Args:
-        files: The files of all writers.
-        others: Names of other files in the recording's folder.
-    """
-
-    def __init__(self, files: Files, others: Iterable[str] = ()) -> None:
+    def __init__(
+        self,
+        files: Files,  # The files of all writers
+        others: Iterable[str] = (),  # Names of other files in the recording's folder
+    ) -> None:
         in_episode = _patterns([*files.frame, *files.episode])
         in_run = _patterns([*files.run, *others])
         below = [f"{_EPISODE}/{pattern}" for pattern in in_episode]

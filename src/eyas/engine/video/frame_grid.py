@@ -72,16 +72,15 @@ class FrameGrid:
 
 
 class RecordingEnd:
-    """Tells when episodes and the recording end, and how much of it is done.
+    """Tells when episodes and the recording end, and how much of it is done."""
 
-    Args:
-        video: The settings.
-        grid: The frames.
-        steps: 2 ms steps after which an episode ends at the latest.
-        begin: Tick at which the recording begins.
-    """
-
-    def __init__(self, video: VideoConfig, grid: FrameGrid, steps: int, begin: int) -> None:
+    def __init__(
+        self,
+        video: VideoConfig,  # The settings
+        grid: FrameGrid,  # The frames
+        steps: int,  # 2 ms steps after which an episode ends at the latest
+        begin: int,  # Tick at which the recording begins
+    ) -> None:
         self._grid, self._steps, self._begin = grid, steps, begin
         self._frames, self._episodes = video.episode_frames, video.episodes
         self._ended = np.zeros(video.channels, np.int64)

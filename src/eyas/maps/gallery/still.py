@@ -56,13 +56,12 @@ class Viewpoint:
 
 
 class StillScene:
-    """Draws viewpoints.
+    """Draws viewpoints."""
 
-    Args:
-        assets: Map, traffic and renderer.
-    """
-
-    def __init__(self, assets: Assets) -> None:
+    def __init__(
+        self,
+        assets: Assets,  # Map, traffic and renderer
+    ) -> None:
         self.scene = assets.scene
         self.duration = assets.traffic.duration
         self._world = StillWorld(assets)

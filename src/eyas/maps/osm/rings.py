@@ -14,20 +14,14 @@ _LEAST = 0.5  # Areas below this are left out [m^2]
 
 
 class Shapes:
-    """Polygons and lines of a file, in metres.
-
-    Args:
-        projection: From degrees to metres.
-        extent: The area of the map; everything is cut to it [m].
-        broken: Called with a word for each area that has no valid outline.
-    """
+    """Polygons and lines of a file, in metres."""
 
     def __init__(
         self,
         data: OsmData,
-        projection: Projection,
-        extent: shapely.Polygon,
-        broken: Callable[[str], None],
+        projection: Projection,  # From degrees to metres
+        extent: shapely.Polygon,  # The area of the map; everything is cut to it [m]
+        broken: Callable[[str], None],  # Called with a word for each area that has no valid outline
     ) -> None:
         self._data, self._extent, self._broken = data, extent, broken
         names = list(data.places)

@@ -28,14 +28,13 @@ def dialect() -> ModuleType:
 
 
 class Packer:
-    """Makes the packets of one component of one system, numbered one after the other.
+    """Makes the packets of one component of one system, numbered one after the other."""
 
-    Args:
-        system: System id.
-        component: Component id.
-    """
-
-    def __init__(self, system: int, component: int) -> None:
+    def __init__(
+        self,
+        system: int,  # System id
+        component: int,  # Component id
+    ) -> None:
         self._dialect = dialect()
         self._maker = self._dialect.MAVLink(None, system, component)
 

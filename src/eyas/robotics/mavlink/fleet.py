@@ -46,10 +46,6 @@ class Fleet(Face):
         vehicles: By number.
         now: Time since the start [s].
 
-    Args:
-        simulation: Trackers in one world, not yet reset.
-        endpoints: Where messages go and come from.
-
     Raises:
         EyasError: Something of the settings is not possible.
     """
@@ -57,7 +53,10 @@ class Fleet(Face):
     relief = "smaller or fewer pictures help (camera.width, camera.height, mavlink.picture_rate)"
 
     def __init__(
-        self, simulation: Simulation, config: MavlinkConfig, endpoints: Sequence[Endpoint]
+        self,
+        simulation: Simulation,  # Trackers in one world, not yet reset
+        config: MavlinkConfig,
+        endpoints: Sequence[Endpoint],  # Where messages go and come from
     ) -> None:
         self.simulation, self._config, self._endpoints = simulation, config, endpoints
         self._steps = physics_steps(simulation.config.control.frequency)

@@ -30,15 +30,14 @@ class Gimbal:
     Attributes:
         pitch: Commanded pitch up [rad].
         device: The component of the gimbal itself.
-
-    Args:
-        device: As above.
-        now: Returns the present instant.
-        pitch: As above, at the beginning.
     """
 
     def __init__(
-        self, manager: Component, device: Component, now: Callable[[], Instant], pitch: float
+        self,
+        manager: Component,
+        device: Component,  # As above
+        now: Callable[[], Instant],  # Returns the present instant
+        pitch: float,  # As above, at the beginning
     ) -> None:
         self._manager, self.device, self._now = manager, device, now
         self.pitch, self._yaw, self._locked = pitch, 0.0, False

@@ -86,14 +86,13 @@ _rotate_back = interpreted(rotate_back)
 
 
 class Readings:
-    """Reads a simulation for its vehicles.
+    """Reads a simulation for its vehicles."""
 
-    Args:
-        simulation: The trackers are the vehicles, `equipped`.
-        geodesy: Where the origin of the world is.
-    """
-
-    def __init__(self, simulation: Simulation, geodesy: Geodesy) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,  # The trackers are the vehicles, `equipped`
+        geodesy: Geodesy,  # Where the origin of the world is
+    ) -> None:
         self.simulation, self.geodesy = simulation, geodesy
         self._sensed: NDArray[np.float64] | None = None
         self._further: dict[str, NDArray[np.float64]] | None = None

@@ -24,25 +24,17 @@ class Vehicle:
         senders: System and component id of each of its components.
         pilot: Who flies it.
         camera: Its camera.
-
-    Args:
-        system: As above.
-        readings: What all vehicles know of themselves.
-        sights: What their cameras see.
-        home: Where it stands, world frame [m].
-        lens: Its camera's picture.
-        out: Takes packets.
     """
 
     def __init__(
         self,
         number: int,
-        system: int,
-        readings: Readings,
-        sights: Sights,
-        home: Vector,
-        lens: camera.Lens,
-        out: Callable[[bytes], None],
+        system: int,  # As above
+        readings: Readings,  # What all vehicles know of themselves
+        sights: Sights,  # What their cameras see
+        home: Vector,  # Where it stands, world frame [m]
+        lens: camera.Lens,  # Its camera's picture
+        out: Callable[[bytes], None],  # Takes packets
     ) -> None:
         self._number, self.system, self._readings = number, system, readings
         self._sights, self._origin = sights, home

@@ -21,13 +21,12 @@ _ENCODER = "libx264"
 
 
 class RtpPacker:
-    """Cuts access units of H.264 into packets of RTP.
+    """Cuts access units of H.264 into packets of RTP."""
 
-    Args:
-        source: Number of the sender, SSRC.
-    """
-
-    def __init__(self, source: int) -> None:
+    def __init__(
+        self,
+        source: int,  # Number of the sender, SSRC
+    ) -> None:
         self._source, self._sequence = source, 0
 
     def packets(self, unit: bytes, seconds: float) -> list[bytes]:

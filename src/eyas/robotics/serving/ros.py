@@ -41,18 +41,16 @@ _PATIENCE = 0.5  # Longest time that a velocity holds [s]
 
 
 class Bridge(Face):
-    """A drone, what it tells and what it is told.
-
-    Args:
-        simulation: One tracker, not yet reset.
-        bus: Where messages go and come from.
-        messages: Makes the messages.
-    """
+    """A drone, what it tells and what it is told."""
 
     relief = "smaller or fewer pictures help (camera.width, camera.height, video.fps)"
 
     def __init__(
-        self, simulation: "Simulation", config: EyasConfig, bus: "Bus", messages: "Messages"
+        self,
+        simulation: "Simulation",  # One tracker, not yet reset
+        config: EyasConfig,
+        bus: "Bus",  # Where messages go and come from
+        messages: "Messages",  # Makes the messages
     ) -> None:
         from eyas.engine.state.draw import Picture
 

@@ -34,10 +34,6 @@ _ROOF: Final = 0.8  # Height of a vehicle's middle above the road [m]
 class Listener:
     """Follows N targets that it is told.
 
-    Args:
-        own: Changes of the defaults of `env` that belong to the file.
-        said: `TrackerSettings` of the file.
-
     Raises:
         EyasError: The settings are wrong, or changes ask for what the network does not see.
     """
@@ -49,8 +45,8 @@ class Listener:
         self,
         path: Path,
         session: Session,
-        own: Mapping[str, Any],
-        said: Mapping[str, Any],
+        own: Mapping[str, Any],  # Changes of the defaults of `env` that belong to the file
+        said: Mapping[str, Any],  # `TrackerSettings` of the file
         changes: Mapping[str, Any],
     ) -> None:
         self.settings = validated(TrackerSettings, said, f"{path}: {TRACKER}")

@@ -33,14 +33,13 @@ def parsed(line: str) -> Request:
 
 
 class Exchange:
-    """The files of one tracker.
+    """The files of one tracker."""
 
-    Args:
-        folder: The project's `Files2Alg`.
-        name: Of the tracker, such as `DRONE0`.
-    """
-
-    def __init__(self, folder: Path, name: str) -> None:
+    def __init__(
+        self,
+        folder: Path,  # The project's `Files2Alg`
+        name: str,  # Of the tracker, such as `DRONE0`
+    ) -> None:
         self._action = folder / f"{name}_AlgAction.txt"
         self._answers = [
             folder / f"{name}_{part}"

@@ -28,16 +28,15 @@ class Prototype:
 
 
 class SceneBuilder:
-    """Collects the objects of a map; ids are given in the order in which objects are added.
+    """Collects the objects of a map; ids are given in the order in which objects are added."""
 
-    Args:
-        name: Name of the map.
-        seed: Seed of the map.
-        size: Extent of the floor, centred on the origin [m].
-        terrain: The ground.
-    """
-
-    def __init__(self, name: str, seed: int, size: tuple[float, float], terrain: Terrain) -> None:
+    def __init__(
+        self,
+        name: str,  # Name of the map
+        seed: int,  # Seed of the map
+        size: tuple[float, float],  # Extent of the floor, centred on the origin [m]
+        terrain: Terrain,  # The ground
+    ) -> None:
         self.terrain = terrain
         self._name, self._seed, self._size = name, seed, size
         self._prototypes: dict[str, tuple[Prototype, Callable[[], Levels]]] = {}

@@ -45,15 +45,14 @@ def servos_of(packet: bytes) -> Servos | None:
 
 
 class ArduPilot(Autopilot):
-    """Lets one ArduPilot fly; one that starts anew begins anew.
+    """Lets one ArduPilot fly; one that starts anew begins anew."""
 
-    Args:
-        drone: What it flies.
-        speed: See `HilConfig.speed`.
-        heard: Where its packets come.
-    """
-
-    def __init__(self, drone: DrivenDrone, speed: float, heard: socket.socket) -> None:
+    def __init__(
+        self,
+        drone: DrivenDrone,  # What it flies
+        speed: float,  # See `HilConfig.speed`
+        heard: socket.socket,  # Where its packets come
+    ) -> None:
         super().__init__(drone, speed)
         self._socket = heard
         self._asked: tuple[Servos, Any] | None = None  # the packet to be answered, and from where

@@ -113,14 +113,13 @@ class DrivenDrone:
 
 
 class Autopilot(Face):
-    """What is the same for all autopilots outside.
+    """What is the same for all autopilots outside."""
 
-    Args:
-        drone: What it flies.
-        speed: See `HilConfig.speed`.
-    """
-
-    def __init__(self, drone: DrivenDrone, speed: float) -> None:
+    def __init__(
+        self,
+        drone: DrivenDrone,  # What it flies
+        speed: float,  # See `HilConfig.speed`
+    ) -> None:
         self._drone, self._speed = drone, speed
         self.simulation = drone.simulation
         self._over = False

@@ -32,15 +32,14 @@ _SILENCE = 10.0  # After this time without an answer it is said that one is wait
 
 
 class Px4(Autopilot):
-    """Lets one PX4 after the other fly.
+    """Lets one PX4 after the other fly."""
 
-    Args:
-        drone: What it flies.
-        speed: See `HilConfig.speed`.
-        server: Where it connects.
-    """
-
-    def __init__(self, drone: DrivenDrone, speed: float, server: socket.socket) -> None:
+    def __init__(
+        self,
+        drone: DrivenDrone,  # What it flies
+        speed: float,  # See `HilConfig.speed`
+        server: socket.socket,  # Where it connects
+    ) -> None:
         super().__init__(drone, speed)
         self._server, self._packer = server, Packer(1, 51)
         self._connection: socket.socket | None = None
