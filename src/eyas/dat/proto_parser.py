@@ -41,11 +41,7 @@ class Proto:
 
 
 class _Reader:
-    """Reads one file.
-
-    Args:
-        given: Values of the PROTO's fields that are not their defaults.
-    """
+    """Reads one file, with values of the PROTO's fields that are not their defaults."""
 
     def __init__(self, text: str, given: Mapping[str, object]) -> None:
         self._tokens = list(_tokens(text))
@@ -165,10 +161,7 @@ class _Reader:
 
 
 def parsed(text: str, given: Mapping[str, object] = MappingProxyType({})) -> Proto:
-    """Return what the text of a PROTO tells.
-
-    Args:
-        given: Values of its fields that are not their defaults.
+    """Return what the text of a PROTO tells, with values of its fields that are not their defaults.
 
     Raises:
         ValueError: It cannot be read; one line.

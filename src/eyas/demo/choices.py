@@ -25,13 +25,7 @@ _ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
 
 @dataclass(frozen=True, slots=True)
 class WorldChoice:
-    """A world to build.
-
-    Attributes:
-        config: The settings.
-        vehicles: Largest number of vehicles that drive.
-        light: What the menu of the light shows.
-    """
+    """A world to build: settings, at most so many vehicles, what the menu of the light shows."""
 
     config: EyasConfig
     vehicles: int

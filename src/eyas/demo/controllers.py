@@ -22,12 +22,7 @@ READY = 3.0  # Seconds before each flight in which everything stands still
 
 
 class Duel:
-    """The two flights. A score is the mean reward, 0 to 100.
-
-    Attributes:
-        policy: Name of the policy.
-        stage: `you`, `policy` or `over`.
-    """
+    """The two flights, by a person and a policy. A score is the mean reward, 0 to 100."""
 
     def __init__(self, policy: str, now: float) -> None:
         self.policy, self.stage = policy, "you"

@@ -109,11 +109,7 @@ _OPTIONS = {
 
 
 class Stream:
-    """Codes pictures of one size; the first is whole.
-
-    Args:
-        height: Of the pictures, an even number [pixels].
-        factor: x264's constant rate factor; greater is smaller and blurrier.
+    """Codes pictures of one size, with an even height; the first is whole.
 
     Raises:
         MissingExtraError: PyAV is not installed.

@@ -156,15 +156,7 @@ _SAFE = {
 
 
 class DemoServer:
-    """Serves one session.
-
-    Attributes:
-        viewers: Those who watch.
-
-    Args:
-        session: What is flown.
-        listening: Its socket, see `listen`.
-    """
+    """Serves one session on a socket of `listen`."""
 
     def __init__(self, session: Session, host: str, listening: socket.socket) -> None:
         self._session, self._host, self._listening = session, host, listening

@@ -117,11 +117,7 @@ PATIENCE, MOST_PATIENCE = 60, 240
 
 
 class Clock:
-    """Turns time into physics steps.
-
-    Attributes:
-        speed: Seconds of the simulation in a second.
-    """
+    """Turns time into physics steps, at a speed in seconds of the simulation in a second."""
 
     def __init__(self, now: float) -> None:
         self.speed = 1.0
@@ -189,11 +185,7 @@ TRAFFIC = 3  # Frames from one list of all vehicles to the next
 
 
 class Session:
-    """State of the demo, in the thread that flies.
-
-    Args:
-        policies: Names of the policies that may fly.
-    """
+    """State of the demo, in the thread that flies."""
 
     def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
         self.policies, self.recordings = policies, recordings

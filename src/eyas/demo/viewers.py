@@ -217,14 +217,7 @@ class Viewer:
 
 
 class Viewers:
-    """All viewers; an `Audience` for the session's thread.
-
-    Attributes:
-        pilot: The viewer who flies.
-
-    Args:
-        loop: The server's event loop.
-    """
+    """All viewers, with the pilot among them; an `Audience` for the session's thread."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop

@@ -39,14 +39,7 @@ FROM_ABOVE = 2.5  # Factor on that in the view from above
 
 
 class Screen:
-    """Draws the picture that viewers see, in any size.
-
-    Attributes:
-        view: `drone`, `chase` or `top`.
-
-    Args:
-        flight: What is shown.
-    """
+    """Draws what viewers see of a flight, in any size: `drone`, `chase` or `top`."""
 
     def __init__(self, flight: DemoFlight) -> None:
         self._flight = flight

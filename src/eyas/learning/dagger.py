@@ -42,11 +42,7 @@ class Buffer:
         self.filled = 0
 
     def add(self, data: Rollout, targets: Tensor) -> None:
-        """Keep a rollout in the place of the oldest one.
-
-        Args:
-            targets: Of its values, shape (T, N).
-        """
+        """Keep a rollout, and targets of its values, shape (T, N), in place of the oldest one."""
         new = (data.pictures, data.states, data.ended, data.labels, data.weights, targets)
         count = targets.shape[1]
         if self.filled == 0:

@@ -163,11 +163,7 @@ def _textures() -> Measurement:
 
 
 def _first_picture(name: str, cache: str | None, bytecode: str) -> Measurement:
-    """Time a fresh process from its start to its first picture.
-
-    Args:
-        cache: An empty folder for the cache; None: the user's.
-    """
+    """Time a fresh process from its start to its first picture; None: with the user's cache."""
     repeats = 1 if cache else 3
     times, spent = [], []
     environment = dict(os.environ)

@@ -86,11 +86,7 @@ class TargetStage:
         size: tuple[int, int],
         samples: int = 4,
     ) -> NDArray[np.uint8]:
-        """Return a picture of each shot, sRGB, shape (V, *size, 3).
-
-        Args:
-            size: Height and width of the pictures [pixels].
-        """
+        """Return a picture of each shot, height and width `size`, sRGB, shape (V, *size, 3)."""
         count, kinds = len(shots), len(self._kinds)
         actor = self._kinds.index(kind_index(MODELS[model].kind))
         actors, movers = ActorState.create(count, kinds), self._rigs.draw_list(count)

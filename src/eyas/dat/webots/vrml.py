@@ -72,11 +72,7 @@ def label(name: str) -> str:
 
 
 def world(protos: Sequence[str], importable: Sequence[str], nodes: Sequence[Node]) -> str:
-    """Return a world file.
-
-    Args:
-        protos: Paths of the PROTO files of its nodes, relative to it.
-    """
+    """Return a world file; paths of the PROTO files of its nodes are relative to it."""
     heads = [f'EXTERNPROTO "{path}"' for path in protos]
     heads += [f'IMPORTABLE EXTERNPROTO "{path}"' for path in importable]
     return "\n".join([HEADER, *heads, "", *map(_told, nodes)]) + "\n"

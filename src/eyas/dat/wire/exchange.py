@@ -89,12 +89,7 @@ class Names:
 
 
 class Exchange:
-    """The folders below the original's root that a server uses.
-
-    Attributes:
-        files: Where files are exchanged.
-        logs: Where the original logs with `Verbose`.
-        settings: The `env_config.json` that clients read too.
+    """The folders below the original's root that a server uses; the root may be empty.
 
     Args:
         root: Folder with the original's `Webots_Simulation`; it may be empty.

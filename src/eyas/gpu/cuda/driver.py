@@ -114,12 +114,7 @@ class Driver:
             )
 
     def call(self, name: str, *arguments: Any, doing: str = "") -> None:  # noqa: ANN401
-        """Call a function of the driver.
-
-        Args:
-            name: Its name.
-            arguments: What it is given.
-            doing: What is attempted, for people.
+        """Call a function of the driver by its name; `doing` says to people what is attempted.
 
         Raises:
             CudaError: It failed, or the process is forked from one that uses the driver.

@@ -129,15 +129,7 @@ def arrays_of(record: Any) -> list[Any]:  # noqa: ANN401  # as above
 
 
 class Mirrored:
-    """An array on a device that only the host writes: what does not change is not uploaded again.
-
-    Attributes:
-        array: The array on the device.
-
-    Args:
-        device: The device.
-        content: What is in it at first.
-    """
+    """An array on a device that only the host writes: what does not change is not sent again."""
 
     def __init__(self, device: Device, content: NDArray[Any]) -> None:
         self.array = device.upload(content)

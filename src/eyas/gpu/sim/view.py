@@ -207,15 +207,7 @@ _ENTRIES, _SLOTS = 8, 64  # Actors, and slots, for which there is room at first
 
 
 class DeviceView:
-    """Draws what N trackers see.
-
-    Attributes:
-        movers: The draw lists, on the device.
-
-    Args:
-        simulation: The trackers.
-        drawer: Draws on their device.
-    """
+    """Draws what N trackers see, from draw lists (`movers`) on the device."""
 
     movers: Movers
 

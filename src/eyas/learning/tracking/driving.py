@@ -53,11 +53,7 @@ class Drives(NamedTuple):
 
 
 def driven(env: EnvConfig, number: int, seed: int) -> Drives:
-    """Return what drivers do in a batch of traffic.
-
-    Args:
-        number: Of the batch; what is drawn depends on it and the seed only.
-    """
+    """Return what drivers do in a batch of traffic, by its number and the seed only."""
     rng = stream(seed, "tracking drives", number)
     groups = episode_groups(episodes_by_day(rng, number), protocol_of_batch(rng, varied=False), env)
     places = np.concatenate([_places(group) for group in groups])

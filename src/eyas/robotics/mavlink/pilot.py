@@ -78,11 +78,7 @@ _REAL, _WHOLE = 9, 6
 
 
 class Parameters:
-    """Answers MAVLink's parameter protocol.
-
-    Attributes:
-        values: The values by name; they change in place.
-    """
+    """Answers MAVLink's parameter protocol; the values change in place."""
 
     def __init__(self) -> None:
         self.values = dict(DEFAULTS)

@@ -52,12 +52,7 @@ _CAPABILITIES = (
 
 
 class Telemetry:
-    """Makes the fields of messages.
-
-    Args:
-        component: The autopilot, whose messages these become.
-        now: Returns the present instant.
-    """
+    """Makes the fields of messages, which become those of the autopilot's component."""
 
     def __init__(self, component: Component, pilot: Pilot, now: Callable[[], Instant]) -> None:
         self._names, self._system = component.names, component.system

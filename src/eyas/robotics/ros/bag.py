@@ -73,11 +73,7 @@ class Topic:
 
 
 class Storage(Protocol):
-    """The file of a bag. Its methods may raise `OSError`.
-
-    Args:
-        path: The file; it has another name until it is complete.
-    """
+    """The file of a bag, which has another name until it is complete; may raise `OSError`."""
 
     kind: str  # Name of this kind in descriptions of bags
 

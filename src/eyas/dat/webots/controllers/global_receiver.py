@@ -13,12 +13,7 @@ _SPAWN = 'DEF {name} Drone {{ name "{name}" translation {at} {at} 0.15 controlle
 
 
 def serve(robot: Any, project: Path) -> None:  # noqa: ANN401  # Webots' `Supervisor`
-    """Add the drones of all clients, and keep the world going until Webots ends.
-
-    Args:
-        robot: Webots' `Supervisor`.
-        project: The project's folder.
-    """
+    """Add the drones of all clients, and keep the world going until Webots ends."""
     settings, files = settings_of(project), project / "Files2Alg"
     if settings["Simulation_Mode"] != "train" or settings["Tracker_Def"] != "DRONE":
         print("env_config.json: this project knows Simulation_Mode train and Tracker_Def DRONE")

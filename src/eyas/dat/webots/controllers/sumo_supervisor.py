@@ -31,15 +31,7 @@ def pose_of(
 
 
 class Traffic:
-    """The nodes of the vehicles, and which vehicle of SUMO each is now.
-
-    Args:
-        robot: Webots' `Supervisor`.
-        sumo: TraCI, connected.
-        ground: Heights of the ground.
-        offset: Of the network [m].
-        most: Largest number of vehicles.
-    """
+    """The nodes of the vehicles in Webots, and which vehicle of SUMO, by TraCI, each is now."""
 
     def __init__(
         self,
