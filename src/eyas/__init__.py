@@ -204,7 +204,7 @@ _PLACES = {
     "engine.world.weather": "CLEAR_DAY DAY Season Weather",
     "lanes": "kernel",
     "learning.algorithm": "Algorithm",
-    "learning.api": "train",
+    "learning.run": "train",
     "learning.rollout": "Rollout",
     "maps.land.mounds": "Mound",
     "maps.osm.features": "Survey",

@@ -15,8 +15,8 @@ from eyas.engine.envs.actions import command_width, make_actions
 from eyas.engine.envs.vector_env import EyasVectorEnv
 from eyas.engine.settings.env import ActionKind, EnvConfig
 from eyas.gpu.cuda import cuda_device
-from eyas.gpu.cuda.code import ptx_of
 from eyas.gpu.envs.envs import DeviceActions, DeviceEnvs
+from eyas.gpu.ptx import ptx_of
 from eyas.gpu.sim.simulation import arrays_of
 from eyas.lanes.device import HostDevice
 

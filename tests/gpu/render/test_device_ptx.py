@@ -25,7 +25,7 @@ from eyas.engine.trackers.config import TrackerConfig
 from eyas.engine.trackers.drone import DRONE
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.gpu.cuda import code
-from eyas.gpu.cuda.code import ptx_of
+from eyas.gpu.ptx import ptx_of
 from eyas.gpu.render.read_back import ReadBackRenderer
 from eyas.lanes import ParallelCall
 from eyas.lanes.container import unpacked

@@ -15,7 +15,7 @@ from eyas.engine.targets.catalogue import kind_index
 from eyas.engine.targets.rig import Rigs
 from eyas.engine.trackers.kinds import tracker_of
 from eyas.engine.trackers.wind_field import WindField
-from eyas.gpu.cuda.code import ptx_of
+from eyas.gpu.ptx import ptx_of
 from eyas.gpu.sim.simulation import DeviceSimulation, check_device
 from eyas.lanes.device import HostDevice
 

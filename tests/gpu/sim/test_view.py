@@ -11,7 +11,7 @@ from eyas.engine.sim.worlds import each_alone
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
 from eyas.engine.trackers.kinds import tracker_of
-from eyas.gpu.cuda.code import ptx_of
+from eyas.gpu.ptx import ptx_of
 from eyas.gpu.render.device_views import StagedDrawer
 from eyas.gpu.sim.host_renderer import HostRenderer
 from eyas.gpu.sim.signals import shown_part, signal_times
