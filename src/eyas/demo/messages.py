@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from eyas.demo.flight import Control
+from eyas.demo.controls import Control
 from eyas.demo.frame import Coding
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.errors import ConfigError, UnknownNameError

@@ -22,10 +22,11 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from eyas.demo import messages as said
+from eyas.demo.flight_thread import FlightThread
 from eyas.demo.frame import DemoFrame
 from eyas.demo.orders import BOXES, reward_of, world_now
 from eyas.demo.session import Session
-from eyas.demo.viewers import FlightThread, Viewer, Viewers
+from eyas.demo.viewers import Viewer, Viewers
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.faults import FaultLog
 from eyas.engine.core.installed import installed_version
