@@ -18,7 +18,7 @@ from eyas.engine.core.cache.flat import flatten
 from eyas.engine.mesh.shipped import digest_of
 from eyas.engine.state.scene import ObjectClass
 from eyas.engine.targets.kind import KindFacts
-from eyas.engine.targets.shapes import FILE, Entry, Index, Shapes
+from eyas.engine.targets.shapes import FILE, ShapeArrays, ShapeEntry, ShapeIndex
 from eyas.engine.targets.vehicles.pose import VEHICLE_AHEAD
 from eyas.engine.traffic.config import VehicleType
 
@@ -37,11 +37,11 @@ def pack_models() -> tuple[dict[Path, bytes], str]:
     kinds = tuple(entries(packer))
     fliers = {"quadrotor": [quadrotor_levels()], "bird": bird_parts()}
     blocks = {name: packer.add(joined(parts)) for name, parts in fliers.items()}
-    index, _ = flatten(Index(kinds, blocks))
+    index, _ = flatten(ShapeIndex(kinds, blocks))
     return {FILE: packer.file(index)}, digest_of(index)
 
 
-def entries(packer: Packer) -> Iterator[Entry]:
+def entries(packer: Packer) -> Iterator[ShapeEntry]:
     """Yield the kinds in their order, and pack their arrays.
 
     Raises:
@@ -57,7 +57,7 @@ def entries(packer: Packer) -> Iterator[Entry]:
     yield jointed(CYCLISTS, ObjectClass.BICYCLE, packer)
 
 
-def driven(vehicle_type: VehicleType, packer: Packer) -> Entry:
+def driven(vehicle_type: VehicleType, packer: Packer) -> ShapeEntry:
     """Return a kind of vehicle."""
     models = tuple(model for model in VEHICLES if model.kind == vehicle_type)
     layout = VehicleLayout(models)
@@ -74,11 +74,13 @@ def driven(vehicle_type: VehicleType, packer: Packer) -> Entry:
         sections=tuple(model.sections for model in models) if layout.trailers else (),
         keeps_colours=two_wheeled,
     )
-    shapes = Shapes(packer.add(layout.arrays), packer.add(joined(layout.part_levels())))
-    return Entry(facts, drives=True, shapes=shapes)
+    shapes = ShapeArrays(packer.add(layout.arrays), packer.add(joined(layout.part_levels())))
+    return ShapeEntry(facts, drives=True, shapes=shapes)
 
 
-def jointed(models: Sequence[JointedModel], object_class: ObjectClass, packer: Packer) -> Entry:
+def jointed(
+    models: Sequence[JointedModel], object_class: ObjectClass, packer: Packer
+) -> ShapeEntry:
     """Return a kind of people or robots."""
     layout = JointedLayout(models)
     facts = KindFacts(
@@ -89,9 +91,9 @@ def jointed(models: Sequence[JointedModel], object_class: ObjectClass, packer: P
         keeps_colours=True,
         habit=models[0].habit,
     )
-    shapes = Shapes(
+    shapes = ShapeArrays(
         packer.add(layout.arrays),
         packer.add(joined(layout.part_levels())),
         packer.add(layout.extents()),
     )
-    return Entry(facts, drives=False, shapes=shapes)
+    return ShapeEntry(facts, drives=False, shapes=shapes)

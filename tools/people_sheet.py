@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from eyas.cli.targets.show import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import StageCamera, TargetPose, TargetStage
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index, models_of
 
 FIELD = np.deg2rad(45.0)
@@ -24,7 +24,7 @@ def seen(stage: TargetStage, index: int, place: int, distance: float) -> np.ndar
     """Return a walker in the middle of a square that is 1.5 times as high as the walker."""
     colours = KINDS[kind_index("Pedestrian")].colours
     pose = TargetPose(travelled=0.41 * place, speed=1.3, individual=place)
-    camera = Camera(
+    camera = StageCamera(
         bearing=BEARINGS[place % len(BEARINGS)],
         elevation=ELEVATIONS[place % len(ELEVATIONS)],
         distance=distance,

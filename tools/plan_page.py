@@ -15,7 +15,7 @@ import annotated_types
 
 from eyas.engine.state.mesh import Material
 from eyas.engine.world.build.materials import FACADES, TEXTURES
-from eyas.maps.build.values import MaterialRecord, Named, Rows, Shape
+from eyas.maps.build.values import MaterialRecord, Named, NumberRows, Shape
 from eyas.maps.plan.file import TAGS, plain, schema
 from eyas.maps.plan.plan import MapPlan
 from eyas.maps.things.kinds import SOLIDS, THINGS
@@ -134,7 +134,7 @@ def _words(kind: object) -> str:
 
 def _annotated(kind: object, metadata: tuple[Any, ...]) -> str:
     for one in metadata:
-        if isinstance(one, Rows):
+        if isinstance(one, NumberRows):
             number = "whole numbers" if one.whole else "numbers"
             count = f"{one.count} " if one.count else ""
             return f"{count}rows of {one.columns} {number}" if one.columns else f"{count}{number}"

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
-from eyas.benchmark.policies.shipped import TRAINED, Card
+from eyas.benchmark.policies.shipped import TRAINED, PolicyCard
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 
@@ -30,15 +30,15 @@ def main() -> None:
     parser.add_argument("run", type=Path, help="folder of `eyas train`")
     parser.add_argument("name", help="name of the policy")
     parser.add_argument("title", help="what it has learned, in a few words")
-    parser.add_argument("--trained-on", required=True, help="see `Card`")
-    parser.add_argument("--limit", action="append", required=True, help="see `Card`")
+    parser.add_argument("--trained-on", required=True, help="see `PolicyCard`")
+    parser.add_argument("--limit", action="append", required=True, help="see `PolicyCard`")
     asked = parser.parse_args()
     TRAINED.mkdir(exist_ok=True)
     file = "policy-flown.onnx" if asked.name == _FLOWN else "policy.onnx"
     shutil.copy(asked.run / file, TRAINED / f"{asked.name}.onnx")
     curve = shutil.copy(asked.run / "curve.csv", TRAINED / f"{asked.name}.csv")
     config = load_settings(asked.run / "config.json")
-    card = Card(
+    card = PolicyCard(
         title=asked.title,
         version=__version__,
         trained_on=asked.trained_on,
@@ -60,7 +60,7 @@ def of_method(config: EyasConfig, curve: Path) -> dict[str, Any]:
         return {"decisions": int(list(csv.DictReader(file))[-1]["decisions"])}
 
 
-def write(name: str, card: Card) -> None:
+def write(name: str, card: PolicyCard) -> None:
     """Write a card."""
     text = json.dumps(card.model_dump(mode="json"), indent=1) + "\n"
     (TRAINED / f"{name}.json").write_text(text)

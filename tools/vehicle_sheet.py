@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from eyas.cli.targets.show import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import StageCamera, TargetPose, TargetStage
 from eyas.engine.targets.catalogue import KINDS, MODELS, kind_index
 
 BEARINGS = (np.pi, 2.4, -2.1, 0.6)
@@ -31,7 +31,7 @@ def row(stage: TargetStage, index: int, place: int) -> np.ndarray:
     shown = []
     for individual, bearing in enumerate(BEARINGS):
         pose = TargetPose(travelled=0.3, speed=5.0, individual=individual)
-        camera = Camera(bearing=bearing, elevation=0.8, distance=distance, field_of_view=FIELD)
+        camera = StageCamera(bearing=bearing, elevation=0.8, distance=distance, field_of_view=FIELD)
         colours = KINDS[kind_index("passenger")].colours
         colour = colours[(3 * place + 2 * individual) % len(colours)]
         shown.append(cut(stage.draw(index, colour, [(pose, camera)], (480, 640))[0]))

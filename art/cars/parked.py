@@ -25,7 +25,7 @@ from eyas.engine.mesh.shipped import digest_of
 from eyas.engine.state.mesh import Material, Mesh, Surface
 from eyas.engine.world.build.scene_builder import Levels
 from eyas.lanes import exact
-from eyas.maps.street.parked_cars import FILE, Index
+from eyas.maps.street.parked_cars import FILE, ParkedIndex
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,7 +300,7 @@ def pack_parked() -> tuple[dict[Path, bytes], str]:
     packer = Packer()
     cars = packer.add(joined([levels_of(kind) for kind in (*KINDS, TAXI)]))
     bicycles = packer.add(joined(parked_bicycles()))
-    index, _ = flatten(Index(tuple(map(_solid_size, KINDS)), cars, bicycles))
+    index, _ = flatten(ParkedIndex(tuple(map(_solid_size, KINDS)), cars, bicycles))
     return {FILE: packer.file(index)}, digest_of(index)
 
 

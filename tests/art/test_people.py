@@ -11,7 +11,7 @@ from art.jointed.people.people import PEDESTRIANS, PEOPLE
 from art.jointed.people.person import Build, Carried, Garment, Lower
 from art.jointed.people.wardrobe import colours_of, dress_of
 from art.parts import DETAILS, levels_of
-from eyas.cli.targets.show import Camera, TargetPose, TargetStage
+from eyas.cli.targets.show import StageCamera, TargetPose, TargetStage
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.state.mesh import Surface
 from eyas.engine.targets.catalogue import KINDS, kind_index, models_of
@@ -117,7 +117,7 @@ def worn(stage, number, colour):
     """The mean colour, linear, of the pixels that show the garment."""
     model = models_of(kind_index("Pedestrian"))[number]
     pose = TargetPose(travelled=0.4, speed=1.3)
-    camera = Camera(bearing=2.0, elevation=0.5, distance=5.0, field_of_view=0.5)
+    camera = StageCamera(bearing=2.0, elevation=0.5, distance=5.0, field_of_view=0.5)
     own, red, green = (
         stage.draw(model, paint, [(pose, camera)], (120, 120))[0]
         for paint in (colour, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))

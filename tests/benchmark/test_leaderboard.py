@@ -11,7 +11,7 @@ from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.report.leaderboard import page
 from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE
 from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
-from eyas.benchmark.report.leaderboard.verify import Verdict, verify
+from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
 from eyas.cli.app import app
 from eyas.engine.core.errors import EyasError
 
@@ -60,7 +60,7 @@ def lines_of(folder):
 
 def test_equal_flights_are_marked_and_the_page_says_so(board):
     found = list(verify(board, share=0.3, seed=1))
-    assert [each.verdict for each in found] == [Verdict.VERIFIED] * 2
+    assert [each.verdict for each in found] == [EntryVerdict.VERIFIED] * 2
     assert "4 of 8 episodes (--seed 1) are equal" in found[0].line
     assert shown(board).count("verified: 4 of 8") == 2
     mark = json.loads((board / "hover" / "verified.json").read_text())
@@ -109,7 +109,7 @@ def test_an_edited_figure_is_caught_and_named(board):
     lines[5] = json.dumps(record | {"cr": 374.0}).replace(" ", "").encode() + b"\n"
     (board / "hover" / "episodes.jsonl").write_bytes(b"".join(lines))
     found = only(board / "hover", share=1.0)
-    assert found.verdict is Verdict.DIFFERENT
+    assert found.verdict is EntryVerdict.DIFFERENT
     assert f"{record['name']}: 'cr' is 374.0, flown again {record['cr']}" in found.line
     assert not (board / "hover" / "verified.json").exists()
     answer = CliRunner().invoke(app, ["leaderboard", "verify", str(board), "--share", "1"])
@@ -131,7 +131,7 @@ def test_swapped_lines_are_caught(board):
     lines[0], lines[7] = lines[7], lines[0]
     (board / "hover" / "episodes.jsonl").write_bytes(b"".join(lines))
     found = only(board / "hover", share=0.01)
-    assert found.verdict is Verdict.DIFFERENT
+    assert found.verdict is EntryVerdict.DIFFERENT
     assert "stands in batch 1, where it was not flown" in found.why
 
 
@@ -159,7 +159,7 @@ def test_dropped_failures_are_caught(board, caplog):
 def test_what_another_build_has_flown_is_not_verifiable(board):
     edit_build(board / "hover", "engine/sim")
     found = only(board / "hover")
-    assert found.verdict is Verdict.UNKNOWN
+    assert found.verdict is EntryVerdict.UNKNOWN
     assert "differs from this one in engine/sim" in found.why
     edit_plan(board / "follow", latency="measured")
     assert "does not repeat" in only(board / "follow").line
@@ -187,7 +187,7 @@ def test_no_code_of_others_runs_unasked(board, tmp_path, monkeypatch, changes, s
         (board / "hover" / name).write_bytes(b"pickle")
     edit_plan(board / "hover", **changes)
     found = only(board / "hover")
-    assert found.verdict is Verdict.UNKNOWN
+    assert found.verdict is EntryVerdict.UNKNOWN
     assert said in found.why
     shown(board)
     assert not (tmp_path / "ran").exists()
@@ -215,7 +215,7 @@ def test_code_is_run_for_those_who_trust_it(board, tmp_path, monkeypatch):
     plan = plan.model_copy(update={"env": {"observation": {"width": 16, "height": 12}}})
     run(plan, tmp_path / "own" / "entry", quiet=True)
     assert "--trust runs it" in only(tmp_path / "own").why
-    assert only(tmp_path / "own", trust=True).verdict is Verdict.VERIFIED
+    assert only(tmp_path / "own", trust=True).verdict is EntryVerdict.VERIFIED
 
 
 def test_a_network_is_found_in_the_folder_and_must_be_the_same(board, tmp_path):
@@ -230,7 +230,7 @@ def test_a_network_is_found_in_the_folder_and_must_be_the_same(board, tmp_path):
     own.unlink()
     assert "is not there" in only(entry).why
     shutil.copy(file_of("fast"), entry / "mine.onnx")
-    assert only(entry).verdict is Verdict.VERIFIED
+    assert only(entry).verdict is EntryVerdict.VERIFIED
     shutil.copy(file_of("eyas"), entry / "mine.onnx")
     assert "the policy's file is another" in only(entry).why
 
@@ -254,7 +254,7 @@ def test_oracles_are_not_ranked_with_the_others(board):
 def test_an_oracle_that_passes_for_one_that_sees_is_caught(board):
     edit_class(board / "follow", "pixels")
     found = only(board / "follow")
-    assert found.verdict is Verdict.DIFFERENT
+    assert found.verdict is EntryVerdict.DIFFERENT
     assert found.why == "its entry_class is told as pixels, but is privileged"
 
 

@@ -12,7 +12,7 @@ from eyas.benchmark.episodes.from_above import FromAbove
 from eyas.benchmark.episodes.target_losses import (
     COVERED,
     SEARCH_LIMIT,
-    Loss,
+    TargetLoss,
     covered_losses,
     hidden_spans,
     losses_by_things,
@@ -137,7 +137,7 @@ class Covers:
 
 
 def test_figures_of_flights_made_by_hand():
-    losses, sees = [Loss(10.0, 14.0), Loss(40.0, 52.0)], np.ones(900, np.bool_)
+    losses, sees = [TargetLoss(10.0, 14.0), TargetLoss(40.0, 52.0)], np.ones(900, np.bool_)
     always = recovery_figures(losses, sees, 0.1)
     assert (always["recovered"], always["recovery_time"], always["nt2f"]) == (1.0, 0.0, 1.0)
     sees[100:200] = False  # seen again 6 s after the first loss, 10 s after its onset
@@ -158,7 +158,7 @@ def test_figures_of_flights_made_by_hand():
 
 
 def test_another_vehicle_is_followed_if_it_stays_in_the_middle():
-    period, loss = 0.25, Loss(10.0, 14.0)
+    period, loss = 0.25, TargetLoss(10.0, 14.0)
     middle = np.full(360, -1)
     assert not followed(middle, loss, period)
     middle[60:72:2] = 7  # now and then
@@ -190,7 +190,7 @@ def test_hidden_spans_join_over_glimpses():
     shares = np.ones(40)
     shares[4:12] = shares[14:20] = 0.1
     shares[30] = 0.14
-    assert hidden_spans(shares, 0.25) == [Loss(1.25, 5.25), Loss(7.75, 8.0)]
+    assert hidden_spans(shares, 0.25) == [TargetLoss(1.25, 5.25), TargetLoss(7.75, 8.0)]
     shares[14:16] = 0.9
     assert len(hidden_spans(shares, 0.25)) == 3
 

@@ -6,7 +6,13 @@ from types import SimpleNamespace
 import pytest
 
 from eyas.cli.bench import measurement
-from eyas.cli.bench.measurement import Counts, Measurement, measurement_table, of_pictures, timed
+from eyas.cli.bench.measurement import (
+    HardwareCounts,
+    Measurement,
+    measurement_table,
+    of_pictures,
+    timed,
+)
 
 
 class Clock:
@@ -30,7 +36,7 @@ def test_a_rate_is_of_wall_time_and_the_cost_is_of_all_processors(monkeypatch):
 
 def test_pictures_are_counted_one_by_one_and_pixel_by_pixel(monkeypatch):
     monkeypatch.setattr(measurement, "why_not", lambda: None)
-    monkeypatch.setattr(measurement, "counted", lambda call: Counts(640, 320))
+    monkeypatch.setattr(measurement, "counted", lambda call: HardwareCounts(640, 320))
     line = of_pictures("name", "all", Clock(monkeypatch).call, (4, 8, 2), 1.0)
     assert line.value == pytest.approx(400.0)
     assert line.cpu_microseconds == pytest.approx(5000.0)

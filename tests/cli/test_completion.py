@@ -12,7 +12,7 @@ import typer.main
 from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.policies.table import POLICIES as BUILT_IN
 from eyas.cli.app import app
-from eyas.cli.completion import Shell, script
+from eyas.cli.completion import CommandShell, script
 from eyas.engine.terminal.options import POLICIES
 
 BASH = """
@@ -52,12 +52,12 @@ def _program(shell):
 
 @pytest.fixture(scope="module")
 def bash(tmp_path_factory):
-    return _script(Shell.BASH, tmp_path_factory.mktemp("completion"))
+    return _script(CommandShell.BASH, tmp_path_factory.mktemp("completion"))
 
 
 @pytest.fixture(scope="module")
 def fish(tmp_path_factory):
-    return _script(Shell.FISH, tmp_path_factory.mktemp("completion"))
+    return _script(CommandShell.FISH, tmp_path_factory.mktemp("completion"))
 
 
 @pytest.mark.parametrize(("words", "told"), WORDS, ids=IDS)
@@ -84,7 +84,7 @@ def test_fish_completes(fish, words, told, tmp_path):
 
 def test_zsh_completes(tmp_path):
     """A shell with a terminal: what is typed with a tab runs a function that tells its words."""
-    path = _script(Shell.ZSH, tmp_path)
+    path = _script(CommandShell.ZSH, tmp_path)
     typed = [(words[1:], told) for words, told in WORDS if len(told) == 1]
     lines = [f"source {path}", 'eyas() { print -r -- "<$*>" }']
     lines += [f"eyas {' '.join(words)}\t" for words, _ in typed]

@@ -7,8 +7,8 @@ import pytest
 
 from eyas.datasets.formats.uavdt import HIGH, LONG_TERM, LOW, STEEP
 from eyas.datasets.statistics import episode_kinds
-from eyas.datasets.tracking.frame_strata import near_look_alikes
 from eyas.datasets.tracking.one_pass import track_episode
+from eyas.datasets.tracking.run import near_look_alikes
 
 
 @pytest.mark.parametrize(

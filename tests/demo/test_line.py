@@ -3,7 +3,7 @@
 import pytest
 
 from eyas.demo.frame import FACTORS, IN_FLIGHT, CodingChoice
-from eyas.demo.session import FRAME, PictureSize
+from eyas.demo.session import FRAME, AdaptiveSize
 
 SIZES = (45e3, 15e3, 6e3, 3e3)
 """Of a picture at each level [bytes]."""
@@ -90,7 +90,7 @@ def test_what_the_page_chooses_stays():
 
 
 def test_pictures_shrink_at_once_and_grow_after_a_while():
-    size = PictureSize()
+    size = AdaptiveSize()
     size.fit(1280, 720)
     first = size.now
     for _ in range(20):
@@ -106,7 +106,7 @@ def test_pictures_shrink_at_once_and_grow_after_a_while():
 
 
 def test_pictures_keep_their_size_when_the_time_is_neither_short_nor_long():
-    size = PictureSize()
+    size = AdaptiveSize()
     size.fit(1280, 720)
     sizes = set()
     for i in range(2000):

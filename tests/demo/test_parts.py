@@ -10,7 +10,7 @@ from websockets.http11 import Request
 
 from eyas.demo.controllers import READY, SECONDS, BoxController, Duel
 from eyas.demo.server import Gate
-from eyas.demo.session import FRAME, Clock, PictureSize
+from eyas.demo.session import FRAME, AdaptiveSize, Clock
 from eyas.engine.core.clock import PHYSICS_RATE
 
 
@@ -23,7 +23,7 @@ def test_a_machine_that_stood_still_flies_slower_and_not_farther():
 
 
 def test_pictures_that_were_too_large_grow_later_each_time():
-    size = PictureSize()
+    size = AdaptiveSize()
     size.fit(1280, 720)
 
     def frames_to_grow():

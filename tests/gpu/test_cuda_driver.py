@@ -19,8 +19,8 @@ import pytest
 from eyas.gpu.cuda import CudaDevice, CudaError, code, cuda_device, device, gpu_line
 from eyas.gpu.cuda.code import Ptx, archive_of
 from eyas.gpu.cuda.device import function_of
-from eyas.gpu.cuda.dlpack import capsule_of
 from eyas.gpu.cuda.driver import VARIABLE, driver
+from eyas.gpu.cuda.memory import capsule_of
 from eyas.lanes import PackedBundle, parallel
 from eyas.lanes.calls import _ENTRY
 from eyas.lanes.device import HostDevice
@@ -548,8 +548,8 @@ else:
 ENDS = """
 import atexit, gc, sys
 import numpy as np
-from eyas.gpu.cuda import cuda_device, dlpack
-from eyas.gpu.cuda.dlpack import capsule_of
+from eyas.gpu.cuda import cuda_device, memory
+from eyas.gpu.cuda.memory import capsule_of
 
 class OnHost:
     def __init__(self, array): self.array = array
@@ -571,18 +571,18 @@ class Cycle: pass
 cycle = Cycle()
 cycle.own, cycle.kept, cycle.event = cycle, device.zeros(5, np.float64), device.event()
 if sys.argv[1:] == ["names first"]:
-    numbers, given = np.from_dlpack(OnHost(device.zeros(5, np.float32))), dlpack._given
+    numbers, given = np.from_dlpack(OnHost(device.zeros(5, np.float32))), memory._given
     before = len(given)
-    atexit.unregister(dlpack._let_go)
+    atexit.unregister(memory._let_go)
     vars(dlpack).clear()
     gc.collect()
     del numbers, capsule
     print(before - len(given))
 if sys.argv[1:] == ["libraries last"]:
-    numbers, before = np.from_dlpack(OnHost(device.zeros(5, np.float32))), len(dlpack._given)
-    dlpack._let_go()
+    numbers, before = np.from_dlpack(OnHost(device.zeros(5, np.float32))), len(memory._given)
+    memory._let_go()
     del numbers
-    print(before - len(dlpack._given))
+    print(before - len(memory._given))
 """
 
 

@@ -135,7 +135,7 @@ OWN = {
     "engine.core.machine:_processor": _PACKAGE,
     "engine.core.identity.program:definitions_of": _PACKAGE,
     "engine.recordings.export:_done": _OUTPUT,
-    "engine.recordings.format:Job.kept": _OUTPUT,
+    "engine.recordings.format:ExportJob.kept": _OUTPUT,
     "datasets.formats.lerobot:LeRobot._episode": _OUTPUT,
     "datasets.formats.minari:Minari.add": _OUTPUT,
     "datasets.formats.minari:Minari.finish": _OUTPUT,

@@ -290,7 +290,7 @@ def _osm(folder, chance, most):
     from eyas.maps.osm import reader
     from eyas.maps.osm.houses import houses_of
     from eyas.maps.osm.reader import covered, read_osm
-    from eyas.maps.osm.rings import Shapes
+    from eyas.maps.osm.rings import OsmShapes
     from eyas.maps.osm.streets import street_file
 
     limited(reader)
@@ -306,7 +306,7 @@ def _osm(folder, chance, most):
         street_file(data, limits, lambda key: None)
         extent = shapely.box(-200, -200, 200, 200)
         for house in houses_of(
-            Shapes(data, projection, extent, lambda what: None), lambda key: None
+            OsmShapes(data, projection, extent, lambda what: None), lambda key: None
         ):
             sizes = house.height, house.levels, house.roof_height
             assert all(size is None or 0 <= size <= 1000 for size in sizes), sizes
@@ -342,7 +342,7 @@ def _pbf(folder, chance, most):
 def _traffic(folder, chance, most):
     from eyas.engine.traffic import recording_file
     from eyas.engine.traffic.config import TrafficConfig, VehicleType
-    from eyas.engine.traffic.recording import Provenance, Recording
+    from eyas.engine.traffic.recording import Provenance, TrafficRecording
     from eyas.engine.traffic.recording_file import RecordingFile, load, save
 
     limited(recording_file)
@@ -353,7 +353,7 @@ def _traffic(folder, chance, most):
         duration=5.9, warm_up=60.0, options=("--x",), sumo_version="1", eyas_version="1",
     )  # fmt: skip
     save(
-        Recording(10.0, position, np.zeros((60, 2)), np.ones((60, 2), np.bool_),
+        TrafficRecording(10.0, position, np.zeros((60, 2)), np.ones((60, 2), np.bool_),
                   (VehicleType.PASSENGER,) * 2, np.full(2, 5.0), origin),
         path,
     )  # fmt: skip

@@ -43,7 +43,7 @@ from eyas.maps.formats.gltf.world import write_gltf
 from eyas.maps.osm import houses, importing, land, streets
 from eyas.maps.osm.features import Survey
 from eyas.maps.osm.reader import read_osm
-from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.plan.build import build_scene
 
 pytestmark = pytest.mark.sumo
@@ -123,7 +123,7 @@ def test_the_file_of_the_town_has_every_tag_that_the_importer_reads(source, monk
     data.relations = [replace(each, tags=Asked(each.tags)) for each in data.relations]
     projection, everywhere = Projection(*np.mean(list(data.places.values()), axis=0)), 1e4
     extent = shapely.box(-everywhere, -everywhere, everywhere, everywhere)
-    shapes = Shapes(data, projection, extent, lambda _: None)
+    shapes = OsmShapes(data, projection, extent, lambda _: None)
     houses.houses_of(shapes, lambda _: None)
     land.add_land(Survey(), shapes, lambda _: None, np.random.default_rng(0))
     streets.street_file(data, (-180, -90, 180, 90), lambda _: None)

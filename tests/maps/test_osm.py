@@ -19,7 +19,7 @@ from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
 from eyas.maps.osm.measures import colour, length, number
 from eyas.maps.osm.reader import covered, read_osm
-from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import street_file
 from eyas.maps.plan.file import read_plan, write_plan
 from eyas.maps.plan.plan import MapPlan
@@ -68,7 +68,7 @@ class Read:
     def __init__(self, tmp_path, *elements):
         self.odd, self.broken = Counter(), Counter()
         self.data = read_osm(file(tmp_path, *elements))
-        self.shapes = Shapes(self.data, HERE, EXTENT, lambda what: self.broken.update([what]))
+        self.shapes = OsmShapes(self.data, HERE, EXTENT, lambda what: self.broken.update([what]))
 
     def houses(self):
         return houses_of(self.shapes, lambda key: self.odd.update([key]))

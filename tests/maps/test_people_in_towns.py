@@ -10,7 +10,7 @@ import shapely
 
 from eyas.engine.behaviours.config import ExtraConfig
 from eyas.engine.behaviours.gap_acceptance import GapAcceptance
-from eyas.engine.behaviours.ground import Ground, usable_crossings, walkways
+from eyas.engine.behaviours.ground import WalkingGround, usable_crossings, walkways
 from eyas.engine.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.engine.behaviours.scripted import scripted_table
 from eyas.engine.core.errors import SpawnError
@@ -106,7 +106,7 @@ def vehicles(scene):
 
 @pytest.fixture(scope="module")
 def ground(scene, lights):
-    return Ground(scene, roads=True, lights=lights)
+    return WalkingGround(scene, roads=True, lights=lights)
 
 
 def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
@@ -251,7 +251,7 @@ def test_many_cross_and_at_lights_on_green_only(scene, lights, table):
 
 def test_who_does_not_look_at_lights_would_be_noticed(scene, lights, vehicles, monkeypatch):
     monkeypatch.setattr(GapAcceptance, "_shown", lambda *_: True)
-    blind = walked(Ground(scene, roads=True, lights=lights), vehicles)
+    blind = walked(WalkingGround(scene, roads=True, lights=lights), vehicles)
     entered, late, caught = broken(scene, lights, blind)
     assert late > 0.2 * entered
     assert caught > 0
@@ -281,14 +281,14 @@ def test_towns_without_pavements_or_crossings_say_so_in_a_line(writer, maps, tmp
     assert usable_crossings(bare) == []
     for behaviour in (Behaviour.PAVEMENT, Behaviour.CROSSING):
         with pytest.raises(SpawnError, match=rf"'{behaviour.value}': 'test-bare' has no pavement"):
-            walked(Ground(bare, roads=True), None, behaviour)
+            walked(WalkingGround(bare, roads=True), None, behaviour)
     path.write_text(path.read_text().replace('v="no"', 'v="both"'), encoding="utf-8")
     importing.run(path, "test-bare", record=False, overwrite=True)
     for kept in vars(scenes).values():
         if hasattr(kept, "cache_clear"):
             kept.cache_clear()
     with pytest.raises(SpawnError, match="'test-bare' has no crossing between pavements;"):
-        walked(Ground(load_scene("test-bare"), roads=True), None)
+        walked(WalkingGround(load_scene("test-bare"), roads=True), None)
 
 
 def test_extras_walk_with_the_lights_of_the_map(scene, lights):

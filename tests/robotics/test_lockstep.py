@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import common
 from eyas.engine.core.errors import ConfigError, OutputError
 from eyas.engine.sim.serving import serve
 from eyas.robotics.mavlink.endpoint import Endpoint
-from eyas.robotics.mavlink.pilot import Mode
+from eyas.robotics.mavlink.pilot import FlightMode
 
 GCS = (255, 190)
 
@@ -77,7 +77,7 @@ def test_each_set_point_is_one_step(make_bench):
     flies.join()
     endpoint.close()
     assert bench.fleet.now - begun == pytest.approx(0.2)
-    assert bench.pilot.mode is Mode.OFFBOARD
+    assert bench.pilot.mode is FlightMode.OFFBOARD
 
 
 def test_a_ground_station_does_not_keep_time_still_for_a_program_that_has_died(
@@ -109,7 +109,10 @@ def test_a_ground_station_does_not_keep_time_still_for_a_program_that_has_died(
     with pytest.raises(StopError):
         serve(bench.fleet)
     assert bench.fleet.now > before
-    assert [vehicle.pilot.mode for vehicle in bench.fleet.vehicles] == [Mode.HOLD, Mode.OFFBOARD]
+    assert [vehicle.pilot.mode for vehicle in bench.fleet.vehicles] == [
+        FlightMode.HOLD,
+        FlightMode.OFFBOARD,
+    ]
 
 
 def test_the_same_set_points_give_the_same_flight(make_bench):

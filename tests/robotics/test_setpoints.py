@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from eyas.robotics.mavlink.setpoints import Goal, Limits, toward
+from eyas.robotics.mavlink.setpoints import Goal, SpeedLimits, toward
 
-LIMITS = Limits(cruise=12.0, most=20.0, up=3.0, down=1.0, acceleration=4.0)
+LIMITS = SpeedLimits(cruise=12.0, most=20.0, up=3.0, down=1.0, acceleration=4.0)
 
 
 def place(east=0.0, yaw=0.0):

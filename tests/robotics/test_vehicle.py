@@ -6,7 +6,7 @@ import random
 import numpy as np
 import pytest
 
-from eyas.robotics.mavlink.pilot import Landed, Mode
+from eyas.robotics.mavlink.pilot import FlightMode, Landed
 
 ACCEPTED, REJECTED, DENIED, UNSUPPORTED, FAILED = range(5)
 GCS, OTHER = (255, 190), (254, 190)
@@ -46,7 +46,7 @@ def test_it_takes_off_holds_returns_and_disarms(bench):
     assert bench.command("NAV_TAKEOFF") == REJECTED  # not armed
     bench.fly_up()
     assert place(bench)[2] == pytest.approx(-5.0, abs=0.1)
-    assert (bench.pilot.mode, bench.pilot.landed) == (Mode.HOLD, Landed.AIR)
+    assert (bench.pilot.mode, bench.pilot.landed) == (FlightMode.HOLD, Landed.AIR)
     assert bench.command("COMPONENT_ARM_DISARM", 0) == DENIED  # in flight
     assert bench.command("NAV_RETURN_TO_LAUNCH") == ACCEPTED
     bench.fly(12.0)
@@ -73,7 +73,7 @@ def test_set_points_of_velocity_are_flown_in_their_frame(bench, frame, sent, nor
     assert bench.command("DO_SET_MODE", *OFFBOARD) == REJECTED  # no set point yet
     for _ in range(25):
         bench.velocity(*sent, frame=frame)
-        if bench.pilot.mode is not Mode.OFFBOARD:
+        if bench.pilot.mode is not FlightMode.OFFBOARD:
             assert bench.command("DO_SET_MODE", *OFFBOARD) == ACCEPTED
         bench.fly(0.1)
     message = bench.last("LOCAL_POSITION_NED")
@@ -110,7 +110,7 @@ def test_without_set_points_it_holds(bench):
     bench.command("DO_SET_MODE", *OFFBOARD)
     bench.taken()
     bench.fly(1.5)
-    assert bench.pilot.mode is Mode.HOLD
+    assert bench.pilot.mode is FlightMode.HOLD
     texts = [m.text for m in bench.taken() if m.get_type() == "STATUSTEXT"]
     assert texts == ["Offboard set points lost: holding"]
     bench.fly(2.0)
@@ -125,9 +125,9 @@ def test_without_a_ground_station_it_holds(bench):
         bench.velocity(1, 0, 0)
         bench.command("DO_SET_MODE", *OFFBOARD)
         bench.fly(0.1, beat=None)
-        if bench.pilot.mode is Mode.HOLD:
+        if bench.pilot.mode is FlightMode.HOLD:
             break
-    assert bench.pilot.mode is Mode.HOLD
+    assert bench.pilot.mode is FlightMode.HOLD
     bench.beat()
     bench.fly(0.1)
     assert "Ground station connected" in {m.text for m in bench.taken() if hasattr(m, "text")}

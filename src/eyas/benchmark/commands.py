@@ -262,13 +262,13 @@ def verify(
 
     The exit code is 1 if the records of one are not those of its flights.
     """
-    from eyas.benchmark.report.leaderboard.verify import Verdict, verify
+    from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
 
     found = []
     for finding in verify(folder, share=share, seed=seed, trust=trust):
         typer.echo(finding.line)
         found.append(finding.verdict)
-    if Verdict.DIFFERENT in found:
+    if EntryVerdict.DIFFERENT in found:
         raise typer.Exit(1)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from eyas.engine.core.cache.entries import Entry, clear, entries
-from eyas.engine.core.cache.folder import LIMIT_VARIABLE, Kind, cache_limit
+from eyas.engine.core.cache.entries import CacheEntry, clear, entries
+from eyas.engine.core.cache.folder import LIMIT_VARIABLE, EntryKind, cache_limit
 from eyas.engine.core.errors import OutputError, UnknownNameError
 from eyas.engine.core.files import refusals
 from eyas.engine.settings.config import EyasConfig
@@ -31,7 +31,7 @@ def run_info(*, as_json: bool = False) -> None:
     """
     limit, found = cache_limit(), entries(cache_folder())
     if as_json:
-        kinds = {str(kind): [entry for entry in found if entry.kind == kind] for kind in Kind}
+        kinds = {str(kind): [entry for entry in found if entry.kind == kind] for kind in EntryKind}
         told = {kind: {"entries": len(of), "size": _total(of)} for kind, of in kinds.items()}
         said = {"folder": str(cache_folder()), "limit": limit, "size": _total(found)}
         print(json.dumps(said | {"kinds": told}, indent=1))
@@ -41,7 +41,7 @@ def run_info(*, as_json: bool = False) -> None:
     if not found:
         return
     table = Table("kind", "entries", "size", "last used")
-    for kind in Kind:
+    for kind in EntryKind:
         chosen = [entry for entry in found if entry.kind == kind]
         if chosen:
             used = time.strftime("%Y-%m-%d %H:%M", time.localtime(chosen[-1].used))
@@ -58,9 +58,9 @@ def run_clear(
         UnknownNameError: There is no such kind.
         OutputError: An entry could not be deleted.
     """
-    if kind is not None and kind not in list(Kind):
-        raise UnknownNameError("--kind", kind, Kind)
-    chosen = None if kind is None else Kind(kind)
+    if kind is not None and kind not in list(EntryKind):
+        raise UnknownNameError("--kind", kind, EntryKind)
+    chosen = None if kind is None else EntryKind(kind)
     folder = cache_folder()
     freed = clear(folder, chosen)
     print(f"freed {_shown(freed)}")
@@ -69,7 +69,7 @@ def run_clear(
         raise OutputError(f"{left[0].path}: cannot remove it (one of {len(left)} entries)")
 
 
-def _total(found: Iterable[Entry]) -> int:
+def _total(found: Iterable[CacheEntry]) -> int:
     return sum(entry.size for entry in found)
 
 

@@ -9,7 +9,7 @@ import typer
 Command = Any  # Typer's own copy of click's class, or click's
 
 
-class Shell(StrEnum):
+class CommandShell(StrEnum):
     """Shells that can complete."""
 
     BASH = "bash"
@@ -18,7 +18,7 @@ class Shell(StrEnum):
 
 
 def completion(
-    shell: Annotated[Shell, typer.Argument(help="bash, zsh or fish.", show_default=False)],
+    shell: Annotated[CommandShell, typer.Argument(help="bash, zsh or fish.", show_default=False)],
 ) -> None:
     """Print a script by which a shell completes commands, options, and names of maps or policies.
 
@@ -29,15 +29,15 @@ def completion(
     typer.echo(script(shell, typer.main.get_command(app)), nl=False)
 
 
-def script(shell: Shell, command: Command) -> str:
+def script(shell: CommandShell, command: Command) -> str:
     """Return the script for a shell."""
     known = [
         (path.removeprefix("eyas").strip(), list(getattr(one, "commands", ())), _options(one))
         for path, one in commands("eyas", command)
     ]
-    if shell is Shell.FISH:
+    if shell is CommandShell.FISH:
         return "\n".join(_fish(known)) + "\n"
-    return "\n".join(_bash(known, zsh=shell is Shell.ZSH)) + "\n"
+    return "\n".join(_bash(known, zsh=shell is CommandShell.ZSH)) + "\n"
 
 
 Known = tuple[str, list[str], list[tuple[str, str]]]

@@ -187,7 +187,7 @@ _BESIDES = {
 """What wheels have within them, by package: their metadata do not say it."""
 
 
-class Part(NamedTuple):
+class InstalledPackage(NamedTuple):
     """A package that a plain installation has."""
 
     name: str
@@ -220,11 +220,11 @@ def about(
             typer.echo(f"  {part.besides}")
 
 
-def parts() -> list[Part]:
+def parts() -> list[InstalledPackage]:
     """Return the packages that Eyas needs, and those that they need, without extras."""
     from importlib.metadata import PackageNotFoundError, distribution  # slow to import
 
-    known: dict[str, Part] = {}
+    known: dict[str, InstalledPackage] = {}
     todo = ["eyas"]
     while todo:
         name = todo.pop()
@@ -234,7 +234,7 @@ def parts() -> list[Part]:
             found = distribution(name)
         except PackageNotFoundError:  # of another system, or removed
             continue
-        known[name] = Part(name, found.version, _licence(found), _BESIDES.get(name, ""))
+        known[name] = InstalledPackage(name, found.version, _licence(found), _BESIDES.get(name, ""))
         todo += _needed(found)
     known.pop("eyas", None)
     return [known[name] for name in sorted(known)]

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.dat.proto_parser import Node, parsed
+from eyas.dat.proto_parser import ProtoNode, parsed
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import read_limited
 from eyas.lanes import exact
@@ -86,7 +86,7 @@ class _Place:
         self.path, self._externs = path, externs
         self.turn, self.origin = turn, origin
 
-    def inside(self, node: Node) -> "_Place":
+    def inside(self, node: ProtoNode) -> "_Place":
         """Return the same in the frame of a node."""
         moved = exact.product(self.turn, _vector(node, "translation", (0.0, 0.0, 0.0)))
         turn = exact.product(self.turn, _rotation(node.fields.get("rotation")))
@@ -134,7 +134,7 @@ class _Walk:
             raise ValueError(f"{path.name}: {error}" if depth else str(error)) from None
         self._visit(proto.body, _Place(path, proto.externs, turn, origin), depth + 1)
 
-    def _visit(self, node: Node, at: _Place, depth: int) -> None:
+    def _visit(self, node: ProtoNode, at: _Place, depth: int) -> None:
         """Add what a node shows."""
         self._visited += 1
         if depth > 64 or self._visited > 20 * _MOST_PARTS:
@@ -149,16 +149,16 @@ class _Walk:
             for name in _INSIDE:
                 inside = node.fields.get(name)
                 for child in inside if isinstance(inside, list) else [inside]:
-                    if isinstance(child, Node):
+                    if isinstance(child, ProtoNode):
                         self._visit(child, here, depth + 1)
         elif (other := at.proto_of(node.kind)) is not None:
             self._visit_proto(other, node.fields, at.turn, at.origin, depth + 1)
         else:
             self.left_out[node.kind] += 1
 
-    def _add(self, shape: Node, at: _Place) -> None:
+    def _add(self, shape: ProtoNode, at: _Place) -> None:
         geometry = shape.fields.get("geometry")
-        if not isinstance(geometry, Node):
+        if not isinstance(geometry, ProtoNode):
             return
         if geometry.kind in _NOT_DRAWN:
             self.left_out[geometry.kind] += 1
@@ -170,7 +170,10 @@ class _Walk:
         else:
             raise ValueError(f"geometry {geometry.kind}; allowed: {', '.join(GEOMETRY)}")
         appearance = shape.fields.get("appearance")
-        if isinstance(appearance, Node) and appearance.kind not in ("Appearance", "PBRAppearance"):
+        if isinstance(appearance, ProtoNode) and appearance.kind not in (
+            "Appearance",
+            "PBRAppearance",
+        ):
             self.left_out[f"{appearance.kind} (a colour)"] += 1
         self._put(at, points, faces, np.tile(_colour(shape), (len(faces), 1)))
 
@@ -182,7 +185,7 @@ class _Walk:
             raise ValueError(f"more than {_MOST_PARTS} shapes or {_MOST_TRIANGLES} triangles")
         self.parts.append((exact.product(points, at.turn.T) + at.origin, faces, colours))
 
-    def _file(self, node: Node, at: _Place) -> Part:
+    def _file(self, node: ProtoNode, at: _Place) -> Part:
         url = node.fields.get("url")
         url = url[0] if isinstance(url, list) and url else url
         if not isinstance(url, str) or "://" in url:
@@ -190,7 +193,7 @@ class _Walk:
         return self._mesh(at.path.parent / url)
 
 
-def _vector(node: Node, name: str, default: Sequence[float]) -> Floats:
+def _vector(node: ProtoNode, name: str, default: Sequence[float]) -> Floats:
     value = node.fields.get(name)
     numbers = np.array(default if value is None else value, np.float64)
     if numbers.shape != (len(default),) or not np.isfinite(numbers).all():
@@ -198,7 +201,7 @@ def _vector(node: Node, name: str, default: Sequence[float]) -> Floats:
     return numbers
 
 
-def _number(node: Node, name: str, default: float) -> float:
+def _number(node: ProtoNode, name: str, default: float) -> float:
     value = float(_vector(node, name, (default,))[0])
     if value <= 0.0:
         raise ValueError(f"{node.kind}.{name}: a number above 0 expected")
@@ -219,13 +222,13 @@ def _rotation(value: object) -> Floats:
     return np.asarray(turned, np.float64)
 
 
-def _colour(shape: Node) -> tuple[float, float, float]:
+def _colour(shape: ProtoNode) -> tuple[float, float, float]:
     appearance = shape.fields.get("appearance")
-    if not isinstance(appearance, Node):
+    if not isinstance(appearance, ProtoNode):
         return _PLAIN
     material = appearance.fields.get("material")
     given = appearance.fields.get("baseColor")
-    if isinstance(material, Node):
+    if isinstance(material, ProtoNode):
         given = material.fields.get("diffuseColor", given)
     if given is None:
         return _PLAIN
@@ -233,7 +236,7 @@ def _colour(shape: Node) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _box(node: Node) -> Solid:
+def _box(node: ProtoNode) -> Solid:
     half = 0.5 * _vector(node, "size", (0.1, 0.1, 0.1))
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
     quads = np.array(
@@ -259,12 +262,12 @@ def _turned(profile: Sequence[tuple[float, float]]) -> Solid:
     return np.concatenate(points), np.concatenate(faces)
 
 
-def _cylinder(node: Node) -> Solid:
+def _cylinder(node: ProtoNode) -> Solid:
     radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
     return _turned([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
 
 
-def _cone(node: Node) -> Solid:
+def _cone(node: ProtoNode) -> Solid:
     radius, half = _number(node, "bottomRadius", 1.0), 0.5 * _number(node, "height", 2.0)
     return _turned([(0.0, -half), (radius, -half), (0.0, half)])
 
@@ -279,22 +282,22 @@ def _ended(profile: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return [(0.0, profile[0][1]), *profile[1:-1], (0.0, profile[-1][1])]
 
 
-def _sphere(node: Node) -> Solid:
+def _sphere(node: ProtoNode) -> Solid:
     quarter = 0.5 * math.pi
     return _turned(_ended(_arc(_number(node, "radius", 1.0), 0.0, -quarter, quarter)))
 
 
-def _capsule(node: Node) -> Solid:
+def _capsule(node: ProtoNode) -> Solid:
     radius, half = _number(node, "radius", 1.0), 0.5 * _number(node, "height", 2.0)
     quarter = 0.5 * math.pi
     low, high = _arc(radius, -half, -quarter, 0.0), _arc(radius, half, 0.0, quarter)
     return _turned(_ended([*low, *high]))
 
 
-def _face_set(node: Node) -> Solid:
+def _face_set(node: ProtoNode) -> Solid:
     """Return the triangles of polygons, cut like fans from their first corners."""
     coord = node.fields.get("coord")
-    point = coord.fields.get("point") if isinstance(coord, Node) else None
+    point = coord.fields.get("point") if isinstance(coord, ProtoNode) else None
     points = np.array([] if point is None else point, np.float64).reshape(-1, 3)
     index = node.fields.get("coordIndex")
     corners = np.array([] if index is None else index, np.float64).astype(np.int64)
@@ -313,7 +316,7 @@ def _face_set(node: Node) -> Solid:
     return points, np.array(faces, np.int64)[:, ::order]
 
 
-_SOLIDS: dict[str, Callable[[Node], Solid]] = {
+_SOLIDS: dict[str, Callable[[ProtoNode], Solid]] = {
     "Box": _box,
     "Cylinder": _cylinder,
     "Cone": _cone,

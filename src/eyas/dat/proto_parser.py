@@ -24,7 +24,7 @@ _WORDS = {"TRUE": True, "FALSE": False, "NULL": None}
 
 
 @dataclass(slots=True)
-class Node:
+class ProtoNode:
     """A node: its type, and the fields that are given."""
 
     kind: str
@@ -36,7 +36,7 @@ class Node:
 class Proto:
     """What a file tells."""
 
-    body: Node  # The node that the PROTO stands for
+    body: ProtoNode  # The node that the PROTO stands for
     externs: dict[str, str]  # Addresses of other PROTOs, by their names
 
 
@@ -46,7 +46,7 @@ class _Reader:
     def __init__(self, text: str, given: Mapping[str, object]) -> None:
         self._tokens = list(_tokens(text))
         self._at = 0
-        self._named: dict[str, Node] = {}
+        self._named: dict[str, ProtoNode] = {}
         self._values: dict[str, object] = {}
         self._given = given
 
@@ -81,7 +81,7 @@ class _Reader:
         usual = self._value(0)
         self._values[name] = self._given.get(name, usual)
 
-    def _node(self, depth: int) -> Node:
+    def _node(self, depth: int) -> ProtoNode:
         if depth > _DEEPEST:
             self._fail(f"nested more than {_DEEPEST} deep")
         word = self._next()
@@ -91,7 +91,7 @@ class _Reader:
                 self._fail(f"USE {name}: no such DEF")
             return self._named[name]
         label = self._next() if word == "DEF" else None
-        node = Node(self._next() if label is not None else word)
+        node = ProtoNode(self._next() if label is not None else word)
         if label is not None:
             self._named[label] = node  # a USE inside itself shows nothing more
         self._expect("{")

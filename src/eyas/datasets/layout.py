@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from eyas.datasets.plan import Part, planned, sample_of, shard_of
+from eyas.datasets.plan import DatasetPart, planned, sample_of, shard_of
 from eyas.datasets.recipe import SHIPPED, Recipe
 from eyas.datasets.statistics import PartFacts
 from eyas.engine.core.config import Config, validated
@@ -66,7 +66,7 @@ class Plan(Config):
         """The recipe that is made: that of the sample, if it is one."""
         return sample_of(self.recipe) if self.sample else self.recipe
 
-    def parts(self) -> list[Part]:
+    def parts(self) -> list[DatasetPart]:
         """Return its parts.
 
         Raises:
@@ -105,7 +105,7 @@ def read_plan(path: Path) -> Plan:
 
 
 def write_plan(
-    root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] = (), sealed: str = ""
+    root: Path, plan: Plan, parts: Sequence[tuple[DatasetPart, PartFacts]] = (), sealed: str = ""
 ) -> None:
     """Write the plan of a data set: that in the making, or with parts `dataset.json`.
 
@@ -120,7 +120,7 @@ def write_plan(
     write_atomic(root / name, f"{text}\n".encode())
 
 
-def described_parts(parts: Sequence[tuple[Part, PartFacts]]) -> list[dict[str, Any]]:
+def described_parts(parts: Sequence[tuple[DatasetPart, PartFacts]]) -> list[dict[str, Any]]:
     """Return the parts as `dataset.json` tells them."""
     return [
         {

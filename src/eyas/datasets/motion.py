@@ -48,7 +48,7 @@ def action_names(widths: Iterable[int]) -> tuple[str, ...]:
     return (*ACTION_NAMES, *GIMBAL_NAMES)[: found.pop()]
 
 
-class Motion(NamedTuple):
+class EpisodeMotion(NamedTuple):
     """States and actions of one episode of T frames."""
 
     states: NDArray[np.float32]  # `STATE_NAMES` of each frame, shape (T, 10)
@@ -59,10 +59,10 @@ class Motion(NamedTuple):
     rewards: NDArray[np.float32]  # Reward at each frame, NaN where it is not defined, shape (T,)
 
 
-def motion_of(episode: RecordedEpisode) -> Motion:
+def motion_of(episode: RecordedEpisode) -> EpisodeMotion:
     """Return the states and actions of an episode."""
     labels = episode.labels
-    return Motion(
+    return EpisodeMotion(
         states=np.array(
             [
                 (*each["tracker_position"], *each["tracker_velocity"], *each["tracker_orientation"])

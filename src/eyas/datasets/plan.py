@@ -31,7 +31,7 @@ _GRACE = 100  # Steps after a reset in which no episode ends, as in `done.grace_
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class DatasetPart:
     """One recording of a data set."""
 
     name: str
@@ -49,7 +49,7 @@ class Part:
         return f"parts/{self.split}/{self.name}"
 
 
-def planned(recipe: Recipe) -> list[Part]:
+def planned(recipe: Recipe) -> list[DatasetPart]:
     """Return the parts of a recipe, in their order.
 
     Raises:
@@ -57,7 +57,7 @@ def planned(recipe: Recipe) -> list[Part]:
     """
     _check_names(recipe)
     _check_places(recipe)
-    parts: list[Part] = []
+    parts: list[DatasetPart] = []
     for split, episodes in _episodes(recipe).items():
         sizes = _sizes(episodes, recipe.trackers, recipe.episodes)
         first = parts[-1].number + 1 if parts else 0
@@ -81,17 +81,17 @@ def sample_of(recipe: Recipe) -> Recipe:
     return updated(recipe, small)
 
 
-def in_order_of_work(parts: Sequence[Part]) -> list[Part]:
+def in_order_of_work(parts: Sequence[DatasetPart]) -> list[DatasetPart]:
     """Return parts so that those that share a map follow each other, and in it a weather."""
     return sorted(parts, key=lambda part: (*place_of(part), part.number, part.variant))
 
 
-def place_of(part: Part) -> tuple[str, str]:
+def place_of(part: DatasetPart) -> tuple[str, str]:
     """Return map and weather of a part."""
     return part.config.world.map, part.config.world.weather
 
 
-def shard_of(parts: Sequence[Part], number: int, count: int) -> list[Part]:
+def shard_of(parts: Sequence[DatasetPart], number: int, count: int) -> list[DatasetPart]:
     """Return the parts of one shard: of few maps, and all variants of a part together.
 
     Raises:
@@ -198,7 +198,9 @@ def _sizes(episodes: int, trackers: int, each: int) -> list[tuple[int, int]]:
     return sizes
 
 
-def _parts(recipe: Recipe, split: str, first: int, sizes: Sequence[tuple[int, int]]) -> list[Part]:
+def _parts(
+    recipe: Recipe, split: str, first: int, sizes: Sequence[tuple[int, int]]
+) -> list[DatasetPart]:
     """Return the parts of a split, the first of which has the number `first`."""
     count, own = len(sizes), recipe.splits.given[split]
     lists = {"map": own.maps, **_lists(recipe)}
@@ -227,13 +229,13 @@ def _part(
     variant: str,
     config: EyasConfig,
     chosen: dict[str, Any],
-) -> Part:
+) -> DatasetPart:
     words = (f"{number:05d}", config.world.map, config.world.weather, variant)
     name = "-".join(re.sub(r"[^\w.]+", "-", word).strip("-.") for word in words if word)
     episodes = round(config.video.total_time * PHYSICS_RATE) // config.done.total_steps
     frames = config.video.channels * episodes * recipe.episode_frames
     told = {name: value for name, value in chosen.items() if len(_lists(recipe).get(name, ())) > 1}
-    return Part(name, number, split, variant, config, frames, told)
+    return DatasetPart(name, number, split, variant, config, frames, told)
 
 
 def _lists(recipe: Recipe) -> dict[str, tuple[Any, ...]]:

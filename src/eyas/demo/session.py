@@ -45,7 +45,7 @@ class Clock:
         return due
 
 
-class PictureSize:
+class AdaptiveSize:
     """Chooses the largest picture that the machine can draw in time, in the window's shape.
 
     Attributes:
@@ -98,7 +98,7 @@ class Session:
 
     def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
         self.policies, self.recordings = policies, recordings
-        self.size, self.clock = PictureSize(), Clock(time.monotonic())
+        self.size, self.clock = AdaptiveSize(), Clock(time.monotonic())
         self.overlay = True
         self.recording: DemoRecording | None = None
         self.duel: Duel | None = None

@@ -36,7 +36,7 @@ class Learner:
     threads: "TorchThreads"  # Find the gradients of the parts of a minibatch side by side
 
 
-class Views(Protocol):
+class RolloutViews(Protocol):
     """T views of each of N environments."""
 
     pictures: Tensor  # uint8, shape (T, N, C, H, W)
@@ -111,7 +111,7 @@ class Algorithm(ABC):
     def load_state_dict(self, state: Mapping[str, Any]) -> None:  # noqa: B027  # as above
         """Remember what `state_dict` has returned."""
 
-    def everything(self, data: Views) -> Tensor:
+    def everything(self, data: RolloutViews) -> Tensor:
         """Return the minibatch that has all views."""
         steps, count = data.ended.shape
         memory = self.learner.network.shape.memory
@@ -123,7 +123,7 @@ class Algorithm(ABC):
             return array[:, part].flatten(0, 1)
         return array.flatten(0, 1)[part]
 
-    def outputs(self, data: Views, part: Tensor) -> tuple[Tensor, Tensor]:
+    def outputs(self, data: RolloutViews, part: Tensor) -> tuple[Tensor, Tensor]:
         """Return logits (B, 7) and values (B,) of the network for a minibatch."""
         network = self.learner.network
         states, pictures = self.taken(data.states, part), self.taken(data.pictures, part)

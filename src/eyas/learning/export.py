@@ -19,7 +19,7 @@ from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 _OPSET = 17
 
 
-class Graph:
+class OnnxGraph:
     """Nodes and weights of a graph that is being written."""
 
     def __init__(self) -> None:
@@ -72,7 +72,7 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
     float (N, 7), and `next_memory`. The metadata `eyas` has the settings of actions and
     observations as JSON.
     """
-    graph, shape = Graph(), network.shape
+    graph, shape = OnnxGraph(), network.shape
     picture = ["n", shape.channels, shape.height, shape.width]
     inputs = [
         helper.make_tensor_value_info("image", TensorProto.UINT8, picture),
@@ -108,7 +108,7 @@ def write_model(
     write_atomic(path, model.SerializeToString())
 
 
-def _features(graph: Graph, network: TrackingNetwork) -> str:
+def _features(graph: OnnxGraph, network: TrackingNetwork) -> str:
     """Add the convolutions and the layer behind them."""
     value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
     later = [(layer.weight, layer.bias) for layer in (network.second, network.third)]
@@ -128,7 +128,7 @@ def _features(graph: Graph, network: TrackingNetwork) -> str:
     return graph.node("Relu", [value], "features")
 
 
-def _memory(graph: Graph, network: TrackingNetwork, features: str) -> str:
+def _memory(graph: OnnxGraph, network: TrackingNetwork, features: str) -> str:
     """Add a step of the gated recurrent unit, as in `torch.nn.GRUCell`."""
     cell = network.memory
     assert cell is not None

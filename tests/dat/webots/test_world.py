@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from eyas.dat.webots.vrml import Node, world
-from eyas.dat.webots.world import Shapes, scene_nodes, sky_nodes
+from eyas.dat.webots.world import VrmlShapes, scene_nodes, sky_nodes
 from eyas.engine.exports.resting import resting_mesh
 from eyas.engine.mesh.assembly import concatenate, transformed
 from eyas.engine.sim.scenes import load_scene
@@ -88,7 +88,7 @@ def scene() -> Scene:
 def read(scene, light=CLEAR_DAY, *, shining=True):
     """The nodes of a scene's world, by their names."""
     nodes = sky_nodes("small", light, "of the town")
-    nodes += scene_nodes(scene, Shapes("textures"), 1, shining=shining)
+    nodes += scene_nodes(scene, VrmlShapes("textures"), 1, shining=shining)
     return Reader(world([], [], nodes)).world()[0]
 
 
@@ -202,7 +202,10 @@ def test_sky_sun_fog_and_lamps_are_those_of_the_weather(scene):
         (Node("Transform", {"children": [Node("Solid")]}), "below a Transform"),
         (Node("Shape", {"geometry": Node("Solid")}), "holds a Solid"),
         (Node("Solid", {"boundingObject": Node("Transform")}), "Transform"),
-        (Node("ElevationGrid", {"xDimension": 2, "yDimension": 2, "height": []}), "ElevationGrid|"),
+        (
+            Node("ElevationGrid", {"xDimension": 2, "yDimension": 2, "height": []}),
+            "ElevationGrid|",
+        ),
     ],
 )
 def test_the_grammar_refuses_what_webots_would(wrong, what):

@@ -4,14 +4,14 @@ import sys
 
 import pytest
 
-from eyas.dat.wire.exchange import Exchange
+from eyas.dat.wire.exchange import ExchangeFolders
 from eyas.engine.core.errors import DataFileError, OutputError
 
 FILES = "Webots_Simulation/traffic_project/Files2Alg"
 
 
 def test_the_folder_is_that_of_the_original(tmp_path):
-    names = Exchange(tmp_path).names("DRONE3")
+    names = ExchangeFolders(tmp_path).names("DRONE3")
     assert names.action == tmp_path / FILES / "DRONE3_AlgAction.txt"
     assert names.state == tmp_path / FILES / "DRONE3_Ctrl2Global.txt"
     assert names.reward == tmp_path / FILES / "DRONE3_RewardParams.txt"
@@ -20,18 +20,18 @@ def test_the_folder_is_that_of_the_original(tmp_path):
 
 def test_a_root_that_is_no_folder_is_one_line(tmp_path):
     with pytest.raises(DataFileError, match="no such folder; give the one that holds"):
-        Exchange(tmp_path / "nowhere")
+        ExchangeFolders(tmp_path / "nowhere")
 
 
 def test_it_says_that_it_has_started_as_long_as_it_runs(tmp_path):
-    exchange = Exchange(tmp_path)
+    exchange = ExchangeFolders(tmp_path)
     with exchange.opened():
         assert (exchange.files / "start.txt").read_text() == "b'1\\n'\n"
     assert not list(exchange.files.iterdir())
 
 
 def test_only_files_of_the_protocol_are_deleted(tmp_path):
-    exchange = Exchange(tmp_path)
+    exchange = ExchangeFolders(tmp_path)
     exchange.files.mkdir(parents=True)
     ours = (
         *("DRONE0_AlgAction.txt", "CAR12_Ctrl2Global.txt", "DRONE1_RewardParams.txt"),
@@ -59,11 +59,11 @@ def test_nothing_outside_the_root_is_deleted_through_links(tmp_path):
         link.parent.mkdir(parents=True, exist_ok=True)
         link.symlink_to(precious)
         with pytest.raises(OutputError, match="a link leads out of"):
-            Exchange(root)
+            ExchangeFolders(root)
         link.unlink()
         link.parent.rmdir()
     root.mkdir()
-    exchange = Exchange(root)
+    exchange = ExchangeFolders(root)
     exchange.files.mkdir(parents=True)
     links = [exchange.files / f"DRONE{number}_AlgAction.txt" for number in range(2)]
     links[0].symlink_to(precious / "start.txt")
@@ -90,6 +90,6 @@ def test_two_servers_never_share_a_folder(tmp_path):
     ) as other:
         assert other.stdout.readline() == "open\n"
         line = f"process {other.pid} is serving in it; wait for it to end, or name another folder"
-        with pytest.raises(OutputError, match=line), Exchange(tmp_path).opened():
+        with pytest.raises(OutputError, match=line), ExchangeFolders(tmp_path).opened():
             raise AssertionError("both serve")
         other.communicate("")

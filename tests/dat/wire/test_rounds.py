@@ -7,7 +7,7 @@ import time
 import pytest
 
 from eyas.dat.wire.config import WireConfig
-from eyas.dat.wire.exchange import HOVER, RESET, Exchange, Pause
+from eyas.dat.wire.exchange import HOVER, RESET, ExchangeFolders, Pause
 from eyas.dat.wire.server import Server, Service
 from eyas.engine.sim.serving import serve as serve_by
 
@@ -54,7 +54,7 @@ def not_for_ever(monkeypatch):
 @pytest.fixture
 def run(tmp_path, port):
     """Serve two agents; `begin` is called with each number of agents, and a way to announce."""
-    exchange = Exchange(tmp_path)
+    exchange = ExchangeFolders(tmp_path)
 
     def announce(agents):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:

@@ -12,7 +12,7 @@ from eyas.engine.custom.own import OwnTarget
 from eyas.engine.custom.user_class import made
 from eyas.engine.exports.registry import chosen_writers
 from eyas.engine.recordings.export import _format_of
-from eyas.engine.recordings.format import Job
+from eyas.engine.recordings.format import ExportJob
 from eyas.engine.sim.flights.path import CameraPath
 from eyas.engine.sim.flights.registry import path_named
 
@@ -69,7 +69,7 @@ def test_a_part_that_leaves_out_too_much_is_refused_when_it_is_named(load, name,
 
 
 def test_a_format_needs_no_init_and_a_path_no_attributes(tmp_path: Path):
-    job = Job(tmp_path, "x", copies=False, least_side=0, least_visible=0.0)
+    job = ExportJob(tmp_path, "x", copies=False, least_side=0, least_visible=0.0)
     form = _format_of(f"{__name__}:SmallFormat")(job)
     assert form.job is job
     form.finish([])

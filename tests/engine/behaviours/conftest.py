@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.behaviours.ground import Ground
+from eyas.engine.behaviours.ground import WalkingGround
 from eyas.engine.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.engine.behaviours.scripted import scripted_table
 from eyas.engine.core.rng import stream
@@ -17,12 +17,12 @@ CLOCK = SampleClock(601, 10.0)
 
 @pytest.fixture(scope="session")
 def city():
-    return Ground(load_scene("citystreet"), roads=False)
+    return WalkingGround(load_scene("citystreet"), roads=False)
 
 
 @pytest.fixture(scope="session")
 def hills():
-    return Ground(load_scene("village"), roads=False)
+    return WalkingGround(load_scene("village"), roads=False)
 
 
 def group(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> ScriptedGroup:

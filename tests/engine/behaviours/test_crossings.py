@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.behaviours.gap_acceptance import GapAcceptance
-from eyas.engine.behaviours.ground import Ground
+from eyas.engine.behaviours.ground import WalkingGround
 from eyas.engine.behaviours.groups import SampleClock, lasting
 from eyas.engine.behaviours.scripted import scripted_table
 from eyas.engine.core.errors import ConfigError, SpawnError
@@ -33,7 +33,7 @@ FIVE_MINUTES = SampleClock(3001, 10.0)
 
 @pytest.fixture(scope="module")
 def ground():
-    return Ground(load_scene("citystreet"), roads=True)
+    return WalkingGround(load_scene("citystreet"), roads=True)
 
 
 def driven(traffic=None) -> Motion:
@@ -212,7 +212,7 @@ def test_one_steps_off_on_green_and_has_crossed_before_red():
 
 @pytest.mark.slow
 def test_maps_without_crossings_and_live_traffic_say_so():
-    hills = Ground(load_scene("village"), roads=False)
+    hills = WalkingGround(load_scene("village"), roads=False)
     with pytest.raises(SpawnError, match=r"'crossing': 'village' has no pavement"):
         walked(hills, None)
     people = {"kind": "Pedestrian", "count": 3, "behaviour": "crossing"}

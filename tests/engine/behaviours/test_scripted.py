@@ -6,7 +6,7 @@ import shapely
 import shapely.ops
 
 from eyas.engine.behaviours import ground
-from eyas.engine.behaviours.ground import Ground
+from eyas.engine.behaviours.ground import WalkingGround
 from eyas.engine.behaviours.scripted import STROLL, waiting_spots
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.variation import Mirrored, Uniform
@@ -183,7 +183,7 @@ def test_an_offset_is_to_the_left_of_its_road(city, monkeypatch, offset, least, 
 
 
 def test_where_cars_drive_nobody_is_on_the_road():
-    ground = Ground(load_scene("citystreet"), roads=True)
+    ground = WalkingGround(load_scene("citystreet"), roads=True)
     for behaviour in (None, Behaviour.PAVEMENT):
         table = table_of(ground, group("Pedestrian", behaviour=behaviour))
         lanes = ground.scene.network.lane_points

@@ -1,11 +1,11 @@
-"""Lenses of trackers: settings, samples, what they do to light; and overlays behind them."""
+"""LensSet of trackers: settings, samples, what they do to light; and overlays behind them."""
 
 import cv2
 import numpy as np
 import pytest
 
 from eyas.engine.camera.glass import change_light, vignette
-from eyas.engine.camera.lens import LensConfig, Lenses
+from eyas.engine.camera.lens import LensConfig, LensSet
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.optics import pinhole
 from eyas.engine.core.optics.lens import BROWN, FISHEYE, NO_LENS, Lens, rays
@@ -30,13 +30,13 @@ def test_settings_that_no_lens_has_are_refused(values, said):
 
 
 def test_what_is_off_is_not_there():
-    assert Lenses.of(LensConfig(), 3) is None
-    assert not Lenses.of(LensConfig(vignetting=0.3), 3).bend
-    assert not Lenses.of(LensConfig(model="fisheye"), 3).change_light
+    assert LensSet.of(LensConfig(), 3) is None
+    assert not LensSet.of(LensConfig(vignetting=0.3), 3).bend
+    assert not LensSet.of(LensConfig(model="fisheye"), 3).change_light
 
 
 def test_numbers_are_sampled_for_each_episode():
-    lenses = Lenses.of(LensConfig(model="fisheye", k1=Uniform(uniform=(-0.1, 0.1)), red=0.01), 2)
+    lenses = LensSet.of(LensConfig(model="fisheye", k1=Uniform(uniform=(-0.1, 0.1)), red=0.01), 2)
     for tracker in range(2):
         lenses.begin(tracker, np.random.default_rng(tracker))
     first, second = lenses.of_tracker(0), lenses.of_tracker(1)
@@ -59,12 +59,12 @@ def test_vignetting_takes_its_share_of_the_corners_by_cos_4():
 
 @pytest.mark.parametrize("width", [84, 85, 8])
 def test_light_is_darkened_and_shown_larger(width):
-    lenses = Lenses.of(LensConfig(vignetting=0.5, right=0.1), 2)
+    lenses = LensSet.of(LensConfig(vignetting=0.5, right=0.1), 2)
     light = np.random.default_rng(0).random((2, 3, 20, width)).astype(np.float32)
     share = vignette(0.5, (0.6 * width, 10.0), (width, 20))
     behind = change_light(light.copy(), np.array([0, 1]), lenses)
     np.testing.assert_allclose(behind, light * share, rtol=2e-6)
-    lenses = Lenses.of(LensConfig(red=0.05, blue=-0.02, right=0.1), 1)
+    lenses = LensSet.of(LensConfig(red=0.05, blue=-0.02, right=0.1), 1)
     behind = change_light(light[:1].copy(), np.array([0]), lenses)
     for channel, size in enumerate((1.05, 1.0, 0.98)):
         # OpenCV's places are counted from the middles of pixels.

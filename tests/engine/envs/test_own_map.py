@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.cache.cached import key_of
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import MissingExtraError, UnknownNameError
 from eyas.engine.core.identity import program
 from eyas.engine.envs.registration import register_map
@@ -109,7 +109,7 @@ def test_what_is_made_of_it_is_kept_until_its_source_changes(shipped, monkeypatc
 
     def keeping(kind, make, inputs, **_):
         made.append((kind, key_of(make, inputs)))
-        return make() if kind is Kind.PLAN else None
+        return make() if kind is EntryKind.PLAN else None
 
     monkeypatch.setattr(scenes, "cached", keeping)
     found, source = [], shipped / "__init__.py"
@@ -126,6 +126,11 @@ def test_what_is_made_of_it_is_kept_until_its_source_changes(shipped, monkeypatc
         made.clear()
     for what in vars(scenes).values():
         getattr(what, "cache_clear", lambda: None)()
-    assert found[0].keys() == {Kind.PLAN, Kind.SCENE, Kind.GEOMETRY, Kind.SOLIDS}
+    assert found[0].keys() == {
+        EntryKind.PLAN,
+        EntryKind.SCENE,
+        EntryKind.GEOMETRY,
+        EntryKind.SOLIDS,
+    }
     for kind in found[0]:
         assert found[0][kind] == found[1][kind] != found[2][kind]

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.label import label_of
 from eyas.engine.exports.writer import Episode
@@ -50,7 +50,7 @@ def labelled(simulation, tick, actor):
     snapshot = simulation.snapshot
     frames = [
         frame_of(
-            Moment(snapshot, snapshot.episodes, simulation.view.actors(n)),
+            FrameMoment(snapshot, snapshot.episodes, simulation.view.actors(n)),
             *(n, picture, n, 0, RecordedAction(-1, None)),
         )
         for n in (0, 1)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.state.draw import Picture
 from eyas.engine.state.scene import ACTOR_OBJECT
@@ -46,7 +46,7 @@ def picture() -> Picture:
 
 def test_a_frame_holds_the_rows_of_its_tracker_and_of_its_view(snapshot, picture):
     action = RecordedAction(2, np.ones(4))
-    frame = frame_of(Moment(snapshot, snapshot.episodes), TRACKER, picture, VIEW, 17, action)
+    frame = frame_of(FrameMoment(snapshot, snapshot.episodes), TRACKER, picture, VIEW, 17, action)
     trackers, cameras, targets, *_ = snapshot
     for name in ("position", "velocity", "acceleration", "orientation", "angular_velocity"):
         assert np.array_equal(getattr(frame.tracker, name), getattr(trackers, name)[TRACKER]), name
@@ -69,7 +69,12 @@ def test_a_frame_holds_the_rows_of_its_tracker_and_of_its_view(snapshot, picture
 
 def test_numbers_of_a_frame_are_not_rounded(snapshot, picture):
     frame = frame_of(
-        Moment(snapshot, snapshot.episodes), TRACKER, picture, VIEW, 0, RecordedAction(-1, None)
+        FrameMoment(snapshot, snapshot.episodes),
+        TRACKER,
+        picture,
+        VIEW,
+        0,
+        RecordedAction(-1, None),
     )
     assert (frame.time, frame.step, frame.episode_time) == (0.06, 3, 0.006)
     assert frame.reward == 1 / 3
@@ -79,7 +84,12 @@ def test_numbers_of_a_frame_are_not_rounded(snapshot, picture):
 
 def test_later_steps_and_pictures_leave_a_frame_alone(snapshot, picture):
     frame = frame_of(
-        Moment(snapshot, snapshot.episodes), TRACKER, picture, VIEW, 0, RecordedAction(-1, None)
+        FrameMoment(snapshot, snapshot.episodes),
+        TRACKER,
+        picture,
+        VIEW,
+        0,
+        RecordedAction(-1, None),
     )
     shared = [*snapshot.trackers, *snapshot.cameras, *snapshot.targets]
     shared += [picture.rgb, picture.depth, picture.subject_box, picture.subject_visible_box]

@@ -5,7 +5,7 @@ from dataclasses import asdict, fields, is_dataclass
 import numpy as np
 import pytest
 
-from eyas.engine.exports.capture import Moment, frame_of, moment_of, others_of
+from eyas.engine.exports.capture import FrameMoment, frame_of, moment_of, others_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
@@ -39,7 +39,7 @@ def test_another_s_target_is_described_like_a_target(simulation):
     picture = picture_of(simulation, actors=simulation.actors)
     picture.actor_pixels[:] = 3, 4  # as if every actor was seen
     picture.actor_box[:] = 1, 2, 3, 4
-    moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
+    moment = FrameMoment(simulation.snapshot, simulation.snapshot.episodes)
     target = frame_of(moment, 1, picture, 1, 0, RecordedAction(-1, None)).target
     others = seen_by(simulation, 0, picture)
     own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[0])
@@ -74,7 +74,7 @@ def test_they_are_those_whose_pixels_are_in_the_picture(simulation):
 
 
 def test_there_are_none_where_nobody_wants_them(simulation):
-    moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
+    moment = FrameMoment(simulation.snapshot, simulation.snapshot.episodes)
     frame = frame_of(moment, 0, picture_of(simulation), 0, 0, RecordedAction(-1, None))
     assert (frame.others, frame.target.words) == ((), "")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.optics.pinhole import project
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.build import build_simulation
@@ -33,7 +33,7 @@ def frames():
         simulation.draw(np.arange(COUNT, dtype=np.int32), picture)
         for n in range(COUNT):
             shown, actors = simulation.snapshot, simulation.view.actors(n)
-            moment = Moment(shown, shown.episodes, actors)
+            moment = FrameMoment(shown, shown.episodes, actors)
             seen.append(frame_of(moment, n, picture, n, 0, RecordedAction(-1, None)))
     return seen
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.render.kernels.bundles import GROUP, Geometry
 from eyas.engine.render.kernels.surface.texture import detail_of, texel
 from eyas.engine.render.kernels.visibility.clusters import (
@@ -44,7 +44,7 @@ def detail_at(square):
 def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_path):
     new = build_geometry(city_scene(), car_parts(), images)
     for _ in range(2):
-        old = cached(Kind.GEOMETRY, lambda: new, (), of=Geometry, folder=tmp_path)
+        old = cached(EntryKind.GEOMETRY, lambda: new, (), of=Geometry, folder=tmp_path)
     assert old is not new
     assert PackedBundle(old).kind == PackedBundle(new).kind
     for name, array in new._asdict().items():

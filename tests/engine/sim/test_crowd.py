@@ -8,14 +8,14 @@ import pytest
 
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.errors import ConfigError, SpawnError
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.label import label_of
 from eyas.engine.exports.writer import Episode
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.crowd import crowd_of, extras_of
-from eyas.engine.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
+from eyas.engine.sim.crowd_motion import CrowdSurroundings, crowd_motions, with_crowd
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.sim.worlds import each_alone, together
 from eyas.engine.state.draw import Picture
@@ -64,7 +64,7 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
     walk.draw(np.arange(4, dtype=np.int32), picture)
     for tracker in range(4):
         frame = frame_of(
-            Moment(walk.snapshot, walk.snapshot.episodes),
+            FrameMoment(walk.snapshot, walk.snapshot.episodes),
             tracker,
             picture,
             tracker,
@@ -236,7 +236,7 @@ def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
         SimConfig(extras=[{"kind": "Pedestrian", "count": 3}, {"kind": "BB-8", "count": 2}])
     )
     scene = load_scene("citystreet")
-    around = Surroundings(scene, SampleClock(101, 10.0), 3)
+    around = CrowdSurroundings(scene, SampleClock(101, 10.0), 3)
     table = np.zeros((101, 2), SAMPLE)
     table["x"], table["present"] = 5.0, 1.0
     vehicles = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)

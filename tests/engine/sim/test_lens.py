@@ -7,7 +7,7 @@ import pytest
 
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
@@ -88,7 +88,7 @@ def test_rewards_packets_and_frames_are_those_of_a_simulation_with_that_lens():
         assert varied.packets()[1][n, 2] == field
         assert varied.packets()[1][n, 3] == pytest.approx(48 / math.tan(field / 2))
         now, action = varied.snapshot.episodes, RecordedAction(-1, None)
-        frame = frame_of(Moment(varied.snapshot, now), n, pictures(varied), n, 0, action)
+        frame = frame_of(FrameMoment(varied.snapshot, now), n, pictures(varied), n, 0, action)
         assert frame.camera.field_of_view == field
         varied = started(RANDOM, 2)
 

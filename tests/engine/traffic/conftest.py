@@ -10,10 +10,10 @@ from eyas.engine.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.engine.state.terrain import Terrain
 from eyas.engine.traffic.config import TrafficConfig, VehicleType
 from eyas.engine.traffic.recorded import recorded_motion
-from eyas.engine.traffic.recording import Provenance, Recording
+from eyas.engine.traffic.recording import Provenance, TrafficRecording
 from eyas.engine.traffic.sumo_install import import_libsumo
 
-MakeRecording = Callable[..., Recording]
+MakeRecording = Callable[..., TrafficRecording]
 
 
 @pytest.fixture(scope="session")
@@ -39,9 +39,9 @@ def make_recording() -> MakeRecording:
         position: NDArray[np.float64],
         yaw: NDArray[np.float64] | None = None,
         present: NDArray[np.bool_] | None = None,
-    ) -> Recording:
+    ) -> TrafficRecording:
         shape = position.shape[:2]
-        return Recording(
+        return TrafficRecording(
             rate=10.0,
             position=np.rint(position * 100) * 0.01,
             yaw=np.zeros(shape) if yaw is None else np.rint(yaw * 1000) * 0.001,
@@ -65,7 +65,7 @@ def make_recording() -> MakeRecording:
 
 
 @pytest.fixture(scope="session")
-def wandering(make_recording: MakeRecording) -> Recording:
+def wandering(make_recording: MakeRecording) -> TrafficRecording:
     """Two cars for 20 s; actor 2 is one car until 5 s and another, far away, from 6 s to 15 s."""
     time = np.arange(201) / 10.0
     first = np.stack([8.0 * time, 3.0 * np.sin(0.4 * time)], axis=-1)
@@ -81,10 +81,10 @@ def wandering(make_recording: MakeRecording) -> Recording:
 
 
 @pytest.fixture(scope="session")
-def flat_motion() -> Callable[[Recording], Motion]:
+def flat_motion() -> Callable[[TrafficRecording], Motion]:
     """Makes motion of a recording on a flat map, all actors of kind 0."""
 
-    def make(recording: Recording) -> Motion:
+    def make(recording: TrafficRecording) -> Motion:
         return recorded_motion(recording, Terrain.flat(0.0), np.zeros(recording.actors, np.int32))
 
     return make

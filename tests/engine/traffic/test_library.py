@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from eyas.engine.core.cache.entries import entries
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.core.installed import install_command
 from eyas.engine.state.roads import RoadGraph
@@ -17,7 +17,7 @@ from eyas.engine.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.engine.traffic.library import CANONICAL_SEED, find_recording
 from eyas.engine.traffic.network import graph_hash
 from eyas.engine.traffic.record import record, resolved
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import save, to_bytes
 
 CARS = TrafficConfig(max_vehicles=5)
@@ -63,7 +63,7 @@ def without_sumo(purpose: str = "") -> str:
 
 @pytest.fixture
 def copied(
-    grid: RoadGraph, wandering: Recording, cache: Path, monkeypatch: pytest.MonkeyPatch
+    grid: RoadGraph, wandering: TrafficRecording, cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Path:
     """A recording of `CARS` that some other SUMO made, in the cache of a machine without SUMO."""
     origin = replace(
@@ -91,7 +91,7 @@ def test_a_cached_recording_needs_no_sumo_and_not_its_version(grid: RoadGraph, c
     found = find_recording(grid, CARS, duration=5.0)
     assert found.provenance.sumo_version == "0.1.2"
     assert copied.stat().st_mtime > 0  # it was used
-    assert [entry.kind for entry in entries(copied.parents[1])] == [Kind.TRAFFIC]
+    assert [entry.kind for entry in entries(copied.parents[1])] == [EntryKind.TRAFFIC]
     with pytest.raises(MissingExtraError):
         find_recording(grid, CARS, duration=6.0)
 
@@ -107,7 +107,7 @@ def test_a_recording_under_the_name_of_another_is_not_used(grid: RoadGraph, copi
 
 def test_a_recording_is_used_where_the_cache_cannot_be_written(
     grid: RoadGraph,
-    wandering: Recording,
+    wandering: TrafficRecording,
     cache: Path,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
@@ -183,7 +183,7 @@ def test_without_sumo_one_line_says_what_to_install():
 
 
 def test_a_group_that_is_too_small_is_raised_in_one_line(
-    grid: RoadGraph, wandering: Recording, tmp_path: Path, caplog: pytest.LogCaptureFixture
+    grid: RoadGraph, wandering: TrafficRecording, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ):
     small = TrafficConfig(demand=Demand.RESPAWN, group_size=2)
     origin = replace(
@@ -203,7 +203,7 @@ def test_a_group_that_is_too_small_is_raised_in_one_line(
 
 
 def test_a_named_recording_of_another_map_is_refused(
-    grid: RoadGraph, wandering: Recording, tmp_path: Path
+    grid: RoadGraph, wandering: TrafficRecording, tmp_path: Path
 ):
     save(wandering, tmp_path / "mine.npz")
     config = TrafficConfig(recording=str(tmp_path / "mine.npz"))

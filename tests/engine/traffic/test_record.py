@@ -15,7 +15,7 @@ from eyas.engine.traffic.config import Demand, Mix, TrafficConfig, VehicleType
 from eyas.engine.traffic.fleet import fleet_of
 from eyas.engine.traffic.network import network_xml
 from eyas.engine.traffic.record import WARM_UP, record, resolved
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import from_bytes, to_bytes
 from eyas.engine.traffic.replay import Replay
 from eyas.engine.traffic.smoothing import runs, smooth
@@ -34,38 +34,40 @@ GROUPS = TrafficConfig(
 
 
 @pytest.fixture(scope="module")
-def cars(grid: RoadGraph) -> Recording:
+def cars(grid: RoadGraph) -> TrafficRecording:
     return record("grid", 0, grid, CARS, 120.0, 1)
 
 
 @pytest.fixture(scope="module")
-def groups(grid: RoadGraph) -> Recording:
+def groups(grid: RoadGraph) -> TrafficRecording:
     return record("grid", 0, grid, GROUPS, 120.0, 1)
 
 
-def _speed(recording: Recording) -> NDArray[np.float64]:
+def _speed(recording: TrafficRecording) -> NDArray[np.float64]:
     """As SUMO drove, not smoothed; 0 where a vehicle comes or goes."""
     step = np.hypot(*np.moveaxis(np.diff(recording.position, axis=0), -1, 0)) * recording.rate
     step[~(recording.present[1:] & recording.present[:-1])] = 0.0
     return step
 
 
-def test_the_same_seed_gives_the_same_bytes_twice_in_a_process(cars: Recording, grid: RoadGraph):
+def test_the_same_seed_gives_the_same_bytes_twice_in_a_process(
+    cars: TrafficRecording, grid: RoadGraph
+):
     assert to_bytes(record("grid", 0, grid, CARS, 120.0, 1)) == to_bytes(cars)
 
 
-def test_another_seed_gives_other_traffic(cars: Recording, grid: RoadGraph):
+def test_another_seed_gives_other_traffic(cars: TrafficRecording, grid: RoadGraph):
     other = record("grid", 0, grid, CARS, 10.0, 2)
     assert np.abs(other.position - cars.position[:101]).max() > 50.0
 
 
-def test_kept_alive_cars_drive_from_start_to_end(cars: Recording):
+def test_kept_alive_cars_drive_from_start_to_end(cars: TrafficRecording):
     assert cars.present.all()
     assert cars.present.shape == (1201, 24)
     assert (smooth(cars).travelled[-1] > 500.0).all()
 
 
-def test_no_car_jumps_or_drives_through_another(cars: Recording):
+def test_no_car_jumps_or_drives_through_another(cars: TrafficRecording):
     assert _speed(cars).max() < 20.0
     tracks = smooth(cars)
     apart = tracks.position[:, :, None] - tracks.position[:, None]
@@ -96,7 +98,7 @@ def test_a_recording_is_what_sumo_itself_writes_down(
     assert compared == 24 * 201
 
 
-def test_replay_stays_near_sumo(cars: Recording, flat_motion):
+def test_replay_stays_near_sumo(cars: TrafficRecording, flat_motion):
     replay = Replay(flat_motion(cars))
     time = np.arange(0, 1201, 7) / 10.0
     out = ActorState.create(len(time), replay.actors)
@@ -111,7 +113,7 @@ def test_replay_stays_near_sumo(cars: Recording, flat_motion):
     assert np.abs(out.yaw - cars.yaw[::7]).max() < np.radians(35.0)
 
 
-def test_smoothed_cars_turn_and_brake_like_cars(cars: Recording):
+def test_smoothed_cars_turn_and_brake_like_cars(cars: TrafficRecording):
     tracks = smooth(cars)
     assert np.degrees(np.abs(tracks.yaw_rate).max()) < 120.0
     slip = (
@@ -122,7 +124,7 @@ def test_smoothed_cars_turn_and_brake_like_cars(cars: Recording):
     assert np.hypot(bend[..., 0], bend[..., 1]).max() < 25.0
 
 
-def test_groups_enter_drive_and_leave(groups: Recording):
+def test_groups_enter_drive_and_leave(groups: TrafficRecording):
     stays = [runs(groups.present[:, actor]) for actor in range(10)]
     entered = sorted(first for spans in stays for first, _ in spans if first > 0)
     assert len(entered) > 10
@@ -134,7 +136,7 @@ def test_groups_enter_drive_and_leave(groups: Recording):
     assert groups.present.sum(axis=1).max() <= 10
 
 
-def test_actors_are_used_again_after_a_break(groups: Recording):
+def test_actors_are_used_again_after_a_break(groups: TrafficRecording):
     spans = [runs(groups.present[:, actor]) for actor in range(10)]
     assert max(len(stays) for stays in spans) >= 2
     assert _speed(groups).max() < 20.0
@@ -182,7 +184,7 @@ def test_a_mix_gives_each_class_its_share(grid: RoadGraph, demand: Demand):
     assert to_bytes(again) == to_bytes(made)
 
 
-def test_a_mix_of_one_class_is_that_class(cars: Recording, grid: RoadGraph):
+def test_a_mix_of_one_class_is_that_class(cars: TrafficRecording, grid: RoadGraph):
     alone = CARS.model_copy(update={"vehicle_type": Mix(passenger=0.3)})
     assert to_bytes(record("grid", 0, grid, alone, 120.0, 1)) == to_bytes(cars)
 
@@ -242,7 +244,7 @@ def test_a_simulation_of_someone_else_is_left_alone(grid: RoadGraph, tmp_path):
         libsumo.close()
 
 
-def test_provenance_says_what_was_driven(groups: Recording):
+def test_provenance_says_what_was_driven(groups: TrafficRecording):
     origin = groups.provenance
     assert (origin.map_name, origin.map_seed, origin.warm_up) == ("grid", 0, WARM_UP)
     assert origin.config == resolved(GROUPS, 1)
@@ -263,7 +265,7 @@ def test_a_group_has_at_least_three_for_each_tracker(said: int | None, trackers:
     assert resolved(config, 1, trackers).group_size == used
 
 
-def test_groups_start_and_brake_in_an_instant(groups: Recording, cars: Recording):
+def test_groups_start_and_brake_in_an_instant(groups: TrafficRecording, cars: TrafficRecording):
     """As in the original; the others decide twice a second and are smoothed."""
     for recording, least, most in ((groups, 20.0, 30.0), (cars, 5.0, 15.0)):
         tracks = smooth(recording)
@@ -287,7 +289,7 @@ def test_what_the_original_says_of_groups_and_routes_is_driven(grid: RoadGraph):
         "random_seed": 7,
     }
 
-    def driven(**changes: object) -> Recording:
+    def driven(**changes: object) -> TrafficRecording:
         config = from_original({"Sumo_Params": keys | changes}).traffic
         assert config.seed is not None
         return record("grid", 0, grid, config, 60.0, config.seed)

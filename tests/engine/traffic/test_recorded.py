@@ -9,13 +9,13 @@ from eyas.engine.traffic import recorded
 from eyas.engine.traffic.config import Demand
 from eyas.engine.traffic.interpolation import interpolate_actors
 from eyas.engine.traffic.recorded import kept_motion, recorded_motion
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile, to_bytes
 
 EAST, NORTH = 0.05, -0.02
 
 
-def on(recording: Recording, terrain: Terrain, time: np.ndarray) -> ActorState:
+def on(recording: TrafficRecording, terrain: Terrain, time: np.ndarray) -> ActorState:
     motion = recorded_motion(recording, terrain, np.zeros(recording.actors, np.int32))
     out = ActorState.create(len(time), recording.actors)
     interpolate_actors(motion, time, out)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.core.errors import DataFileError, OutputError
-from eyas.engine.traffic.recording import ANGLE_UNIT, POSITION_UNIT, Recording, quantised
+from eyas.engine.traffic.recording import ANGLE_UNIT, POSITION_UNIT, TrafficRecording, quantised
 from eyas.engine.traffic.recording_file import (
     RecordingFile,
     _checksum,
@@ -19,7 +19,7 @@ from eyas.engine.traffic.recording_file import (
 )
 
 
-def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path: Path):
+def test_a_loaded_recording_equals_the_saved_one(wandering: TrafficRecording, tmp_path: Path):
     save(wandering, tmp_path / "drive.npz")
     back = load(tmp_path / "drive.npz")
     np.testing.assert_allclose(back.position, wandering.position, rtol=0, atol=1e-9)
@@ -33,19 +33,19 @@ def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path:
     assert RecordingFile.read(tmp_path / "drive.npz").outline().provenance == wandering.provenance
 
 
-def test_equal_recordings_give_equal_bytes(wandering: Recording):
+def test_equal_recordings_give_equal_bytes(wandering: TrafficRecording):
     data = to_bytes(wandering)
     assert to_bytes(from_bytes(data, "memory")) == data
 
 
-def test_an_actor_that_appears_far_away_is_kept(wandering: Recording):
+def test_an_actor_that_appears_far_away_is_kept(wandering: TrafficRecording):
     position = wandering.position.copy()
     position[100:, 0] += [1500.0, -900.0]
     moved = replace(wandering, position=position)
     np.testing.assert_allclose(from_bytes(to_bytes(moved), "far").position, position, atol=1e-9)
 
 
-def test_a_file_of_before_is_read(wandering: Recording, tmp_path: Path):
+def test_a_file_of_before_is_read(wandering: TrafficRecording, tmp_path: Path):
     data = to_bytes(wandering)
     new = from_bytes(data, "new")
     header = json.loads(_unpacked_npz(data)["header"].tobytes())
@@ -69,13 +69,13 @@ def test_a_file_of_before_is_read(wandering: Recording, tmp_path: Path):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.99])
-def test_a_file_that_is_cut_off_is_refused(wandering: Recording, share: float):
+def test_a_file_that_is_cut_off_is_refused(wandering: TrafficRecording, share: float):
     data = to_bytes(wandering)
     with pytest.raises(DataFileError, match=r"^drive\.npz: not a complete traffic recording"):
         from_bytes(data[: int(share * len(data))], "drive.npz")
 
 
-def test_no_damaged_byte_goes_unnoticed(wandering: Recording):
+def test_no_damaged_byte_goes_unnoticed(wandering: TrafficRecording):
     data = to_bytes(wandering)
     for place in range(0, len(data), 29):
         broken = bytearray(data)
@@ -88,7 +88,7 @@ def test_no_damaged_byte_goes_unnoticed(wandering: Recording):
         assert back.provenance == wandering.provenance
 
 
-def test_changed_content_fails_the_checksum(wandering: Recording):
+def test_changed_content_fails_the_checksum(wandering: TrafficRecording):
     arrays = _unpacked_npz(to_bytes(wandering))
     arrays["origin"] = arrays["origin"] + 1
     buffer = io.BytesIO()
@@ -109,6 +109,6 @@ def test_other_files_are_refused(tmp_path: Path):
             load(tmp_path / name)
 
 
-def test_a_folder_that_is_not_there_is_an_output_error(wandering: Recording, tmp_path: Path):
+def test_a_folder_that_is_not_there_is_an_output_error(wandering: TrafficRecording, tmp_path: Path):
     with pytest.raises(OutputError, match="cannot write"):
         save(wandering, tmp_path / "missing" / "drive.npz")

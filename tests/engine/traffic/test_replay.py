@@ -3,13 +3,13 @@ import pytest
 
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.state.motion import ActorState
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.replay import Replay, check_time
 from eyas.engine.traffic.smoothing import smooth
 
 
 @pytest.fixture(scope="module")
-def replay(wandering: Recording, flat_motion) -> Replay:
+def replay(wandering: TrafficRecording, flat_motion) -> Replay:
     return Replay(flat_motion(wandering))
 
 
@@ -19,11 +19,13 @@ def _at(replay: Replay, time: np.ndarray) -> ActorState:
     return out
 
 
-def test_actors_and_duration_are_those_of_the_recording(replay: Replay, wandering: Recording):
+def test_actors_and_duration_are_those_of_the_recording(
+    replay: Replay, wandering: TrafficRecording
+):
     assert (replay.actors, replay.duration) == (wandering.actors, wandering.duration) == (3, 20.0)
 
 
-def test_samples_are_met(replay: Replay, wandering: Recording):
+def test_samples_are_met(replay: Replay, wandering: TrafficRecording):
     tracks = smooth(wandering)
     out = _at(replay, np.arange(201) / 10.0)
     np.testing.assert_allclose(out.position[..., :2], tracks.position, atol=1e-4)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.traffic.config import Demand
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.smoothing import held, runs, smooth
 
 
@@ -70,7 +70,7 @@ def test_a_standing_car_does_not_turn(make_recording):
     np.testing.assert_allclose(tracks.velocity, 0.0, atol=1e-9)
 
 
-def test_stays_are_smoothed_apart(wandering: Recording):
+def test_stays_are_smoothed_apart(wandering: TrafficRecording):
     tracks = smooth(wandering)
     here = wandering.present
     shift = np.hypot(*np.moveaxis(tracks.position - wandering.position, -1, 0))

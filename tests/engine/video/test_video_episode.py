@@ -8,7 +8,7 @@ from eyas.engine.camera.config import CameraConfig
 from eyas.engine.camera.esim import EVENT
 from eyas.engine.camera.events import EventsConfig
 from eyas.engine.core.errors import OutputError
-from eyas.engine.exports.capture import Moment, frame_of
+from eyas.engine.exports.capture import FrameMoment, frame_of
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.exports.registry import WRITERS, chosen_writers
 from eyas.engine.exports.writer import Episode, EpisodeWriter, Files, Run, Scores, Summary, Writer
@@ -52,7 +52,7 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
         action, now = RecordedAction(-1, None), snapshot.episodes
         told = {"lidar": np.ones(400), "sensors": np.ones(19), "events": np.zeros(0, EVENT)}
         told |= {"parts": PARTS, "clean": picture.rgb[0].copy(), "traffic": traffic}
-        moment = Moment(snapshot, now, **told)
+        moment = FrameMoment(snapshot, now, **told)
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 

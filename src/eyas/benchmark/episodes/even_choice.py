@@ -16,7 +16,7 @@ from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.episodes.episode_batch import episode_groups
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.core.identity.build import this_build
 from eyas.engine.policies.sight import visible_shares
@@ -109,7 +109,7 @@ def starts_of(episodes: list[EpisodeSpec], protocol: Protocol) -> Floats:
     data = MAPS.get(episodes[0].place.town[0]).data_hash()
     inputs = (this_build().world, data, protocol.hash, *episodes)
     starts: Floats = cached(
-        Kind.OCCLUSION, partial(_looked_at, episodes, protocol), inputs, of=np.ndarray
+        EntryKind.OCCLUSION, partial(_looked_at, episodes, protocol), inputs, of=np.ndarray
     )
     return starts
 

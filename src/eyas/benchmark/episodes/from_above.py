@@ -16,7 +16,7 @@ from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.episodes.episode_batch import episode_groups
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.policies.sight import visible_shares
 from eyas.engine.settings.env import EnvConfig
@@ -48,7 +48,7 @@ def seen_from_above(
         rows = [alone.index(episode) for episode in plain]
         return FromAbove(*(array[rows] for array in seen))
     make = partial(_seen, episodes, protocol, period)
-    return cached(Kind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
+    return cached(EntryKind.OCCLUSION, make, (protocol.hash, period, *episodes), of=FromAbove)
 
 
 def _without_camera(changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -44,7 +44,7 @@ _ONSETS = (5.0, 20.0), (42.0, 58.0)
 Floats = NDArray[np.float64]
 
 
-class Loss(NamedTuple):
+class TargetLoss(NamedTuple):
     """A target cannot be seen for a while."""
 
     start: float  # [s]
@@ -54,20 +54,20 @@ class Loss(NamedTuple):
 def hidden_spans(
     shares: Floats,  # Visible share of it at each look, as from `seen_from_above`, shape (K,)
     period: float = _PERIOD,  # Time between two looks [s]
-) -> list[Loss]:
+) -> list[TargetLoss]:
     """Return when a target is out of sight."""
     hidden = np.concatenate([[False], shares < LEAST_VISIBLE, [False]])
     edges = np.flatnonzero(hidden[1:] != hidden[:-1])
-    spans: list[Loss] = []
+    spans: list[TargetLoss] = []
     for first, last in edges.reshape(-1, 2).tolist():
-        loss = Loss((first + 1) * period, (last + 1) * period)
+        loss = TargetLoss((first + 1) * period, (last + 1) * period)
         if spans and loss.start - spans[-1].end <= _STEADY:
-            loss = Loss(spans.pop().start, loss.end)
+            loss = TargetLoss(spans.pop().start, loss.end)
         spans.append(loss)
     return spans
 
 
-def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Loss]]:
+def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[TargetLoss]]:
     """Return the losses of each episode; empty for episodes that the protocol does not choose.
 
     An episode of the protocol has one to three of 4 to 12 s each and none that is longer; its
@@ -92,13 +92,13 @@ def losses_by_things(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> lis
     return found
 
 
-def _moved(places: Floats, loss: Loss) -> float:
+def _moved(places: Floats, loss: TargetLoss) -> float:
     """Return the distance between where a target vanishes and where it comes out [m]."""
     first, last = round(loss.start / _PERIOD) - 1, round(loss.end / _PERIOD) - 1
     return float(exact.hypot(*(places[last] - places[max(first - 1, 0)])))
 
 
-def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[Loss]]:
+def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[list[TargetLoss]]:
     """Return when the camera of each episode is covered; empty if the protocol does not choose it.
 
     The variants of an episode are covered at the same times, but for different lengths. The target
@@ -109,7 +109,7 @@ def covered_losses(episodes: Sequence[EpisodeSpec], protocol: Protocol) -> list[
     visible = seen_from_above(alike, protocol, _PERIOD).shares >= LEAST_VISIBLE
     onsets = {one: _onsets(own, one.seed) for one, own in zip(alike, visible, strict=True)}
     return [
-        [Loss(start, start + COVERED.get(episode.variant, 0.0)) for start in onsets[same]]
+        [TargetLoss(start, start + COVERED.get(episode.variant, 0.0)) for start in onsets[same]]
         for episode, same in zip(episodes, plain, strict=True)
     ]
 

@@ -20,7 +20,7 @@ from eyas.benchmark.policies.road_search import sighted
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError, EyasError, MissingExtraError
 from eyas.engine.core.identity.build import this_build
 from eyas.lanes import limit_threads
@@ -193,7 +193,7 @@ def solvable(episodes: list[EpisodeSpec], protocol: Protocol) -> list[bool | Non
         return [None] * len(episodes)
     make = partial(_kept_shares, episodes, protocol)
     inputs = (this_build().world, protocol.hash, *episodes)
-    shares = np.asarray(cached(Kind.OCCLUSION, make, inputs, of=np.ndarray))
+    shares = np.asarray(cached(EntryKind.OCCLUSION, make, inputs, of=np.ndarray))
     return [bool(share >= SOLVED) for share in shares.tolist()]
 
 

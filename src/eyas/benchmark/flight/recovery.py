@@ -11,7 +11,7 @@ from eyas.benchmark.episodes.target_losses import (
     COVERED,
     LEAST_VISIBLE,
     SEARCH_LIMIT,
-    Loss,
+    TargetLoss,
     covered_losses,
     losses_by_things,
 )
@@ -99,7 +99,9 @@ class RecoveryScenario(Scenario):
         return figures
 
 
-def recovery_figures(losses: Sequence[Loss], sees: Mask, period: float) -> dict[str, float | None]:
+def recovery_figures(
+    losses: Sequence[TargetLoss], sees: Mask, period: float
+) -> dict[str, float | None]:
     """Return how often and how soon a target is seen again.
 
     Every loss counts, also one that begins when the target is lost already: else, who loses it
@@ -139,7 +141,7 @@ def time_to_see(
     return None
 
 
-def followed(others: NDArray[np.int64], loss: Loss, period: float) -> bool:
+def followed(others: NDArray[np.int64], loss: TargetLoss, period: float) -> bool:
     """Return whether one other vehicle stays in the middle of the picture after a loss."""
     span = others[round(loss.start / period) : round((loss.end + SEARCH_LIMIT) / period)]
     least, same = round(_WRONG / period), 0

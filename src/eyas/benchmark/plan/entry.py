@@ -32,7 +32,7 @@ _WORDS = {"words", "attributes"}
 """Names of what is told in words, at the start or in each observation."""
 
 
-class Entry(Config):
+class ResultEntry(Config):
     """What stands in a result of the policy."""
 
     entry_class: EntryClass
@@ -60,10 +60,10 @@ def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
     return EntryClass.PIXELS
 
 
-def entry_of(policy: Policy, latency: str, *, apart: bool, beside: bool) -> Entry:
+def entry_of(policy: Policy, latency: str, *, apart: bool, beside: bool) -> ResultEntry:
     """Return what a result says of a policy."""
     env = policy.env
-    return Entry(
+    return ResultEntry(
         entry_class=entry_class(policy, beside=beside),
         apart=apart,
         observation=env.observation,

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from eyas.benchmark.episodes.episode import FIRST_SEED, SETS_APART, EpisodeSpec, Place
-from eyas.benchmark.plan.entry import Entry, entry_of
+from eyas.benchmark.plan.entry import ResultEntry, entry_of
 from eyas.benchmark.plan.latency import delay_from
 from eyas.benchmark.policies.sandbox import open_sandboxed
 from eyas.benchmark.policies.table import ORACLES, fingerprint, open_policy, runs_code
@@ -136,7 +136,7 @@ class Stamp(Config):
     policy: str | None
     """Hash of the policy's file; None if it has none."""
     plan: EvaluationPlan
-    entry: Entry | None = None
+    entry: ResultEntry | None = None
     """What the policy sees and may do; None where nobody has opened it yet."""
 
     @property
@@ -190,7 +190,7 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
     return found
 
 
-def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
+def opened(plan: EvaluationPlan) -> tuple[Policy, ResultEntry]:
     """Return the policy of a plan, and what a result says of it.
 
     Code of a user's, and files that may hold some, fly in a process of their own.
@@ -208,7 +208,7 @@ def opened(plan: EvaluationPlan) -> tuple[Policy, Entry]:
     return policy, entry_of(policy, plan.latency, apart=apart, beside=beside)
 
 
-def check(plan: EvaluationPlan) -> Entry:
+def check(plan: EvaluationPlan) -> ResultEntry:
     """Refuse a plan that cannot be flown, before anything is written; else return its entry.
 
     Raises:

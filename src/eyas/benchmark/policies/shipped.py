@@ -15,7 +15,7 @@ TRAINED = Path(str(files("eyas.benchmark.policies"))) / "trained"
 (`.csv`)."""
 
 
-class Card(Config):
+class PolicyCard(Config):
     """Where a policy is from, and what it cannot do; `eyas reproduce` tells what it reaches."""
 
     title: str
@@ -45,7 +45,7 @@ def file_of(name: str) -> Path:
 
 
 @cache
-def card_of(name: str) -> Card:
+def card_of(name: str) -> PolicyCard:
     """Return the card of a policy."""
     path = TRAINED / f"{name}.json"
-    return validated(Card, json.loads(path.read_text()), str(path))
+    return validated(PolicyCard, json.loads(path.read_text()), str(path))

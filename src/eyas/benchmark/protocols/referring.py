@@ -23,7 +23,7 @@ from eyas.benchmark.flight.scenario import Scenario
 from eyas.benchmark.protocols.envelope import Envelope
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.policies.policy import Instruction
 from eyas.engine.policies.sight import nearest_to_middle, visible_shares
@@ -75,7 +75,7 @@ def among_look_alikes(
     for place in places:
         make = partial(_first_seeds, place, protocol, count, first_seed)
         inputs = (protocol.hash, place, count, first_seed)
-        found = cached(Kind.OCCLUSION, make, inputs, of=np.ndarray)
+        found = cached(EntryKind.OCCLUSION, make, inputs, of=np.ndarray)
         if len(found) < count:
             raise SpawnError(
                 f"protocol '{protocol.name}': only {len(found)} of {count * _TRIED} starts in "

@@ -19,7 +19,7 @@ _SIZE = 64
 _OWN_CODE_ONLY = 1 << 5 | 1 << 6  # Neither the kernel of the system nor a hypervisor
 
 
-class Counts(NamedTuple):
+class HardwareCounts(NamedTuple):
     """What the code of this process did."""
 
     instructions: int
@@ -39,7 +39,7 @@ def why_not() -> str | None:
     return None
 
 
-def counted(call: Callable[[], object]) -> Counts:
+def counted(call: Callable[[], object]) -> HardwareCounts:
     """Return what a call does in all threads that exist before it."""
     threads = [int(path.name) for path in Path("/proc/self/task").iterdir()]
     files = [[_opened(kind, thread) for thread in threads] for kind in (_INSTRUCTIONS, _CYCLES)]
@@ -51,7 +51,7 @@ def counted(call: Callable[[], object]) -> Counts:
         for group in files:
             for file in group:
                 os.close(file)
-    return Counts(*(b - a for a, b in zip(before, after, strict=True)))
+    return HardwareCounts(*(b - a for a, b in zip(before, after, strict=True)))
 
 
 def _opened(kind: int, thread: int) -> int:

@@ -51,7 +51,7 @@ class TargetPose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Camera:
+class StageCamera:
     """A camera that looks at the target's middle."""
 
     bearing: float
@@ -82,7 +82,7 @@ class TargetStage:
         self,
         model: int,
         colour: Colour,
-        shots: Sequence[tuple[TargetPose, Camera]],
+        shots: Sequence[tuple[TargetPose, StageCamera]],
         size: tuple[int, int],
         samples: int = 4,
     ) -> NDArray[np.uint8]:
@@ -110,7 +110,9 @@ class TargetStage:
         assert picture.rgb is not None  # asked for
         return picture.rgb
 
-    def _views(self, middles: NDArray[np.float64], actor: int, cameras: Sequence[Camera]) -> Views:
+    def _views(
+        self, middles: NDArray[np.float64], actor: int, cameras: Sequence[StageCamera]
+    ) -> Views:
         yaw = float(np.arctan2(self._ahead[1], self._ahead[0]))
         looks = np.array([_rotation(camera, yaw) for camera in cameras])
         away = np.array([camera.distance for camera in cameras])
@@ -124,7 +126,7 @@ class TargetStage:
         )
 
 
-def _rotation(camera: Camera, yaw: float) -> NDArray[np.float64]:
+def _rotation(camera: StageCamera, yaw: float) -> NDArray[np.float64]:
     """Return camera to world for a target with this heading; columns are forward, left, up."""
     level, bearing = np.cos(camera.elevation), camera.bearing + yaw
     forward = -np.array([
@@ -186,12 +188,12 @@ def _colour(model: int) -> tuple[float, float, float]:
     return colours[(model - MODELS.index(kind_of(model).models[0])) % len(colours)]
 
 
-def _around(model: int, bearing: float, elevation: float) -> Camera:
+def _around(model: int, bearing: float, elevation: float) -> StageCamera:
     """Return a camera near a model, which fills the picture."""
     size = MODELS[model].size
     distance = max(5.0, 2.0 * max(size))
     field = 2.0 * np.arctan(0.56 * float(np.linalg.norm(size)) / distance)
-    return Camera(bearing=bearing, elevation=elevation, distance=distance, field_of_view=field)
+    return StageCamera(bearing=bearing, elevation=elevation, distance=distance, field_of_view=field)
 
 
 def _sheet(stage: TargetStage, model: int) -> Rgb:
@@ -208,7 +210,7 @@ def _sheet(stage: TargetStage, model: int) -> Rgb:
     tracked = [
         (
             TargetPose(travelled=0.3 * stride, speed=speed),
-            Camera(bearing=turn, elevation=1.1, distance=_HEIGHT, field_of_view=_FIELD),
+            StageCamera(bearing=turn, elevation=1.1, distance=_HEIGHT, field_of_view=_FIELD),
         )
         for turn in turns[::2].tolist()
     ]

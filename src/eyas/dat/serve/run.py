@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from eyas.dat.settings.adapter import original_key_of, save_original
 from eyas.dat.settings.dialect import AGENT_STEPS, started_later
 from eyas.dat.wire.config import WireConfig
-from eyas.dat.wire.exchange import SETTINGS_FILE, Exchange
+from eyas.dat.wire.exchange import SETTINGS_FILE, ExchangeFolders
 from eyas.dat.wire.server import Server, Service
 from eyas.engine.core.clock import physics_steps
 from eyas.engine.core.config import shown
@@ -205,7 +205,7 @@ def run(
         EyasError: Something cannot be built, read or written, or the folder or the port is in use.
         KeyboardInterrupt: The user stopped it.
     """
-    exchange = Exchange(root)
+    exchange = ExchangeFolders(root)
     with originals_named(config):
         MAPS.get(config.world.map).light(config.world.weather)  # raises before anyone waits
         if not exchange.settings.exists():

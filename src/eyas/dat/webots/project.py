@@ -21,7 +21,7 @@ from eyas.dat.webots.protos import (
     vehicle_protos,
 )
 from eyas.dat.webots.vrml import Node, Value, world
-from eyas.dat.webots.world import Shapes, scene_nodes, sky_nodes
+from eyas.dat.webots.world import VrmlShapes, scene_nodes, sky_nodes
 from eyas.engine.camera.config import CameraConfig
 from eyas.engine.core.files import refusals, write_atomic
 from eyas.engine.sim.scenes import load_scene, load_textures
@@ -93,7 +93,7 @@ def _world_files(
 ) -> Iterator[tuple[str, bytes]]:
     """Yield the world, its PROTOs, and their textures, by path."""
     shining = light.lamps > 0.0
-    shapes = {"": Shapes("textures", lit=shining)}
+    shapes = {"": VrmlShapes("textures", lit=shining)}
     title = f"{recipe.name}, {weather}"
     nodes = sky_nodes(title, light, recipe.attribution())
     nodes += scene_nodes(scene, shapes[""], detail, shining=shining)
@@ -122,7 +122,10 @@ def _robots(name: str) -> list[Node]:
         "supervisor": True,
     }
     roads: dict[str, Value] = {"networkFiles": f"{name}_net", "maxVehicles": 40}
-    return [Node("Robot", receiver, "GLOBAL_RECEIVER"), Node(INTERFACE, roads, "SUMO_INTERFACE")]
+    return [
+        Node("Robot", receiver, "GLOBAL_RECEIVER"),
+        Node(INTERFACE, roads, "SUMO_INTERFACE"),
+    ]
 
 
 def _ground(scene: Scene) -> dict[str, bytes]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from eyas.dat.webots.vrml import Is, Node, Value, proto
-from eyas.dat.webots.world import Shapes
+from eyas.dat.webots.world import VrmlShapes
 from eyas.engine.exports.resting import resting_mesh
 from eyas.engine.targets.catalogue import VEHICLE_KINDS
 from eyas.engine.targets.kind import Kind, Model
@@ -25,14 +25,14 @@ _OTHERS = 10
 
 
 def vehicle_protos(
-    shapes: dict[str, Shapes],  # Filled with the maker of each file, which tells its textures
+    shapes: dict[str, VrmlShapes],  # Filled with the maker of each file, which tells its textures
 ) -> Iterator[tuple[str, str]]:
     """Yield the name and text of the PROTO of each model of a vehicle.
 
     The origin is where the original's is: at the reference point, as high as the wheels' middles.
     """
     for model in (model for kind in VEHICLE_KINDS for model in kind.models):
-        shapes[model.name] = Shapes("../worlds/textures", "color")
+        shapes[model.name] = VrmlShapes("../worlds/textures", "color")
         mesh = resting_mesh(model.name, _DETAIL)
         body = Node(
             "Pose",
@@ -115,8 +115,9 @@ def drone_proto(
             "controller": Is("controller"), "controllerArgs": Is("controllerArgs"),
             "customData": Is("customData"), "supervisor": True, "synchronization": True,
             "children": [
-                Node("Group", {"children": Shapes("").of(quadrotor_levels()[0])}),
-                Node("GPS"), Node("InertialUnit"), Node("Gyro"), Node("Accelerometer"),
+                Node("Group", {"children": VrmlShapes("").of(quadrotor_levels()[0])}),
+                Node("GPS"), Node("InertialUnit"), Node("Gyro"),
+                Node("Accelerometer"),
                 _lidar(), _gimbal(),
             ],
             "boundingObject": Node("Box", {"size": (0.806, 0.806, 0.366)}),
@@ -158,7 +159,11 @@ def _lidar() -> Node:
 
 
 def _joint(
-    name: str, axis: tuple[float, ...], anchor: tuple[float, ...], limit: float, carried: list[Node]
+    name: str,
+    axis: tuple[float, ...],
+    anchor: tuple[float, ...],
+    limit: float,
+    carried: list[Node],
 ) -> Node:
     """Return a joint of the gimbal; what it carries has its origin in the joint."""
     motor: dict[str, Value] = {

@@ -15,7 +15,7 @@ from eyas.lanes import exact
 from eyas.maps.formats.gltf.file import PLAIN
 from eyas.maps.formats.meshes import (
     Indexed,
-    Part,
+    MeshPart,
     copies_of,
     parts_of,
     prism,
@@ -31,7 +31,7 @@ _STEP = 1e-4  # Resolution of positions, normals and texture coordinates, as the
 Floats = NDArray[np.float64]
 
 
-class Shapes:
+class VrmlShapes:
     """Makes the shapes of one file; each material is told once.
 
     Attributes:
@@ -178,7 +178,7 @@ def _shown(radiance: Sequence[float]) -> tuple[float, ...]:
     )
 
 
-def scene_nodes(scene: Scene, shapes: Shapes, detail: int, *, shining: bool) -> Iterator[Node]:
+def scene_nodes(scene: Scene, shapes: VrmlShapes, detail: int, *, shining: bool) -> Iterator[Node]:
     """Yield the nodes of all that stands on a map: a solid for the ground, one for each building
     and the like, and one for each class of repeated things.
 
@@ -200,7 +200,7 @@ def scene_nodes(scene: Scene, shapes: Shapes, detail: int, *, shining: bool) -> 
     yield from _lamps(scene.lamps, shining=shining)
 
 
-def _land(scene: Scene, shapes: Shapes, meshes: Sequence[Mesh]) -> Node:
+def _land(scene: Scene, shapes: VrmlShapes, meshes: Sequence[Mesh]) -> Node:
     """Return the ground: its drawn meshes, and the grid of its heights, which is solid."""
     shown = [shape for mesh in meshes for shape in shapes.of(_lifted(mesh, scene.terrain.floor))]
     grid, west, south = _grid(scene.terrain, scene.size)
@@ -236,7 +236,7 @@ def _grid(terrain: Terrain, size: tuple[float, float]) -> tuple[Node, float, flo
     return Node("ElevationGrid", fields), west, south
 
 
-def _part(part: Part, shapes: Shapes, solid: "_Solids") -> Node:
+def _part(part: MeshPart, shapes: VrmlShapes, solid: "_Solids") -> Node:
     owner = int(part.name.rpartition("-")[2])
     fields: dict[str, Value] = {"name": part.name, "children": shapes.of(part.mesh)}
     touched = solid.of(owner)
@@ -249,7 +249,7 @@ def _group(nodes: list[Node]) -> Node:
     return Node("Group", {"children": nodes})
 
 
-def _repeated(scene: Scene, shapes: Shapes, detail: int) -> Iterator[Node]:
+def _repeated(scene: Scene, shapes: VrmlShapes, detail: int) -> Iterator[Node]:
     """Yield a group for each class of repeated things; each prototype is told once."""
     prototypes = prototypes_of(scene.fixtures, detail)
     groups: dict[ObjectClass, list[Value]] = {}

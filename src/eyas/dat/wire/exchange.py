@@ -88,7 +88,7 @@ class Names:
         self.picture = folder / f"{tracker}_VideoFrame.jpeg"
 
 
-class Exchange:
+class ExchangeFolders:
     """The folders below the original's root that a server uses; the root may be empty.
 
     Args:

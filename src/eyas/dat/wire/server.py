@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from eyas.dat.wire.announcements import Announcements
 from eyas.dat.wire.client_session import AnswerFile, ClientSession
 from eyas.dat.wire.config import WireConfig
-from eyas.dat.wire.exchange import RESET, Exchange, Pause
+from eyas.dat.wire.exchange import RESET, ExchangeFolders, Pause
 from eyas.engine.core.errors import (
     ConfigError,
     DataFileError,
@@ -58,7 +58,10 @@ class Server(Face):
     speed = 0.0  # in lock-step
 
     def __init__(
-        self, exchange: Exchange, ask: Callable[[], Service], place: Callable[[], tuple[str, int]]
+        self,
+        exchange: ExchangeFolders,
+        ask: Callable[[], Service],
+        place: Callable[[], tuple[str, int]],
     ) -> None:
         self._exchange, self._ask, self._place = exchange, ask, place
         self._open, self._serving = ExitStack(), ExitStack()

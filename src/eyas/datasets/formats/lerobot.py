@@ -16,7 +16,7 @@ from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_
 from eyas.engine.core.decoding import npz_arrays
 from eyas.engine.core.errors import DataFileError, MissingExtraError
 from eyas.engine.core.files import read_limited
-from eyas.engine.recordings.format import KEPT, Exported, Format, Job
+from eyas.engine.recordings.format import KEPT, Exported, ExportJob, Format
 from eyas.engine.recordings.recording import RecordedEpisode
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class LeRobot(Format):
 
     needs = frozenset({"jpeg", "labels", "mp4"})
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: ExportJob) -> None:
         try:
             import pyarrow as pa
             import pyarrow.parquet as pq

@@ -13,7 +13,7 @@ from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.core.files import atomic_path, read_limited, refusals
 from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
 from eyas.engine.exports.label import label_schema
-from eyas.engine.recordings.format import Format, Job, SeenObject, objects_of, split_of
+from eyas.engine.recordings.format import ExportJob, Format, SeenObject, objects_of, split_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 Json = dict[str, Any]
@@ -65,7 +65,7 @@ class Mcap(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: ExportJob) -> None:
         try:
             from mcap import writer
         except ImportError as error:

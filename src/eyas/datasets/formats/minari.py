@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from eyas.datasets.motion import STATE_NAMES, TRUTH_NAMES, action_names, motion_of, task_of
 from eyas.engine.core.errors import MissingExtraError, OutputError
 from eyas.engine.core.files import atomic_path
-from eyas.engine.recordings.format import KEPT, Exported, Format, Job
+from eyas.engine.recordings.format import KEPT, Exported, ExportJob, Format
 from eyas.engine.recordings.recording import RecordedEpisode
 
 Row = dict[str, Any]
@@ -35,7 +35,7 @@ class Minari(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: ExportJob) -> None:
         try:
             import h5py
         except ImportError as error:

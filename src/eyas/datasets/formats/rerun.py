@@ -11,7 +11,7 @@ import numpy as np
 from eyas.engine.core.errors import MissingExtraError
 from eyas.engine.core.files import read_limited
 from eyas.engine.exports.boxes import box_of, camera_pose, quaternion_of
-from eyas.engine.recordings.format import Format, Job, objects_of, split_of
+from eyas.engine.recordings.format import ExportJob, Format, objects_of, split_of
 from eyas.engine.recordings.recording import RecordedEpisode, RecordedFrame
 
 _TARGET, _OTHER = (255, 140, 0), (90, 170, 255)  # Colours of boxes
@@ -26,7 +26,7 @@ class Rerun(Format):
 
     needs = frozenset({"jpeg", "labels"})
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: ExportJob) -> None:
         try:
             import rerun
         except ImportError as error:

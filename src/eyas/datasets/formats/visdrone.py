@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from eyas.datasets.formats.kitti import occlusion_level
 from eyas.datasets.formats.sot import target_boxes
 from eyas.engine.recordings.format import (
+    ExportJob,
     Format,
-    Job,
     SeenObject,
     left_top_width_height,
     lines,
@@ -41,7 +41,7 @@ CATEGORIES = {
 Row = tuple[int, ...]
 
 
-def _row(seen: SeenObject, job: Job) -> Row:
+def _row(seen: SeenObject, job: ExportJob) -> Row:
     """Return box, score, category, truncation and occlusion."""
     label = seen.label
     category = CATEGORIES[ObjectClass(label["class_id"])]

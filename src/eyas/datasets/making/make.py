@@ -30,7 +30,7 @@ from eyas.datasets.making.parts import (
 )
 from eyas.datasets.making.workers import work
 from eyas.datasets.overview import chosen_frames, contact_sheet, page, stacked
-from eyas.datasets.plan import Part
+from eyas.datasets.plan import DatasetPart
 from eyas.datasets.statistics import COLUMNS, PartFacts, added
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import EyasError, OutputError
@@ -47,7 +47,7 @@ from eyas.lanes import thread_count
 # Writes the files that describe a data set, from what is known of its parts.
 
 
-def describe(plan: Plan, parts: Sequence[tuple[Part, PartFacts]], root: Path) -> None:
+def describe(plan: Plan, parts: Sequence[tuple[DatasetPart, PartFacts]], root: Path) -> None:
     """Write recipe, table of frames, statistics, overview, datasheet and metadata.
 
     Raises:
@@ -72,7 +72,7 @@ def _write(path: Path, content: Any) -> None:  # noqa: ANN401  # JSON
     write_atomic(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
-def _table(parts: Sequence[tuple[Part, PartFacts]]) -> bytes:
+def _table(parts: Sequence[tuple[DatasetPart, PartFacts]]) -> bytes:
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(COLUMNS)
@@ -81,7 +81,7 @@ def _table(parts: Sequence[tuple[Part, PartFacts]]) -> bytes:
     return text.getvalue().encode()
 
 
-def _statistics(parts: Sequence[tuple[Part, PartFacts]]) -> dict[str, Any]:
+def _statistics(parts: Sequence[tuple[DatasetPart, PartFacts]]) -> dict[str, Any]:
     """Return the counts of all splits, and of all together."""
     of_split: dict[str, list[dict[str, Any]]] = {}
     for part, facts in parts:
@@ -96,7 +96,7 @@ def _in_order(counts: dict[str, Any]) -> dict[str, Any]:
     return {**counts, **{name: dict(sorted(counts[name].items())) for name in names}}
 
 
-def _notices(parts: Sequence[tuple[Part, PartFacts]]) -> dict[str, str]:
+def _notices(parts: Sequence[tuple[DatasetPart, PartFacts]]) -> dict[str, str]:
     names = dict.fromkeys(part.config.world.map for part, _ in parts)
     told = {name: MAPS.get(name).attribution() for name in names}
     return {name: notice for name, notice in told.items() if notice}
@@ -104,7 +104,7 @@ def _notices(parts: Sequence[tuple[Part, PartFacts]]) -> dict[str, str]:
 
 def _overview(
     plan: Plan,
-    parts: Sequence[tuple[Part, PartFacts]],
+    parts: Sequence[tuple[DatasetPart, PartFacts]],
     statistics: dict[str, Any],
     root: Path,
 ) -> None:
@@ -123,7 +123,7 @@ _LOG = logging.getLogger("eyas")
 EXPORTED = ".exported"
 """Names of the parts whose exports are complete, a line each, while a data set is being made."""
 
-Recorded = Callable[[Sequence[Part], Path], Iterator[tuple[Part, PartFacts]]]
+Recorded = Callable[[Sequence[DatasetPart], Path], Iterator[tuple[DatasetPart, PartFacts]]]
 """Records parts into the folder of the data set; yields each that is complete."""
 
 
@@ -168,7 +168,7 @@ def make(
             complete(plan, root, making)
 
 
-def _check_worlds(parts: Sequence[Part], root: Path, making: Making) -> None:
+def _check_worlds(parts: Sequence[DatasetPart], root: Path, making: Making) -> None:
     """Build each world once, so that a recipe that cannot be met is told before any is drawn."""
     missing = [part for part in parts if not (root / part.folder / PART_FILE).exists()]
     worlds = worlds_of(missing)
@@ -178,7 +178,9 @@ def _check_worlds(parts: Sequence[Part], root: Path, making: Making) -> None:
 
 
 def _on_this_machine(making: Making) -> Recorded:
-    def recorded(parts: Sequence[Part], root: Path) -> Iterator[tuple[Part, PartFacts]]:
+    def recorded(
+        parts: Sequence[DatasetPart], root: Path
+    ) -> Iterator[tuple[DatasetPart, PartFacts]]:
         return work(parts, record_part, making.processes, making.threads(len(parts)), root)
 
     return recorded
@@ -262,7 +264,7 @@ def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
     return found
 
 
-def _record(parts: Sequence[Part], root: Path, making: Making, recorded: Recorded) -> None:
+def _record(parts: Sequence[DatasetPart], root: Path, making: Making, recorded: Recorded) -> None:
     missing, done = [], 0
     for part in parts:
         if read_facts(root / part.folder) is None:
@@ -294,14 +296,14 @@ def complete(plan: Plan, root: Path, making: Making) -> None:
             (root / name).unlink(missing_ok=True)
 
 
-def _known(root: Path, part: Part) -> PartFacts:
+def _known(root: Path, part: DatasetPart) -> PartFacts:
     facts = read_facts(root / part.folder)
     if facts is None:
         raise OutputError(f"{root / part.folder}: the part is not complete")
     return facts
 
 
-def _export(plan: Plan, parts: Sequence[Part], root: Path, making: Making) -> None:
+def _export(plan: Plan, parts: Sequence[DatasetPart], root: Path, making: Making) -> None:
     """Put all parts into the formats of the recipe, in all processes."""
     formats, name = plan.recipe.formats, plan.recipe.name
     if not formats:

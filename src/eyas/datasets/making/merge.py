@@ -10,7 +10,7 @@ from pathlib import Path
 from eyas.datasets.layout import Plan, read_plan
 from eyas.datasets.making.make import Making, complete, continuable, open_folder, report
 from eyas.datasets.making.parts import PART_FILE, read_facts
-from eyas.datasets.plan import Part
+from eyas.datasets.plan import DatasetPart
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import atomic_path, refusals
 from eyas.engine.core.folder_lock import LOCK, folder_lock
@@ -70,7 +70,7 @@ def _checked(shards: Sequence[Path]) -> tuple[Plan, dict[str, Path]]:
     return first, homes
 
 
-def _join(parts: Sequence[Part], homes: dict[str, Path], out: Path, *, quiet: bool) -> None:
+def _join(parts: Sequence[DatasetPart], homes: dict[str, Path], out: Path, *, quiet: bool) -> None:
     done = 0
     with (
         frames_bar("merging", sum(part.frames for part in parts), quiet=quiet) as told,

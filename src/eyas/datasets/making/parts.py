@@ -13,7 +13,7 @@ from contextlib import closing, contextmanager
 from multiprocessing import parent_process
 from pathlib import Path
 
-from eyas.datasets.plan import Part
+from eyas.datasets.plan import DatasetPart
 from eyas.datasets.statistics import PartFacts, facts_of
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import DataFileError, EyasError, OutputError
@@ -44,9 +44,9 @@ def begin_worker(threads: int) -> None:
     threading.Thread(target=follow, daemon=True).start()
 
 
-def worlds_of(parts: Sequence[Part]) -> list[Part]:
+def worlds_of(parts: Sequence[DatasetPart]) -> list[DatasetPart]:
     """Return one part for each world: each map with its traffic, targets and extras."""
-    found: dict[object, Part] = {}
+    found: dict[object, DatasetPart] = {}
     for part in parts:
         config = part.config
         world, who = config.world, (config.target, config.extras, config.objects, config.custom)
@@ -57,7 +57,7 @@ def worlds_of(parts: Sequence[Part]) -> list[Part]:
     return list(found.values())
 
 
-def check_part(part: Part) -> None:
+def check_part(part: DatasetPart) -> None:
     """Build the world of a part, and draw nothing.
 
     Raises:
@@ -71,7 +71,7 @@ def check_part(part: Part) -> None:
         raise _plain(error, f"{part.name}: ") from None
 
 
-def record_part(part: Part, root: Path) -> PartFacts:
+def record_part(part: DatasetPart, root: Path) -> PartFacts:
     """Record a part, or what is missing of it.
 
     Raises:
@@ -107,7 +107,7 @@ def _hushed() -> Iterator[None]:
         log.setLevel(before)
 
 
-def _facts(root: Path, part: Part) -> PartFacts:
+def _facts(root: Path, part: DatasetPart) -> PartFacts:
     world = part.config.world
     place = {"map": world.map, "weather": world.weather, "variant": part.variant or "only"}
     place = {"split": part.split, **place}
@@ -135,7 +135,7 @@ def read_facts(folder: Path) -> PartFacts | None:
     return facts
 
 
-def export_part(part: Part, root: Path, dataset: str, formats: Sequence[str]) -> int:
+def export_part(part: DatasetPart, root: Path, dataset: str, formats: Sequence[str]) -> int:
     """Put the episodes of a part into the exports of the data set; return its frames.
 
     Raises:

@@ -14,7 +14,7 @@ from typing import Any
 from eyas.benchmark.flight.policy_runner import Ray, connected, one_line
 from eyas.datasets.making.make import Recorded
 from eyas.datasets.making.parts import PART_FILE, read_facts, record_part
-from eyas.datasets.plan import Part, in_order_of_work
+from eyas.datasets.plan import DatasetPart, in_order_of_work
 from eyas.datasets.statistics import PartFacts
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import refusals
@@ -37,12 +37,12 @@ def on_ray() -> Iterator[Recorded]:
 
 def _recorded(
     ray: Ray,
-    parts: Sequence[Part],
+    parts: Sequence[DatasetPart],
     root: Path,
-) -> Iterator[tuple[Part, PartFacts]]:
+) -> Iterator[tuple[DatasetPart, PartFacts]]:
     cores = max(1, int(ray.cluster_resources().get("CPU", 1)))
     task = ray.remote(num_cpus=1, max_retries=_RETRIES)(_archive_of)
-    build, left, busy = this_build().id, in_order_of_work(parts), dict[Any, Part]()
+    build, left, busy = this_build().id, in_order_of_work(parts), dict[Any, DatasetPart]()
     try:
         while left or busy:
             while left and len(busy) < _WAITING * cores:
@@ -64,7 +64,7 @@ def _recorded(
             ray.cancel(waiting, force=True)
 
 
-def _archive_of(part: Part, build: str) -> bytes:
+def _archive_of(part: DatasetPart, build: str) -> bytes:
     """Return a recorded part as an archive, made by the one core of this process."""
     limit_threads(1)
     here = this_build().id

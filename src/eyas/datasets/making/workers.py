@@ -12,7 +12,7 @@ from multiprocessing import get_context
 from typing import Any, TypeVar
 
 from eyas.datasets.making.parts import begin_worker
-from eyas.datasets.plan import Part, in_order_of_work
+from eyas.datasets.plan import DatasetPart, in_order_of_work
 from eyas.engine.core.errors import EyasError
 from eyas.engine.terminal.interrupts import interrupts_held
 
@@ -28,13 +28,13 @@ _RETRIES = 2  # How often a part is tried again whose process was lost, as by a 
 class _Queue:
     """The parts that wait, by map."""
 
-    def __init__(self, parts: Sequence[Part]) -> None:
-        self._waiting: dict[str, list[Part]] = {}
+    def __init__(self, parts: Sequence[DatasetPart]) -> None:
+        self._waiting: dict[str, list[DatasetPart]] = {}
         for part in in_order_of_work(parts):
             self._waiting.setdefault(part.config.world.map, []).append(part)
         self._workers = dict.fromkeys(self._waiting, 0)
 
-    def next(self, last: str | None) -> Part | None:
+    def next(self, last: str | None) -> DatasetPart | None:
         """Return the next part for a worker whose last one was on a map; None: none is left."""
         if last is not None:
             self._workers[last] -= 1
@@ -51,7 +51,7 @@ class _Queue:
             return None
         return max(left, key=lambda name: len(left[name]) / (1 + self._workers[name]))
 
-    def again(self, part: Part) -> None:
+    def again(self, part: DatasetPart) -> None:
         """Put a part back."""
         self._waiting[part.config.world.map].insert(0, part)
 
@@ -65,7 +65,7 @@ class _Worker:
     place: str | None = None  # The map of its last part
     maps: int = 0  # Number of maps on which this process has worked
 
-    def begin(self, part: Part, call: Callable[..., Any], *args: Any) -> Future[Any]:  # noqa: ANN401
+    def begin(self, part: DatasetPart, call: Callable[..., Any], *args: Any) -> Future[Any]:  # noqa: ANN401
         self.maps += part.config.world.map != self.place
         if self.maps > _MAPS:
             self.close()
@@ -91,12 +91,12 @@ class _Worker:
 
 
 def work(
-    parts: Sequence[Part],
+    parts: Sequence[DatasetPart],
     call: Callable[..., Result],
     count: int,
     threads: int,
     *args: Any,  # noqa: ANN401
-) -> Iterator[tuple[Part, Result]]:
+) -> Iterator[tuple[DatasetPart, Result]]:
     """Yield what a function returns for each part, as they are done.
 
     Args:
@@ -113,16 +113,16 @@ def work(
 
 
 def _spread(
-    parts: Sequence[Part],
+    parts: Sequence[DatasetPart],
     call: Callable[..., Result],
     count: int,
     threads: int,
     *args: Any,  # noqa: ANN401
-) -> Iterator[tuple[Part, Result]]:
+) -> Iterator[tuple[DatasetPart, Result]]:
     """Yield what a function returns for each part, from several processes; see `work`."""
     queue, lost = _Queue(parts), dict[str, int]()
     workers = [_Worker(threads) for _ in range(min(count, len(parts)))]
-    busy: dict[Future[Result], tuple[_Worker, Part]] = {}
+    busy: dict[Future[Result], tuple[_Worker, DatasetPart]] = {}
     try:
         idle = list(workers)
         while True:

@@ -13,7 +13,7 @@ from eyas.engine.behaviours.chain import Chain, Poses, chain_through
 from eyas.engine.behaviours.crossing_walks import CrossingWalk, Streets, crossing_walk, walk_motion
 from eyas.engine.behaviours.crossings import crossings_of
 from eyas.engine.behaviours.gap_acceptance import GapAcceptance
-from eyas.engine.behaviours.ground import ROOM, Ground, walkways
+from eyas.engine.behaviours.ground import ROOM, WalkingGround, walkways
 from eyas.engine.behaviours.groups import SampleClock, ScriptedGroup
 from eyas.engine.behaviours.pavements import LANES, Walkway
 from eyas.engine.behaviours.routes import (
@@ -131,7 +131,7 @@ class _Course(NamedTuple):
 
 
 def scripted_table(
-    ground: Ground,  # The map
+    ground: WalkingGround,  # The map
     group: ScriptedGroup,  # Who moves
     clock: SampleClock,  # Number of samples, and their rate
     rng: np.random.Generator,  # Random numbers
@@ -165,7 +165,7 @@ def scripted_table(
 
 
 def _gone(
-    ground: Ground, group: ScriptedGroup, clock: SampleClock, paths: list[_Course]
+    ground: WalkingGround, group: ScriptedGroup, clock: SampleClock, paths: list[_Course]
 ) -> NDArray[np.void]:
     """Return the samples of those who go along the paths of their lifetimes.
 
@@ -201,7 +201,11 @@ def _go(course: _Course, rows: NDArray[np.void], rate: float) -> None:
 
 
 def _paths(
-    ground: Ground, group: ScriptedGroup, habit: Habit, seconds: Floats, rng: np.random.Generator
+    ground: WalkingGround,
+    group: ScriptedGroup,
+    habit: Habit,
+    seconds: Floats,
+    rng: np.random.Generator,
 ) -> list[_Course]:
     behaviour = group.behaviour or habit.behaviour
     radius = 0.5 * group.breadth + ROOM
@@ -245,7 +249,7 @@ def _strolls(
 
 
 def _crossing_walks(
-    ground: Ground,
+    ground: WalkingGround,
     group: ScriptedGroup,
     habit: Habit,
     ways: list[Walkway],
@@ -280,7 +284,7 @@ def _crossing_walks(
 
 
 def _walkways(
-    ground: Ground, group: ScriptedGroup, habit: Habit, vehicles: Motion | None
+    ground: WalkingGround, group: ScriptedGroup, habit: Habit, vehicles: Motion | None
 ) -> list[Walkway]:
     """Return the ways on pavements.
 
@@ -299,7 +303,7 @@ def _walkways(
     return ways
 
 
-def _lay(ground: Ground, table: NDArray[np.void], rate: float) -> None:
+def _lay(ground: WalkingGround, table: NDArray[np.void], rate: float) -> None:
     """Set the heights and slopes of samples to those of the ground."""
     here = table["present"] > 0.0
     points = np.column_stack([table["x"][here], table["y"][here]]).astype(np.float64)

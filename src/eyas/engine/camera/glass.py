@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.lens import LensSet
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel, parallel, thread_count
 from eyas.lanes.vector import (
@@ -53,7 +53,7 @@ def change_light(
     # Radiances in front of the lens, shape (V, 3, H, W); changed, if only darkened
     light: NDArray[np.float32],
     trackers: NDArray[np.integer],  # The tracker of each view, shape (V,)
-    lenses: Lenses,  # The lenses of all trackers
+    lenses: LensSet,  # The lenses of all trackers
 ) -> NDArray[np.float32]:
     """Return radiances as they come through lenses that darken and colour edges.
 

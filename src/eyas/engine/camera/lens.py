@@ -90,7 +90,7 @@ class LensConfig(Config):
 _NUMBERS = ("k1", "k2", "k3", "k4", "p1", "p2", "right", "below", "vignetting", "red", "blue")
 
 
-class Lenses:
+class LensSet:
     """The lenses of N trackers.
 
     Attributes:
@@ -113,7 +113,7 @@ class Lenses:
         self._set(slice(None), middle)
 
     @classmethod
-    def of(cls, config: LensConfig, count: int) -> "Lenses | None":
+    def of(cls, config: LensConfig, count: int) -> "LensSet | None":
         """Return the lenses of some settings; None: they are pinholes that lose no light."""
         return cls(config, count) if config.bends or config.changes_light else None
 
@@ -164,7 +164,7 @@ class Lenses:
 
 @lru_cache(maxsize=4096)
 def _field_around(numbers: tuple[float, ...], field: float, aspect: float) -> float:
-    """Return a horizontal field of view [rad] for `Lenses.seeing`."""
+    """Return a horizontal field of view [rad] for `LensSet.seeing`."""
     lens = Lens(int(numbers[0]), *numbers[1:])
     focal = focal_length(1, field)
     tangent = widest(lens, (1.0, aspect), (focal, focal))

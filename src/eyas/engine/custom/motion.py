@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.behaviours.ground import Ground
+from eyas.engine.behaviours.ground import WalkingGround
 from eyas.engine.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup
 from eyas.engine.behaviours.scripted import scripted_table
 from eyas.engine.core.errors import ConfigError, DataFileError
@@ -41,7 +41,7 @@ class Places(NamedTuple):
 def custom_motion(
     config: CustomConfig,  # The target
     places: Places,  # When and where it begins, if it moves by a behaviour
-    ground: Ground,  # The map
+    ground: WalkingGround,  # The map
     clock: SampleClock,  # Number of samples, and their rate
     rng: np.random.Generator,  # Source of random numbers
 ) -> Motion:
@@ -79,7 +79,9 @@ def _group(config: CustomConfig, name: str, places: Places) -> ScriptedGroup:
     )
 
 
-def _driven(file: str, smoothing: float, ground: Ground, clock: SampleClock) -> NDArray[np.void]:
+def _driven(
+    file: str, smoothing: float, ground: WalkingGround, clock: SampleClock
+) -> NDArray[np.void]:
     """Return the samples of a trajectory, again and again."""
     path, scene = user_path(file), ground.scene
     try:
@@ -109,7 +111,7 @@ def _own(
     target: MovesItself,
     path: str,
     count: int,
-    ground: Ground,
+    ground: WalkingGround,
     clock: SampleClock,
     rng: np.random.Generator,
 ) -> NDArray[np.void]:
@@ -120,7 +122,7 @@ def _own(
     return _table(place, np.unwrap(tracks[..., 2], axis=0), ground, clock.rate)
 
 
-def _table(place: Floats, yaw: Floats, ground: Ground, rate: float) -> NDArray[np.void]:
+def _table(place: Floats, yaw: Floats, ground: WalkingGround, rate: float) -> NDArray[np.void]:
     """Return samples of places (S, A, 3) with headings (S, A); z is NaN: on the ground."""
     flat, terrain = place[..., :2].reshape(-1, 2), ground.scene.terrain
     ahead = _SPAN * np.stack([exact.cos(yaw), exact.sin(yaw)], axis=-1).reshape(-1, 2)

@@ -30,7 +30,7 @@ from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.episode_sampling import ModelTable, SamplingRules
 from eyas.engine.sim.light import LightRules
-from eyas.engine.sim.starts import Starts
+from eyas.engine.sim.starts import FreeStarts
 from eyas.engine.sim.views.parked import ParkedObjects
 from eyas.engine.sim.views.visible_actors import VisibleActors
 from eyas.engine.sim.worlds import each_alone, together
@@ -51,7 +51,7 @@ _SHARED = (Assets, CpuRenderer, Lighting, Motion, ParkedObjects, Terrain)
 _TABLES = (Fitted, SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, PackedBundle)  # To the addresses of arrays, which stay
-_SCRATCH = (VisibleActors, Picture, Starts)  # Worked out at each use
+_SCRATCH = (VisibleActors, Picture, FreeStarts)  # Worked out at each use
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 """Types of parts for `eyas.engine.core.memento.remember` to leave out."""
 

@@ -40,7 +40,7 @@ _target_centre = interpreted(target_centre)
 _target_direction = interpreted(target_direction)
 
 
-class Moment(NamedTuple):
+class FrameMoment(NamedTuple):
     """State of a tracker at the time of a frame."""
 
     shown: Snapshot  # The state that its picture shows
@@ -77,7 +77,7 @@ def moment_of(
     picture: Picture,
     view: int,
     wanted: Collection[Output] = (),
-) -> Moment:
+) -> FrameMoment:
     """Return what is known of a tracker at the time of its picture, which has just been drawn.
 
     Args:
@@ -104,7 +104,7 @@ def moment_of(
     exposed = seen.exposure
     now = simulation.snapshot.episodes
     rotors = simulation.told().get(ROTORS)
-    return Moment(
+    return FrameMoment(
         shown,
         now,
         actors=actors,
@@ -150,7 +150,12 @@ def _through_further(seen: View, tracker: int) -> tuple[CameraPicture, ...]:
 
 
 def frame_of(
-    moment: Moment, tracker: int, picture: Picture, view: int, number: int, action: RecordedAction
+    moment: FrameMoment,
+    tracker: int,
+    picture: Picture,
+    view: int,
+    number: int,
+    action: RecordedAction,
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -220,7 +225,7 @@ def _camera(cameras: CameraState, tracker: int, picture: Picture, lens: Lens | N
     )
 
 
-def _target(moment: Moment, tracker: int, picture: Picture, view: int) -> Subject:
+def _target(moment: FrameMoment, tracker: int, picture: Picture, view: int) -> Subject:
     targets = moment.shown.targets
     assert picture.subject_box is not None
     assert picture.subject_visible_box is not None
@@ -260,16 +265,16 @@ def _target(moment: Moment, tracker: int, picture: Picture, view: int) -> Subjec
     )
 
 
-def _lamps(moment: Moment, actor: int) -> int:
+def _lamps(moment: FrameMoment, actor: int) -> int:
     return 0 if moment.lamps is None else int(moment.lamps[actor])
 
 
-def _whole_box(moment: Moment, actor: int) -> Floats:
+def _whole_box(moment: FrameMoment, actor: int) -> Floats:
     return np.zeros(4) if moment.whole_box is None else moment.whole_box[actor].copy()
 
 
 def others_of(
-    moment: Moment,  # What is known, with the actors that the picture shows
+    moment: FrameMoment,  # What is known, with the actors that the picture shows
     tracker: int,  # The tracker of the picture
     picture: Picture,  # The picture, with the boxes and pixels of all actors
     view: int,  # The tracker's row in `picture`
@@ -316,7 +321,7 @@ def _parked(seen: SeenParked) -> Subject:
     )
 
 
-def _other(moment: Moment, actor: int, picture: Picture, view: int) -> Subject:
+def _other(moment: FrameMoment, actor: int, picture: Picture, view: int) -> Subject:
     """Return an actor that is not the target."""
     around = moment.actors
     assert around is not None

@@ -27,7 +27,7 @@ from eyas.engine.exports.checksums import (
     read_checksums,
     seal_folder,
 )
-from eyas.engine.recordings.format import FORMATS, KEPT, SETTING, Exported, Format, Job
+from eyas.engine.recordings.format import FORMATS, KEPT, SETTING, Exported, ExportJob, Format
 from eyas.engine.recordings.recording import (
     DATASET_FILE,
     OF_EPISODES,
@@ -49,7 +49,7 @@ Progress = Callable[[int], None]  # Gets the number of exported frames
 
 @dataclass(frozen=True, slots=True)
 class ExportOptions:
-    """Options of an export, see `Job`."""
+    """Options of an export, see `ExportJob`."""
 
     copies: bool = False
     least_side: int = 1
@@ -85,7 +85,7 @@ def export(
     """
     make = _format_of(name)
     require_outputs(recording, name, make)
-    job = Job(
+    job = ExportJob(
         folder,
         _name_of(recording),
         copies=options.copies,
@@ -111,7 +111,7 @@ def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[Recorde
     Raises:
         EyasError: As `export`.
     """
-    form = _format_of(name)(Job(folder, named))
+    form = _format_of(name)(ExportJob(folder, named))
     for episode in episodes:
         shown = _shown(form, episode)
         if shown is not None:
@@ -124,7 +124,7 @@ def finish_export(folder: Path, named: str, name: str, recording: Recording) -> 
     Raises:
         EyasError: As `export`.
     """
-    form = _format_of(name)(Job(folder, named))
+    form = _format_of(name)(ExportJob(folder, named))
     exported = []
     for episode in recording.episodes:
         shown = _shown(form, episode)

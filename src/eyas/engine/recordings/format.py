@@ -5,7 +5,7 @@
       finish(episodes)              once: the files that are of several, from what `add` has kept
 
 An export that was interrupted goes on: `add` is not called again for an episode that it has
-finished. So what `finish` needs of an episode is kept in a file (`Job.keep`, `Job.kept`).
+finished. What `finish` needs of an episode is kept in a file (`ExportJob.keep`, `ExportJob.kept`).
 """
 
 import json
@@ -76,7 +76,7 @@ _TARGET_KEYS = {field.others: field.key for field in FIELDS if field.others and 
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class ExportJob:
     """An export: folder, name, and the options of its user.
 
     Attributes:
@@ -194,10 +194,10 @@ class Format(Protocol):
     first_sight: ClassVar[bool] = False
     """Whether episodes begin with the first frame in which the target is visible, as one-pass
     trackers need it; an episode in which it never is is left out."""
-    job: Job
+    job: ExportJob
     """The export that is written."""
 
-    def __init__(self, job: Job) -> None:
+    def __init__(self, job: ExportJob) -> None:
         self.job = job
 
     @abstractmethod

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from eyas.engine.behaviours.airborne import AirborneConfig, Space, chases, flocks
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.rng import stream
 from eyas.engine.render.bake.ambient import canopy_map, height_map
 from eyas.engine.state.motion import SAMPLE, Motion
@@ -62,7 +62,7 @@ def _circling(
         *(count, kind, clock, seed, speed, scene.name, scene.size, scene.terrain),
         *(static.positions, static.triangles, fixtures.pose, fixtures.prototype),
     )
-    numbers = cached(Kind.MOTION, make, (_numbers, *inputs), of=NDArray[np.float32])
+    numbers = cached(EntryKind.MOTION, make, (_numbers, *inputs), of=NDArray[np.float32])
     kinds = np.full(count, kind, np.int32)
     return Motion(numbers.view(SAMPLE)[..., 0], kinds, clock.rate, 0.0)
 

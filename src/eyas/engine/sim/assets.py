@@ -10,15 +10,21 @@ from numpy.typing import NDArray
 from eyas.engine.behaviours.groups import SampleClock
 from eyas.engine.core.cache.array_file import let_go
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.ahead import begin_ahead, drawing_is_ready
 from eyas.engine.render.renderer import build_renderer
 from eyas.engine.sensors.obstacles import Solids
 from eyas.engine.sim.cover import cover_of
 from eyas.engine.sim.crowd import NOBODY, Crowd, vehicles_of
-from eyas.engine.sim.crowd_motion import Surroundings, live_motions, with_crowd
-from eyas.engine.sim.scenes import Lenses, load_geometry, load_network, load_scene, load_solids
+from eyas.engine.sim.crowd_motion import CrowdSurroundings, live_motions, with_crowd
+from eyas.engine.sim.scenes import (
+    Lenses,
+    load_geometry,
+    load_network,
+    load_scene,
+    load_solids,
+)
 from eyas.engine.sim.views.additions import SignalLights, lights_of, signal_poles
 from eyas.engine.state.draw import Renderer
 from eyas.engine.state.lighting import Lighting
@@ -140,7 +146,7 @@ def _signalled(graph: RoadGraph, drivers: Drivers) -> bytes:
     """Return SUMO's network file of roads with working signals, kept in the cache."""
     driven = TrafficConfig(drivers=drivers, signals=Signals.WORKING)
     network = cached(
-        Kind.PLAN,
+        EntryKind.PLAN,
         lambda: np.frombuffer(roads_for(driven, graph), np.uint8),
         (roads_for, graph, drivers.value),
         of=NDArray[np.uint8],
@@ -161,7 +167,7 @@ def _traffic(
     finished, lights = MAPS.get(map_name).roads(seed).finished, None
     if scene.footways.told and finished:
         lights = walk_plan(SumoNet(finished))
-    around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
+    around = CrowdSurroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(vehicles, crowd, around)
     replay = Replay(motion, targets)
     let_go(motion.table)  # which has been read to its end
@@ -184,7 +190,7 @@ def _live(
         scene.terrain,
         kind_index,
         STANDARD_DURATION,
-        others=live_motions(crowd, Surroundings(scene, clock, own_seed)),
+        others=live_motions(crowd, CrowdSurroundings(scene, clock, own_seed)),
         lamps=config.lamps is Lamps.WORKING,
         cover=() if config.drivers is Drivers.NORMAL else cover_of(map_name, seed),
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eyas.engine.behaviours.config import ExtraConfig
 from eyas.engine.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup, lasting, recycled
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.rng import stream
 from eyas.engine.core.variation import Mirrored, Variation
@@ -26,14 +26,14 @@ from eyas.engine.traffic.signals import SignalPlan
 from eyas.lanes import exact
 
 if TYPE_CHECKING:
-    from eyas.engine.behaviours.ground import Ground
+    from eyas.engine.behaviours.ground import WalkingGround
 
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
 
 
-class Surroundings(NamedTuple):
+class CrowdSurroundings(NamedTuple):
     """Where and when a crowd moves."""
 
     scene: Scene
@@ -48,7 +48,7 @@ class Surroundings(NamedTuple):
 
 def crowd_motions(
     crowd: Crowd,
-    around: Surroundings,  # Where and when it moves
+    around: CrowdSurroundings,  # Where and when it moves
 ) -> list[Motion]:
     """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
 
@@ -68,7 +68,7 @@ def crowd_motions(
     return motions
 
 
-def live_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+def live_motions(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
     """Return the motions of all but vehicles that SUMO drives now, see `crowd_motions`."""
     return [*crowd_motions(crowd, around), *_above(crowd, around)]
 
@@ -76,7 +76,7 @@ def live_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
 def with_crowd(
     vehicles: Motion | None,  # The vehicles; None: there are none
     crowd: Crowd,
-    around: Surroundings,  # Where and when it moves
+    around: CrowdSurroundings,  # Where and when it moves
 ) -> tuple[Motion, NDArray[np.bool_]]:
     """Return the motion of vehicles and, after them, of a crowd, and who may be a target.
 
@@ -95,14 +95,14 @@ def with_crowd(
     return motion, np.repeat(np.arange(len(counts)) == followed, counts)
 
 
-def _above(crowd: Crowd, around: Surroundings) -> list[Motion]:
+def _above(crowd: Crowd, around: CrowdSurroundings) -> list[Motion]:
     """Return the motions of what flies."""
     scene, clock, seed = around.scene, around.clock, around.seed
     return air_motions(crowd.airborne, scene, clock, seed, around.vehicles)
 
 
 def _all_kept(
-    before: Sequence[Motion], crowd: Crowd, around: Surroundings
+    before: Sequence[Motion], crowd: Crowd, around: CrowdSurroundings
 ) -> tuple[Motion, list[int]]:
     """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
 
@@ -119,7 +119,7 @@ def _all_kept(
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
     make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
-    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
     indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
@@ -132,11 +132,11 @@ def _all_kept(
     return motion, [*(len(one.kind) for one in before), *counts]
 
 
-def _ground(around: Surroundings, driven: bool) -> "Ground":
+def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
     """Return the ground, whose roads are left to vehicles where these drive."""
-    from eyas.engine.behaviours.ground import Ground  # with shapely
+    from eyas.engine.behaviours.ground import WalkingGround  # with shapely
 
-    return Ground(around.scene, roads=driven, lights=around.lights)
+    return WalkingGround(around.scene, roads=driven, lights=around.lights)
 
 
 def _side_by_side(
@@ -149,14 +149,14 @@ def _side_by_side(
 def _kept(
     group: ScriptedGroup,
     number: int,
-    around: Surroundings,
+    around: CrowdSurroundings,
     driven: bool,
-    ground: Callable[[], "Ground"],
+    ground: Callable[[], "WalkingGround"],
 ) -> Motion:
     """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
     make = partial(_numbers_of, group, number, around, ground)
     inputs = _depends_on(group, number, around, driven)
-    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
     kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
     return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
 
@@ -164,8 +164,8 @@ def _kept(
 def _numbers_of(
     group: ScriptedGroup,  # Who moves
     number: int,  # Which of the crowd's groups it is
-    around: Surroundings,  # Where and when it moves
-    ground: Callable[[], "Ground"],  # Returns the ground
+    around: CrowdSurroundings,  # Where and when it moves
+    ground: Callable[[], "WalkingGround"],  # Returns the ground
 ) -> NDArray[np.float32]:
     """Return the numbers of the samples of a group's motion."""
     from eyas.engine.behaviours.scripted import scripted_table  # with shapely
@@ -176,7 +176,7 @@ def _numbers_of(
 
 
 def _depends_on(
-    group: ScriptedGroup, number: int, around: Surroundings, driven: bool
+    group: ScriptedGroup, number: int, around: CrowdSurroundings, driven: bool
 ) -> tuple[object, ...]:
     """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
@@ -221,7 +221,9 @@ def _refuse_crossing(crowd: Crowd) -> None:
             )
 
 
-def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "Ground") -> Motion:
+def _custom(
+    crowd: Crowd, custom: CustomConfig, around: CrowdSurroundings, ground: "WalkingGround"
+) -> Motion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.engine.custom.motion import Places, custom_motion  # with shapely
 

@@ -21,7 +21,7 @@ from eyas.engine.sim.episode_sampling import (
     sample_episodes,
 )
 from eyas.engine.sim.light import LightChanges
-from eyas.engine.sim.starts import Starts
+from eyas.engine.sim.starts import FreeStarts
 from eyas.engine.sim.worlds import Worlds
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.targets.catalogue import MODELS, kind_of
@@ -69,7 +69,7 @@ class Episodes:
         light: LightChanges,
         snapshot: Snapshot,
         samplers: Sequence[Sampler] = (),
-        starts: Starts | None = None,
+        starts: FreeStarts | None = None,
     ) -> None:
         self._samplers, self._starts = tuple(samplers), starts
         count = len(snapshot.episodes.number)
@@ -158,7 +158,7 @@ class Episodes:
         return pitch
 
     def _sample_again(
-        self, trackers: NDArray[np.int64], pitch: NDArray[np.float64], starts: Starts
+        self, trackers: NDArray[np.int64], pitch: NDArray[np.float64], starts: FreeStarts
     ) -> None:
         """Draw those starts again that are inside something."""
         number, lifts = self._episodes.number, starts.lifts(trackers)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.ahead import other_is_ready
@@ -66,7 +66,7 @@ def _scene(map_name: str, seed: int, season: Season) -> Scene:
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
     text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
     make = partial(_built, text, network, season, recipe.name)
-    return make() if origin is None else cached(Kind.SCENE, make, origin, of=Scene)
+    return make() if origin is None else cached(EntryKind.SCENE, make, origin, of=Scene)
 
 
 def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
@@ -87,7 +87,7 @@ def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
         return make()
     makers = recipe.plan, planner().complete, planner().text_of  # doors hide them from `make`
     inputs = (*makers, recipe.name, data, seed, network)
-    return cached(Kind.PLAN, make, inputs, of=NDArray[np.uint8])
+    return cached(EntryKind.PLAN, make, inputs, of=NDArray[np.uint8])
 
 
 def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
@@ -112,7 +112,7 @@ def load_solids(map_name: str, seed: int, season: Season) -> Solids:
     """Return everything on a map that rays and bodies may meet."""
     make = partial(solids_of, load_scene(map_name, seed, season))
     origin = _origin(map_name, seed, season)
-    return make() if origin is None else cached(Kind.SOLIDS, make, origin, of=Solids)
+    return make() if origin is None else cached(EntryKind.SOLIDS, make, origin, of=Solids)
 
 
 @lru_cache(maxsize=4)
@@ -122,7 +122,7 @@ def load_geometry(
     season: Season,  # Season of the weather
     kinds: tuple[int, ...],  # Kinds of the moving objects, indices into `KINDS`
     *,
-    lenses: Lenses = Lenses.NONE,  # Which lights of signals are parts, too, the last ones
+    lenses: Lenses = Lenses.NONE,  # Lights of signals that are parts, the last
 ) -> Geometry:
     """Return the geometry of a scene and of the parts of moving objects, for the kernels."""
     scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
@@ -130,7 +130,7 @@ def load_geometry(
     if origin is None:
         return make()
     inputs = (*origin, part_library, _chosen(kinds), _texture_maker(), lenses.value)
-    return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
+    return cached(EntryKind.GEOMETRY, make, inputs, of=Geometry)
 
 
 def _packed(
@@ -146,7 +146,7 @@ def _packed(
     shown = _with_lights(parts, lenses)
     # Kept by itself: other movers on the same map are packed in a second.
     pack = partial(packed_scene, scene)
-    still = pack() if origin is None else cached(Kind.GEOMETRY, pack, origin, of=PackedScene)
+    still = pack() if origin is None else cached(EntryKind.GEOMETRY, pack, origin, of=PackedScene)
     lights = packed_prototypes(shown.parts[len(parts.parts) :])
     return build_geometry(
         scene, shown, textures(), (still, [*map(_packed_kind, _chosen(kinds)), lights])
@@ -154,7 +154,7 @@ def _packed(
 
 
 def _packed_kind(kind: TargetKind) -> Prototypes:
-    return cached(Kind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
+    return cached(EntryKind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
 
 
 def _pack_kind(kind: TargetKind) -> Prototypes:
@@ -162,7 +162,7 @@ def _pack_kind(kind: TargetKind) -> Prototypes:
 
 
 def _parts_of(kind: TargetKind) -> PartLibrary:
-    return cached(Kind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
+    return cached(EntryKind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
 
 
 def paint(
@@ -198,7 +198,7 @@ def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
 
 def load_textures() -> dict[str, NDArray[np.uint8]]:
     """Return all textures by name."""
-    return cached(Kind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
+    return cached(EntryKind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
 
 
 def _texture_maker() -> Callable[[], dict[str, NDArray[np.uint8]]]:

@@ -28,7 +28,7 @@ _APART = 1.0  # Least distance of two trackers of a world that follow targets of
 _NOWHERE = 1e9  # Place of trackers that have not started yet [m]
 
 
-class Starts:
+class FreeStarts:
     """Tells where the trackers that begin an episode would be free."""
 
     def __init__(
@@ -78,10 +78,12 @@ class Starts:
         )
 
 
-def starts_in(assets: Assets, snapshot: Snapshot, worlds: Worlds, *, shared_target: bool) -> Starts:
-    """Return what tells of starts on a map; see `Starts`."""
+def starts_in(
+    assets: Assets, snapshot: Snapshot, worlds: Worlds, *, shared_target: bool
+) -> FreeStarts:
+    """Return what tells of starts on a map; see `FreeStarts`."""
     terrain, motion = assets.scene.terrain, assets.traffic.motion
-    return Starts(assets.solids, terrain, motion, snapshot, worlds, shared_target=shared_target)
+    return FreeStarts(assets.solids, terrain, motion, snapshot, worlds, shared_target=shared_target)
 
 
 class _Work(NamedTuple):
@@ -97,7 +99,7 @@ class _Work(NamedTuple):
     apart: float  # Least distance of two trackers of a world [m]
     starts: NDArray[np.int64]  # Number of trackers that begin, K, shape (1,)
     chosen: NDArray[np.int64]  # Those trackers, in the first K of N elements
-    lift: NDArray[np.float64]  # See `Starts.lifts`, in the first K of N elements; written.
+    lift: NDArray[np.float64]  # See `FreeStarts.lifts`, in the first K of N elements; written.
 
 
 @compiled

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.bake.ambient import height_map
 from eyas.engine.state.scene import Scene
@@ -80,7 +80,7 @@ def wind_field(scene: Scene) -> WindField:
             f"{_SPACING * max(heights.shape):.0f} m apart; allowed: up to {_SPACING * _MOST:.0f} m"
         )
     table = cached(
-        Kind.WIND, lambda: winds_over(heights), (winds_over, heights), of=NDArray[np.int16]
+        EntryKind.WIND, lambda: winds_over(heights), (winds_over, heights), of=NDArray[np.int16]
     )
     west = float(frame[0]) + _SPACING * (along.start + 0.5)
     south = float(frame[1]) + _SPACING * (across.start + 0.5)

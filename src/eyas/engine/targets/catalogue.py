@@ -18,7 +18,7 @@ from eyas.engine.targets.habit import Habit
 from eyas.engine.targets.jointed.rig import JointedRig, extent_at
 from eyas.engine.targets.kind import Kind, KindFacts, Model, Section
 from eyas.engine.targets.quadrotor import QUADROTOR
-from eyas.engine.targets.shapes import Entry, read_index
+from eyas.engine.targets.shapes import ShapeEntry, read_index
 from eyas.engine.targets.vehicles.rig import VehicleRig
 from eyas.lanes.elementary.arrays import cos
 
@@ -101,7 +101,7 @@ def sections_of(model: int) -> tuple[Section, ...]:
     return kind.sections[kind.models.index(MODELS[model])] if kind.sections else ()
 
 
-def _shipped(entry: Entry) -> Kind:
+def _shipped(entry: ShapeEntry) -> Kind:
     facts = {field.name: getattr(entry.facts, field.name) for field in fields(KindFacts)}
     rig, extents = VehicleRig if entry.drives else JointedRig, entry.shapes.extents
     extent = None if extents is None else partial(extent_at, extents)

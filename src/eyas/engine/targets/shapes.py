@@ -28,7 +28,7 @@ Columns = dict[str, NDArray[Any]]
 """An array of records, field by field."""
 
 
-class Shapes(NamedTuple):
+class ShapeArrays(NamedTuple):
     """Where the arrays of a kind are."""
 
     table: Block  # What poses its parts
@@ -36,25 +36,27 @@ class Shapes(NamedTuple):
     extents: Block | None = None  # Boxes of models whose limbs leave that of their size
 
 
-class Entry(NamedTuple):
+class ShapeEntry(NamedTuple):
     """A kind in the index."""
 
     facts: KindFacts
     drives: bool  # Whether it is a vehicle; else it has joints
-    shapes: Shapes
+    shapes: ShapeArrays
 
 
-class Index(NamedTuple):
+class ShapeIndex(NamedTuple):
     """The index."""
 
-    kinds: tuple[Entry, ...]  # Vehicles in the order of `VehicleType`, people, robots, the cyclist
+    kinds: tuple[
+        ShapeEntry, ...
+    ]  # Vehicles in the order of `VehicleType`, people, robots, the cyclist
     fliers: dict[str, Block]  # Meshes of the quadrotor and of the bird, whose rigs are their own
 
 
 @cache
-def read_index() -> Index:
+def read_index() -> ShapeIndex:
     """Return the index."""
-    return restore(Index, index_of(FILE, SHA256), ())
+    return restore(ShapeIndex, index_of(FILE, SHA256), ())
 
 
 def flier_levels(name: str) -> list[tuple[Mesh, ...]]:
@@ -76,7 +78,7 @@ class ShippedRig:
         pose: The kernel for one actor, see `PoseCall`.
     """
 
-    def __init__(self, shapes: Shapes, table: Any, pose: Callable[..., None]) -> None:  # noqa: ANN401  # of the kind
+    def __init__(self, shapes: ShapeArrays, table: Any, pose: Callable[..., None]) -> None:  # noqa: ANN401  # of the kind
         self._meshes = shapes.meshes
         self.slots = table.slot.shape[-1]
         self.part_count = int(table.slot["part"].max()) + 1

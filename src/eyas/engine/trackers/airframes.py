@@ -13,7 +13,7 @@ from eyas.engine.trackers.config import AirframeName
 Vector = tuple[float, float, float]
 
 
-class Model(NamedTuple):
+class AirframeModel(NamedTuple):
     """An airframe with its rotors and its battery."""
 
     frame: Airframe
@@ -102,25 +102,25 @@ the thrust coefficient 0.068 of the M100's and X500's, rotor limit and time cons
 such rotors."""
 
 AIRFRAMES = {
-    AirframeName.M100: Model(
+    AirframeName.M100: AirframeModel(
         ORIGINAL,
         0.165,  # 13 inches, as of DJI's M100
         # TB47D; 6 cells of 5 mohm, an estimate; 2.1 kg of a DJI E800, whose motors it has.
         Battery(cells=6.0, capacity=4.5, resistance=0.030, fastest=899.0),
     ),
-    AirframeName.INCH_5: Model(
+    AirframeName.INCH_5: AirframeModel(
         _FIVE,
         0.0648,  # 5.1 inches
         # 4 cells of 1.8 Ah, as in the paper; resistance: an estimate.
         Battery(cells=4.0, capacity=1.8, resistance=0.016, fastest=2332.0),
     ),
-    AirframeName.INCH_10: Model(
+    AirframeName.INCH_10: AirframeModel(
         _TEN,
         0.127,
         # 4 cells of 5 Ah, the maker's advice; resistance: an estimate.
         Battery(cells=4.0, capacity=5.0, resistance=0.016, fastest=1000.0),
     ),
-    AirframeName.INCH_20: Model(
+    AirframeName.INCH_20: AirframeModel(
         _TWENTY,
         0.2667,
         # Two TB60 of 12 cells and 5.935 Ah side by side; resistance: an estimate.

@@ -15,7 +15,7 @@ from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.rng import EpisodeKey
 from eyas.engine.state.snapshot import CameraState, TrackerState
 from eyas.engine.state.terrain import Terrain, ground_at
-from eyas.engine.trackers.airframes import Model
+from eyas.engine.trackers.airframes import AirframeModel
 from eyas.engine.trackers.battery import (
     Battery,
     discharge,
@@ -186,7 +186,7 @@ def is_equipped(config: TrackerConfig) -> bool:
 
 def equipped_drone(
     config: TrackerConfig,  # The options
-    model: Model,  # The drone with its gimbal and lidar; options replace its own constants
+    model: AirframeModel,  # The drone with its gimbal and lidar; options replace its own constants
 ) -> Tracker:
     """Return the flown drone with what it carries."""
     equipment = _equipment(config, model)
@@ -212,7 +212,7 @@ def equipped_drone(
     )
 
 
-def _equipment(config: TrackerConfig, model: Model) -> Equipment:
+def _equipment(config: TrackerConfig, model: AirframeModel) -> Equipment:
     """Return what a drone of some settings carries."""
     parts: list[Part] = []
     frame, payload = with_options(config, model.frame), config.payload

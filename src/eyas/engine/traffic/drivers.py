@@ -102,7 +102,7 @@ class Manoeuvres:
     def _driving(self, number: int, kind: VehicleType) -> Running:
         """Return all that a driver does; it never ends."""
         rng = stream(self._seed, "drivers", number)
-        driver = Driver(self._sumo, str(number), rng, self)
+        driver = DriverProfile(self._sumo, str(number), rng, self)
         if self._drivers is Drivers.HIDING:
             return driver.hiding()
         cars = kind in (VehicleType.PASSENGER, VehicleType.MOTORCYCLE)
@@ -134,7 +134,7 @@ class Manoeuvres:
         return nearest if nearest is not None and away[nearest] <= _NEAR else None
 
 
-class Driver:
+class DriverProfile:
     """One driver."""
 
     def __init__(

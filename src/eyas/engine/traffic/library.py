@@ -9,7 +9,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from eyas.engine.core.cache.entries import write_entry
-from eyas.engine.core.cache.folder import Kind, cache_limit
+from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.config import shown
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.core.files import user_path
@@ -20,7 +20,7 @@ from eyas.engine.traffic.config import Demand, Drivers, Mix, Signals, TrafficCon
 from eyas.engine.traffic.cover import Cover, cover_hash
 from eyas.engine.traffic.network import graph_hash
 from eyas.engine.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
-from eyas.engine.traffic.recording import Provenance, Recording, check_map
+from eyas.engine.traffic.recording import Provenance, TrafficRecording, check_map
 from eyas.engine.traffic.recording_file import RecordingFile, save, to_bytes
 from eyas.engine.traffic.sumo import options
 from eyas.engine.traffic.sumo_install import sumo_version
@@ -142,7 +142,7 @@ def find_recording(
     trackers: int = 1,
     duration: float | None = None,
     shipped: Iterable[Traversable] = (),
-) -> Recording:
+) -> TrafficRecording:
     """Return the recording of `find_file`."""
     return find_file(graph, config, trackers=trackers, duration=duration, shipped=shipped).load()
 
@@ -215,7 +215,7 @@ def _cache_file(
     }
     key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
     name = re.sub(r"[^\w.-]", "_", graph.map_name)
-    return cache_folder() / Kind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
+    return cache_folder() / EntryKind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
 
 
 def _lasting(config: TrafficConfig, trackers: int) -> TrafficConfig:

@@ -14,7 +14,7 @@ from eyas.engine.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
     Provenance,
-    Recording,
+    TrafficRecording,
     quantised,
     restored,
 )
@@ -38,7 +38,7 @@ def record(
     progress: Callable[[float], None] | None = None,  # Called with the completed share, 0 to 1
     *,
     cover: Cover = (),  # The stretches of lanes in which drivers hide, where they do
-) -> Recording:
+) -> TrafficRecording:
     """Return a new recording, the same for the same arguments and SUMO version.
 
     Raises:
@@ -121,14 +121,14 @@ def provenance(
     )
 
 
-def _as_recording(raw: Drive, origin: Provenance) -> Recording:
+def _as_recording(raw: Drive, origin: Provenance) -> TrafficRecording:
     position = np.zeros_like(raw.position)
     yaw = np.zeros_like(raw.yaw)
     for actor in range(raw.present.shape[1]):
         present = raw.present[:, actor]
         position[:, actor] = held(raw.position[:, actor], present)
         yaw[:, actor] = np.unwrap(held(raw.yaw[:, actor], present))
-    return Recording(
+    return TrafficRecording(
         rate=float(RATE),
         position=restored(quantised(position, POSITION_UNIT), POSITION_UNIT),
         yaw=restored(quantised(yaw, ANGLE_UNIT), ANGLE_UNIT),

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.state.motion import SAMPLE, Motion
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.terrain import Terrain, relief_at, slope_at
 from eyas.engine.traffic.lamps import lamps_of
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import RecordingFile
 from eyas.engine.traffic.smoothing import Tracks, smooth
 from eyas.lanes import compiled
@@ -25,7 +25,7 @@ def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) 
         DataFileError: The file is damaged or not a recording.
     """
     numbers = cached(
-        Kind.MOTION,
+        EntryKind.MOTION,
         partial(_numbers, file, terrain),
         (np.frombuffer(file.data, np.uint8), terrain),
         of=NDArray[np.float32],
@@ -40,7 +40,7 @@ def kept_lamps(
 ) -> NDArray[np.uint8]:
     """Return `Motion.lamps` of the motion of a file, kept in the cache."""
     return cached(
-        Kind.MOTION,
+        EntryKind.MOTION,
         partial(lamps_of, motion.table, motion.rate, network),
         (np.frombuffer(file.data, np.uint8), network),
         of=NDArray[np.uint8],
@@ -54,7 +54,7 @@ def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:
 
 
 def recorded_motion(
-    recording: Recording,
+    recording: TrafficRecording,
     terrain: Terrain,  # The ground; roads follow its relief
     kind: NDArray[np.int32],  # Kind of each actor, see `Motion`, shape (A,)
 ) -> Motion:

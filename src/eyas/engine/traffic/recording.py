@@ -31,7 +31,7 @@ class Provenance:
 
 
 @dataclass(slots=True)
-class Recording:
+class TrafficRecording:
     """SUMO's poses at a fixed rate. S samples, A actors, world frame.
 
     With `respawn`, an actor represents several vehicles one after another, as the original reuses
@@ -74,7 +74,7 @@ def restored(multiples: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
     return multiples.astype(np.float64) * unit
 
 
-def problem_of(recording: Recording) -> str:
+def problem_of(recording: TrafficRecording) -> str:
     """Return what is wrong with a recording that someone else has made; empty if nothing is.
 
     Kernels index its arrays without checking bounds, so their shapes must fit.

@@ -28,7 +28,7 @@ from eyas.engine.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
     Provenance,
-    Recording,
+    TrafficRecording,
     problem_of,
     quantised,
     restored,
@@ -92,7 +92,7 @@ class RecordingFile(NamedTuple):
         except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy, json
             raise DataFileError(f"{self.source}: not a complete traffic recording") from error
 
-    def load(self) -> Recording:
+    def load(self) -> TrafficRecording:
         """Return the recording.
 
         Raises:
@@ -101,7 +101,7 @@ class RecordingFile(NamedTuple):
         return from_bytes(self.data, self.source)
 
 
-def save(recording: Recording, path: Path) -> None:
+def save(recording: TrafficRecording, path: Path) -> None:
     """Write the file of a recording, completely or not at all.
 
     Raises:
@@ -110,7 +110,7 @@ def save(recording: Recording, path: Path) -> None:
     write_atomic(path, to_bytes(recording))
 
 
-def load(path: Path | Traversable) -> Recording:
+def load(path: Path | Traversable) -> TrafficRecording:
     """Read a recording.
 
     Raises:
@@ -119,7 +119,7 @@ def load(path: Path | Traversable) -> Recording:
     return RecordingFile.read(path).load()
 
 
-def to_bytes(recording: Recording) -> bytes:
+def to_bytes(recording: TrafficRecording) -> bytes:
     """Return the content of a recording's file."""
     header = {
         "format": FORMAT,
@@ -154,7 +154,7 @@ def _told(config: TrafficConfig) -> dict[str, Any]:
 def from_bytes(
     data: bytes,  # Content of the file, from `to_bytes`
     source: str,  # Name of the file for messages
-) -> Recording:
+) -> TrafficRecording:
     """Return the recording from the content of its file.
 
     Raises:
@@ -173,7 +173,7 @@ def from_bytes(
     return recording
 
 
-def _recording(arrays: Arrays, source: str) -> Recording:
+def _recording(arrays: Arrays, source: str) -> TrafficRecording:
     """Return the recording of arrays that have any shapes and types."""
     header = decoded_json(arrays["header"].tobytes())
     position, yaw = _poses(arrays, header["format"])
@@ -185,7 +185,7 @@ def _recording(arrays: Arrays, source: str) -> Recording:
     outline = _outline(header, source)
     # One length is that of all actors.
     length = np.asarray(header["vehicle_length"], np.float64)
-    return Recording(
+    return TrafficRecording(
         rate=outline.rate,
         position=np.ascontiguousarray(restored(position, POSITION_UNIT).transpose(2, 0, 1)),
         yaw=np.ascontiguousarray(restored(yaw, ANGLE_UNIT).T),
@@ -203,7 +203,7 @@ def _poses(arrays: Arrays, kind: str) -> tuple[NDArray[np.int64], NDArray[np.int
     return unpacked(arrays)
 
 
-def _fleet_header(recording: Recording) -> dict[str, Any]:
+def _fleet_header(recording: TrafficRecording) -> dict[str, Any]:
     """Return what the header says of the actors: one length, or class and length of each."""
     length = recording.vehicle_length.tolist()
     if not isinstance(recording.provenance.config.vehicle_type, Mix):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.traffic.config import Demand, VehicleType
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.tractrix import follow_headings
 from eyas.engine.traffic.trailer import Links, tow
 from eyas.lanes import exact
@@ -58,7 +58,7 @@ class Tracks:
         )
 
 
-def smooth(recording: Recording) -> Tracks:
+def smooth(recording: TrafficRecording) -> Tracks:
     """Return the smooth motion of a recording."""
     shape = recording.present.shape
     tracks = Tracks.create(recording.rate, *shape)
@@ -107,7 +107,7 @@ def held(
     return source
 
 
-def _smooth_run(recording: Recording, tracks: Tracks, actor: int, span: slice) -> None:
+def _smooth_run(recording: TrafficRecording, tracks: Tracks, actor: int, span: slice) -> None:
     yaw, length = recording.yaw[span, actor], float(recording.vehicle_length[actor])
     articulated = recording.vehicle_types[actor] is VehicleType.TRAILER
     arm = lead_of(length, articulated=articulated)

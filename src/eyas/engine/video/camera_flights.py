@@ -12,7 +12,7 @@ from eyas.engine.core.rng import stream
 from eyas.engine.exports.frame import RecordedAction
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.sim.flights.path import CameraPath
-from eyas.engine.sim.flights.plan import Plan, Surroundings, Wishes, plan_flight
+from eyas.engine.sim.flights.plan import FlightPlan, FlightSurroundings, Wishes, plan_flight
 from eyas.engine.sim.flights.shares import Asked
 from eyas.engine.sim.flights.signals import STEP, sampled_at
 from eyas.engine.sim.simulation import Simulation
@@ -93,11 +93,11 @@ class CameraFlights:
         command = [ahead / PHYSICS_STEP, left / PHYSICS_STEP, up, turn / PHYSICS_STEP]
         return RecordedAction(-1, np.array(command))
 
-    def _planned(self, tracker: int, longest: int) -> Plan:
+    def _planned(self, tracker: int, longest: int) -> FlightPlan:
         episodes, targets = self._sim.snapshot.episodes, self._sim.snapshot.targets
         count = -(-longest // _STEP_TICKS) + _MORE
         target, heading, ground = self._course(tracker, count)
-        around = Surroundings(
+        around = FlightSurroundings(
             target,
             heading,
             ground,

@@ -21,7 +21,7 @@ from eyas.gpu.cuda.code import Ptx, ptx_code
 from eyas.gpu.cuda.context import Context, Memory
 from eyas.gpu.cuda.driver import CudaError, driver
 from eyas.gpu.cuda.memory import CudaArray
-from eyas.gpu.cuda.order import LEGACY, CudaEvent, Graph, recorded
+from eyas.gpu.cuda.order import LEGACY, CudaEvent, CudaGraph, recorded
 from eyas.lanes.calls import ParallelCall
 from eyas.lanes.vector import BLOCK
 
@@ -256,7 +256,7 @@ class CudaDevice:
         """Return the moment when all work so far is done."""
         return CudaEvent(self.context)
 
-    def recorded(self, work: Callable[[], None]) -> Graph:
+    def recorded(self, work: Callable[[], None]) -> CudaGraph:
         """Return what a function launches and clears, without doing it, to be done by one call.
 
         The function has run before, so that all is compiled; `write` and `read` are not recorded

@@ -86,7 +86,7 @@ class CudaError(RuntimeError):
         self.code = code
 
 
-class Driver:
+class CudaDriver:
     """The driver of this process."""
 
     def __init__(
@@ -145,14 +145,14 @@ class Driver:
 
 
 @cache
-def driver() -> Driver:
+def driver() -> CudaDriver:
     """Return the driver.
 
     Raises:
         CudaError: There is none, or it finds no graphics processor.
     """
     try:
-        return Driver(os.environ.get(VARIABLE) or "libcuda.so.1")
+        return CudaDriver(os.environ.get(VARIABLE) or "libcuda.so.1")
     except CudaError as error:
         if error.code == _NO_DEVICE:
             raise CudaError("there is no graphics processor of NVIDIA", error.code) from None
@@ -165,7 +165,7 @@ _VERSION = Path("/sys/module/nvidia/version")
 """Where Linux tells the version of the driver; its library knows only that of its interface."""
 
 
-class Card(NamedTuple):
+class CardProperties(NamedTuple):
     """What the driver says about a graphics processor."""
 
     handle: int
@@ -185,7 +185,7 @@ class Card(NamedTuple):
 
 def card(
     ordinal: int,  # Its number, as the driver counts those that it shows (`CUDA_VISIBLE_DEVICES`)
-) -> Card:
+) -> CardProperties:
     """Return what the driver says about a graphics processor.
 
     Raises:
@@ -201,7 +201,7 @@ def card(
     memory = number("cuDeviceTotalMem_v2", handle, kind=c_size_t)
     major = number("cuDeviceGetAttribute", _MAJOR, handle)
     minor = number("cuDeviceGetAttribute", _MINOR, handle)
-    return Card(handle, name.value.decode(), memory, (major, minor), count)
+    return CardProperties(handle, name.value.decode(), memory, (major, minor), count)
 
 
 def gpu_line(

@@ -38,7 +38,7 @@ class CudaEvent:
         self._context.call("cuStreamWaitEvent", c_void_p(stream), self._handle, 0)
 
 
-class Graph:
+class CudaGraph:
     """Work that was recorded, to be done again by one call."""
 
     def __init__(
@@ -61,7 +61,7 @@ def recorded(
     context: Context,  # Where
     # The function; it gets the stream, and returns what the work uses
     work: Callable[[c_void_p], list[object]],
-) -> Graph:
+) -> CudaGraph:
     """Return what a function gives to a stream, without doing it."""
     stream, recording = c_void_p(), c_void_p()
     with context.current() as call:
@@ -72,7 +72,7 @@ def recorded(
                 kept = work(stream)
             finally:
                 call("cuStreamEndCapture", stream, byref(recording))
-            graph = Graph(context, recording, kept)
+            graph = CudaGraph(context, recording, kept)
         finally:
             if recording:
                 call("cuGraphDestroy", recording)

@@ -17,7 +17,7 @@ from eyas.engine.settings.env import ObservationConfig, ObservationPart
 from eyas.engine.state.snapshot import Snapshot
 from eyas.engine.task.packet_rows import SENSOR_COLUMNS, fill_basic
 from eyas.engine.task.privileged import privileged_row
-from eyas.gpu.sim.simulation import DeviceSimulation, Mirrored
+from eyas.gpu.sim.simulation import DeviceSimulation, MirroredArray
 from eyas.gpu.sim.view import DeviceView
 from eyas.lanes import kernel, parallel
 
@@ -138,7 +138,7 @@ class DeviceObserver:
         seen = ObservedTrackers(
             np.zeros(1, np.int64), np.zeros(count, np.int64), np.zeros(count, np.uint8)
         )
-        self._seen = [Mirrored(device, array) for array in seen]
+        self._seen = [MirroredArray(device, array) for array in seen]
         self._held_seen = device.held(ObservedTrackers(*(own.array for own in self._seen)))
         self._snapshot = device.held(simulation.snapshot)
         # Pictures that are observations as they are drawn.

@@ -128,7 +128,7 @@ def arrays_of(record: Any) -> list[Any]:  # noqa: ANN401  # as above
     return [record] if hasattr(record, "shape") else []
 
 
-class Mirrored:
+class MirroredArray:
     """An array on a device that only the host writes: what does not change is not sent again."""
 
     def __init__(self, device: Device, content: NDArray[Any]) -> None:
@@ -252,7 +252,7 @@ class DeviceSimulation:
             orders = orders._replace(commands=np.zeros((count, WITH_GIMBAL)))
             tracker = with_gimbal(tracker)
         orders.steps[0] = steps
-        self._active = Mirrored(device, orders.active)
+        self._active = MirroredArray(device, orders.active)
         orders = uploaded(device, orders)._replace(active=self._active.array)
         self.commands = orders.commands
         self.flown: Flown = uploaded(device, _flown(count, repeat, config.reward.weight))

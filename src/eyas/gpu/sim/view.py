@@ -38,7 +38,7 @@ from eyas.engine.traffic.interpolation import interpolate_actor, sample_before
 from eyas.gpu.render.device_views import DeviceDrawer, DeviceViews
 from eyas.gpu.sim.flight import FEW, Focal
 from eyas.gpu.sim.signals import SignalTimes, shown_part, signal_times
-from eyas.gpu.sim.simulation import DeviceSimulation, Mirrored, uploaded
+from eyas.gpu.sim.simulation import DeviceSimulation, MirroredArray, uploaded
 from eyas.lanes import ParallelCall, kernel, parallel, specialised
 
 
@@ -221,7 +221,10 @@ class DeviceView:
         aspect = config.camera.height / config.camera.width
         timed, self._falling = is_timed(config), config.light.flakes
         query = _query(count, aspect)
-        self._chosen, self._count = Mirrored(device, query.world), Mirrored(device, query.worlds)
+        self._chosen, self._count = (
+            MirroredArray(device, query.world),
+            MirroredArray(device, query.worlds),
+        )
         self._query: ViewQuery = uploaded(device, query)._replace(
             world=self._chosen.array, worlds=self._count.array
         )

@@ -11,7 +11,7 @@ from eyas.benchmark.policies.tracker.detector import STRIDE
 from eyas.benchmark.policies.tracker.metadata import TRACKER
 from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.engine.settings.env import EnvConfig
-from eyas.learning.export import Graph, write_model
+from eyas.learning.export import OnnxGraph, write_model
 from eyas.learning.tracking.driving import FARTHEST, Forecast
 from eyas.learning.tracking.network import (
     CELL,
@@ -33,7 +33,7 @@ def export(
     path: Path,
 ) -> None:
     """Write networks."""
-    graph = Graph()
+    graph = OnnxGraph()
     cells, keys, (height, width) = len(network.cells), network.keys, network.size
     features = _trunk(graph, network)
     answers = graph.convolution("answers", features, network.head)
@@ -75,7 +75,7 @@ def _value(name: str, shape: list[str | int]) -> onnx.ValueInfoProto:
     return helper.make_tensor_value_info(name, kind, shape)
 
 
-def _trunk(graph: Graph, network: DetectorNetwork) -> str:
+def _trunk(graph: OnnxGraph, network: DetectorNetwork) -> str:
     """Add the convolutions; return their last output."""
     value = scaled_pixels(graph)
     layers = network.first, network.second, network.third, network.fourth
@@ -86,14 +86,14 @@ def _trunk(graph: Graph, network: DetectorNetwork) -> str:
     return graph.node("Add", [before, value], "features")
 
 
-def scaled_pixels(graph: Graph) -> str:
+def scaled_pixels(graph: OnnxGraph) -> str:
     """Add what makes numbers of about 1 of the input `image`."""
     value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
     value = graph.node("Sub", [value, graph.number("mean", MEAN)], "image.centred")
     return graph.node("Div", [value, graph.number("spread.of.pixels", SPREAD)], "image.scaled")
 
 
-def _by_cell(graph: Graph, source: str, shape: tuple[int, int]) -> str:
+def _by_cell(graph: OnnxGraph, source: str, shape: tuple[int, int]) -> str:
     """Add the change from (N, K, H, W) to (N, cells, K)."""
     turned = graph.node("Transpose", [source], f"{source}.last", perm=[0, 2, 3, 1])
     return graph.node(
@@ -103,7 +103,7 @@ def _by_cell(graph: Graph, source: str, shape: tuple[int, int]) -> str:
     )
 
 
-def _keys(graph: Graph, network: DetectorNetwork) -> None:
+def _keys(graph: OnnxGraph, network: DetectorNetwork) -> None:
     """Add the output `keys`."""
     side = (PATCH - STRIDE) // 2
     around = graph.node(
@@ -120,7 +120,7 @@ def _keys(graph: Graph, network: DetectorNetwork) -> None:
     graph.node("Add", ["keys.seen", colours], "keys")
 
 
-def _places(graph: Graph, network: DetectorNetwork) -> None:
+def _places(graph: OnnxGraph, network: DetectorNetwork) -> None:
     """Add the output `places`."""
     cells = graph.weight("cells", network.cells[None])
     scaled = graph.node("Mul", ["offset", graph.number("offset.scale", OFFSET)], "offset.pixels")
@@ -130,7 +130,7 @@ def _places(graph: Graph, network: DetectorNetwork) -> None:
     graph.node("Concat", [where, sureness], "places", axis=2)
 
 
-def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
+def _scores(graph: OnnxGraph, network: DetectorNetwork, features: str) -> None:
     """Add the output `scores`."""
     cells = len(network.cells)
     worth, loss = network.alike.detach()
@@ -163,7 +163,7 @@ def _scores(graph: Graph, network: DetectorNetwork, features: str) -> None:
     graph.node("Concat", [seen, unseen], "scores", axis=1)
 
 
-def _ahead(graph: Graph, forecast: Forecast) -> None:
+def _ahead(graph: OnnxGraph, forecast: Forecast) -> None:
     """Add the output `ahead`."""
     value = graph.node("Sub", ["past", graph.weight("past.mean", forecast.mean)], "past.centred")
     value = graph.node("Div", [value, graph.weight("past.spread", forecast.spread)], "past.scaled")
@@ -179,7 +179,7 @@ def _ahead(graph: Graph, forecast: Forecast) -> None:
     graph.node("Add", [value, graph.weight("ahead.least", forecast.least)], "ahead")
 
 
-def _prior(graph: Graph) -> str:
+def _prior(graph: OnnxGraph) -> str:
     """Add the logarithm of the probability that the target is in each cell, shape (N, C)."""
     square = graph.node("Mul", ["spread", "spread"], "spread.square")
     variance = graph.node("Add", [square, graph.number("cell", CELL)], "variance")

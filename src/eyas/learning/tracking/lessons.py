@@ -207,7 +207,7 @@ class Progress(NamedTuple):
     right: float  # Share of the pictures whose most probable answer is right, within a cell
 
 
-class Loss(NamedTuple):
+class DetectionLoss(NamedTuple):
     """How wrong a network is in a sample."""
 
     total: Tensor
@@ -216,7 +216,7 @@ class Loss(NamedTuple):
     off: Tensor  # Distance of the place in the true cell [pixels], shape (B,)
 
 
-def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> Loss:
+def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) -> DetectionLoss:
     """Return how wrong a network is."""
     features, answers = network.see(sample.picture)
     height, width = (length // STRIDE for length in network.size)
@@ -244,7 +244,7 @@ def loss_of(network: DetectorNetwork, sample: Sample, rng: np.random.Generator) 
     near = (cells_of - sample.place).abs().amax(1) <= 1.5 * STRIDE
     right = torch.where(shown, (best < height * width) & near, best == height * width)
     total = cells + _PLACE * wrong.sum() / sample.seen.sum().clamp(min=1) + _APART * told_apart
-    return Loss(total, cells, right, off.sqrt())
+    return DetectionLoss(total, cells, right, off.sqrt())
 
 
 def taught(

@@ -40,7 +40,7 @@ class Lesson(NamedTuple):
     body: Tensor
 
 
-class Loss(NamedTuple):
+class ListenerLoss(NamedTuple):
     """How wrong a network is."""
 
     total: Tensor
@@ -121,7 +121,7 @@ def _around(
     return peaks.reshape(count, -1)
 
 
-def loss_of(network: ListenerNetwork, shown: Lesson) -> Loss:
+def loss_of(network: ListenerNetwork, shown: Lesson) -> ListenerLoss:
     """Return how wrong a network is."""
     vehicle, places, headings, colours, bodies = network(shown.picture)
     at = shown.vehicle, shown.cell
@@ -145,7 +145,7 @@ def loss_of(network: ListenerNetwork, shown: Lesson) -> Loss:
         found = (vehicle[at] > 0.0).float().mean().item()
         colour = (colours[at][named].argmax(1) == shown.colour[named]).float().mean().item()
         body = (bodies[at].argmax(1) == shown.body).float().mean().item()
-    return Loss(total, found, colour, body)
+    return ListenerLoss(total, found, colour, body)
 
 
 def _peak_loss(vehicle: Tensor, shown: Lesson) -> Tensor:

@@ -22,10 +22,10 @@ from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
 from eyas.learning.config import TrainConfig, WordsTraining
-from eyas.learning.export import Graph, write_model
+from eyas.learning.export import OnnxGraph, write_model
 from eyas.learning.tracking.export import scaled_pixels
 from eyas.learning.tracking.network import OFFSET
-from eyas.learning.words.lessons import Loss, lesson, loss_of
+from eyas.learning.words.lessons import ListenerLoss, lesson, loss_of
 from eyas.learning.words.network import PARTS, PLAIN, ListenerNetwork
 from eyas.learning.words.scenes import Scenes, drawn
 
@@ -39,7 +39,7 @@ def export(network: ListenerNetwork, env: EnvConfig, settings: TrackerSettings, 
 
 def _graph(network: ListenerNetwork) -> onnx.GraphProto:
     """Return what a network computes."""
-    graph = Graph()
+    graph = OnnxGraph()
     cells, (height, width) = len(network.cells), network.size
     answers = graph.convolution("answers", _trunk(graph, network), network.head)
     turned = graph.node("Transpose", [answers], "answers.last", perm=[0, 2, 3, 1])
@@ -66,7 +66,7 @@ def _graph(network: ListenerNetwork) -> onnx.GraphProto:
     )
 
 
-def _trunk(graph: Graph, network: ListenerNetwork) -> str:
+def _trunk(graph: OnnxGraph, network: ListenerNetwork) -> str:
     """Add the convolutions; return their last output."""
     value = scaled_pixels(graph)
     for number, layer in enumerate(network.layers):
@@ -133,7 +133,7 @@ def _taught(
     scenes: Scenes,
     config: EyasConfig,
     block: int,
-) -> Iterator[Loss]:
+) -> Iterator[ListenerLoss]:
     """Teach a block; yield how wrong the network is in each step in which pictures are new."""
     training = TrainConfig.of(config).words
     rng = stream(config.seed, "lessons of words", block)
@@ -158,7 +158,9 @@ def _taught(
                 yield loss
 
 
-def _add_row(progress: TrainingProgress, losses: list[Loss], training: WordsTraining) -> None:
+def _add_row(
+    progress: TrainingProgress, losses: list[ListenerLoss], training: WordsTraining
+) -> None:
     """Note a block in the curve."""
     progress.block += 1
     progress.decisions = progress.stage_decisions = progress.block * training.block_pictures

@@ -81,7 +81,7 @@ class _Member(_Read):
 
 
 @dataclass(frozen=True)
-class Rows(_Read):
+class NumberRows(_Read):
     """An array of numbers that a file holds as a list, or a list of lists."""
 
     columns: int | None  # Numbers in each row; None: one number a row
@@ -211,9 +211,11 @@ ClassName = Annotated[ObjectClass, _Member(ObjectClass)]  # Class of objects
 Area = Annotated[shapely.Geometry, Shape(several=True)]  # Any number of polygons, with holes [m]
 Outline = Annotated[shapely.Polygon, Shape(several=False)]  # One polygon, with holes [m]
 Curve = Annotated[shapely.LineString, _Line()]  # A line [m]
-Place = Annotated[NDArray[np.float64], Rows(None, 2)]  # East and north [m], shape (2,)
-Unit = Annotated[NDArray[np.float64], Rows(None, 2)]  # A unit vector, shape (2,)
-Line = Annotated[NDArray[np.float64], Rows(2)]  # Points of a line, east and north [m], shape (K, 2)
-Path = Annotated[NDArray[np.float64], Rows(3)]  # Points of a line in space [m], shape (K, 3)
-Heights = Annotated[NDArray[np.float64], Rows(None)]  # Numbers, shape (K,)
-Numbers = Annotated[NDArray[np.int64], Rows(None, whole=True)]  # Whole numbers, shape (K,)
+Place = Annotated[NDArray[np.float64], NumberRows(None, 2)]  # East and north [m], shape (2,)
+Unit = Annotated[NDArray[np.float64], NumberRows(None, 2)]  # A unit vector, shape (2,)
+Line = Annotated[
+    NDArray[np.float64], NumberRows(2)
+]  # Points of a line, east and north [m], shape (K, 2)
+Path = Annotated[NDArray[np.float64], NumberRows(3)]  # Points of a line in space [m], shape (K, 3)
+Heights = Annotated[NDArray[np.float64], NumberRows(None)]  # Numbers, shape (K,)
+Numbers = Annotated[NDArray[np.int64], NumberRows(None, whole=True)]  # Whole numbers, shape (K,)

@@ -26,7 +26,7 @@ Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Lot:
+class TowerLot:
     """The ground of one building in the frame of the grid."""
 
     box: Box  # West, south, east, north [m]
@@ -50,10 +50,10 @@ def divided(
     block: Box,  # Ground within the building lines, in the frame of the grid [m]
     core: float,  # 0 in an old quarter to 1 among the towers, where lots are larger
     rng: np.random.Generator,
-) -> list[Lot]:
+) -> list[TowerLot]:
     """Return the lots of a block."""
     west, south, east, north = block
-    lots: list[Lot] = []
+    lots: list[TowerLot] = []
     at = west
     while east - at > 7.0:
         through = rng.random() < 0.22 + 0.38 * core or north - south < _SHALLOW
@@ -61,7 +61,7 @@ def divided(
         if east - at - width < 15.0:
             width = east - at
         if through:
-            lots.append(Lot(_apart((at, south, at + width, north)), through=True, rear=0))
+            lots.append(TowerLot(_apart((at, south, at + width, north)), through=True, rear=0))
         else:
             lots += _rows((at, south, at + width, north), core, rng)
         at += width
@@ -90,10 +90,10 @@ def frontage(
     return strips
 
 
-def _rows(stretch: Box, core: float, rng: np.random.Generator) -> list[Lot]:
+def _rows(stretch: Box, core: float, rng: np.random.Generator) -> list[TowerLot]:
     """Return two rows of lots, back to back."""
     west, south, east, north = stretch
-    lots: list[Lot] = []
+    lots: list[TowerLot] = []
     for rear in (1, -1):
         at = west
         while east - at > 0.1:
@@ -103,7 +103,7 @@ def _rows(stretch: Box, core: float, rng: np.random.Generator) -> list[Lot]:
                 width = east - at
             depth = round(float(rng.uniform(*_ROW_DEPTH)) * (north - south), 1)
             low, high = (south, south + depth) if rear > 0 else (north - depth, north)
-            lots.append(Lot(_apart((at, low, at + width, high)), through=False, rear=rear))
+            lots.append(TowerLot(_apart((at, low, at + width, high)), through=False, rear=rear))
             at += width
     return lots
 
@@ -127,7 +127,7 @@ _SLENDER = 13.0  # Greatest height of a tower as a multiple of the shorter side 
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TowerPart:
     """A prism of a building."""
 
     shape: shapely.Polygon  # Outline in the frame of the grid [m]
@@ -135,7 +135,9 @@ class Part:
     high: int  # Storeys up to its roof
 
 
-def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> list[Part]:
+def stacked(
+    lot: TowerLot, storeys: int, stepped: bool, rng: np.random.Generator
+) -> list[TowerPart]:
     """Return the parts of a building, each within the one below it.
 
     Args:
@@ -143,11 +145,11 @@ def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> 
         stepped: Whether it steps back like old towers of stone; otherwise a shaft rises at once.
     """
     if storeys <= _PLAIN:
-        return [Part(_house(lot, rng), 0, storeys)]
+        return [TowerPart(_house(lot, rng), 0, storeys)]
     return _steps(lot, storeys, rng) if stepped else _tower(lot, storeys, rng)
 
 
-def _house(lot: Lot, rng: np.random.Generator) -> shapely.Polygon:
+def _house(lot: TowerLot, rng: np.random.Generator) -> shapely.Polygon:
     """Return the outline of a house; deep ones have a light well at the back."""
     west, south, east, north = lot.box
     shape = shapely.box(*lot.box)
@@ -162,7 +164,7 @@ def _house(lot: Lot, rng: np.random.Generator) -> shapely.Polygon:
     return shape
 
 
-def _steps(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
+def _steps(lot: TowerLot, storeys: int, rng: np.random.Generator) -> list[TowerPart]:
     """Return a building that steps back above each cornice, as the law of 1916 asked for."""
     steps = min(2 + storeys // 13, 6)
     first = rng.uniform(0.45, 0.72) if storeys < 30 else rng.uniform(0.22, 0.4)
@@ -170,20 +172,20 @@ def _steps(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
         storeys * (first + (1 - first) * exact.power(np.linspace(0, 1, steps), 0.8))
     ).astype(int)
     cuts[-1] = storeys
-    parts: list[Part] = []
+    parts: list[TowerPart] = []
     box, low = lot.box, 0
     for high in np.unique(np.maximum(cuts, 2)).tolist():
-        parts.append(Part(_house(lot, rng) if low == 0 else shapely.box(*box), low, high))
+        parts.append(TowerPart(_house(lot, rng) if low == 0 else shapely.box(*box), low, high))
         deeper = _inset(box, rng.uniform(1.5, 4.6, 4) * (1.0 if low else 1.25))
         slim = min(deeper[2] - deeper[0], deeper[3] - deeper[1])
         if slim < _NARROWEST or not parts[0].shape.contains(shapely.box(*deeper)):
-            parts[-1] = Part(parts[-1].shape, low, max(high, round(0.8 * storeys)))
+            parts[-1] = TowerPart(parts[-1].shape, low, max(high, round(0.8 * storeys)))
             break
         box, low = deeper, high
     return parts
 
 
-def _tower(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
+def _tower(lot: TowerLot, storeys: int, rng: np.random.Generator) -> list[TowerPart]:
     """Return a shaft on a broad foot, with a narrower top."""
     west, south, east, north = lot.box
     foot = int(rng.integers(2, 8))
@@ -193,21 +195,21 @@ def _tower(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
     slab = _inset(lot.box, np.asarray(np.round(margin, 1), np.float64))
     shaft = _cut(slab, rng)
     if storeys < 18 or margin.max() < 1.0:
-        return [Part(shapely.box(*lot.box), 0, storeys)]
-    parts = [Part(shapely.box(*lot.box), 0, foot)]
+        return [TowerPart(shapely.box(*lot.box), 0, storeys)]
+    parts = [TowerPart(shapely.box(*lot.box), 0, foot)]
     top = storeys - int(rng.integers(2, max(4, storeys // 9)))
     crown = _inset(slab, rng.uniform(2.0, 5.0, 4))
     if min(crown[2] - crown[0], crown[3] - crown[1]) < _NARROWEST or rng.random() < 0.25:
-        return [*parts, Part(shaft, foot, storeys)]
+        return [*parts, TowerPart(shaft, foot, storeys)]
     if storeys > 45 and rng.random() < 0.6:
         waist = int(storeys * rng.uniform(0.55, 0.75))
-        parts.append(Part(shaft, foot, waist))
+        parts.append(TowerPart(shaft, foot, waist))
         slab = _inset(slab, rng.uniform(0.0, 4.0, 4))
-        parts.append(Part(_within(_cut(slab, rng), parts), waist, top))
+        parts.append(TowerPart(_within(_cut(slab, rng), parts), waist, top))
         crown = _inset(slab, rng.uniform(1.5, 4.0, 4))
     else:
-        parts.append(Part(shaft, foot, top))
-    return [*parts, Part(_within(shapely.box(*crown), parts), top, storeys)]
+        parts.append(TowerPart(shaft, foot, top))
+    return [*parts, TowerPart(_within(shapely.box(*crown), parts), top, storeys)]
 
 
 def _cut(box: Box, rng: np.random.Generator) -> shapely.Polygon:
@@ -227,7 +229,7 @@ def _cut(box: Box, rng: np.random.Generator) -> shapely.Polygon:
     return largest(shapely.difference(shape, shapely.union_all(squares)))
 
 
-def _within(shape: shapely.Polygon, parts: Sequence[Part]) -> shapely.Polygon:
+def _within(shape: shapely.Polygon, parts: Sequence[TowerPart]) -> shapely.Polygon:
     """Return a shape without what would hang over the last of the parts."""
     return largest(shapely.intersection(shape, parts[-1].shape))
 

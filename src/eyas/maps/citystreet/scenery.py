@@ -15,7 +15,7 @@ from eyas.maps.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.maps.citystreet.layout import EXTENT, CityLayout
 from eyas.maps.plants import gardens, trees
 from eyas.maps.roads import overpass
-from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
+from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, DressedGround, along_kerbs, at_fronts
 from eyas.maps.street.parked_cars import CARS
 
 _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
@@ -120,7 +120,9 @@ def clutter(
     lawn = shapely.difference(shapely.union_all(city.blocks), covered)
     for area in (paved, lawn, city.roads):
         shapely.prepare(area)
-    behind, rng = Ground(lawn, FLOOR_HEIGHT), stream(seed, "citystreet clutter")
-    grounds = {"pavement": Ground(paved, KERB_HEIGHT), "behind": behind}
-    beside = along_kerbs(network, {**grounds, "road": Ground(city.roads, 0.0)}, CITY_KERBS, rng)
+    behind, rng = DressedGround(lawn, FLOOR_HEIGHT), stream(seed, "citystreet clutter")
+    grounds = {"pavement": DressedGround(paved, KERB_HEIGHT), "behind": behind}
+    beside = along_kerbs(
+        network, {**grounds, "road": DressedGround(city.roads, 0.0)}, CITY_KERBS, rng
+    )
     return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng)]

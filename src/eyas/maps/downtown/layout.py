@@ -17,7 +17,7 @@ from eyas.lanes import exact
 from eyas.maps.build.heights import FLOOR_HEIGHT
 from eyas.maps.buildings.looks import Tint, wall_tint
 from eyas.maps.buildings.lots import turned
-from eyas.maps.buildings.towers import STOREY, Box, Lot, Part, divided, frontage, stacked
+from eyas.maps.buildings.towers import STOREY, Box, TowerLot, TowerPart, divided, frontage, stacked
 from eyas.maps.downtown.roads import Cell, Grid, grid
 from eyas.maps.plan.plan import BuildingPart
 from eyas.maps.things.railway import BESIDE, SECTION, Viaduct
@@ -68,7 +68,7 @@ def cores(places: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.round(np.max(near, axis=0), 6), np.float64)
 
 
-def storeys(lots: Sequence[Lot], rng: np.random.Generator) -> NDArray[np.int64]:
+def storeys(lots: Sequence[TowerLot], rng: np.random.Generator) -> NDArray[np.int64]:
     """Return the number of storeys of the building on each lot, shape (K,)."""
     share, value = np.array(_HEIGHT).T
     at = (np.arange(len(lots)) + rng.uniform(0.2, 0.8, len(lots))) / max(len(lots), 1)
@@ -138,7 +138,7 @@ def _in_park(cell: Cell) -> bool:
     return row >= 7 and column < 4
 
 
-def block_lots(block: Box, rng: np.random.Generator) -> list[Lot]:
+def block_lots(block: Box, rng: np.random.Generator) -> list[TowerLot]:
     """Return the lots of a block between streets."""
     west, south, east, north = block
     inner = (west + AVENUE_WALK, south + STREET_WALK, east - AVENUE_WALK, north - STREET_WALK)
@@ -146,9 +146,9 @@ def block_lots(block: Box, rng: np.random.Generator) -> list[Lot]:
     return divided(inner, core, rng)
 
 
-def outer_lots(grid: Grid, rng: np.random.Generator) -> list[Lot]:
+def outer_lots(grid: Grid, rng: np.random.Generator) -> list[TowerLot]:
     """Return the lots along the far side of the outer streets, which close the canyons."""
-    lots: list[Lot] = []
+    lots: list[TowerLot] = []
     for cell in _around(grid):
         box = _place(grid, cell)
         sides = [(-1, 0), (1, 0), (0, -1), (0, 1)]
@@ -180,7 +180,7 @@ def _place(grid: Grid, cell: Cell) -> Box:
     )
 
 
-def _large(strip: Box, rng: np.random.Generator) -> list[Lot]:
+def _large(strip: Box, rng: np.random.Generator) -> list[TowerLot]:
     """Return a strip cut across into large lots."""
     west, south, east, north = strip
     long = east - west >= north - south
@@ -193,7 +193,7 @@ def _large(strip: Box, rng: np.random.Generator) -> list[Lot]:
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True)
     ]
     return [
-        Lot((w + _PARTY, s + _PARTY, e - _PARTY, n - _PARTY), through=True, rear=0)
+        TowerLot((w + _PARTY, s + _PARTY, e - _PARTY, n - _PARTY), through=True, rear=0)
         for w, s, e, n in boxes
     ]
 
@@ -204,14 +204,16 @@ class _Look:
     tint: tuple[float, float, float]
 
 
-def built(grid: Grid, lots: list[Lot], seed: int) -> list[list[BuildingPart]]:
+def built(grid: Grid, lots: list[TowerLot], seed: int) -> list[list[BuildingPart]]:
     """Return the parts of the building on each lot, the lowest first, in the world frame."""
     rng = stream(seed, "downtown buildings")
     floors = storeys(lots, rng)
     return [_building(grid, lot, int(count), rng) for lot, count in zip(lots, floors, strict=True)]
 
 
-def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> list[BuildingPart]:
+def _building(
+    grid: Grid, lot: TowerLot, floors: int, rng: np.random.Generator
+) -> list[BuildingPart]:
     facade, tint = facade_of(STOREY * floors, rng)
     stepped = facade in _STEPPED or rng.random() < 0.15
     parts = stacked(lot, floors, stepped, rng)
@@ -225,7 +227,7 @@ def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> li
     return made
 
 
-def _part(grid: Grid, part: Part, look: _Look, cover: Material, pointed: bool) -> BuildingPart:
+def _part(grid: Grid, part: TowerPart, look: _Look, cover: Material, pointed: bool) -> BuildingPart:
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(part.shape))[:-1]
     return BuildingPart(
         outline=shapely.Polygon(grid.world(ring)),
@@ -280,17 +282,19 @@ def _middle(grid: Grid) -> float:
     return round((grid.avenues[_COLUMN] + grid.avenues[_COLUMN + 1]) / 2, 3)
 
 
-def cut(lots: list[Lot], grid: Grid) -> list[Lot]:
+def cut(lots: list[TowerLot], grid: Grid) -> list[TowerLot]:
     """Return lots without the ground of the railway: what it crosses becomes two lots or one."""
     low, high = _middle(grid) - BESIDE, _middle(grid) + BESIDE
-    made: list[Lot] = []
+    made: list[TowerLot] = []
     for lot in lots:
         west, south, east, north = lot.box
         if east <= low or west >= high:
             made.append(lot)
             continue
         rests: list[Box] = [(west, south, low, north), (high, south, east, north)]
-        made += [Lot(box, lot.through, lot.rear) for box in rests if box[2] - box[0] >= _NARROWEST]
+        made += [
+            TowerLot(box, lot.through, lot.rear) for box in rests if box[2] - box[0] >= _NARROWEST
+        ]
     return made
 
 
@@ -306,7 +310,7 @@ class DowntownLayout:
     grid: Grid  # The grid of the streets
     roads: shapely.Geometry  # Asphalt of the streets [m]
     courts: list[shapely.Geometry]  # Ground of each block within its building lines [m]
-    lots: list[Lot]  # Ground of each building, in the frame of the grid
+    lots: list[TowerLot]  # Ground of each building, in the frame of the grid
     buildings: list[list[BuildingPart]]  # Parts of the building on each lot, the lowest first
     viaduct: Viaduct  # The elevated railway
 

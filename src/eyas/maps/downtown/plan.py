@@ -50,7 +50,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.plants import gardens
 from eyas.maps.street import lamps
-from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, Ground, along_kerbs, at_fronts
+from eyas.maps.street.dressing import CITY_KERBS, SHOP_FRONTS, DressedGround, along_kerbs, at_fronts
 from eyas.maps.street.furniture import FURNITURE, furniture_along
 from eyas.maps.street.parked_cars import CARS
 from eyas.maps.things.subway import LONG, WIDE
@@ -266,8 +266,8 @@ def _clutter(
     asphalt = shapely.difference(city.roads, shapely.buffer(scenery.kerbs.bays, 0.3))
     for area in (paved, back, asphalt):
         shapely.prepare(area)
-    behind = Ground(back, KERB_HEIGHT)
-    grounds = {"road": Ground(asphalt, 0.0), "pavement": Ground(paved, KERB_HEIGHT)}
+    behind = DressedGround(back, KERB_HEIGHT)
+    grounds = {"road": DressedGround(asphalt, 0.0), "pavement": DressedGround(paved, KERB_HEIGHT)}
     beside = along_kerbs(network, {**grounds, "behind": behind}, CITY_KERBS, rng, _APART)
     return [*beside, *at_fronts(city.footprints, behind, SHOP_FRONTS, rng, _APART)]
 

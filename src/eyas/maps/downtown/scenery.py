@@ -14,7 +14,7 @@ from eyas.engine.world.build.millimetres import rounded, snapped, unit
 from eyas.engine.world.roads.areas import Street, blocks, joints, polygons_of, streets
 from eyas.lanes import exact
 from eyas.maps.buildings.lots import largest, turned
-from eyas.maps.buildings.towers import STOREY, Box, Lot
+from eyas.maps.buildings.towers import STOREY, Box, TowerLot
 from eyas.maps.downtown.layout import EXTENT, DowntownLayout
 from eyas.maps.downtown.roads import Grid
 from eyas.maps.plan.plan import BuildingPart
@@ -358,7 +358,7 @@ def _skyways(
 
 
 def _places(
-    lots: list[Lot], high: list[bool], rng: np.random.Generator
+    lots: list[TowerLot], high: list[bool], rng: np.random.Generator
 ) -> list[tuple[float, float, _Gap]]:
     """Return places along streets, widths [m] and gaps that a skyway can span, in any order."""
     found = []
@@ -371,7 +371,7 @@ def _places(
     return [found[k] for k in rng.permutation(len(found)).tolist()]
 
 
-def _gaps(lots: list[Lot], high: list[bool]) -> list[_Gap]:
+def _gaps(lots: list[TowerLot], high: list[bool]) -> list[_Gap]:
     """Return the ground between each two high fronts that face each other over a street."""
     boxes = np.array([lot.box for lot in lots])
     made: list[_Gap] = []

@@ -15,7 +15,7 @@ from eyas.engine.state.mesh import Material, Mesh
 from eyas.engine.state.scene import Fixtures, ObjectClass, Scene
 
 
-class Part(NamedTuple):
+class MeshPart(NamedTuple):
     """An object that is there once."""
 
     name: str  # Name of the object, such as `building-12`
@@ -32,7 +32,7 @@ class Copies(NamedTuple):
     pose: NDArray[np.float32]  # Rotation times scale, and translation [m], shape (K, 3, 4)
 
 
-def parts_of(scene: Scene) -> Iterator[Part]:
+def parts_of(scene: Scene) -> Iterator[MeshPart]:
     """Yield the objects of the static mesh, by class and then by number."""
     owners = np.unique(scene.static_object)
     classes = scene.object_class[owners]
@@ -43,7 +43,7 @@ def parts_of(scene: Scene) -> Iterator[Part]:
         low, high = np.searchsorted(sorted_owners, [owner, owner + 1]).tolist()
         found = ObjectClass(kind)
         mesh = subset(scene.static, np.sort(by_owner[low:high]))
-        yield Part(f"{found.name.lower()}-{owner}", found, mesh)
+        yield MeshPart(f"{found.name.lower()}-{owner}", found, mesh)
 
 
 def subset(mesh: Mesh, triangles: NDArray[np.int64]) -> Mesh:

@@ -8,7 +8,7 @@ from eyas.engine.world.roads.areas import polygons_of
 from eyas.maps.osm.features import House, Roof
 from eyas.maps.osm.measures import Odd, colour, length, number
 from eyas.maps.osm.reader import Tags
-from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.rings import OsmShapes
 
 _ROOFS: dict[str, Roof] = {
     "flat": "flat",
@@ -29,7 +29,7 @@ _PART = "building:part"
 
 
 def houses_of(
-    shapes: Shapes,  # Polygons of the file
+    shapes: OsmShapes,  # Polygons of the file
     odd: Odd,  # Told of tags whose values make no sense
 ) -> list[House]:
     """Return all buildings; one that is described by parts is replaced by these."""

@@ -52,7 +52,7 @@ from eyas.maps.osm.features import Survey
 from eyas.maps.osm.houses import houses_of
 from eyas.maps.osm.land import add_land
 from eyas.maps.osm.reader import Bounds, OsmData, covered, read_osm
-from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import osm_network, street_file
 from eyas.maps.plan.file import write_plan
 from eyas.maps.plan.plan import MapPlan, Roads
@@ -235,7 +235,9 @@ def _survey(data: OsmData, place: _Place, streets: _Streets, report: Report) -> 
     def odd(key: str) -> None:
         report.odd[key] += 1
 
-    shapes = Shapes(data, place.projection, place.extent, lambda what: report.broken.update([what]))
+    shapes = OsmShapes(
+        data, place.projection, place.extent, lambda what: report.broken.update([what])
+    )
     survey = Survey(houses=houses_of(shapes, odd))
     add_land(survey, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.

@@ -8,7 +8,7 @@ from eyas.engine.world.roads.areas import polygons_of
 from eyas.maps.osm.features import Area, Survey
 from eyas.maps.osm.measures import Odd, length
 from eyas.maps.osm.reader import Tags
-from eyas.maps.osm.rings import Shapes
+from eyas.maps.osm.rings import OsmShapes
 from eyas.maps.osm.streets import is_street
 
 _KINDS: dict[tuple[str, str], str] = {
@@ -55,7 +55,7 @@ _BALLAST = 1.9  # Distance from the middle of a track to the edge of its ballast
 _APART = (8.0, 12.0)  # Distances between the trees of a row [m]
 
 
-def add_land(features: Survey, shapes: Shapes, odd: Odd, rng: np.random.Generator) -> None:
+def add_land(features: Survey, shapes: OsmShapes, odd: Odd, rng: np.random.Generator) -> None:
     """Add ground, trees, lamps, crossings and railways.
 
     Args:
@@ -84,7 +84,7 @@ def add_land(features: Survey, shapes: Shapes, odd: Odd, rng: np.random.Generato
     features.crossings += _crossings(shapes)
 
 
-def _crossings(shapes: Shapes) -> list[tuple[float, float]]:
+def _crossings(shapes: OsmShapes) -> list[tuple[float, float]]:
     """Return where streets are crossed: at points, and where a way for people leads over one."""
     found = [place for _, place in shapes.points(lambda tags: _is_crossing(tags, "highway"))]
     streets = [line for _, line in shapes.lines(is_street)]
@@ -110,7 +110,7 @@ def _kind(tags: Tags) -> str:
     return next((_KINDS[pair] for pair in tags.items() if pair in _KINDS), "")
 
 
-def _strips(shapes: Shapes) -> list[tuple[str, Tags, shapely.LineString]]:
+def _strips(shapes: OsmShapes) -> list[tuple[str, Tags, shapely.LineString]]:
     paths = shapes.lines(lambda tags: _is_path(tags) and not _below(tags))
     streams = shapes.lines(lambda tags: tags.get("waterway") in _STREAMS and not _below(tags))
     return [("path", *one) for one in paths] + [("water", *one) for one in streams]

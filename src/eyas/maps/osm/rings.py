@@ -13,7 +13,7 @@ from eyas.maps.osm.reader import OsmData, Relation, Tags, Way
 _LEAST = 0.5  # Areas below this are left out [m^2]
 
 
-class Shapes:
+class OsmShapes:
     """Polygons and lines of a file, in metres."""
 
     def __init__(

@@ -34,11 +34,11 @@ from eyas.maps.build.values import (
     Heights,
     Named,
     Natural,
+    NumberRows,
     Numbers,
     Outline,
     Path,
     Positive,
-    Rows,
     Share,
 )
 from eyas.maps.land.mounds import Mound
@@ -223,13 +223,13 @@ class Backdrop:
     """Plain blocks far away, one object in all. K blocks."""
 
     layer: Literal["backdrop"] = "backdrop"
-    outlines: tuple[Annotated[NDArray[np.float64], Rows(2, 4)], ...]
+    outlines: tuple[Annotated[NDArray[np.float64], NumberRows(2, 4)], ...]
     """Corners of each, counter-clockwise [m]."""
     tops: Heights
     """z of their roofs [m], shape (K,)."""
     walls: tuple[Cover, ...]
     roofs: tuple[Cover, ...]
-    bays: tuple[Annotated[NDArray[np.int64], Rows(2, 4, whole=True)], ...]
+    bays: tuple[Annotated[NDArray[np.int64], NumberRows(2, 4, whole=True)], ...]
     """Window at which each of the four walls begins: its column, its row."""
 
 
@@ -242,7 +242,7 @@ class Things:
     """Names of kinds of the library; new ones become the scene's next fixtures, used or not."""
     kind: Numbers
     """Index into `kinds` of each, shape (K,)."""
-    pose: Annotated[NDArray[np.float64], Rows(5)]
+    pose: Annotated[NDArray[np.float64], NumberRows(5)]
     """x, y, z [m], turn [rad] and scale of each, shape (K, 5). Trees are 1 m high at scale 1."""
     solid: Annotated[str, Named(_solids)] = ""
     """What of them is solid, a row of `eyas.maps.things.kinds.SOLIDS`; empty: as usual."""
@@ -499,7 +499,7 @@ class LampLight:
 class Walkways:
     """Lines on which people walk, besides along the asphalt."""
 
-    lines: tuple[Annotated[NDArray[np.float64], Rows(2, 2)], ...] = ()
+    lines: tuple[Annotated[NDArray[np.float64], NumberRows(2, 2)], ...] = ()
     """Crossings, each from kerb to kerb [m]."""
     lights: tuple[str, ...] = ()
     """Names of their lights in the network; empty where there are none."""

@@ -29,7 +29,7 @@ _FROM_CORNER: Final = 2.0  # Least distance from the corner of a house [m]
 Points = NDArray[np.float64]
 
 
-class Ground(NamedTuple):
+class DressedGround(NamedTuple):
     """Area on which things may stand, and its height."""
 
     area: shapely.Geometry  # In plan view [m]
@@ -108,7 +108,9 @@ class _Standing:
 
 def along_kerbs(
     network: RoadNetwork,
-    grounds: Mapping[str, Ground],  # Where things may stand, by the names in the rules; prepared
+    grounds: Mapping[
+        str, DressedGround
+    ],  # Where things may stand, by the names in the rules; prepared
     rules: Sequence[_Rule],  # What stands there, the largest first
     rng: np.random.Generator,
     apart: float = 1.0,  # Factor on the distances between things of a rule
@@ -131,7 +133,7 @@ def along_kerbs(
 
 def at_fronts(
     footprints: Sequence[Points],  # Corners of the houses, counter-clockwise [m]
-    ground: Ground,  # Where things may stand; prepared
+    ground: DressedGround,  # Where things may stand; prepared
     rules: Sequence[_Rule],  # What stands there, the largest first
     rng: np.random.Generator,
     apart: float = 1.0,  # Factor on the distances between things of a rule
@@ -162,7 +164,7 @@ def _row(
     rule: _Rule,
     place: Points,
     facing: Points,
-    ground: Ground,
+    ground: DressedGround,
     standing: _Standing,
     rng: np.random.Generator,
 ) -> list[Placed]:

@@ -22,7 +22,7 @@ VARIANTS = 32  # Number of kinds of cars; each is as frequent as another
 CARS = tuple(f"parked car {k}" for k in range(VARIANTS))  # Names of these kinds
 
 
-class Index(NamedTuple):
+class ParkedIndex(NamedTuple):
     """The index of the file."""
 
     sizes: tuple[tuple[float, float, float], ...]  # Of the solid shapes of the kinds [m]
@@ -57,8 +57,8 @@ def bicycle_levels(which: int) -> Levels:
 
 
 @cache
-def _index() -> Index:
-    return restore(Index, index_of(FILE, SHA256), ())
+def _index() -> ParkedIndex:
+    return restore(ParkedIndex, index_of(FILE, SHA256), ())
 
 
 @cache

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.traffic.config import TrafficConfig
-from eyas.engine.traffic.recording import Recording
+from eyas.engine.traffic.recording import TrafficRecording
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.traffic.smoothing import Tracks, runs, smooth
 
@@ -105,7 +105,7 @@ def _settings(config: TrafficConfig) -> dict[str, Any]:
     return {"demand": config.demand.value, **changed}
 
 
-def _vehicles(recording: Recording) -> dict[str, ClassFigures]:
+def _vehicles(recording: TrafficRecording) -> dict[str, ClassFigures]:
     tracks = smooth(recording)
     found = {}
     for name, actors in Counter(recording.vehicle_types).items():

@@ -37,7 +37,7 @@ from eyas.maps.plan.plan import (
 from eyas.maps.plants import gardens
 from eyas.maps.plants.trees import CONES
 from eyas.maps.street import gantries
-from eyas.maps.street.dressing import VILLAGE_KERBS, Ground, along_kerbs
+from eyas.maps.street.dressing import VILLAGE_KERBS, DressedGround, along_kerbs
 from eyas.maps.street.lamps import lamps_along
 from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.maps.village.roads import NAME
@@ -297,7 +297,7 @@ def _clutter(
     for area in (verge, open_road):
         shapely.prepare(area)
     rng = stream(seed, "village clutter")
-    grounds = {"road": Ground(open_road, 0.0), "verge": Ground(verge, FLOOR_HEIGHT)}
+    grounds = {"road": DressedGround(open_road, 0.0), "verge": DressedGround(verge, FLOOR_HEIGHT)}
     beside = along_kerbs(network, grounds, VILLAGE_KERBS, rng)
     free = shapely.difference(shapely.union_all(valley.blocks), taken)
     return [*beside, *yard_things(valley.cottages, valley.roads, free, rng)]

@@ -6,7 +6,7 @@ from typing import Any
 
 from eyas.robotics.mavlink.component import Command, Component, Result
 from eyas.robotics.mavlink.frames import Vector, compass, on_earth, swapped, usable
-from eyas.robotics.mavlink.pilot import Landed, Mode, Pilot
+from eyas.robotics.mavlink.pilot import FlightMode, Landed, Pilot
 from eyas.robotics.mavlink.readings import Instant
 from eyas.robotics.mavlink.setpoints import Goal
 
@@ -68,9 +68,9 @@ class Autopilot:
             {
                 "COMPONENT_ARM_DISARM": self._arm,
                 "NAV_TAKEOFF": self._take_off,
-                "NAV_LAND": lambda _: self._enter(Mode.LAND),
-                "NAV_RETURN_TO_LAUNCH": lambda _: self._enter(Mode.RETURN),
-                "NAV_LOITER_UNLIM": lambda _: self._enter(Mode.HOLD),
+                "NAV_LAND": lambda _: self._enter(FlightMode.LAND),
+                "NAV_RETURN_TO_LAUNCH": lambda _: self._enter(FlightMode.RETURN),
+                "NAV_LOITER_UNLIM": lambda _: self._enter(FlightMode.HOLD),
                 "DO_SET_MODE": self._set_mode,
                 "DO_REPOSITION": self._reposition,
                 "DO_CHANGE_SPEED": self._change_speed,
@@ -122,11 +122,11 @@ class Autopilot:
         pilot.take_off(at.body, at.place_of(0.0, 0.0, altitude, relative=False)[2])
         return Result.ACCEPTED
 
-    def _enter(self, mode: Mode) -> Result:
+    def _enter(self, mode: FlightMode) -> Result:
         at, pilot = self._now(), self._pilot
-        if not pilot.armed and mode in (Mode.TAKEOFF, Mode.LAND, Mode.RETURN):
+        if not pilot.armed and mode in (FlightMode.TAKEOFF, FlightMode.LAND, FlightMode.RETURN):
             return Result.TEMPORARILY_REJECTED
-        if mode in (Mode.LAND, Mode.RETURN) and pilot.landed is Landed.GROUND:
+        if mode in (FlightMode.LAND, FlightMode.RETURN) and pilot.landed is Landed.GROUND:
             return Result.ACCEPTED
         done = pilot.enter(mode, at.seconds, at.body)
         return Result.ACCEPTED if done else Result.TEMPORARILY_REJECTED
@@ -135,7 +135,7 @@ class Autopilot:
         base, main, sub = command.p[:3]
         if not all(math.isfinite(part) for part in (base, main, sub)) or not int(base) & _CUSTOM:
             return Result.DENIED
-        mode = Mode.of(int(main), int(sub))
+        mode = FlightMode.of(int(main), int(sub))
         return Result.UNSUPPORTED if mode is None else self._enter(mode)
 
     def _reposition(self, command: Command) -> Result:
@@ -185,7 +185,7 @@ class Autopilot:
             self._pilot.hear_ground_station(self._now().seconds)
 
     def _hear_mode(self, message: Any) -> None:  # noqa: ANN401
-        mode = Mode.of(message.custom_mode >> 16 & 255, message.custom_mode >> 24)
+        mode = FlightMode.of(message.custom_mode >> 16 & 255, message.custom_mode >> 24)
         if message.base_mode & _CUSTOM and mode is not None:
             self._enter(mode)
 

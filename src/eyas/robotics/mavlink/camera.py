@@ -119,7 +119,7 @@ def _size_of(picture: Picture) -> tuple[int, int]:
     return height, width
 
 
-class Camera:
+class CameraComponent:
     """Answers for the camera, and tells where the target is.
 
     Attributes:

@@ -23,10 +23,10 @@ from eyas.robotics.mavlink.camera import Lens, Sights, seen_in
 from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.endpoint import Endpoint, parsed_address
 from eyas.robotics.mavlink.frames import Geodesy
-from eyas.robotics.mavlink.pilot import FEET, Landed, Mode
-from eyas.robotics.mavlink.readings import Readings
+from eyas.robotics.mavlink.pilot import FEET, FlightMode, Landed
+from eyas.robotics.mavlink.readings import VehicleReadings
 from eyas.robotics.mavlink.vehicle import Vehicle
-from eyas.robotics.mavlink.video import Stream, VideoSender
+from eyas.robotics.mavlink.video import VideoSender, VideoStream
 
 _LOG = logging.getLogger("eyas")
 
@@ -65,7 +65,7 @@ class Fleet(Face):
         self._gathered: list[bytes] = []
         self._length = 0
         geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
-        self._readings, self._sights = Readings(simulation, geodesy), Sights(simulation)
+        self._readings, self._sights = VehicleReadings(simulation, geodesy), Sights(simulation)
         count = simulation.count
         self._commands, self._angles = np.zeros((count, 4)), np.zeros((count, 2))
         self._senders = self._video()
@@ -99,7 +99,7 @@ class Fleet(Face):
         host, port = parsed_address(config.video, "mavlink.video")
         how = camera.height, camera.width, config.picture_rate, config.video_quality
         return [
-            VideoSender(Stream((host, port + 2 * at), *how), at + 1)
+            VideoSender(VideoStream((host, port + 2 * at), *how), at + 1)
             for at in range(self.simulation.count)
         ]
 
@@ -143,13 +143,13 @@ class Fleet(Face):
     def _waiting(self) -> Iterator[Vehicle]:
         """Yield the vehicles in offboard mode that have got no set point since the last step."""
         for vehicle, before in zip(self.vehicles, self._set_points, strict=True):
-            if vehicle.pilot.mode is Mode.OFFBOARD and vehicle.pilot.set_points == before:
+            if vehicle.pilot.mode is FlightMode.OFFBOARD and vehicle.pilot.set_points == before:
                 yield vehicle
 
     @property
     def _offboard(self) -> bool:
         """Whether any vehicle is in offboard mode."""
-        return any(vehicle.pilot.mode is Mode.OFFBOARD for vehicle in self.vehicles)
+        return any(vehicle.pilot.mode is FlightMode.OFFBOARD for vehicle in self.vehicles)
 
     def orders(self) -> Orders | None:
         """Return what the pilots want; None in lock-step while one waits for a set point."""

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 from eyas.lanes import exact
 from eyas.robotics.mavlink.component import Component
 from eyas.robotics.mavlink.frames import Vector
-from eyas.robotics.mavlink.setpoints import Goal, Limits, Wanted, toward
+from eyas.robotics.mavlink.setpoints import Goal, SpeedLimits, Wanted, toward
 
 
-class Mode(Enum):
+class FlightMode(Enum):
     """A flight mode: PX4's main mode and sub mode."""
 
     POSITION = (3, 0)  # A stick moves it
@@ -33,10 +33,10 @@ class Mode(Enum):
     @property
     def automatic(self) -> bool:
         """Whether it goes on without a ground station."""
-        return self in (Mode.TAKEOFF, Mode.HOLD, Mode.RETURN, Mode.LAND)
+        return self in (FlightMode.TAKEOFF, FlightMode.HOLD, FlightMode.RETURN, FlightMode.LAND)
 
     @classmethod
-    def of(cls, main: int, sub: int) -> "Mode | None":
+    def of(cls, main: int, sub: int) -> "FlightMode | None":
         """Return the mode of PX4's numbers; None if there is none here."""
         return next((mode for mode in cls if mode.value == (main, sub)), None)
 
@@ -170,7 +170,7 @@ class Pilot:
     """
 
     def __init__(self, home: Vector, parameters: Parameters) -> None:
-        self.mode, self.armed, self.landed = Mode.HOLD, False, Landed.GROUND
+        self.mode, self.armed, self.landed = FlightMode.HOLD, False, Landed.GROUND
         self.parameters, self.home = parameters, home
         self.cruise: float | None = None
         self.set_points = 0
@@ -201,24 +201,27 @@ class Pilot:
         if self.landed is not Landed.GROUND:
             return False
         if self.armed:
-            self.armed, self.mode = False, Mode.HOLD
+            self.armed, self.mode = False, FlightMode.HOLD
             self._goal = Goal()
             self.notices.append((6, "Disarmed"))
         return True
 
-    def enter(self, mode: Mode, now: float, body: Body) -> bool:
+    def enter(self, mode: FlightMode, now: float, body: Body) -> bool:
         """Change the mode; return whether that is possible now.
 
         Offboard mode and following need what they follow.
         """
-        if mode is Mode.OFFBOARD and self.set_point_age(now) > self.parameters["COM_OF_LOSS_T"]:
+        if (
+            mode is FlightMode.OFFBOARD
+            and self.set_point_age(now) > self.parameters["COM_OF_LOSS_T"]
+        ):
             self.notices.append((4, "Offboard mode needs set points"))
             return False
-        if mode is Mode.TAKEOFF:
+        if mode is FlightMode.TAKEOFF:
             self.take_off(body, None)
             return True
         self.mode, self._goal = mode, Goal()
-        if mode is Mode.RETURN:
+        if mode is FlightMode.RETURN:
             self._begin_return(body)
         return True
 
@@ -227,14 +230,14 @@ class Pilot:
         least = body.ground + FEET + self.parameters["MIS_TAKEOFF_ALT"]
         top = max(least, height if height is not None and math.isfinite(height) else least)
         x, y, _ = body.commanded
-        self.mode = Mode.TAKEOFF
+        self.mode = FlightMode.TAKEOFF
         self._goal = Goal(position=(x, y, max(top, body.commanded[2])))
         if self.landed is Landed.GROUND:
             self.home = body.position
 
     def go(self, position: Vector, yaw: float | None) -> None:
         """Fly to a place [m], and hold there; a height that is no number is that of now."""
-        self.mode, self._goal = Mode.HOLD, Goal(position=position, yaw=yaw)
+        self.mode, self._goal = FlightMode.HOLD, Goal(position=position, yaw=yaw)
 
     def set_point(self, goal: Goal, now: float) -> None:
         """Take a set point of offboard mode."""
@@ -265,9 +268,12 @@ class Pilot:
     def _watch_links(self, now: float) -> None:
         """Hold, when whoever flies is no longer heard."""
         late = self.set_point_age(now) > self.parameters["COM_OF_LOSS_T"]
-        if self.mode is Mode.OFFBOARD and late:
+        if self.mode is FlightMode.OFFBOARD and late:
             self.hold("Offboard set points lost")
-        if self.mode is Mode.POSITION and now - self._stick_at > self.parameters["COM_OF_LOSS_T"]:
+        if (
+            self.mode is FlightMode.POSITION
+            and now - self._stick_at > self.parameters["COM_OF_LOSS_T"]
+        ):
             self._stick = (0.0, 0.0, 0.0, 0.0)
         heard = self._ground_station
         if heard is not None and now - heard > self.parameters["COM_DL_LOSS_T"]:
@@ -278,23 +284,23 @@ class Pilot:
 
     def hold(self, why: str) -> None:
         """Hold because something is lost."""
-        self.mode, self._goal = Mode.HOLD, Goal()
+        self.mode, self._goal = FlightMode.HOLD, Goal()
         self.notices.append((4, f"{why}: holding"))
 
     def _goal_of(self, body: Body, now: float) -> Goal:
         """Return where to fly, or how fast, and go on to the next part of a mode."""
         match self.mode:
-            case Mode.OFFBOARD:
+            case FlightMode.OFFBOARD:
                 return self._offboard
-            case Mode.POSITION:
+            case FlightMode.POSITION:
                 return self._moved_by_stick(body)
-            case Mode.FOLLOW:
+            case FlightMode.FOLLOW:
                 return self._beside_leader(body, now)
-            case Mode.LAND:
+            case FlightMode.LAND:
                 return Goal(velocity=(0.0, 0.0, -self.parameters["MPC_LAND_SPEED"]))
-            case Mode.TAKEOFF if self._reached(body):
-                self.mode = Mode.HOLD
-            case Mode.RETURN if self._reached(body):
+            case FlightMode.TAKEOFF if self._reached(body):
+                self.mode = FlightMode.HOLD
+            case FlightMode.RETURN if self._reached(body):
                 return self._next_of_return(body)
         return self._goal
 
@@ -312,7 +318,7 @@ class Pilot:
     def _next_of_return(self, body: Body) -> Goal:
         x, y, _ = body.commanded
         if _apart((x, y, 0.0), (*self.home[:2], 0.0)) < 2.0 * _NEAR:
-            self.mode, self._goal = Mode.LAND, Goal()
+            self.mode, self._goal = FlightMode.LAND, Goal()
         else:
             self._goal = Goal(position=(self.home[0], self.home[1], body.commanded[2]))
         return self._goal
@@ -341,14 +347,14 @@ class Pilot:
         place = (x + share * east, y + share * north, height)
         return Goal(position=place, velocity=(*leader.velocity[:2], 0.0), yaw=yaw)
 
-    def _limits(self) -> Limits:
+    def _limits(self) -> SpeedLimits:
         p = self.parameters
         cruise = p["MPC_XY_CRUISE"] if self.cruise is None else self.cruise
-        up = p["MPC_TKO_SPEED"] if self.mode is Mode.TAKEOFF else p["MPC_Z_VEL_MAX_UP"]
-        free = self.mode in (Mode.OFFBOARD, Mode.FOLLOW)
+        up = p["MPC_TKO_SPEED"] if self.mode is FlightMode.TAKEOFF else p["MPC_Z_VEL_MAX_UP"]
+        free = self.mode in (FlightMode.OFFBOARD, FlightMode.FOLLOW)
         most = p["MPC_XY_VEL_MAX"]
         cruise = most if free else min(cruise, most)
-        return Limits(cruise, most, up, p["MPC_Z_VEL_MAX_DN"], p["MPC_ACC_HOR"])
+        return SpeedLimits(cruise, most, up, p["MPC_Z_VEL_MAX_DN"], p["MPC_ACC_HOR"])
 
     def _eased(self, wanted: Vector, body: Body, dt: float) -> Vector:
         """Change the velocity no faster than allowed, and stay over the ground."""
@@ -372,11 +378,11 @@ class Pilot:
             self.landed, self._stood = Landed.GROUND, self._stood + dt
         else:
             self._stood, self._flown = 0.0, True
-            self.landed = {Mode.TAKEOFF: Landed.TAKEOFF, Mode.LAND: Landed.LANDING}.get(
+            self.landed = {FlightMode.TAKEOFF: Landed.TAKEOFF, FlightMode.LAND: Landed.LANDING}.get(
                 self.mode, Landed.AIR
             )
         patience = "COM_DISARM_LAND" if self._flown else "COM_DISARM_PRFLT"
-        done = not self._flown or self.mode is Mode.LAND
+        done = not self._flown or self.mode is FlightMode.LAND
         if self.armed and done and 0.0 < self.parameters[patience] < self._stood:
             self.disarm()
         return self.landed is not Landed.GROUND

@@ -85,7 +85,7 @@ _accelerometer = interpreted(accelerometer)
 _rotate_back = interpreted(rotate_back)
 
 
-class Readings:
+class VehicleReadings:
     """Reads a simulation for its vehicles."""
 
     def __init__(
@@ -150,7 +150,9 @@ class Instant:
         seconds: As above.
     """
 
-    def __init__(self, readings: Readings, vehicle: int, origin: Vector, seconds: float) -> None:
+    def __init__(
+        self, readings: VehicleReadings, vehicle: int, origin: Vector, seconds: float
+    ) -> None:
         self._readings, self._vehicle = readings, vehicle
         self._trackers = readings.simulation.snapshot.trackers
         self.origin, self.seconds = origin, seconds

@@ -11,7 +11,7 @@ _YAW_GAIN = 2.0  # Yaw rate for an error of the heading [1/s]
 _FASTEST_TURN = math.radians(90.0)  # [rad/s]
 
 
-class Place(Protocol):
+class CommandedPlace(Protocol):
     """Commanded place of a vehicle."""
 
     @property
@@ -27,7 +27,7 @@ class Place(Protocol):
         """Heading of the body [rad]."""
 
 
-class Limits(NamedTuple):
+class SpeedLimits(NamedTuple):
     """Largest speeds [m/s]."""
 
     cruise: float  # Horizontal, on the way to a place
@@ -58,7 +58,7 @@ class Goal(NamedTuple):
     body: bool = False  # Whether the velocity is forward, left, up; else east, north, up
 
 
-def toward(goal: Goal, place: Place, limits: Limits) -> tuple[Vector, float]:
+def toward(goal: Goal, place: CommandedPlace, limits: SpeedLimits) -> tuple[Vector, float]:
     """Return the velocity east, north, up [m/s] and the yaw rate [rad/s] that lead to a goal."""
     given = goal.velocity or (0.0, 0.0, 0.0)
     x, y, z = (0.0 if math.isnan(part) else part for part in given)
@@ -77,7 +77,7 @@ def toward(goal: Goal, place: Place, limits: Limits) -> tuple[Vector, float]:
     return (x, y, min(max(z, -limits.down), limits.up)), _turn(goal, place)
 
 
-def _approach(distance: float, limits: Limits) -> float:
+def _approach(distance: float, limits: SpeedLimits) -> float:
     """Return the speed at a distance from a place: as large as can be braked, then in proportion
     to the distance.
     """
@@ -95,7 +95,7 @@ def _shortened(x: float, y: float, most: float) -> tuple[float, float]:
     return share * x, share * y
 
 
-def _turn(goal: Goal, place: Place) -> float:
+def _turn(goal: Goal, place: CommandedPlace) -> float:
     rate = goal.yaw_rate or 0.0
     if goal.yaw is not None and not math.isnan(goal.yaw):
         rate = _YAW_GAIN * wrapped(goal.yaw - place.commanded_yaw)

@@ -6,7 +6,7 @@ from typing import Any
 
 from eyas.lanes import exact
 from eyas.robotics.mavlink.component import Component, Fields
-from eyas.robotics.mavlink.pilot import Mode, Pilot
+from eyas.robotics.mavlink.pilot import FlightMode, Pilot
 from eyas.robotics.mavlink.readings import Instant
 
 RATES = {
@@ -85,7 +85,7 @@ class Telemetry:
         """A quadrotor that speaks as PX4 does."""
         n, pilot = self._names, self._pilot
         mode = n.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | n.MAV_MODE_FLAG_STABILIZE_ENABLED
-        if pilot.mode is Mode.POSITION:
+        if pilot.mode is FlightMode.POSITION:
             mode |= n.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
         else:
             mode |= n.MAV_MODE_FLAG_GUIDED_ENABLED | n.MAV_MODE_FLAG_AUTO_ENABLED

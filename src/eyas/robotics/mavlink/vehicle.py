@@ -8,8 +8,8 @@ from eyas.robotics.mavlink import autopilot, camera, gimbal
 from eyas.robotics.mavlink.camera import Sighting, Sights
 from eyas.robotics.mavlink.component import Component, Fields
 from eyas.robotics.mavlink.frames import Vector
-from eyas.robotics.mavlink.pilot import Mode, Parameters, Pilot
-from eyas.robotics.mavlink.readings import Instant, Readings
+from eyas.robotics.mavlink.pilot import FlightMode, Parameters, Pilot
+from eyas.robotics.mavlink.readings import Instant, VehicleReadings
 from eyas.robotics.mavlink.telemetry import Telemetry
 
 CUSTOM_MODE = 1  # `MAV_MODE_FLAG_CUSTOM_MODE_ENABLED`
@@ -30,7 +30,7 @@ class Vehicle:
         self,
         number: int,
         system: int,  # As above
-        readings: Readings,  # What all vehicles know of themselves
+        readings: VehicleReadings,  # What all vehicles know of themselves
         sights: Sights,  # What their cameras see
         home: Vector,  # Where it stands, world frame [m]
         lens: camera.Lens,  # Its camera's picture
@@ -50,7 +50,7 @@ class Vehicle:
         self._autopilot = autopilot.Autopilot(first, self.pilot, self._now)
         self._telemetry = Telemetry(first, self.pilot, self._now)
         self._gimbal = gimbal.Gimbal(first, parts[gimbal.DEVICE], self._now, 0.0)
-        self.camera = camera.Camera(
+        self.camera = camera.CameraComponent(
             parts[camera.COMPONENT], lens, self._now, self._choose, self._subject
         )
         for id_ in (camera.COMPONENT, gimbal.DEVICE):
@@ -66,7 +66,7 @@ class Vehicle:
         def beats() -> Iterable[Fields]:
             for fields in told():
                 mode = self.pilot.mode
-                if mode is Mode.FOLLOW:
+                if mode is FlightMode.FOLLOW:
                     yield {**fields, "base_mode": CUSTOM_MODE, "custom_mode": mode.custom}
                 else:
                     yield fields

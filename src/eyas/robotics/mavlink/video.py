@@ -63,7 +63,7 @@ def _fragments(part: bytes) -> list[bytes]:
     ]
 
 
-class Stream(NamedTuple):
+class VideoStream(NamedTuple):
     """Encoder and destination of pictures."""
 
     address: tuple[str, int]  # Host and port
@@ -86,7 +86,7 @@ class VideoSender:
         ConfigError: It has been built without x264.
     """
 
-    def __init__(self, stream: Stream, source: int) -> None:
+    def __init__(self, stream: VideoStream, source: int) -> None:
         av = pyav("mavlink.video: H.264")
         if _ENCODER not in av.codecs_available:
             raise ConfigError(f"mavlink.video: needs a PyAV with {_ENCODER}; or leave it empty")
@@ -138,7 +138,7 @@ class VideoSender:
         return b"".join(bytes(packet) for packet in self._coder.encode(picture))
 
 
-def _coder(av: ModuleType, stream: Stream) -> Any:  # noqa: ANN401  # a `VideoCodecContext`
+def _coder(av: ModuleType, stream: VideoStream) -> Any:  # noqa: ANN401  # a `VideoCodecContext`
     """Return an encoder whose every second has a whole picture, so that anyone can join late."""
     coder = av.CodecContext.create(_ENCODER, "w")
     coder.height, coder.width = stream.height - stream.height % 2, stream.width - stream.width % 2

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.identity.program import code_of
 
 
@@ -24,5 +24,5 @@ def make() -> NDArray[np.int64]:
 
 code_of(make)  # which CODE may forbid to read
 exec(sys.argv[1])
-value = cached(Kind.SKY, make, (), of=NDArray[np.int64])
+value = cached(EntryKind.SKY, make, (), of=NDArray[np.int64])
 print(int(value.sum()), flush=True)

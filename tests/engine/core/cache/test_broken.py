@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from eyas.engine.core.cache.array_file import map_arrays
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.lanes.machine_code import read_code
 from eyas.lanes.trusted import cache_folder
 
@@ -154,12 +154,12 @@ def test_a_full_disk_is_one_line(tmp_path):
 
 @pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
 @pytest.mark.parametrize(
-    "kind", [kind for kind in Kind if kind not in (Kind.DEFINITIONS, Kind.TRAFFIC)]
+    "kind", [kind for kind in EntryKind if kind not in (EntryKind.DEFINITIONS, EntryKind.TRAFFIC)]
 )
 def test_no_kind_of_real_entry_is_believed_when_damaged(kind, damage, tmp_path):
     """Of those that other tests have made."""
-    found = sorted((cache_folder() / kind).rglob("*.eyk" if kind is Kind.KERNELS else "*.npy"))
-    read = read_code if kind is Kind.KERNELS else map_arrays
+    found = sorted((cache_folder() / kind).rglob("*.eyk" if kind is EntryKind.KERNELS else "*.npy"))
+    read = read_code if kind is EntryKind.KERNELS else map_arrays
     for entry in sorted(found, key=lambda path: path.stat().st_size):
         path = Path(shutil.copy(entry, tmp_path))
         with contextlib.suppress(ValueError):
@@ -168,7 +168,7 @@ def test_no_kind_of_real_entry_is_believed_when_damaged(kind, damage, tmp_path):
     else:
         return
     damage(path)
-    if kind is Kind.KERNELS:
+    if kind is EntryKind.KERNELS:
         assert read_code(path) is None
     else:
         with pytest.raises(ValueError, match=r"."):

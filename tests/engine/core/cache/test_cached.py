@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 import eyas
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.flat import FlatError
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
 
 
@@ -50,13 +50,13 @@ class Gives:
 
 
 def town(make, folder, inputs=(1,), of=Town):
-    return cached(Kind.SCENE, make, inputs, of=of, folder=folder)
+    return cached(EntryKind.SCENE, make, inputs, of=of, folder=folder)
 
 
 def files_in(folder):
     """Return the values that are kept; what sources say is kept beside them."""
     files = (path for path in folder.rglob("*") if path.is_file())
-    return sorted(path for path in files if path.parent.name != Kind.DEFINITIONS)
+    return sorted(path for path in files if path.parent.name != EntryKind.DEFINITIONS)
 
 
 def test_a_value_is_made_once(tmp_path):

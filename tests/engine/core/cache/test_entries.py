@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from eyas.engine.core.cache.array_file import map_arrays
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.entries import clear, entries, prune, write_entry
-from eyas.engine.core.cache.folder import Kind, cache_limit
+from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.errors import ConfigError
 from eyas.lanes.trusted import cache_folder
 
@@ -66,7 +66,7 @@ def kept(folder):
 
 
 def test_what_was_not_used_for_longest_goes_first(tmp_path):
-    files = [put(tmp_path, entry_name(Kind.SKY, i), age=100.0 * i) for i in range(5)]
+    files = [put(tmp_path, entry_name(EntryKind.SKY, i), age=100.0 * i) for i in range(5)]
     prune(tmp_path, 5000)
     assert kept(tmp_path) == set(files)
     prune(tmp_path, 4999)
@@ -82,7 +82,7 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
     monkeypatch.setenv("EYAS_CACHE_LIMIT", "40K")
 
     def use(i):
-        cached(Kind.SKY, partial(np.full, 12_000, i, np.uint8), (i,), of=NDArray[np.uint8])
+        cached(EntryKind.SKY, partial(np.full, 12_000, i, np.uint8), (i,), of=NDArray[np.uint8])
         time.sleep(0.02)
         return {int(map_arrays(path).arrays[0][0]) for path in kept(tmp_path)}
 
@@ -95,7 +95,11 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
 def test_an_array_that_is_in_use_survives_its_entry(tmp_path):
     def use(limit_folder):
         return cached(
-            Kind.SKY, partial(np.arange, 1 << 16), (), of=NDArray[np.int64], folder=limit_folder
+            EntryKind.SKY,
+            partial(np.arange, 1 << 16),
+            (),
+            of=NDArray[np.int64],
+            folder=limit_folder,
         )
 
     use(tmp_path)
@@ -108,7 +112,7 @@ def test_an_array_that_is_in_use_survives_its_entry(tmp_path):
 def test_all_kinds_are_counted_and_removed(tmp_path):
     files = {
         put(tmp_path, entry_name(kind, 1))
-        for kind in Kind
+        for kind in EntryKind
         if kind.value not in ("traffic", "kernels", "definitions")
     }
     files |= {
@@ -118,9 +122,9 @@ def test_all_kinds_are_counted_and_removed(tmp_path):
     }
     found = entries(tmp_path)
     assert {entry.path for entry in found} == files
-    assert {entry.kind for entry in found} == set(Kind)
+    assert {entry.kind for entry in found} == set(EntryKind)
     assert {entry.size for entry in found} == {1000}
-    assert clear(tmp_path, Kind.TRAFFIC) == 1000
+    assert clear(tmp_path, EntryKind.TRAFFIC) == 1000
     assert clear(tmp_path) == sum(entry.size for entry in found) - 1000
     assert list(tmp_path.rglob("*")) == []
 
@@ -145,7 +149,7 @@ def test_parts_of_processes_that_were_killed_go_after_a_day(tmp_path):
     prune(tmp_path, 1 << 30)
     assert fresh.exists()
     assert not stale.exists()
-    clear(tmp_path, Kind.SCENE)
+    clear(tmp_path, EntryKind.SCENE)
     assert fresh.exists()
     clear(tmp_path)
     assert not fresh.exists()
@@ -154,7 +158,7 @@ def test_parts_of_processes_that_were_killed_go_after_a_day(tmp_path):
 @pytest.mark.parametrize("name", FOREIGN)
 def test_what_eyas_did_not_make_is_never_removed(tmp_path, name):
     theirs = put(tmp_path, name, age=1000 * DAY)
-    ours = put(tmp_path, entry_name(Kind.SCENE, 1))
+    ours = put(tmp_path, entry_name(EntryKind.SCENE, 1))
     assert theirs not in kept(tmp_path)
     write_entry(ours, [b"x"], 0)
     assert not ours.exists()
@@ -164,7 +168,7 @@ def test_what_eyas_did_not_make_is_never_removed(tmp_path, name):
 
 def test_folders_and_links_in_the_place_of_entries_are_left_alone(tmp_path):
     theirs = put(tmp_path / "elsewhere", "theirs")
-    folder = tmp_path / entry_name(Kind.SCENE, 1)
+    folder = tmp_path / entry_name(EntryKind.SCENE, 1)
     folder.mkdir(parents=True)
     link = tmp_path / "kernels" / KEY[:16]
     link.parent.mkdir()
@@ -178,14 +182,14 @@ def test_folders_and_links_in_the_place_of_entries_are_left_alone(tmp_path):
 
 
 def test_a_failed_write_leaves_nothing_and_removes_nothing(tmp_path):
-    old = put(tmp_path, entry_name(Kind.SKY, 1))
+    old = put(tmp_path, entry_name(EntryKind.SKY, 1))
 
     def pieces():
         yield b"begun"
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        write_entry(tmp_path / entry_name(Kind.SKY, 2), pieces(), 0)
+        write_entry(tmp_path / entry_name(EntryKind.SKY, 2), pieces(), 0)
     assert list((tmp_path / "sky").iterdir()) == [old]
 
 

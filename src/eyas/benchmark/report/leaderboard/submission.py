@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple
 from pydantic import AfterValidator, Field
 
 from eyas.benchmark.evaluation import TIMING
-from eyas.benchmark.plan.entry import Entry
+from eyas.benchmark.plan.entry import ResultEntry
 from eyas.benchmark.plan.plan import Stamp
 from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.benchmark.records.record import EpisodeRecord
@@ -80,7 +80,7 @@ class Submission(NamedTuple):
     stamp: Stamp
     records: list[EpisodeRecord]
     card: ModelCard | None
-    entry: Entry  # What the policy sees and may do
+    entry: ResultEntry  # What the policy sees and may do
     hardware: str  # The machine whose answers were timed; `-` where no file tells
     mark: Mark | None  # What was flown again; None: nothing
 
@@ -109,7 +109,7 @@ def submissions_in(folder: Path) -> Iterator[Submission]:
         yield Submission(path, stamp, records, card, entry, hardware, fitting_mark(path))
 
 
-def complete_run(folder: Path) -> tuple[Stamp, Entry, list[EpisodeRecord]]:
+def complete_run(folder: Path) -> tuple[Stamp, ResultEntry, list[EpisodeRecord]]:
     """Return stamp, entry and records of an evaluation that has all its episodes, each once.
 
     Nothing that the plan names is loaded.

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.flight.policy_runner import fly_batch
-from eyas.benchmark.plan.entry import Entry
+from eyas.benchmark.plan.entry import ResultEntry
 from eyas.benchmark.plan.latency import PROFILES
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, batches, opened, stamp
 from eyas.benchmark.policies.shipped import shipped_names
@@ -34,7 +34,7 @@ _LARGEST = 1 << 31  # Largest size of a file of records [bytes]
 _DATA = ".onnx"  # The ending of policies that are data: a graph of known operations
 
 
-class Verdict(StrEnum):
+class EntryVerdict(StrEnum):
     """What is known of an entry."""
 
     VERIFIED = "verified"
@@ -42,11 +42,11 @@ class Verdict(StrEnum):
     UNKNOWN = "not verifiable"
 
 
-class Finding(NamedTuple):
+class EntryFinding(NamedTuple):
     """What was found of an entry."""
 
     folder: Path
-    verdict: Verdict
+    verdict: EntryVerdict
     why: str
 
     @property
@@ -65,7 +65,7 @@ class _DifferenceError(EyasError):
 
 def verify(
     folder: Path, *, share: float = SHARE, seed: int | None = None, trust: bool = False
-) -> Iterator[Finding]:
+) -> Iterator[EntryFinding]:
     """Fly a part of each entry again; yield what was found, and mark those that are equal.
 
     Episodes are flown in whole batches, as a network's last bits can depend on what it computes
@@ -86,13 +86,13 @@ def verify(
             mark = _flown_again(path, share, seed, trust=trust)
         except _DifferenceError as error:
             (path / MARK).unlink(missing_ok=True)
-            yield Finding(path, Verdict.DIFFERENT, str(error))
+            yield EntryFinding(path, EntryVerdict.DIFFERENT, str(error))
         except EyasError as error:
-            yield Finding(path, Verdict.UNKNOWN, str(error))
+            yield EntryFinding(path, EntryVerdict.UNKNOWN, str(error))
         else:
             write_atomic(path / MARK, (signed(mark).model_dump_json(indent=1) + "\n").encode())
             told = f"{len(mark.flown)} of {mark.episodes} episodes (--seed {seed}) are equal"
-            yield Finding(path, Verdict.VERIFIED, told)
+            yield EntryFinding(path, EntryVerdict.VERIFIED, told)
 
 
 def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
@@ -116,7 +116,7 @@ def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
     )
 
 
-def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> EvaluationPlan:
+def _flyable(folder: Path, made: Stamp, entry: ResultEntry, *, trust: bool) -> EvaluationPlan:
     """Return the plan of an entry, with its policy where this machine has it."""
     plan = made.plan
     if plan.latency == "measured":
@@ -135,7 +135,7 @@ def _flyable(folder: Path, made: Stamp, entry: Entry, *, trust: bool) -> Evaluat
         )
     policy, true = opened(plan)
     _refuse_code(plan, policy.env, trust=trust)
-    for name in Entry.model_fields:
+    for name in ResultEntry.model_fields:
         old, new = getattr(entry, name), getattr(true, name)
         if old != new:
             raise _DifferenceError(f"its {name} is told as {old!s:.200}, but is {new!s:.200}")

@@ -17,7 +17,7 @@ import numpy as np
 from eyas.engine.core.cache.array_file import Content, array_file, map_arrays
 from eyas.engine.core.cache.entries import write_entry
 from eyas.engine.core.cache.flat import flatten, restore
-from eyas.engine.core.cache.folder import Kind, cache_limit
+from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
 from eyas.lanes.trusted import cache_folder, not_kept, touch
 
@@ -29,7 +29,7 @@ _LONG = 1.0  # Values that took longer than this to make are reported in the log
 
 
 def cached(
-    kind: Kind,
+    kind: EntryKind,
     make: Callable[[], Thing],
     inputs: tuple[object, ...],
     *,
@@ -71,7 +71,7 @@ def _without_collection() -> Iterator[None]:
 
 
 def _found_or_made(
-    kind: Kind,
+    kind: EntryKind,
     make: Callable[[], Thing],
     inputs: tuple[object, ...],
     of: type[Thing],

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.files import PART_SUFFIX
 from eyas.lanes.folder import kernel_folder
 from eyas.lanes.text_index import FOLDER, SUFFIX
@@ -33,10 +33,10 @@ _DEFINITIONS = rf"eyas-[0-9a-f]{{32}}{re.escape(SUFFIX)}(\.tmp\.[0-9a-f]{{16}})?
 _PARTS = rf"\.(?:{_ARRAYS}|{_RECORDING})\.[0-9a-f]{{16}}{re.escape(PART_SUFFIX)}"
 
 _FORMS = (
-    *((kind, kind.value, _ARRAYS) for kind in Kind),
-    (Kind.TRAFFIC, "traffic", _RECORDING),
-    (Kind.KERNELS, "kernels", r"[0-9a-f]{16}"),
-    (Kind.DEFINITIONS, FOLDER, _DEFINITIONS),
+    *((kind, kind.value, _ARRAYS) for kind in EntryKind),
+    (EntryKind.TRAFFIC, "traffic", _RECORDING),
+    (EntryKind.KERNELS, "kernels", r"[0-9a-f]{16}"),
+    (EntryKind.DEFINITIONS, FOLDER, _DEFINITIONS),
 )
 """Kinds, their folders, and the forms of the names in them."""
 
@@ -44,22 +44,22 @@ _KERNEL_FILE = re.compile(r".*\.ey[km](\.tmp\..*)?|started")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CacheEntry:
     """A file of the cache, or a folder of kernels."""
 
-    kind: Kind
+    kind: EntryKind
     path: Path
     size: int  # [bytes]
     used: float  # Time of the last use [s since 1970]
 
 
-def entries(folder: Path) -> list[Entry]:
+def entries(folder: Path) -> list[CacheEntry]:
     """Return all entries of a cache, the least recently used first."""
     found = [
-        Entry(kind, path, _size(path, status), status.st_mtime)
+        CacheEntry(kind, path, _size(path, status), status.st_mtime)
         for kind, name, form in _FORMS
         for path, status in _named(folder / name, form)
-        if (S_ISDIR if kind == Kind.KERNELS else S_ISREG)(status.st_mode)
+        if (S_ISDIR if kind == EntryKind.KERNELS else S_ISREG)(status.st_mode)
     ]
     return sorted(found, key=lambda entry: entry.used)
 
@@ -103,12 +103,12 @@ def prune(folder: Path, limit: int) -> None:
     Other kernels in the folder that this process uses are kept.
     """
     now = time.time()
-    _remove_parts(folder, [kind.value for kind in Kind], now - _PARTS_LAST)
+    _remove_parts(folder, [kind.value for kind in EntryKind], now - _PARTS_LAST)
     mine = kernel_folder()
     found = entries(folder)
     total = sum(entry.size for entry in found)
     for entry in found:
-        stale = entry.kind == Kind.KERNELS and now - entry.used > _KERNELS_LAST
+        stale = entry.kind == EntryKind.KERNELS and now - entry.used > _KERNELS_LAST
         if entry.path != mine and (stale or total > limit):
             total -= _remove(entry)
         elif entry.path == mine:
@@ -123,9 +123,9 @@ def _remove_unused(folder: Path, before: float) -> None:
                 file.unlink()
 
 
-def _remove(entry: Entry) -> int:
+def _remove(entry: CacheEntry) -> int:
     """Remove an entry; return the size freed, 0 if it could not be removed [bytes]."""
-    if entry.kind == Kind.KERNELS:
+    if entry.kind == EntryKind.KERNELS:
         return _remove_kernels(entry.path)
     with contextlib.suppress(OSError):
         entry.path.unlink()
@@ -133,7 +133,7 @@ def _remove(entry: Entry) -> int:
     return 0
 
 
-def clear(folder: Path, kind: Kind | None = None) -> int:
+def clear(folder: Path, kind: EntryKind | None = None) -> int:
     """Remove all entries, or those of one kind; return the size freed [bytes].
 
     Processes that use an entry are not disturbed; an entry that is being written is lost.

@@ -19,7 +19,7 @@ _DEFAULT_LIMIT = 2 << 30  # 2 GiB: a few maps in several weathers [bytes]
 _UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}  # Powers of two
 
 
-class Kind(StrEnum):
+class EntryKind(StrEnum):
     """Kinds of entries; the value is the name of the folder in the cache."""
 
     PLAN = "plan"

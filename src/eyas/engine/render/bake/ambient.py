@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.render.kernels.light.ambient import (
     DIRECTIONS,
     DISTANCES,
@@ -67,7 +67,7 @@ def bake_ambient(
         scene.fixtures.pose,
     )
     make = partial(_bake, scene, frame, (rows, columns), texel)
-    openness = cached(Kind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
+    openness = cached(EntryKind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
     return AmbientMap(openness, frame)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.render.bake.ambient import AmbientMap, canopy_map, height_map
 from eyas.engine.render.bake.tracks import blurred
 from eyas.engine.state.scene import ObjectClass, Scene
@@ -49,7 +49,7 @@ def land_map(
         scene.fixtures.pose,
     )
     make = partial(_map, scene, ambient.frame, shape, water)
-    return cached(Kind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
+    return cached(EntryKind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
 
 
 def _water(scene: Scene) -> NDArray[np.float64]:

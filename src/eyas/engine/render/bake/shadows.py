@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.render.kernels.bundles import TILE, Geometry, Projection, Row
 from eyas.engine.render.kernels.light.shadow_map import BLOCK, BLOCK_TEXELS, ShadowBake, bake_tiles
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
@@ -65,7 +65,7 @@ def bake_shadows(
 ) -> ShadowMap:
     """Return the shadow map; computed only if the cache lacks it."""
     return cached(
-        Kind.SHADOWS,
+        EntryKind.SHADOWS,
         partial(_bake, geometry, sun, ground),
         (sun, ground, *_casters(geometry)),
         of=ShadowMap,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.engine.core.cache.cached import cached
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.render.bake.ambient import AmbientMap
 from eyas.engine.render.bake.clouds import build_clouds
 from eyas.engine.render.bake.hills import build_hills, far_ground
@@ -68,7 +68,7 @@ def build_light(scene: Scene, lighting: Lighting, baked: Baked, geometry: Geomet
     sun /= exact.length(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     clouds, hills = cached(
-        Kind.SKY,
+        EntryKind.SKY,
         partial(_sky, lighting.clouds, scene.horizon, toward),
         (lighting.clouds, scene.horizon, toward),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],

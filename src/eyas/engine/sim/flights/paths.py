@@ -43,7 +43,7 @@ class _Path:
         return np.full(len(scene.time), scene.field_of_view)
 
 
-class Follow(_Path):
+class FollowPath(_Path):
     """Goes after the target as a pilot does: late, with overshoot, from behind or from a side."""
 
     def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
@@ -151,7 +151,7 @@ class HoverAndPan(_Path):
         return FlightSketch(place, self.glance(scene, rng, haste=0.8), self.lens(scene))
 
 
-class Search(Follow):
+class Search(FollowPath):
     """Follows, but looks for the target first; later it loses and finds it again."""
 
     in_view = 0.7

@@ -23,14 +23,14 @@ from eyas.engine.sim.flights.gaze import (
     turned_aside,
 )
 from eyas.engine.sim.flights.path import CameraPath, FlightScene, FlightSketch
-from eyas.engine.sim.flights.shares import SMALL, Asked, Shares, foreseen
+from eyas.engine.sim.flights.shares import SMALL, Asked, FrameShares, foreseen
 from eyas.engine.sim.flights.signals import STEP, averaged, highest, rates_of
 from eyas.engine.task.clearance import Clearance, Margin
 
 Floats = NDArray[np.float64]
 
 
-class Limits(NamedTuple):
+class FlightLimits(NamedTuple):
     """The most that a flight does. Where a limit is not met, it is smoothed once more."""
 
     acceleration: float  # Of the drone [m/s^2]
@@ -39,7 +39,7 @@ class Limits(NamedTuple):
     turn_acceleration: float  # [rad/s^2]
 
 
-LIMITS = Limits(acceleration=8.0, jerk=25.0, turn=2.5, turn_acceleration=10.0)
+LIMITS = FlightLimits(acceleration=8.0, jerk=25.0, turn=2.5, turn_acceleration=10.0)
 """What a camera drone of 1 to 2 kg does without a film that looks wild."""
 
 MARGIN = Margin(aside=1.5, above=1.5, ground=4.5)
@@ -75,7 +75,7 @@ class Wishes(NamedTuple):
     shares: Asked
 
 
-class Surroundings(NamedTuple):
+class FlightSurroundings(NamedTuple):
     """What is known of an episode before it is flown; M samples `STEP` apart."""
 
     target: Floats  # Middle of the target's body [m], shape (M, 3)
@@ -90,12 +90,12 @@ class Surroundings(NamedTuple):
     unseen: int = 0  # Samples before the first picture
 
 
-class Plan(NamedTuple):
+class FlightPlan(NamedTuple):
     """A flight."""
 
     points: Floats
     """Control points: x, y, z [m], yaw, pitch positive down, field of view [rad], shape (M, 6)."""
-    shares: Shares  # Foreseen
+    shares: FrameShares  # Foreseen
     cost: float  # How far it is from what was asked; 0 is perfect
 
 
@@ -106,7 +106,7 @@ class _Aimed(NamedTuple):
     away: float
     small: float | None
 
-    def corrected(self, reached: Shares, asked: Asked) -> "_Aimed":
+    def corrected(self, reached: FrameShares, asked: Asked) -> "_Aimed":
         """Return what the next sketch is given."""
 
         def next_of(given: float, more: float) -> float:
@@ -123,17 +123,17 @@ class _Aimed(NamedTuple):
 
 
 def plan_flight(
-    around: Surroundings,  # The episode
+    around: FlightSurroundings,  # The episode
     wishes: Wishes,  # What is asked
     rng: np.random.Generator,  # Samples everything
-) -> Plan:
+) -> FlightPlan:
     """Return the best of some flights that are sampled at random."""
     path, asked = wishes.path, wishes.shares
     in_view = path.in_view if asked.in_view is None else asked.in_view
     # What is asked for is not what is reached: while the camera turns, the target is neither here
     # nor there. Each flight corrects by what the last one has reached.
     aside = _Aimed(asked.cut or 0.0, 1.0 - in_view, asked.small)
-    best: Plan | None = None
+    best: FlightPlan | None = None
     for _ in range(_CANDIDATES * (1 if asked.hidden is None else _FOR_HIDDEN)):
         plan = _candidate(around, wishes, aside, rng)
         if plan is None:
@@ -147,8 +147,8 @@ def plan_flight(
 
 
 def _candidate(
-    around: Surroundings, wishes: Wishes, aside: _Aimed, rng: np.random.Generator
-) -> Plan | None:
+    around: FlightSurroundings, wishes: Wishes, aside: _Aimed, rng: np.random.Generator
+) -> FlightPlan | None:
     """Return a flight; None if it cannot be flown."""
     path = wishes.path
     scene = _scene(around, wishes, rng)
@@ -170,7 +170,7 @@ def _candidate(
     return _aimed(place, sketch, (scene, around), (when, how), wishes)
 
 
-def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> FlightScene:
+def _scene(around: FlightSurroundings, wishes: Wishes, rng: np.random.Generator) -> FlightScene:
     return FlightScene(
         time=STEP * np.arange(len(around.target), dtype=np.float64),
         target=averaged(around.target, 0.4, steady=True),
@@ -185,7 +185,7 @@ def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Fl
 def _sized(
     sketch: FlightSketch,
     scene: FlightScene,
-    around: Surroundings,
+    around: FlightSurroundings,
     share: float,
     rng: np.random.Generator,
 ) -> Floats:
@@ -261,10 +261,10 @@ def _is_smooth(way: Floats) -> bool:
 def _aimed(
     place: Floats,
     sketch: FlightSketch,
-    about: tuple[FlightScene, Surroundings],
+    about: tuple[FlightScene, FlightSurroundings],
     aside: tuple[Glances, Aside],
     wishes: Wishes,
-) -> Plan:
+) -> FlightPlan:
     """Return the flight along a way, with its camera aimed."""
     (scene, around), (when, how) = about, aside
     kept = held(when)[:, None]
@@ -282,10 +282,10 @@ def _aimed(
         smooth = averaged(turns, seconds, steady=True)
     flight = np.column_stack([place, smooth, lens])
     shares = foreseen(flight, scene, around.size, around.picture, around.clearance, around.unseen)
-    return Plan(flight, shares, _cost(flight, shares, around, wishes))
+    return FlightPlan(flight, shares, _cost(flight, shares, around, wishes))
 
 
-def _cost(flight: Floats, shares: Shares, around: Surroundings, wishes: Wishes) -> float:
+def _cost(flight: Floats, shares: FrameShares, around: FlightSurroundings, wishes: Wishes) -> float:
     """Return how far a flight is from what was asked."""
     asked = wishes.shares
     in_view = wishes.path.in_view if asked.in_view is None else asked.in_view
@@ -302,7 +302,7 @@ def _cost(flight: Floats, shares: Shares, around: Surroundings, wishes: Wishes) 
     return cost
 
 
-def _above(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Plan:
+def _above(around: FlightSurroundings, wishes: Wishes, rng: np.random.Generator) -> FlightPlan:
     """Return the flight that is left when all others fail: high above the target, at one height."""
     scene = _scene(around, wishes, rng)
     flat = _smoothed(scene.target[:, :2], 0.4)

@@ -31,7 +31,7 @@ class Asked(NamedTuple):
     small: float | None  # Its box has fewer than `SMALL` pixels
 
 
-class Shares(NamedTuple):
+class FrameShares(NamedTuple):
     """Shares of frames, as in `Asked`."""
 
     in_view: float
@@ -52,7 +52,7 @@ def foreseen(
     picture: tuple[int, int],  # Its width and height [pixels]
     clearance: Clearance,  # What stands around
     unseen: int,  # Samples before the first picture
-) -> Shares:
+) -> FrameShares:
     """Return the shares of a flight.
 
     What moves hides nothing here, so the recording may have some more hidden frames.
@@ -68,7 +68,7 @@ def foreseen(
     small = in_view & (width * height < SMALL)
     seen = clearance.in_sight(flight[:, :3], _points(scene, size, _BODY))
     hidden = in_view & (2 * np.count_nonzero(seen, axis=1) < seen.shape[1])
-    return Shares(*(mean(flags[unseen:]) for flags in (in_view, hidden, cut, small)))
+    return FrameShares(*(mean(flags[unseen:]) for flags in (in_view, hidden, cut, small)))
 
 
 def _points(scene: FlightScene, size: Floats, share: float) -> Floats:

@@ -47,7 +47,7 @@ class Moment(NamedTuple):
     later: Floats  # How long each is after the instant of its tracker's picture [s], shape (K,)
 
 
-class Stage(Protocol):
+class PictureStage(Protocol):
     """What is asked of who draws trackers' pictures."""
 
     def views_at(self, moment: Moment) -> tuple[Views, DrawList]:
@@ -100,7 +100,7 @@ class Exposures:
         steady: Snapshot,  # The state that pictures show, without vibration
         vibration: Vibration | None,  # That of the cameras; None: there is none
         aspect: float,  # Height of what the cameras show over its width
-        stage: Stage,  # Who draws them
+        stage: PictureStage,  # Who draws them
     ) -> None:
         self._shutter, self._steady, self._vibration = shutter, steady, vibration
         self._aspect, self._stage = aspect, stage

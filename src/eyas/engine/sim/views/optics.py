@@ -12,7 +12,7 @@ from eyas.engine.camera.development import Development
 from eyas.engine.camera.dirt import Dirt
 from eyas.engine.camera.glass import change_light
 from eyas.engine.camera.imager import Spectrum
-from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.lens import LensSet
 from eyas.engine.camera.link import Link
 from eyas.engine.camera.near_infrared import near_infrared
 from eyas.engine.camera.shutter import Shutter
@@ -108,7 +108,7 @@ class CameraModel:
         config: CameraConfig,  # The settings
         lighting: Lighting,  # Light and air of the weather
         count: int,  # N
-        lenses: Lenses | None = None,  # Their lenses; None: they lose no light
+        lenses: LensSet | None = None,  # Their lenses; None: they lose no light
         # Their shutters, which stay open as long as the sensors are exposed; None: an instant
         shutter: Shutter | None = None,
     ) -> None:
@@ -139,7 +139,7 @@ class CameraModel:
         config: CameraConfig,
         lighting: Lighting,
         count: int,
-        lenses: Lenses | None = None,
+        lenses: LensSet | None = None,
         shutter: Shutter | None = None,
     ) -> "CameraModel | None":
         """Return the camera model of some settings; None: the renderer's pictures are shown."""
@@ -221,7 +221,7 @@ class Optics:
         count: int,  # N
     ) -> None:
         lighting = assets.lighting
-        self.lenses = Lenses.of(config.lens, count)
+        self.lenses = LensSet.of(config.lens, count)
         self.shutter = Shutter.of(config.shutter, count)
         self.model = CameraModel.of(config, lighting, count, self.lenses, self.shutter)
         self.thermal: ThermalViews | None = None
@@ -229,7 +229,7 @@ class Optics:
             self.thermal = ThermalViews(config.thermal, assets, hour, count)
 
     @property
-    def bent(self) -> Lenses | None:
+    def bent(self) -> LensSet | None:
         """The lenses, if they bend pictures."""
         return self.lenses if self.lenses is not None and self.lenses.bend else None
 

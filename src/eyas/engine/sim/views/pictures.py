@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.camera.lens import Lenses
+from eyas.engine.camera.lens import LensSet
 from eyas.engine.camera.poses import Moving
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.optics.pinhole import field_along
@@ -193,7 +193,7 @@ class PictureDrawer:
         chosen: Chosen,  # The trackers, shape (V,)
         cameras: CameraState,  # V cameras
         aspect: float,  # Height of what they show over its width
-        lenses: Lenses | None = None,  # The lenses of all trackers, if the cameras are theirs
+        lenses: LensSet | None = None,  # The lenses of all trackers, if the cameras are theirs
         # How long after what is seen each looks [s], shape (V,); None: then
         later: Floats | None = None,
     ) -> tuple[Views, DrawList]:

@@ -20,7 +20,7 @@ from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.light import LightChanges
 from eyas.engine.sim.views.delay import SeenState
-from eyas.engine.sim.views.exposures import Chosen, Moment, Stage, exposure_of, ways_of
+from eyas.engine.sim.views.exposures import Chosen, Moment, PictureStage, exposure_of, ways_of
 from eyas.engine.sim.views.further_camera import FurtherCamera
 from eyas.engine.sim.views.outlines import Outlines
 from eyas.engine.sim.views.parked import ParkedObjects, SeenParked
@@ -60,7 +60,7 @@ class EventViews:
         steady: Snapshot,  # The state that pictures show, without vibration
         vibration: Vibration | None,  # That of the cameras; None: there is none
         aspect: float,  # Height of what the cameras show over its width
-        stage: Stage,  # Who draws what they see
+        stage: PictureStage,  # Who draws what they see
     ) -> None:
         self.sensors = sensors
         self._config, self._steady, self._vibration = config, steady, vibration

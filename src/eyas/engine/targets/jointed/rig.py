@@ -11,7 +11,7 @@ from eyas.engine.mesh.shipped import Block, read_block
 from eyas.engine.state.motion import ActorState
 from eyas.engine.targets.kind import Group, Looks
 from eyas.engine.targets.posing import ActorFrame, Slots
-from eyas.engine.targets.shapes import FILE, Columns, Shapes, ShippedRig, records
+from eyas.engine.targets.shapes import FILE, Columns, ShapeArrays, ShippedRig, records
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos, tan
 
@@ -227,7 +227,7 @@ class JointedArrays(NamedTuple):
 class JointedRig(ShippedRig):
     """The rig of the models of one kind."""
 
-    def __init__(self, shapes: Shapes) -> None:
+    def __init__(self, shapes: ShapeArrays) -> None:
         table = _table_of(shapes.table)
         super().__init__(shapes, table, pose_figure)
         self._table = table

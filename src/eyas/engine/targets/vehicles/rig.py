@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.mesh.shipped import read_block
-from eyas.engine.targets.shapes import FILE, Columns, Shapes, ShippedRig, records
+from eyas.engine.targets.shapes import FILE, Columns, ShapeArrays, ShippedRig, records
 from eyas.engine.targets.vehicles.pose import AXLES, SLOT, VEHICLE_AHEAD, RigTable, pose_vehicle
 
 
@@ -20,7 +20,7 @@ class VehicleArrays(NamedTuple):
 class VehicleRig(ShippedRig):
     """The rig of the models of one kind of vehicle."""
 
-    def __init__(self, shapes: Shapes) -> None:
+    def __init__(self, shapes: ShapeArrays) -> None:
         arrays = read_block(FILE, shapes.table, VehicleArrays)
         table = RigTable(records(arrays.slot, SLOT), records(arrays.axles, AXLES))
         super().__init__(shapes, table, pose_vehicle)

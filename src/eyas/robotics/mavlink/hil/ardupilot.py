@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from eyas.engine.core.clock import PHYSICS_RATE
 from eyas.engine.sim.serving import Orders
-from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
+from eyas.robotics.mavlink.hil.drone import DrivenDrone, ExternalAutopilot
 
 _LOG = logging.getLogger("eyas")
 
@@ -44,7 +44,7 @@ def servos_of(packet: bytes) -> Servos | None:
     return Servos(rate, frame, tuple(outputs))
 
 
-class ArduPilot(Autopilot):
+class ArduPilot(ExternalAutopilot):
     """Lets one ArduPilot fly; one that starts anew begins anew."""
 
     def __init__(

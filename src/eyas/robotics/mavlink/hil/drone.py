@@ -15,8 +15,8 @@ from eyas.robotics.mavlink.config import MavlinkConfig
 from eyas.robotics.mavlink.endpoint import parsed_address
 from eyas.robotics.mavlink.fleet import standing_places
 from eyas.robotics.mavlink.frames import Geodesy
-from eyas.robotics.mavlink.readings import Instant, Readings
-from eyas.robotics.mavlink.video import Stream, VideoSender
+from eyas.robotics.mavlink.readings import Instant, VehicleReadings
+from eyas.robotics.mavlink.video import VideoSender, VideoStream
 
 _LOG = logging.getLogger("eyas")
 
@@ -44,7 +44,7 @@ class DrivenDrone:
     def __init__(self, simulation: Simulation, config: MavlinkConfig) -> None:
         self.simulation, self._config = simulation, config
         geodesy = Geodesy(config.latitude, config.longitude, config.altitude)
-        self._readings = Readings(simulation, geodesy)
+        self._readings = VehicleReadings(simulation, geodesy)
         self._most = 0.25 * config.hil.thrust_to_weight * WEIGHT
         camera = simulation.config.camera
         self._picture = Picture.create(1, camera.height, camera.width)
@@ -52,7 +52,7 @@ class DrivenDrone:
         if config.video:
             place = parsed_address(config.video, "mavlink.video")
             how = camera.height, camera.width, config.picture_rate, config.video_quality
-            self._video = VideoSender(Stream(place, *how), 1)
+            self._video = VideoSender(VideoStream(place, *how), 1)
         simulation.reset()
         self._place = standing_places(simulation)
         self.begin()
@@ -112,7 +112,7 @@ class DrivenDrone:
         return max(body.position[2] - body.ground, 0.0)
 
 
-class Autopilot(Face):
+class ExternalAutopilot(Face):
     """What is the same for all autopilots outside."""
 
     def __init__(

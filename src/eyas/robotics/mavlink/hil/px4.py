@@ -16,7 +16,7 @@ from typing import Any
 from eyas.engine.sim.serving import Orders
 from eyas.lanes import exact
 from eyas.robotics.mavlink.endpoint import Packer, StreamParser
-from eyas.robotics.mavlink.hil.drone import Autopilot, DrivenDrone
+from eyas.robotics.mavlink.hil.drone import DrivenDrone, ExternalAutopilot
 from eyas.robotics.mavlink.telemetry import degrees_e7
 
 _LOG = logging.getLogger("eyas")
@@ -31,7 +31,7 @@ _SETTLING = 0.1  # Longest delay of an answer [s]
 _SILENCE = 10.0  # After this time without an answer it is said that one is waited for [s]
 
 
-class Px4(Autopilot):
+class Px4(ExternalAutopilot):
     """Lets one PX4 after the other fly."""
 
     def __init__(
