@@ -19,10 +19,9 @@ from eyas.engine.policies.policy import env_config
 from eyas.engine.settings.file import load_settings
 from eyas.engine.settings.preset import preset_file
 from eyas.engine.targets.colour_names import COLOUR_NAMES
-from eyas.learning.words.lessons import lesson, loss_of
 from eyas.learning.words.network import ListenerNetwork
 from eyas.learning.words.scenes import PLACES, Scenes, Vehicles, drawn
-from eyas.learning.words.training import LISTENER, export, train
+from eyas.learning.words.training import LISTENER, export, lesson, loss_of, train
 
 PRESET = load_settings(preset_file("eyas-words"))
 SIZE = 24, 32
