@@ -29,7 +29,7 @@ _BUILT_IN = {
     "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
     "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
-        name: f"{_ROOM}.boxes:{name}"
+        name: f"{_ROOM}.own_policy:{name}"
         for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
     },
 }
