@@ -94,9 +94,7 @@ class TeamScenario(Scenario):
 
 
 def lid_of(episode: EpisodeSpec, protocol: Protocol, size: int) -> tuple[int, int]:
-    """Return the first covered control step of a drone's camera, and the first after them;
-    (0, 0): another drone of its team is the covered one.
-    """
+    """Return the first covered control step and the first after; (0, 0): not this drone's."""
     random = stream(episode.seed, "lid")
     blind = int(random.integers(size))
     last = protocol.steps * protocol.period - _LIDS[-1] - SEARCH_LIMIT - 1.0

@@ -146,9 +146,7 @@ class RoadSearch:
         self._goal[row] = place[int(worth.argmax())]
 
     def _exits(self) -> NDArray[np.int64]:
-        """Return where a target that is at each point is seen: there, or where its lane comes out
-        of what hides it, shape (P,).
-        """
+        """Return where a target at each point is seen: there, or where its lane comes out, (P,)."""
         onward = self._lanes.graph.after[:, 0]
         out = np.arange(len(onward))
         for _ in range(_LONGEST):

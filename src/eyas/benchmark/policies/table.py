@@ -29,7 +29,7 @@ _BUILT_IN = {
     "attribute-servo": f"{_ROOM}.attribute_servo:attribute_servo",
     "salient-servo": f"{_ROOM}.attribute_servo:salient_servo",
     **{
-        name: f"{_ROOM}.boxes:{name}"
+        name: f"{_ROOM}.own_policy:{name}"
         for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
     },
 }
@@ -67,9 +67,7 @@ def policy_names() -> tuple[str, ...]:
 
 
 def runs_code(said: str) -> bool:
-    """Return whether what a user calls a policy is code that is not ours, or a file that may run
-    some.
-    """
+    """Return whether a user's policy is code that is not ours, or a file that may run some."""
     return said.endswith(PICKLED) or POLICIES.path(said) is not None
 
 

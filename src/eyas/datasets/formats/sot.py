@@ -25,9 +25,7 @@ from eyas.engine.state.scene import ObjectClass
 
 
 def target_boxes(labels: Sequence[Label]) -> NDArray[np.int64]:
-    """Return the target's boxes: left, top, width, height [pixels], all 0 outside the picture,
-    shape (T, 4).
-    """
+    """Return the target's left, top, width, height [pixels], 0 out of the picture, (T, 4)."""
     boxes = np.array([label["target_box"] for label in labels], np.int64).reshape(-1, 4)
     boxes[:, 2:] -= boxes[:, :2]
     return boxes

@@ -271,9 +271,7 @@ class _Stage:
         label.default = Vt.TokenArray([kind])
 
     def _mesh(self, path: str, mesh: Mesh) -> tuple["Usd.Prim", int]:
-        """Add a mesh with its materials, a subset of the faces for each; return it, and its number
-        of triangles.
-        """
+        """Add a mesh, with subsets of its faces by material; return it and its triangle count."""
         from pxr import Sdf, UsdGeom, UsdShade, Vt
 
         mesh, thin = _fronting(mesh)

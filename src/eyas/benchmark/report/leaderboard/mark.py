@@ -65,9 +65,7 @@ def signed(mark: Mark) -> Mark:
 
 
 def fitting_mark(folder: Path) -> Mark | None:
-    """Return the mark of an evaluation; None if there is none that this machine has set on what
-    the folder holds now.
-    """
+    """Return the mark that this machine has set on what the folder holds now; None without one."""
     try:
         mark = validated(Mark, read_json(folder / MARK, _LARGEST))
         own = _signature(mark, _key(make=False))
