@@ -22,9 +22,14 @@ class Clockwork:
         self.now = 0.0
         self.rgb = SimpleNamespace(copy=lambda: self.spend(self.COPYING))
         picture = SimpleNamespace(create=lambda *_: self)
-        monkeypatch.setattr(bench_pictures, "time", SimpleNamespace(perf_counter=lambda: self.now))
+        monkeypatch.setattr(bench_pictures, "time", self)
         monkeypatch.setattr(bench_pictures, "build_simulation", lambda *_: self)
         monkeypatch.setattr(bench_pictures, "Picture", picture)
+
+    def perf_counter(self):
+        return self.now
+
+    process_time = perf_counter
 
     def spend(self, seconds):
         self.now += seconds
@@ -46,6 +51,22 @@ def test_a_stage_takes_what_it_adds_to_the_stages_before_it(monkeypatch):
     )
     assert [time.share for time in times] == pytest.approx([0.05, 0.1, 0.15, 0.2, 0.25, 0.25])
     assert times[-1].stage == "copying out"
+
+
+def test_other_load_makes_no_stage_longer_and_none_negative(monkeypatch):
+    clockwork = Clockwork(monkeypatch)
+    clockwork.UNTIL = (0.001, 0.003, 0.0029, 0.010, 0.015)
+    monkeypatch.setattr(bench_pictures, "SIZES", ((1, 16, 12),))
+    draws = iter(range(1000))
+    usual = clockwork.draw
+
+    def draw(trackers, picture, until):
+        clockwork.spend(0.5 * (next(draws) % 3 == 0))  # another program takes its turn
+        usual(trackers, picture, until)
+
+    clockwork.draw = draw
+    times = bench_pictures.measure_stages(20.0)
+    assert [time.microseconds for time in times] == pytest.approx([1000, 2000, 0, 7000, 5000, 5000])
 
 
 def test_the_table_has_a_row_for_each_stage_and_a_column_for_each_size(monkeypatch):

@@ -88,7 +88,7 @@ class Measurement:
     includes: str  # What the figure covers
     repeats: int  # Number of timings of which it is the median
     cpu_microseconds: float | None = None
-    """Time of all threads on the processor for one picture or start [µs], median; else None."""
+    """Processor time of all threads for a picture, step, reset or start [µs], median; else None."""
     instructions: float | None = None
     """User instructions for one pixel; None: no picture, or no access to hardware counters."""
     cycles: float | None = None  # User cycles for one pixel; None likewise
@@ -176,4 +176,6 @@ def measurement_table(results: list[Measurement], machine: str) -> Table:
 def _duration(microseconds: float | None) -> str:
     if microseconds is None:
         return ""
-    return f"{microseconds:,.0f} µs" if microseconds < 1e5 else f"{1e-6 * microseconds:.2f} s"
+    if microseconds >= 1e5:
+        return f"{1e-6 * microseconds:.2f} s"
+    return f"{microseconds:,.{0 if microseconds >= 100 else 2}f} µs"

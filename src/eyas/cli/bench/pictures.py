@@ -40,7 +40,7 @@ class StageTime:
 
     pictures: str  # Size of the pictures, and how many are drawn at once
     stage: str
-    microseconds: float  # Median for one picture [us]
+    microseconds: float  # Shortest processor time, of all threads, for one picture [us]
     share: float  # Share of the time of the whole picture
 
 
@@ -49,8 +49,9 @@ def measure_stages(
 ) -> list[StageTime]:
     """Return the times of all stages for each of `SIZES`.
 
-    A stage's time is the time to draw up to its end, less the time to draw up to its start.
-    The measurements alternate, so that other load on the machine affects all of them alike.
+    A stage's time is the time to draw up to its end, less the time to draw up to its start, and
+    not below 0. Other load makes a time longer, never shorter: so the shortest is told, and the
+    measurements alternate, so that each has its quiet moments.
     """
     times = []
     for views, width, height in SIZES:
@@ -63,30 +64,33 @@ def measure_stages(
         ]
         assert picture.rgb is not None  # created above
         calls.append(picture.rgb.copy)
-        ends = _medians(calls, seconds)
-        spent = [*np.diff([0.0, *ends[:-1]]), ends[-1]]
+        *ends, copying = _shortest(calls, seconds)
+        ends = np.maximum.accumulate(ends).tolist()
+        spent = [*np.diff([0.0, *ends]), copying]
         name = f"{width}x{height}, {views} view{'s' * (views > 1)}"
         for (_, stage), time_ in zip((*_STAGES, (None, "copying out")), spent, strict=True):
-            share = float(time_) / (ends[-2] + ends[-1])
+            share = float(time_) / (ends[-1] + copying)
             times.append(StageTime(name, stage, 1e6 * float(time_) / views, share))
     return times
 
 
-def _medians(calls: list[Callable[[], object]], seconds: float) -> list[float]:
-    """Return the median time of each call [s]."""
+def _shortest(calls: list[Callable[[], object]], seconds: float) -> list[float]:
+    """Return the shortest processor time of each call, of all threads [s]."""
     spent: list[list[float]] = [[] for _ in calls]
     end = time.perf_counter() + seconds
     while time.perf_counter() < end or len(spent[0]) < 5:
         for call, times in zip(calls, spent, strict=True):
-            start = time.perf_counter()
+            start = time.process_time()
             call()
-            times.append(time.perf_counter() - start)
-    return [statistics.median(times[1:]) for times in spent]
+            times.append(time.process_time() - start)
+    return [min(times) for times in spent]
 
 
 def stage_table(times: list[StageTime]) -> Table:
     """Return the times as a table: stages down, sizes across."""
-    table = Table(title="where the time of a picture goes [us, share]", title_justify="left")
+    table = Table(
+        title="where the processor time of a picture goes (us, share)", title_justify="left"
+    )
     table.add_column("stage")
     sizes = list(dict.fromkeys(time_.pictures for time_ in times))
     for size in sizes:

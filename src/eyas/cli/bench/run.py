@@ -144,15 +144,16 @@ def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
     drawn = "84x84 pictures" if camera else "no camera"
     includes = f"{_PHYSICS_STEPS} physics steps, traffic, reward, packets, resets, {drawn}"
     name = f"steps, {count} tracker{'s' * (count > 1)}, {drawn}"
-    cpu = 1e6 * timing.cpu / count if camera else None
+    cpu = 1e6 * timing.cpu / count
     return Measurement(name, timing.rate * count, "steps/s", includes, timing.repeats, cpu)
 
 
 def _reset(seconds: float) -> Measurement:
     simulation = build_simulation(SimConfig(), each_alone(1))
     timing = timed(simulation.reset, seconds)
+    rate, cpu, name = timing.rate, 1e6 * timing.cpu, "reset of one tracker"
     includes = "target, start pose, looks"
-    return Measurement("reset of one tracker", 1e3 / timing.rate, "ms", includes, timing.repeats)
+    return Measurement(name, 1e3 / rate, "ms", includes, timing.repeats, cpu)
 
 
 def _textures() -> Measurement:
