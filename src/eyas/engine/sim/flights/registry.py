@@ -15,7 +15,7 @@ PATHS: Registry[type[Any]] = Registry(
     SETTING,
     type,
     {
-        "follow": f"{_HERE}:Follow",
+        "follow": f"{_HERE}:FollowPath",
         "orbit": f"{_HERE}:Orbit",
         "fly-by": f"{_HERE}:FlyBy",
         "rise": f"{_HERE}:Rise",
