@@ -1,4 +1,5 @@
-"""Holds each house to its budget: lines of its source and of its tests in `tools/budgets.json`.
+"""Holds each house, and `art`, to its budget: lines of its source and of its tests in
+`tools/budgets.json`.
 
 A house may grow by 3 % over the file. More needs a new line in the section "Growth" of
 `CHANGELOG.md` that names the house and says why: `- engine: ...`. `--accept` writes today's
@@ -25,10 +26,12 @@ KINDS = {"lines": ("src/eyas", "lines"), "test_lines": ("tests", "lines of tests
 def measured(root: Path) -> dict[str, dict[str, int]]:
     """Return the lines of each house, and how many reasons for growth the changelog has."""
     folders = sorted(path.parent for path in (root / KINDS["lines"][0]).glob("*/__init__.py"))
+    folders += [art] if (art := root / "art").is_dir() else []
     reasons = growth_lines((root / "CHANGELOG.md").read_text(encoding="utf-8"))
     return {
         folder.name: {
-            **{kind: lines_below(root / place / folder.name) for kind, (place, _) in KINDS.items()},
+            "lines": lines_below(folder),
+            "test_lines": lines_below(root / KINDS["test_lines"][0] / folder.name),
             "reasons": reasons.count(folder.name),
         }
         for folder in folders
