@@ -18,7 +18,7 @@ from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.worlds import together
 from eyas.robotics.mavlink.endpoint import Endpoint, dialect
 from eyas.robotics.mavlink.fleet import Fleet
-from eyas.robotics.serving.hil import AS_FLOWN
+from eyas.robotics.serving.mavlink import AS_FLOWN
 
 common = dialect()
 

@@ -58,13 +58,16 @@ def entry_address(
 
 
 def _kept(path: Path) -> int | None:
-    """Return the address of a kernel that is cached, or else shipped; None if it is neither."""
-    found = read_code(path)
-    if found is not None:
+    """Return the address of a kernel that ships, or else is cached; None if it is neither.
+
+    What ships comes first: compiled for the very processor, with AVX-512, a step took 10 % longer.
+    """
+    shipped = shipped_code(path.stem.rpartition("-")[0])
+    address = None if shipped is None else load(shipped)
+    if address is None and (kept := read_code(path)) is not None:
         touch(path)
-    else:
-        found = shipped_code(path.stem.rpartition("-")[0])
-    return None if found is None else load(found)
+        address = load(kept)
+    return address
 
 
 def nothing_compiled(

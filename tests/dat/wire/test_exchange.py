@@ -76,8 +76,8 @@ def test_nothing_outside_the_root_is_deleted_through_links(tmp_path):
 HOLD = """
 import sys
 from pathlib import Path
-from eyas.dat.wire.exchange import Exchange
-with Exchange(Path(sys.argv[1])).opened():
+from eyas.dat.wire.exchange import ExchangeFolders
+with ExchangeFolders(Path(sys.argv[1])).opened():
     print("open", flush=True)
     sys.stdin.read()
 """

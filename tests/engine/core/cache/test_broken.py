@@ -22,14 +22,14 @@ from functools import partial
 import numpy as np
 from eyas.engine.core.cache.cached import cached
 from eyas.lanes import exact
-from eyas.engine.core.cache.folder import Kind
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.lanes import compiled
 
 def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
-values = np.array(cached(Kind.SKY, partial(exact.exp, np.zeros(3)), (1,), of=np.ndarray))
+values = np.array(cached(EntryKind.SKY, partial(exact.exp, np.zeros(3)), (1,), of=np.ndarray))
 compiled(double)(values)
 print(json.dumps([values.tolist(), "numba" in sys.modules]))
 """

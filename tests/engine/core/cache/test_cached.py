@@ -253,7 +253,7 @@ def test_a_cache_that_only_others_may_write_to_is_read(open_folder):
     # Modules that another user may not be allowed to read are imported before.
     demoted = "import mmap; os.setuid(65534) if os.geteuid() == 0 else None"
     assert told(start(open_folder, demoted)) == [TOTAL]
-    assert told(start(open_folder, demoted + "; Kind = type('', (), {'SKY': 'parts'})")) == [
+    assert told(start(open_folder, demoted + "; EntryKind = type('', (), {'SKY': 'parts'})")) == [
         "making",
         TOTAL,
     ]
