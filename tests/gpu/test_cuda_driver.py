@@ -574,7 +574,7 @@ if sys.argv[1:] == ["names first"]:
     numbers, given = np.from_dlpack(OnHost(device.zeros(5, np.float32))), memory._given
     before = len(given)
     atexit.unregister(memory._let_go)
-    vars(dlpack).clear()
+    vars(memory).clear()
     gc.collect()
     del numbers, capsule
     print(before - len(given))
