@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from eyas.engine.core.identity.definitions import INDEX as DEFINITIONS
+from eyas.lanes.shipped import misfit
 from eyas.lanes.syntax import INDEX as SYNTAX
 
 ROOT = Path(__file__).parents[1]
@@ -19,21 +20,21 @@ SOURCE = ROOT / "src"
 
 pytestmark = pytest.mark.slow
 
-# Everything is imported, and the data that the package brings is read; nothing is drawn, as
-# compiling the kernels anew takes a minute.
+# Everything is imported, and the data that the package brings is read.
 PROGRAM = """
 import importlib, pkgutil, sys
 import eyas
 names = [module.name for module in pkgutil.walk_packages(eyas.__path__, "eyas.")]
 from eyas.engine.core.errors import MissingExtraError
+LEARNS, COMPILES = "eyas.learning.", ("eyas.lanes.", "eyas.gpu.ptx")
+ROOMS = {"torch": LEARNS, "onnx": LEARNS, "numba": COMPILES, "llvmlite": COMPILES}
 for name in names:
     try:
         file = str(importlib.import_module(name).__file__)
     except MissingExtraError:
         continue
-    except ModuleNotFoundError as error:  # only the room `learning` is an extra as a whole
-        assert name.startswith("eyas.learning."), name
-        assert error.name in ("torch", "onnx"), error.name
+    except ModuleNotFoundError as error:  # what only learns or compiles is an extra as a whole
+        assert name.startswith(ROOMS[error.name.partition(".")[0]]), name
         continue
     assert file.startswith(sys.prefix), file
 from eyas.engine.sim.scenes import load_network
@@ -72,7 +73,7 @@ def programs(wheel) -> Path:
     """The folder of programs of a virtual environment with the wheel and what it asks for."""
     path = wheel.parent / "venv"
     venv.create(path)
-    # Without compiling the thousands of modules of numba and numpy that nothing here imports.
+    # Without compiling the thousands of modules of numpy that nothing here imports.
     pip = (sys.executable, "-m", "pip", "--python", path / "bin/python")
     done(*pip, "install", "-q", "--no-compile", wheel, folder=wheel.parent)
     return path / "bin"
@@ -151,3 +152,40 @@ def test_the_command_of_the_wheel_reads_settings_in_both_notations(programs, tmp
     again = done(*show, "--config", legacy, folder=tmp_path)
     assert json.loads(again)["video"]["fps"] == 9
     assert "citystreet" in done(programs / "eyas", "maps", "list", folder=tmp_path)
+
+
+DRAWS = """
+import hashlib, sys
+import numpy as np
+import eyas
+envs = eyas.make_vec("citystreet-day", num_envs=2)
+digest = hashlib.sha256()
+for observations in (envs.reset(seed=1)[0], envs.step(np.ones(2, int))[0]):
+    digest.update(np.ascontiguousarray(observations).tobytes())
+print(digest.hexdigest(), sorted({"numba", "llvmlite"} & sys.modules.keys()))
+"""
+
+
+@pytest.mark.skipif(bool(misfit()), reason="no machine code ships for this machine")
+def test_without_a_compiler_the_same_pictures_are_drawn(programs, tmp_path):
+    drawn = done(programs / "python", "-I", "-c", DRAWS, folder=tmp_path)
+    assert drawn.endswith(" []\n")
+    assert drawn == done(sys.executable, "-c", DRAWS, folder=tmp_path)
+
+
+def test_what_would_have_to_be_compiled_ends_in_a_line_that_names_the_extra(programs, tmp_path):
+    video = (programs / "eyas", "video", "--out", "out", "--set", "video.total_time=0.1")
+    ended = subprocess.run(
+        video,
+        cwd=tmp_path,
+        env=os.environ | {"EYAS_SHIPPED_CODE": "0"},
+        capture_output=True,
+        text=True,
+    )
+    assert ended.returncode == 2
+    line = ended.stderr.splitlines()[-1]
+    assert line.startswith("error: ")
+    assert line.endswith(
+        ": no machine code (what ships is not used, by EYAS_SHIPPED_CODE=0); "
+        "to compile it: pip install 'eyas[compile]'"
+    )

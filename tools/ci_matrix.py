@@ -39,7 +39,9 @@ TESTS = (
 TESTERS = (
     *("pytest>=8", "hypothesis>=6.100", "pytest-xdist>=3.6", "jsonschema>=4.20"),
     *("pygame>=2.6; python_version < '3.14'", "pygame-ce>=2.5; python_version >= '3.14'"),
+    *("numba>=0.61,<0.70", "llvmlite>=0.44"),  # the extra `compile`, for other processors
 )
+"""What tests need; installed after a film was recorded without it, by machine code that ships."""
 
 LEFT_OUT = "not (test_each_command_refuses_and_is_told_to_trust_by_a_flag and train)"
 """All but a test that needs the extra `train`."""
@@ -236,24 +238,12 @@ def _installer(packages: str, python: Path, place: Place, work: Path) -> Callabl
                 [_uv(work), "pip", "install", "-q", "--python", place.python, *TESTERS], work, more
             )
         oldest = ["--resolution", "lowest-direct", "--only-binary", ":all:", "--no-binary", "eyas"]
+        add = [_uv(work), "pip", "install", "-q", "--python", place.python, *oldest]
         return (
             run([_uv(work), "venv", "-q", "--python", python, place.folder / ".venv"], work, more)
-            or run(
-                [
-                    _uv(work),
-                    "pip",
-                    "install",
-                    "-q",
-                    "--python",
-                    place.python,
-                    *oldest,
-                    place.folder,
-                    *TESTERS,
-                ],
-                work,
-                more,
-            )
+            or run([*add, place.folder], work, more)
             or run(f".venv/bin/eyas video --out runs/first{SHORT}", place.folder, more)
+            or run([*add, *TESTERS], work, more)
         )
 
     return install

@@ -20,21 +20,16 @@ import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import llvmlite.binding as llvm
+
 import eyas
 from eyas.engine.sim.step import step_of
 from eyas.engine.trackers.drone import DRONE
 from eyas.gpu.cuda import code as ptx
 from eyas.lanes import CompiledCall, modules
-from eyas.lanes.identity import language_hash
+from eyas.lanes.identity import entry_of, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
-from eyas.lanes.shipped import (
-    ARCHIVE,
-    LEVEL,
-    VARIABLE,
-    WIDE_ARCHIVE,
-    archive_of,
-    read_archive,
-)
+from eyas.lanes.shipped import CONTENTS, LEVEL, LIBRARY, VARIABLE, WIDE_LIBRARY, KernelLibrary
 from eyas.lanes.trusted import read_trusted
 
 USES_ALL = """
@@ -58,17 +53,22 @@ from eyas.engine.traffic.recorded import recorded_motion
 from eyas.engine.traffic.recording_file import load
 from eyas.engine.world.maps import MAPS
 
+TRACKERS = (
+    {},
+    {"supervised": False},
+    {"supervised": False, "airframe": "10-inch", "battery": {"enabled": True}},
+    {"kind": "car"},
+)
+MOUNTED_IN_MOTION = {"mount": {}, "shutter": {"readout": 0.01}}
+
 sin(np.zeros(1))
 winds_over(np.zeros((4, 4)))
 picture = Picture.create(1, 84, 84)
 for settings in (
     {},
-    {"tracker": {"supervised": False}},
-    {"tracker": {"supervised": False, "airframe": "10-inch", "battery": {"enabled": True}}},
-    {"tracker": {"kind": "car"}},
     {
         "lidar": {"enabled": True},
-        "sensors": {"imu": {"noise": 0.1}, "camera": {"noise": 1.0}},
+        "sensors": {"camera": {"noise": 1.0}},
         "done": {"crash": "contact"},
         "target": "Pedestrian",
     },
@@ -87,8 +87,6 @@ for settings in (
     simulation = build_simulation(SimConfig(**settings), each_alone(1))
     simulation.reset()
     simulation.advance(np.zeros((1, 4)), 1)
-    if settings in ({}, {"tracker": {"supervised": False}}):
-        simulation.advance(np.zeros((1, 8)), 1)  # turns the camera, too
     simulation.carry(1)
     simulation.packets()
     for _ in range(2):
@@ -96,6 +94,18 @@ for settings in (
         if (sensor := simulation.view.events(np.zeros(1, np.int32))) is not None:
             sensor.count(np.zeros(1, np.int64), np.zeros((1, 240, 320, 2), np.uint8))
         simulation.advance(np.array([[5.0, 0.0, 0.0, 1.0]]), 10)
+for tracker in TRACKERS:
+    for camera in ({}, {"mount": {}}, {"shutter": {"readout": 0.01}}, MOUNTED_IN_MOTION):
+        simulation = build_simulation(SimConfig(tracker=tracker, camera=camera), each_alone(1))
+        simulation.reset()
+        simulation.advance(np.zeros((1, 4)), 1)
+        simulation.advance(np.zeros((1, 8)), 1)  # turns the camera, too
+        simulation.carry(1)
+for names in ([], ["compass"], ["barometer"], ["compass", "barometer"], ["barometer", "compass"]):
+    sensors = {"imu": {"noise": 0.1}, "further": [{"sensor": name} for name in names]}
+    simulation = build_simulation(SimConfig(sensors=sensors), each_alone(1))
+    simulation.reset()
+    simulation.advance(np.zeros((1, 4)), 1)
 fill_privileged(simulation.snapshot, np.zeros((1, 16), np.float32))
 traffic = load_assets(SimConfig().world, SimConfig().traffic).traffic
 make_rows(bounds_of(traffic.motion, np.arange(4)), traffic.motion)
@@ -210,10 +220,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder to write into")
     options = parser.parse_args()
     if options.check:
-        raise SystemExit(missing(read_archive(ARCHIVE)) or not_wide() or compiled())
+        ships = KernelLibrary.opened(LIBRARY).names
+        raise SystemExit(missing(ships) or not_wide(ships) or compiled())
 
     def place(archive: Path) -> Path:
-        """Return where an archive is written: where it ships, or in the folder that is named."""
+        """Return where a file is written: where it ships, or in the folder that is named."""
         if options.out is None:
             return archive
         options.out.mkdir(parents=True, exist_ok=True)
@@ -225,11 +236,10 @@ def main() -> None:
         folder = Path(cache, "kernels", language_hash())
         files = set(folder.glob(f"*{SUFFIX}"))
         codes = codes_in(files)
-        place(ARCHIVE).write_bytes(archive_of(codes))
+        link(codes, place(LIBRARY))
         place(modules.ARCHIVE).write_bytes(modules.archive_of(folder, DRAWING))
         use_all(cache, variables, MAKES_WIDE)
-        wide = codes_in(set(folder.glob(f"*{SUFFIX}")) - files)
-        place(WIDE_ARCHIVE).write_bytes(archive_of(wide))
+        link(codes_in(set(folder.glob(f"*{SUFFIX}")) - files), place(WIDE_LIBRARY))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
         place(ptx.ARCHIVE).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
@@ -258,6 +268,37 @@ def codes_in(files: Iterable[Path]) -> dict[str, MachineCode]:
     return {name: code for name, code in codes.items() if code is not None}
 
 
+def link(codes: Mapping[str, MachineCode], library: Path) -> None:
+    """Link machine code, by the names by which it is found, into a shared library."""
+    with tempfile.TemporaryDirectory() as folder:
+        objects = {entry_of(name): bytes(code.code) for name, code in sorted(codes.items())}
+        objects[CONTENTS] = contents_object([language_hash(), *sorted(codes)])
+        for name, code in objects.items():
+            Path(folder, f"{name}.o").write_bytes(code)
+        entries = "".join(f"{name};" for name in objects)
+        Path(folder, "exports").write_text(f"{{global: {entries} local: *;}};")
+        command = [
+            *("ld", "-shared", "-z", "defs", "--gc-sections", "--strip-all", "--build-id=none"),
+            *("--version-script=exports", "-o", str(library.resolve())),
+            *(f"{name}.o" for name in objects),
+        ]
+        subprocess.run(command, cwd=folder, check=True)
+    library.chmod(0o644)
+
+
+def contents_object(lines: list[str]) -> bytes:
+    """Return an object file of the text by which a library tells its kernels."""
+    text = "\n".join(lines).encode() + b"\0"
+    source = f'@{CONTENTS} = constant [{len(text)} x i8] c"{llvm_text(text)}"'
+    target = llvm.Target.from_triple(llvm.get_process_triple())
+    return target.create_target_machine(reloc="pic").emit_object(llvm.parse_assembly(source))
+
+
+def llvm_text(text: bytes) -> str:
+    """Return a text as LLVM's assembly has it between quotes."""
+    return "".join(f"\\{byte:02x}" for byte in text)
+
+
 def ptx_in(cache: Path) -> dict[str, ptx.Ptx]:
     """Return the PTX in a cache, by the names by which it is found."""
     files = cache.rglob(f"*{ptx.SUFFIX}")
@@ -269,16 +310,17 @@ def ptx_in(cache: Path) -> dict[str, ptx.Ptx]:
     }
 
 
-def missing(codes: Mapping[str, MachineCode]) -> str | None:
-    """Return which kernels of the package are not in an archive; None if all are."""
-    lacks = [name for name in sorted(kernels()) if not any(c.startswith(f"{name}-") for c in codes)]
-    return f"not in {ARCHIVE}: {', '.join(lacks)}" if lacks else None
+def missing(names: Iterable[str]) -> str | None:
+    """Return which kernels of the package are not among those of a library; None if all are."""
+    ships = {name.partition("-")[0] for name in names}
+    lacks = sorted(kernels() - ships)
+    return f"not in {LIBRARY}: {', '.join(lacks)}" if lacks else None
 
 
-def not_wide() -> str | None:
+def not_wide(names: Iterable[str]) -> str | None:
     """Return what draws and does not ship for AVX-512; None if all does."""
-    lacks = set(filter(draws, read_archive(ARCHIVE))) - set(read_archive(WIDE_ARCHIVE))
-    return f"not in {WIDE_ARCHIVE}: {', '.join(sorted(lacks))}" if lacks else None
+    lacks = set(filter(draws, names)) - KernelLibrary.opened(WIDE_LIBRARY).names
+    return f"not in {WIDE_LIBRARY}: {', '.join(sorted(lacks))}" if lacks else None
 
 
 def draws(name: str) -> bool:

@@ -62,12 +62,16 @@ def test_the_cache_and_who_has_moved_it(monkeypatch, tmp_path):
 
 
 def test_why_shipped_kernels_do_not_serve(monkeypatch, tmp_path):
-    monkeypatch.setattr(doctor, "features", lambda: shipped.needed - {"avx2"})
+    for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", shipped.VARIABLE):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(shipped, "features", lambda: shipped.needed - {"avx2"})
     assert "lacks avx2: kernels are compiled" in doctor.facts()["shipped kernels"]
-    monkeypatch.setattr(doctor, "features", lambda: shipped.needed)
+    monkeypatch.setattr(shipped, "features", lambda: shipped.needed)
     monkeypatch.setattr(platform, "machine", lambda: "x86_64")
-    monkeypatch.setattr(platform, "system", lambda: "Linux")
-    monkeypatch.setattr(doctor, "ARCHIVE", tmp_path / "none.eyk")
+    monkeypatch.setattr(shipped.sys, "platform", "linux")
+    monkeypatch.setattr(doctor, "LIBRARY", tmp_path / "none.so")
     assert "damaged or missing" in doctor.facts()["shipped kernels"]
     monkeypatch.setenv("EYAS_SHIPPED_CODE", "0")
     assert doctor.facts()["shipped kernels"].startswith("not used, by EYAS_SHIPPED_CODE=0")
+    monkeypatch.setattr(doctor, "find_spec", lambda name: None)
+    assert "cannot be compiled without: pip install 'eyas[" in doctor.facts()["shipped kernels"]

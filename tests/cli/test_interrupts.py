@@ -106,7 +106,7 @@ from eyas.cli.main import main
 
 def run():
     from eyas.lanes import entry
-    entry.shipped_code = lambda name: None  # so that there is something to compile
+    entry.shipped_address = lambda name: None  # so that there is something to compile
     from eyas.engine.render.ahead import draw_nothing
     print("ready", flush=True)
     draw_nothing()

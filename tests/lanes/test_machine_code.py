@@ -73,9 +73,9 @@ def test_code_that_needs_what_this_process_lacks_is_made_anew(folder, compiled):
 def test_each_kind_of_processor_has_its_own_code(folder, compiled, monkeypatch):
     doubled()
     monkeypatch.setattr(machine_code, "cpu", lambda: machine_code.Cpu("other", "", ""))
-    path = code_file(folder, "double", (), ())
+    path = code_file(folder, "double", ())
     monkeypatch.undo()
-    assert path != code_file(folder, "double", (), ())
+    assert path != code_file(folder, "double", ())
 
 
 def scaled_by(factor):

@@ -2,6 +2,9 @@
 
 import lzma
 import re
+import runpy
+import subprocess
+from pathlib import Path
 from types import SimpleNamespace
 
 import llvmlite.binding as llvm
@@ -12,10 +15,10 @@ from eyas.gpu.cuda import code
 from eyas.gpu.render import stages as stages_of_cards
 from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
-from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
-from eyas.lanes.shipped import archive_of, read_archive
+from eyas.lanes.machine_code import SUFFIX
+from eyas.lanes.shipped import KernelLibrary
 
-CODE = {"double-a-b": MachineCode("double_a_b", ("memcpy",), b"code")}
+TOOL = runpy.run_path(str(Path(__file__).parents[2] / "tools" / "ship_kernels.py"))
 
 
 def double(values):
@@ -57,20 +60,28 @@ def machine(monkeypatch):
 
 
 @pytest.fixture
-def ships(tmp_path, monkeypatch, compiled, machine):
-    """Return an archive in which the code of `double` is shipped; nothing is cached."""
-    cache, archive = tmp_path / "cache", tmp_path / "shipped.eyk"
+def codes(tmp_path, monkeypatch, compiled, machine):
+    """Return the machine code of `double`, by name; nothing is cached, and nothing ships."""
+    cache = tmp_path / "cache"
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
-    monkeypatch.setattr(shipped, "ARCHIVE", archive)
+    monkeypatch.setattr(shipped, "LIBRARY", tmp_path / "none.so")
     cache.mkdir()
     doubled()
-    (file,) = cache.glob(f"*{SUFFIX}")
-    archive.write_bytes(archive_of({file.stem.rpartition("-")[0]: read_code(file)}))
+    made = TOOL["codes_in"](cache.glob(f"*{SUFFIX}"))
     for file in cache.iterdir():
         file.unlink()
     compiled.clear()
+    return made
+
+
+@pytest.fixture
+def ships(tmp_path, monkeypatch, codes):
+    """Return a library in which the code of `double` ships."""
+    library = tmp_path / "shipped.so"
+    TOOL["link"](codes, library)
+    monkeypatch.setattr(shipped, "LIBRARY", library)
     shipped._shipped.cache_clear()
-    return archive
+    return library
 
 
 def test_shipped_code_is_used_and_nothing_is_compiled_or_cached(ships, compiled, tmp_path):
@@ -82,11 +93,7 @@ def test_shipped_code_is_used_and_nothing_is_compiled_or_cached(ships, compiled,
 
 
 def test_code_of_another_language_of_kernels_is_passed_over(ships, compiled, monkeypatch):
-    with monkeypatch.context() as other:
-        other.setattr(shipped, "language_hash", lambda: "0123456789abcdef")
-        ships.write_bytes(archive_of(read_archive(ships) or CODE))
-        assert read_archive(ships)
-    assert read_archive(ships) == {}
+    monkeypatch.setattr(shipped, "language_hash", lambda: "0123456789abcdef")
     assert doubled() == 2.0
     assert len(compiled) == 1
 
@@ -96,19 +103,19 @@ def test_code_for_other_bundles_is_passed_over(ships, compiled):
     assert len(compiled) == 1
 
 
-@pytest.mark.parametrize("damage", [lambda b: b[:-1], lambda b: b[:9] + b"x" + b[10:]])
-def test_a_damaged_archive_is_told_and_kernels_are_compiled(ships, compiled, caplog, damage):
-    ships.write_bytes(damage(ships.read_bytes()))
+@pytest.mark.parametrize("content", [b"", b"no library", b"\x7fELF\x02" + 99 * b"x"])
+def test_a_damaged_library_is_told_and_kernels_are_compiled(ships, compiled, caplog, content):
+    ships.unlink()  # its own content stays mapped
+    ships.write_bytes(content)
     assert doubled() == 2.0
     assert len(compiled) == 1
     assert len(caplog.records) == 1
 
 
-def test_code_that_this_llvm_cannot_link_is_compiled_anew(ships, compiled):
-    ((name, code),) = read_archive(ships).items()
-    ships.write_bytes(archive_of({name: code._replace(code=b"no object file")}))
+def test_a_library_of_others_is_told_and_kernels_are_compiled(ships, compiled, caplog, monkeypatch):
+    monkeypatch.setattr(shipped, "LIBRARY", next(Path("/lib").rglob("libm.so.6")))
     assert doubled() == 2.0
-    assert len(compiled) == 1
+    assert [len(compiled), len(caplog.records)] == [1, 1]
 
 
 def test_on_a_processor_that_lacks_something_kernels_are_compiled(ships, compiled, machine):
@@ -118,31 +125,25 @@ def test_on_a_processor_that_lacks_something_kernels_are_compiled(ships, compile
 
 
 def test_what_draws_has_code_of_its_own_where_there_is_avx_512(
-    ships, monkeypatch, machine, tmp_path
+    ships, codes, monkeypatch, machine, tmp_path
 ):
-    ((name, code),) = read_archive(ships).items()
-    wide = tmp_path / "wide.eyk"
-    wide.write_bytes(archive_of({name: code._replace(needs=("memcpy",))}))
-    monkeypatch.setattr(shipped, "WIDE_ARCHIVE", wide)
-    assert shipped.shipped_code(name).needs == code.needs
+    (name,) = codes
+    wide = tmp_path / "wide.so"
+    TOOL["link"](codes, wide)
+    monkeypatch.setattr(shipped, "WIDE_LIBRARY", wide)
+    usual = shipped.shipped_address(name)
     machine.features = shipped.wide_needed
     shipped._shipped.cache_clear()
-    assert shipped.shipped_code(name).needs == ("memcpy",)
+    assert shipped.shipped_address(name) == KernelLibrary.opened(wide).address(name) != usual
     wide.unlink()
     shipped._shipped.cache_clear()
-    assert shipped.shipped_code(name).needs == code.needs
-
-
-def names_in(archive) -> set[str]:
-    """Return what an archive holds, though it may be older than the language of kernels."""
-    (_, table), _ = unpacked(archive.read_bytes())
-    return {name for name, *_ in table}
+    assert shipped.shipped_address(name) == usual
 
 
 def test_all_that_draws_ships_for_avx_512():
-    names = {name for name in names_in(shipped.ARCHIVE) if name.startswith("draw_views-")}
+    names = {name for name in KernelLibrary.opened(shipped.LIBRARY).names if TOOL["draws"](name)}
     assert names
-    assert names_in(shipped.WIDE_ARCHIVE) == names
+    assert KernelLibrary.opened(shipped.WIDE_LIBRARY).names == names
 
 
 def test_on_other_machines_kernels_are_compiled(ships, compiled, machine):
@@ -164,10 +165,25 @@ def test_who_names_a_processor_or_wants_none_gets_no_shipped_code(
     assert not shipped._shipped()
 
 
-def test_an_archive_is_the_same_bytes_whatever_the_order():
-    other = CODE["double-a-b"]._replace(code=b"other")
-    codes = CODE | {"half-a-b": other}
-    assert archive_of(codes) == archive_of(dict(reversed(codes.items())))
+def test_a_library_is_the_same_bytes_whatever_the_order(codes, tmp_path):
+    ((name, double),) = codes.items()
+    half = double._replace(code=bytes(double.code).replace(b"double_", b"halved_"))
+    codes = {name: double, name.replace("double-", "halved-"): half}
+    for file, some in (("a.so", codes), ("b.so", dict(reversed(codes.items())))):
+        TOOL["link"](some, tmp_path / file)
+    assert (tmp_path / "a.so").read_bytes() == (tmp_path / "b.so").read_bytes()
+    assert KernelLibrary.opened(tmp_path / "a.so").names == codes.keys()
+
+
+def test_what_a_library_calls_outside_is_refused_when_it_is_made(codes, tmp_path):
+    code = llvm.parse_assembly(
+        "declare void @outside() define void @e() { call void @outside() ret void }"
+    )
+    target = llvm.Target.from_triple(llvm.get_process_triple()).create_target_machine(reloc="pic")
+    outside = next(iter(codes.values()))._replace(code=target.emit_object(code))
+    with pytest.raises(subprocess.CalledProcessError):
+        TOOL["link"]({"e": outside}, tmp_path / "none.so")
+    assert not (tmp_path / "none.so").exists()
 
 
 def test_what_a_card_draws_with_ships():
@@ -180,9 +196,8 @@ def test_what_a_card_draws_with_ships():
 
 def test_machine_code_names_no_file_of_the_machine_that_made_it():
     """numba would put the path of a file beside each exception that may be raised in it."""
-    folder = shipped.ARCHIVE.parent
-    archives = (shipped.ARCHIVE, shipped.WIDE_ARCHIVE)
-    codes = [bytes(piece) for one in archives for piece in unpacked(one.read_bytes()).pieces]
+    folder = shipped.LIBRARY.parent
+    codes = [library.read_bytes() for library in (shipped.LIBRARY, shipped.WIDE_LIBRARY)]
     for packed in (*folder.glob("*.xz"), *folder.glob("*.eyp")):
         _, pieces = unpacked(lzma.decompress(packed.read_bytes()))
         bitcode = packed.suffix == ".xz"

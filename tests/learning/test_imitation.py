@@ -17,8 +17,9 @@ from eyas.engine.policies.steering import towards
 from eyas.engine.settings.config import EyasConfig
 from eyas.engine.settings.file import load_settings
 from eyas.learning.algorithm import Learner, phases_of
+from eyas.learning.config import TrainConfig
 from eyas.learning.dagger import Dagger
-from eyas.learning.network import NetworkShape, TrackingNetwork
+from eyas.learning.network import NetworkShape, TrackingNetwork, fastest_numbers, network_of
 from eyas.learning.rollout import Roller, Teacher
 from eyas.learning.shards import TorchThreads
 from eyas.learning.trainer import train
@@ -241,6 +242,28 @@ def test_channels_last_answers_the_same_but_for_rounding(tmp_path):
     train(config, tmp_path / "run", say=quiet)
     saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)["network"]
     assert saved["second.weight"].is_contiguous(memory_format=torch.channels_last)
+
+
+def test_bfloat16_answers_nearly_the_same_while_it_learns_and_exactly_afterwards():
+    plain, short = (network_of(SHAPE, TrainConfig(number_type=n)) for n in ("float32", "bfloat16"))
+    for network in (plain, short):
+        network.initialise(torch.Generator().manual_seed(3))
+    pictures = torch.randint(0, 256, (5, 3, 24, 24), dtype=torch.uint8)
+    state = torch.zeros(5, SHAPE.state)
+    seen, other = plain.features(pictures, state), short.features(pictures, state)
+    assert other.dtype == torch.float32
+    assert not torch.equal(seen, other)
+    assert torch.allclose(seen, other, rtol=0.05, atol=0.05)
+    assert torch.equal(seen, short.eval().features(pictures, state))
+
+
+@pytest.mark.parametrize(
+    ("flags", "numbers"),
+    [({"avx2"}, "float32"), ({"avx512_bf16"}, "bfloat16"), ({"amx_bf16"}, "bfloat16")],
+)
+def test_the_fastest_numbers_are_those_that_the_processor_multiplies(monkeypatch, flags, numbers):
+    monkeypatch.setattr("eyas.learning.network.features", lambda: flags)
+    assert fastest_numbers(torch.device("cpu")) == numbers
 
 
 @pytest.mark.parametrize(

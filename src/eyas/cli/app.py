@@ -189,9 +189,9 @@ def _not_ours(error: OSError | ValueError) -> int:
     """Return the exit code of an error that is not an `EyasError`; a fault is raised again."""
     if isinstance(error, OSError) and error.errno is not None and not lacks_memory(error):
         return _not_printed(error)
-    from eyas.lanes import VariableError  # half a second to import
+    from eyas.lanes import LanesError
 
-    if not isinstance(error, VariableError):
+    if not isinstance(error, LanesError):
         raise error
     return _failed(str(error))
 

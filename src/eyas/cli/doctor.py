@@ -16,25 +16,23 @@ from eyas.engine.core.machine import describe_machine
 from eyas.engine.render.kernels.draw import draw_views
 from eyas.gpu.cuda import gpu_line
 from eyas.lanes import thread_count
+from eyas.lanes.entry import EXTRA
 from eyas.lanes.folder import refusal
-from eyas.lanes.identity import identity
-from eyas.lanes.machine_code import code_name
+from eyas.lanes.identity import code_name
 from eyas.lanes.shipped import (
-    ARCHIVE,
     LEVEL,
-    VARIABLE,
+    LIBRARY,
     WIDE_LEVEL,
+    KernelLibrary,
     features,
     is_shipped,
-    needed,
-    read_archive,
-    wanted,
+    misfit,
     wide_needed,
 )
 from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
-_NEEDED = ("numpy", "numba", "llvmlite")
-_EXTRAS = ("torch", "onnxruntime")
+_NEEDED = ("numpy",)
+_EXTRAS = ("numba", "llvmlite", "torch", "onnxruntime")
 _EXTRA = re.compile(r"([\w.-]+)[^;]*;.*\bextra == ['\"]([\w-]+)['\"].*")
 """A requirement of an extra: package and extra."""
 _PYTHON = re.compile(r"\bpython_version (<|>=) ['\"]3\.(\d+)['\"]")
@@ -127,21 +125,19 @@ def _cache() -> str:
 
 def _shipped() -> str:
     """Return whether kernels that come compiled serve this machine, or why not."""
+    compiles = find_spec("numba") is not None
     compiled = "kernels are compiled at the first start"
-    if not wanted():
-        return f"not used, by {VARIABLE}=0: {compiled}"
-    if platform.system() != "Linux" or platform.machine() != "x86_64":
-        return f"for Linux on x86_64 only: {compiled}"
-    if lacking := sorted(needed - features()):
-        return f"for {LEVEL}; this processor lacks {', '.join(lacking)}: {compiled}"
+    if not compiles:
+        compiled = f"kernels cannot be compiled without: pip install 'eyas[{EXTRA}]'"
+    if why := misfit():
+        return f"{why}: {compiled}"
     try:
-        codes = read_archive(ARCHIVE)
-    except (OSError, TypeError, ValueError) as error:
-        return f"{ARCHIVE}: damaged or missing ({error}): {compiled}"
-    if not codes:
-        return f"of another version: {compiled}"
+        kernels = len(KernelLibrary.opened(LIBRARY).names)
+    except (OSError, ValueError) as error:
+        return f"{LIBRARY}: damaged or missing ({error}): {compiled}"
     drawn = f" (what draws: {WIDE_LEVEL})" if wide_needed <= features() else ""
-    said = f"{len(codes)} for {LEVEL}{drawn}, which serve this machine"
-    if is_shipped(code_name("draw_views", identity(draw_views.function))):
-        return said
-    return f"{said}, but what draws has changed since: it is compiled at the first start"
+    said = f"{kernels} for {LEVEL}{drawn}, which serve this machine"
+    if not is_shipped(code_name(draw_views.function)):
+        return f"{said}, but what draws has changed since: {compiled}"
+    more = "kernels of your own and rare settings are compiled" if compiles else compiled
+    return f"{said}; {more}"

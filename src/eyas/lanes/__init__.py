@@ -9,7 +9,9 @@ from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.calls import BoundCall, CompiledCall, ParallelCall, compiled, parallel
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
+    CompilerError,
     Kernel,
+    LanesError,
     VariableError,
     interpreted,
     kernel,
@@ -21,8 +23,10 @@ from eyas.lanes.jit import (
 __all__ = [
     "BoundCall",
     "CompiledCall",
+    "CompilerError",
     "Intrinsic",
     "Kernel",
+    "LanesError",
     "PackedBundle",
     "ParallelCall",
     "VariableError",

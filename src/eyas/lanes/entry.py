@@ -1,4 +1,6 @@
-"""The address of a kernel that gets bundles: from its file, or compiled, which takes seconds."""
+"""The address of a kernel that gets bundles: from what ships, from its file, or compiled, which
+takes seconds.
+"""
 
 import logging
 import platform
@@ -6,29 +8,25 @@ import threading
 import time
 from collections.abc import Callable
 from importlib.metadata import version
-from pathlib import Path
-from typing import Any
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 from eyas.lanes.bundles import PackedBundle
 from eyas.lanes.folder import kernel_folder, refusal
-from eyas.lanes.identity import identity
+from eyas.lanes.identity import code_name, entry_of
 from eyas.lanes.interrupts import shielded
-from eyas.lanes.machine_code import (
-    SUFFIX,
-    MachineCode,
-    code_file,
-    code_name,
-    entry_of,
-    load,
-    read_code,
-    write_code,
-)
-from eyas.lanes.shipped import is_shipped, shipped_code
+from eyas.lanes.jit import CompilerError
+from eyas.lanes.shipped import is_shipped, misfit, shipped_address
 from eyas.lanes.trusted import OWNER, touch
+
+if TYPE_CHECKING:
+    from eyas.lanes.machine_code import MachineCode
 
 _LOG = logging.getLogger(OWNER)
 
-LOCK = threading.RLock()  # PackedBundle while numba and LLVM compile
+LOCK = threading.RLock()  # Held while numba and LLVM compile
+
+EXTRA = "compile"  # The extra that brings numba and LLVM
 
 
 def entry_address(
@@ -37,36 +35,63 @@ def entry_address(
     *,
     over_workers: bool,
 ) -> int:
-    """Return the address of a kernel for bundles of these kinds."""
-    name = function.__qualname__.rpartition(".")[2]
-    made_by = version("numba"), platform.python_version()
-    kinds = [bundle.kind for bundle in bundles]
-    path = code_file(kernel_folder(), _name_of(function), kinds, made_by)
-    keeps = function.__closure__ is None  # or what it depends on is not all in the name
-    # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
-    with LOCK, shielded():
-        address = _kept(path) if keeps else None
-        if address is None:
-            start = time.perf_counter()
-            code = _compiled(function, bundles, entry_of(path), over_workers=over_workers)
-            _LOG.debug("compiled %s in %.1f s", name, time.perf_counter() - start)
-            address = load(code)
-            assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
-            if keeps and not refusal():
-                write_code(path, code)
-    return address
-
-
-def _kept(path: Path) -> int | None:
-    """Return the address of a kernel that ships, or else is cached; None if it is neither.
+    """Return the address of a kernel for bundles of these kinds.
 
     What ships comes first: compiled for the very processor, with AVX-512, a step took 10 % longer.
+
+    Raises:
+        CompilerError: It has to be compiled, and the compiler is not installed.
     """
-    shipped = shipped_code(path.stem.rpartition("-")[0])
-    address = None if shipped is None else load(shipped)
-    if address is None and (kept := read_code(path)) is not None:
+    name = code_name(function, [bundle.kind for bundle in bundles])
+    keeps = function.__closure__ is None  # or what it depends on is not all in the name
+    shipped = shipped_address(name) if keeps else None
+    if shipped is not None:
+        return shipped
+    require_compiler(name.partition("-")[0])
+    # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
+    with LOCK, shielded():
+        return _made(name, function, bundles, keeps=keeps, over_workers=over_workers)
+
+
+def require_compiler(
+    name: str,  # Of a function
+) -> None:
+    """Refuse to compile where numba is not installed.
+
+    Raises:
+        CompilerError: It is not.
+    """
+    if find_spec("numba") is None:
+        why = f"what ships is {misfit()}" if misfit() else "it ships with other settings only"
+        raise CompilerError(
+            f"{name}: no machine code ({why}); to compile it: pip install '{OWNER}[{EXTRA}]'"
+        )
+
+
+def _made(
+    name: str,
+    function: Callable[..., Any],
+    bundles: tuple[PackedBundle[Any], ...],
+    *,
+    keeps: bool,
+    over_workers: bool,
+) -> int:
+    """Return the address of a kernel from its file, or compile it."""
+    from eyas.lanes.machine_code import code_file, load, read_code, write_code  # LLVM
+
+    path = code_file(kernel_folder(), name, (version("numba"), platform.python_version()))
+    if keeps and (kept := read_code(path)) is not None:
         touch(path)
         address = load(kept)
+        if address is not None:
+            return address
+    start = time.perf_counter()
+    code = _compiled(function, bundles, entry_of(name), over_workers=over_workers)
+    _LOG.debug("compiled %s in %.1f s", name.partition("-")[0], time.perf_counter() - start)
+    address = load(code)
+    assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
+    if keeps and not refusal():
+        write_code(path, code)
     return address
 
 
@@ -74,12 +99,8 @@ def nothing_compiled(
     function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
 ) -> bool:
     """Return whether a kernel is neither cached nor shipped for any bundles, as at first."""
-    name = _name_of(function)
-    return not any(kernel_folder().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
-
-
-def _name_of(function: Callable[..., Any]) -> str:
-    return code_name(function.__qualname__.rpartition(".")[2], identity(function))
+    name = code_name(function)
+    return not any(kernel_folder().glob(f"{name}-*.eyk")) and not is_shipped(name)
 
 
 def _compiled(
@@ -88,7 +109,7 @@ def _compiled(
     entry: str,
     *,
     over_workers: bool,
-) -> MachineCode:
+) -> "MachineCode":
     import numba  # half a second, for the first start only
 
     from eyas.lanes.compilation import entry_code, size_of

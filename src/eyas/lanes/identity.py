@@ -59,6 +59,30 @@ def identity(function: Callable[..., Any]) -> str:
     return sha256(told.encode()).hexdigest()
 
 
+def code_name(
+    function: Callable[..., Any],  # A compiled function
+    kinds: Iterable[str] = (),  # Of its bundles, see `eyas.lanes.bundles.PackedBundle`
+) -> str:
+    """Return the name of a kernel's code, `<name of function>-<digest of it>-<digest of kinds>`;
+    without kinds its beginning.
+    """
+    name = function.__qualname__.rpartition(".")[2]
+    begin = f"{name}-{digest((name, identity(function)))}"
+    return f"{begin}-{digest(kinds)}" if kinds else begin
+
+
+def entry_of(name: str) -> str:
+    """Return the name of the function in a kernel's code: without what made it, so that others make
+    the same bytes.
+    """
+    return name.replace("-", "_")
+
+
+def digest(parts: Iterable[str]) -> str:
+    """Return a short digest of some texts."""
+    return sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
 class _Closure:
     """A function and all that it calls."""
 

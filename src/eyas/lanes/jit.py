@@ -14,8 +14,16 @@ from eyas.lanes.interrupts import shielded
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class VariableError(ValueError):
+class LanesError(ValueError):
+    """What a user can mend, in one line."""
+
+
+class VariableError(LanesError):
     """An environment variable has a value that cannot be used."""
+
+
+class CompilerError(LanesError):
+    """A kernel has to be compiled, and the compiler is not installed."""
 
 
 def thread_count() -> int:

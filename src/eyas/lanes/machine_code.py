@@ -9,14 +9,13 @@ import os
 import threading
 from collections.abc import Iterable
 from functools import cache
-from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
 import llvmlite
 import llvmlite.binding as llvm
 
-from eyas.lanes.identity import language_hash
+from eyas.lanes.identity import digest, language_hash
 from eyas.lanes.trusted import read_trusted, write_trusted
 
 SUFFIX = ".eyk"  # End of the names of files of machine code
@@ -144,28 +143,14 @@ def load(code: MachineCode) -> int | None:
     return int(loaded[code.entry])
 
 
-def code_name(
-    name: str,  # The name of the kernel, for people who look into the folder
-    made_of: str,  # Its `eyas.lanes.identity.identity`
-) -> str:
-    """Return the beginning of the names of a kernel's files, whatever its bundles are."""
-    return f"{name}-{digest((name, made_of))}"
-
-
 def code_file(
     folder: Path,  # The folder of kernels
-    name: str,  # From `code_name`
-    kinds: Iterable[str],  # The kinds of its bundles, see `eyas.lanes.bundles.PackedBundle`
+    name: str,  # From `eyas.lanes.identity.code_name`
     made_by: Iterable[str],  # What else the code depends on, except the processor and llvmlite
 ) -> Path:
-    """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`."""
+    """Return the file of a kernel's machine code, `<name>-<hash of made_by>`."""
     by = (*cpu(), llvmlite.__version__, language_hash(), *made_by)
-    return folder / f"{name}-{digest(kinds)}-{digest(by)}{SUFFIX}"
-
-
-def digest(parts: Iterable[str]) -> str:
-    """Return a short digest of some texts."""
-    return sha256("\0".join(parts).encode()).hexdigest()[:16]
+    return folder / f"{name}-{digest(by)}{SUFFIX}"
 
 
 def read_code(path: Path) -> MachineCode | None:
@@ -175,13 +160,6 @@ def read_code(path: Path) -> MachineCode | None:
         return None
     entry, needs = found.header
     return MachineCode(entry, tuple(needs), found.pieces[0])
-
-
-def entry_of(path: Path) -> str:
-    """Return the name of the function in a kernel's file: without what made it, so that others make
-    the same bytes.
-    """
-    return path.stem.rpartition("-")[0].replace("-", "_")
 
 
 def write_code(path: Path, code: MachineCode) -> None:

@@ -22,8 +22,8 @@ from numba.core.codegen import JITCodeLibrary
 
 from eyas.lanes.container import Contents, packed, unpacked
 from eyas.lanes.folder import kernel_folder, refusal
-from eyas.lanes.identity import language_hash
-from eyas.lanes.machine_code import cpu, digest
+from eyas.lanes.identity import digest, language_hash
+from eyas.lanes.machine_code import cpu
 from eyas.lanes.shipped import wanted
 from eyas.lanes.targets import target_name
 from eyas.lanes.trusted import OWNER, read_trusted, touch, write_trusted

@@ -1,27 +1,24 @@
-"""Machine code that comes with the package, so that the first start need not compile.
+"""Machine code that comes with the package: neither numba nor LLVM is needed where it serves.
 
-An archive for a level of x86-64, made by `tools/ship_kernels.py`; each kernel is found in it by
-what it computes (`eyas.lanes.identity`): one that was changed is compiled, as all are on other
-processors. Kernels call nothing of Python or numba, and no operation is fused or reordered, so the
-code serves all versions of these, and computes the same bytes as code compiled for the very
-machine. What draws ships for AVX-512, too: it is faster there; nothing else is.
+A shared library for a level of x86-64, made by `tools/ship_kernels.py`; each kernel is found in it
+by what it computes (`eyas.lanes.identity`): one that was changed is compiled, as all are on other
+processors. Kernels call nothing outside, and no operation is fused or reordered, so the code
+computes the same bytes as code compiled for the very machine. What draws ships for AVX-512, too: it
+is faster there; nothing else is.
 """
 
+import ctypes
 import logging
 import os
 import platform
 import re
 import sys
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
-import llvmlite.binding as llvm
-
-from eyas.lanes.container import packed, unpacked
-from eyas.lanes.identity import language_hash
+from eyas.lanes.identity import entry_of, language_hash
 from eyas.lanes.jit import VariableError
-from eyas.lanes.machine_code import MachineCode
 from eyas.lanes.trusted import OWNER
 
 _LOG = logging.getLogger(OWNER)
@@ -29,11 +26,11 @@ _LOG = logging.getLogger(OWNER)
 LEVEL = "x86-64-v3"  # The level of the x86-64 ABI for which code is shipped, as LLVM names it
 
 needed = frozenset(
-    "cx16 sahf popcnt sse3 ssse3 sse4.1 sse4.2 avx avx2 bmi bmi2 f16c fma lzcnt movbe xsave".split()
+    "abm avx avx2 bmi1 bmi2 cx16 f16c fma lahf_lm movbe pni popcnt sse4_1 sse4_2 ssse3".split()
 )
-"""What a processor needs for it."""
+"""What a processor needs for it, as Linux names it."""
 
-ARCHIVE = Path(__file__).parent / "shipped" / f"{LEVEL}.eyk"
+LIBRARY = Path(__file__).parent / "shipped" / f"{LEVEL}.so"
 
 WIDE_LEVEL = "x86-64-v4"
 """The level for which only what draws is shipped: masks and twice the registers of AVX-512."""
@@ -41,35 +38,41 @@ WIDE_LEVEL = "x86-64-v4"
 wide_needed = needed | {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}
 """What a processor needs for it."""
 
-WIDE_ARCHIVE = ARCHIVE.with_name(f"{WIDE_LEVEL}.eyk")
+WIDE_LIBRARY = LIBRARY.with_name(f"{WIDE_LEVEL}.so")
+
+CONTENTS = f"{OWNER}_kernels"
+"""Name of a text in a library that ends with a zero: in its first line the hash of the language of
+kernels, in each other line the name of a kernel, by `eyas.lanes.identity.code_name`."""
 
 VARIABLE = f"{OWNER.upper()}_SHIPPED_CODE"
 """Environment variable: 0 has everything compiled on this machine."""
 
 
-def archive_of(
-    codes: Mapping[str, MachineCode],  # Machine code by name, see `shipped_code`
-) -> bytes:
-    """Return the content of an archive of this version of the language of kernels."""
-    names = sorted(codes)
-    header = [language_hash(), [(name, codes[name].entry, codes[name].needs) for name in names]]
-    return b"".join(packed(header, [codes[name].code for name in names]))
-
-
-def read_archive(path: Path) -> dict[str, MachineCode]:
-    """Return what is in an archive, by name; nothing if it is of another version of the language.
+class KernelLibrary(NamedTuple):
+    """A shared library of kernels.
 
     Raises:
-        OSError: It cannot be read.
-        ValueError: It is damaged.
+        OSError: It cannot be opened.
+        ValueError: It is no library of kernels.
     """
-    (language, table), pieces = unpacked(path.read_bytes())
-    if language != language_hash():
-        return {}
-    return {
-        name: MachineCode(entry, tuple(needs), piece)
-        for (name, entry, needs), piece in zip(table, pieces, strict=True)
-    }
+
+    library: ctypes.CDLL
+    language: str  # The hash of the language of its kernels
+    names: frozenset[str]
+
+    @staticmethod
+    def opened(path: Path) -> "KernelLibrary":
+        """Open a library."""
+        library = ctypes.CDLL(str(path))
+        text = ctypes.string_at(ctypes.addressof(ctypes.c_char.in_dll(library, CONTENTS)))
+        language, *names = text.decode().splitlines()
+        return KernelLibrary(library, language, frozenset(names))
+
+    def address(self, name: str) -> int:
+        """Return the address of a kernel's entry."""
+        entry = ctypes.cast(self.library[entry_of(name)], ctypes.c_void_p)
+        assert entry.value is not None, name
+        return entry.value
 
 
 def wanted() -> bool:
@@ -78,8 +81,8 @@ def wanted() -> bool:
 
 
 @cache
-def _shipped() -> dict[str, MachineCode]:
-    """Return the code for this machine and this language.
+def _shipped() -> dict[str, KernelLibrary]:
+    """Return the libraries of kernels for this machine and this language, by the kernels' names.
 
     Raises:
         VariableError: Features are named of which LLVM would end the process.
@@ -89,37 +92,57 @@ def _shipped() -> dict[str, MachineCode]:
         raise VariableError(
             f"NUMBA_CPU_FEATURES: {chosen!r} is not allowed; allowed: such as +avx2,-avx512f"
         )
-    named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
-    other = sys.platform != "linux" or platform.machine() != "x86_64"
-    if named or other or not wanted() or not needed <= features():
+    if misfit():
         return {}
-    codes = _read(ARCHIVE)
-    return codes | _read(WIDE_ARCHIVE) if wide_needed <= features() else codes
+    kernels = _kernels(LIBRARY)
+    return kernels | _kernels(WIDE_LIBRARY) if wide_needed <= features() else kernels
 
 
-def _read(path: Path) -> dict[str, MachineCode]:
-    """Return what is in an archive; nothing if it is not there, or damaged, which is told."""
+def _kernels(path: Path) -> dict[str, KernelLibrary]:
+    """Return the kernels of a library; none if it is missing, of another version of the language,
+    or damaged, which is reported.
+    """
     try:
-        return read_archive(path)
-    except FileNotFoundError:
+        library = KernelLibrary.opened(path)
+    except (OSError, ValueError) as error:
+        if path.exists():
+            _LOG.warning("%s: damaged or unreadable, so kernels are compiled: %s", path, error)
         return {}
-    except (OSError, TypeError, ValueError) as error:
-        _LOG.warning("%s: damaged or unreadable, so kernels are compiled: %s", path, error)
-        return {}
+    ours = library.language == language_hash()
+    return dict.fromkeys(library.names, library) if ours else {}
 
 
-def features() -> set[str]:
-    """Return what this processor has, as LLVM names it."""
-    return {name for name, present in llvm.get_host_cpu_features().items() if present}
+def misfit() -> str:
+    """Return why what ships does not serve this machine; nothing if it does."""
+    named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
+    if named or not wanted():
+        variable = min(named, default=VARIABLE)
+        return f"not used, by {variable}={os.environ[variable]}"
+    if sys.platform != "linux" or platform.machine() != "x86_64":
+        return "for Linux on x86_64 only"
+    lacking = sorted(needed - features())
+    return f"for {LEVEL}; this processor lacks {', '.join(lacking)}" if lacking else ""
 
 
-def shipped_code(
-    name: str,  # Name of its file without the last part, see `code_file`
-) -> MachineCode | None:
-    """Return the code of a kernel; None if none is shipped that computes this, for this machine."""
-    return _shipped().get(name)
+@cache
+def features() -> frozenset[str]:
+    """Return what this processor has, as Linux names it; nothing if that cannot be read."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except (OSError, ValueError):
+        return frozenset()
+    found = re.search(r"^flags\s*:(.*)$", text, re.MULTILINE)
+    return frozenset(found[1].split()) if found else frozenset()
+
+
+def shipped_address(
+    name: str,  # From `eyas.lanes.identity.code_name`
+) -> int | None:
+    """Return the address of a kernel; None if none ships that computes this, for this machine."""
+    library = _shipped().get(name)
+    return None if library is None else library.address(name)
 
 
 def is_shipped(name: str) -> bool:
-    """Return whether a kernel, by its `code_name`, is shipped for this machine."""
+    """Return whether a kernel, by its `code_name` without kinds, is shipped for this machine."""
     return any(known.startswith(f"{name}-") for known in _shipped())

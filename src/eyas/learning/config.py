@@ -28,6 +28,14 @@ DeviceName = Annotated[
 ]
 
 
+class NumberType(StrEnum):
+    """Numbers with which a network learns."""
+
+    FLOAT32 = "float32"
+    BFLOAT16 = "bfloat16"
+    FASTEST = "fastest"
+
+
 class TeacherKind(StrEnum):
     """Who tells the right actions."""
 
@@ -254,6 +262,10 @@ class TrainConfig(Section):
     channels_last: bool = False
     """Whether pictures and weights have their channels last in memory: a third faster on
     processors with AVX2, with other last digits."""
+    number_type: NumberType = NumberType.FLOAT32
+    """Numbers of the network while it learns. `bfloat16`: half of the time on processors that
+    multiply these (AMX, AVX512-BF16), half as much again on others. `fastest`: bfloat16 where the
+    device multiplies it, else float32; other machines then learn other networks."""
     device: DeviceName | None = None
     """Where environments and network are: `cuda`, `cuda:1` and so on are graphics processors of
     NVIDIA; `host` does on this processor what these would do, for tests. None: this processor."""

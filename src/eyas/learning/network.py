@@ -7,6 +7,8 @@ import torch
 from torch import Tensor, nn
 
 from eyas.engine.core.errors import ConfigError
+from eyas.lanes.shipped import features
+from eyas.learning.config import NumberType, TrainConfig
 
 ACTIONS = 7
 HOVER = 6  # The action that stands for "none yet"; the network sees it as zeros
@@ -43,11 +45,19 @@ class TrackingNetwork(nn.Module):
 
     Attributes:
         shape: What it is made for.
+
+    Args:
+        shape: The same.
+        channels_last: See `TrainConfig`.
+        bfloat16: Whether it computes with bfloat16 while it learns, but for heads and memory.
     """
 
-    def __init__(self, shape: NetworkShape, *, channels_last: bool = False) -> None:
+    def __init__(
+        self, shape: NetworkShape, *, channels_last: bool = False, bfloat16: bool = False
+    ) -> None:
         super().__init__()
         self.shape = shape
+        self._bfloat16 = bfloat16
         self._layout = torch.channels_last if channels_last else torch.contiguous_format
         self.first = nn.Conv2d(shape.channels, 16, 5, STRIDE)
         self.second = nn.Conv2d(16, 32, 3, STRIDE)
@@ -83,7 +93,10 @@ class TrackingNetwork(nn.Module):
         told: Tensor,  # The last action, shape (B, 6)
     ) -> Tensor:
         """Return what is seen, shape (B, hidden)."""
-        return torch.relu(self.layer(torch.cat([self._seen(picture), told], 1)))
+        short = self._bfloat16 and self.training
+        with torch.autocast(picture.device.type, torch.bfloat16, enabled=short):
+            seen = torch.cat([self._seen(picture), told], 1)
+            return torch.relu(self.layer(seen)).float()
 
     def _seen(self, picture: Tensor) -> Tensor:
         """Return what the convolutions make of pictures, shape (B, K)."""
@@ -132,6 +145,21 @@ class TrackingNetwork(nn.Module):
                 nn.init.orthogonal_(weight, 1.0, generator)
             nn.init.zeros_(self.memory.bias_ih)
             nn.init.zeros_(self.memory.bias_hh)
+
+
+def fastest_numbers(device: torch.device) -> NumberType:
+    """Return with which numbers a device learns in the least time."""
+    if device.type == "cuda":
+        multiplies = torch.cuda.get_device_capability(device) >= (8, 0)
+    else:
+        multiplies = bool({"amx_bf16", "avx512_bf16"} & features())
+    return NumberType.BFLOAT16 if multiplies else NumberType.FLOAT32
+
+
+def network_of(shape: NetworkShape, config: TrainConfig) -> TrackingNetwork:
+    """Return a new network that learns by some settings."""
+    short = config.number_type is NumberType.BFLOAT16
+    return TrackingNetwork(shape, channels_last=config.channels_last, bfloat16=short)
 
 
 def torch_device(name: str | None) -> torch.device:

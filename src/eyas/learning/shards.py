@@ -14,7 +14,7 @@ from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.settings.config import EyasConfig
 from eyas.lanes import limit_threads
 from eyas.learning.config import TrainConfig
-from eyas.learning.network import NetworkShape, TrackingNetwork
+from eyas.learning.network import NetworkShape, TrackingNetwork, network_of
 from eyas.learning.rollout import Finished, Roller, Rollout
 
 Job = TypeVar("Job")
@@ -181,7 +181,7 @@ class _Worker:
         limit_threads(1)
         torch.set_num_threads(1)
         self._config = config
-        self._network = TrackingNetwork(shape, channels_last=TrainConfig.of(config).channels_last)
+        self._network = network_of(shape, TrainConfig.of(config))
         self._roller: Roller | None = None
         self._streams: np.random.Generator | None = None
 

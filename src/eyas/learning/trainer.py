@@ -29,9 +29,15 @@ from eyas.engine.settings.env import ActionKind, EnvConfig, ObservationPart
 from eyas.engine.world.maps import MAPS
 from eyas.learning.algorithm import Learner, phases_of
 from eyas.learning.checkpoint import RunFolder, Stateful, TrainingProgress
-from eyas.learning.config import ALGORITHMS, Stage, TrainConfig
+from eyas.learning.config import ALGORITHMS, NumberType, Stage, TrainConfig
 from eyas.learning.export import export
-from eyas.learning.network import NetworkShape, TrackingNetwork, torch_device
+from eyas.learning.network import (
+    NetworkShape,
+    TrackingNetwork,
+    fastest_numbers,
+    network_of,
+    torch_device,
+)
 from eyas.learning.rollout import Finished
 from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 
@@ -99,6 +105,9 @@ class _Run:
     def __init__(
         self, config: EyasConfig, files: RunFolder, say: Say, make_shards: MakeShards
     ) -> None:
+        if TrainConfig.of(config).number_type is NumberType.FASTEST:  # here, not in each shard
+            numbers = fastest_numbers(torch_device(TrainConfig.of(config).device))
+            config = updated(config, {"train": {"number_type": numbers.value}})
         self.config, self.files, self._say = config, files, say
         self._learned = learned = TrainConfig.of(config)
         self._make_shards = make_shards
@@ -106,7 +115,7 @@ class _Run:
         phases = phases_of(learned)
         # Before the network is made, because it sets PyTorch's threads.
         threads = TorchThreads(learned.parts)
-        self.network = TrackingNetwork(_shape(config), channels_last=learned.channels_last)
+        self.network = network_of(_shape(config), learned)
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
         if (first := learned.begin_from) is not None:
@@ -308,7 +317,7 @@ def evaluated(network: TrackingNetwork, config: EyasConfig) -> EvaluationScores:
     episodes, protocol = evaluation_episodes(config)
     env = config.env.model_copy(update={"mixture": ()})
     flight = BatchFlight(
-        episodes, protocol, _NetworkPolicy(deepcopy(network).cpu(), env), delay_from("0")
+        episodes, protocol, _NetworkPolicy(deepcopy(network).cpu().eval(), env), delay_from("0")
     )
     records = [record for ended in flight.fly() for record in ended]
     means = [

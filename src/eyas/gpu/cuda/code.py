@@ -12,15 +12,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import llvmlite
-
 from eyas.lanes.calls import CompiledCall
 from eyas.lanes.container import packed, unpacked
-from eyas.lanes.entry import LOCK
+from eyas.lanes.entry import LOCK, require_compiler
 from eyas.lanes.folder import kernel_folder, refusal
-from eyas.lanes.identity import identity, language_hash
+from eyas.lanes.identity import code_name, digest, entry_of, language_hash
 from eyas.lanes.interrupts import shielded
-from eyas.lanes.machine_code import code_name, digest, entry_of
 from eyas.lanes.shipped import wanted
 from eyas.lanes.syntax import syntax_of
 from eyas.lanes.trusted import read_trusted, touch, write_trusted
@@ -51,20 +48,20 @@ def ptx_code(
 ) -> Ptx:
     """Return the PTX of a kernel for bundles of some kinds."""
     function = call.function
-    name = code_name(function.__qualname__.rpartition(".")[2], identity(function))
-    stem = f"{name}-{digest((*kinds, str(threads)))}"
-    path = kernel_folder() / f"{stem}-{digest(_made_by())}{SUFFIX}"
+    name = code_name(function, (*kinds, str(threads)))
     keeps = function.__closure__ is None  # or what it depends on is not all in the name
+    if keeps and name in _shipped():
+        return _shipped()[name]
+    require_compiler(name.partition("-")[0])
+    path = kernel_folder() / f"{name}-{digest(_made_by())}{SUFFIX}"
     with LOCK, shielded():
         found = read_trusted(path) if keeps else None
         if found is not None:
             touch(path)
             return Ptx(found.header, bytes(found.pieces[0]))
-        if keeps and stem in _shipped():
-            return _shipped()[stem]
         from eyas.gpu.ptx import ptx_of  # numba, half a second
 
-        made = Ptx(entry_of(path), ptx_of(call, types, entry_of(path), threads=threads).encode())
+        made = Ptx(entry_of(name), ptx_of(call, types, entry_of(name), threads=threads).encode())
         if keeps and not refusal():
             write_trusted(path, made.entry, [made.text])
     return made
@@ -77,7 +74,7 @@ def _made_of() -> str:
 
 
 def _made_by() -> tuple[str, ...]:
-    versions = llvmlite.__version__, version("numba"), platform.python_version()
+    versions = version("llvmlite"), version("numba"), platform.python_version()
     return (_made_of(), *versions)
 
 
