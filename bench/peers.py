@@ -4,14 +4,14 @@
     python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
 
 All draw the same triangles: everything at its finest level of detail, textured, mip-mapped, lit and
-in haze. moderngl has a shadow map; panda3d's software renderer has no shadows. Eyas draws
-everything that it draws by default; a last line is for Eyas with its own choice of levels. All
-times include reading the pictures back.
+in haze. moderngl has a shadow map; panda3d's software renderer has no shadows, pybullet's no
+textures either. Eyas draws everything that it draws by default; a last line is for Eyas with its
+own choice of levels. Times are those of all threads on the processor, and include reading the
+pictures back.
 """
 
 import argparse
 import importlib
-import statistics
 import time
 from pathlib import Path
 from typing import Protocol
@@ -75,16 +75,17 @@ def main() -> None:
     city = load_city(arguments.views)
     assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
     drawers: list[Drawer] = [Ours(city, SIDE, "eyas", finest_renderer(assets))]
-    for module in ("peer_moderngl", "peer_panda3d"):
+    for module in ("peer_moderngl", "peer_panda3d", "peer_pybullet"):
         try:
             drawers.append(importlib.import_module(module).Peer(city, SIDE))
         except Exception as error:  # a missing driver may raise anything
             print(f"{module}: left out: {error}")
     drawers.append(Ours(city, SIDE, "eyas-levels (with levels of detail)", assets.renderer))
-    rates = _rates(drawers, arguments.seconds)
+    times = [1e6 * spent / arguments.views for spent in _times(drawers, arguments.seconds)]
     print(f"{arguments.views} pictures of {SIDE}x{SIDE}, {describe_machine()}")
-    for drawer, rate in zip(drawers, rates, strict=True):
-        print(f"{rate * arguments.views:8,.0f} /s  {rates[0] / rate:5.1f}x  {drawer.name}")
+    print("processor's time of a picture, and how often ours goes into it:")
+    for drawer, spent in zip(drawers, times, strict=True):
+        print(f"{spent:10,.0f} us  {spent / times[0]:7.1f}x  {drawer.name}")
     if arguments.pictures:
         arguments.pictures.mkdir(parents=True, exist_ok=True)
         for drawer in drawers:
@@ -93,19 +94,19 @@ def main() -> None:
             Image.fromarray(rgb).save(arguments.pictures / f"{drawer.name.split()[0]}.png")
 
 
-def _rates(drawers: list[Drawer], seconds: float) -> list[float]:
-    """Return calls per second of each, medians over turns of half a second."""
-    rates: list[list[float]] = [[] for _ in drawers]
+def _times(drawers: list[Drawer], seconds: float) -> list[float]:
+    """Return the shortest processor time of a call of each [s], of turns of half a second."""
+    shortest = [np.inf] * len(drawers)
     for drawer in drawers:
         drawer.draw()
     for _ in range(max(int(seconds / 0.5), 3)):
-        for drawer, found in zip(drawers, rates, strict=True):
-            start, calls = time.perf_counter(), 0
-            while (elapsed := time.perf_counter() - start) < 0.5:
+        for number, drawer in enumerate(drawers):
+            end = time.perf_counter() + 0.5
+            while time.perf_counter() < end:
+                start = time.process_time()
                 drawer.draw()
-                calls += 1
-            found.append(calls / elapsed)
-    return [statistics.median(found) for found in rates]
+                shortest[number] = min(shortest[number], time.process_time() - start)
+    return shortest
 
 
 if __name__ == "__main__":

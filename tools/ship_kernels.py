@@ -290,6 +290,8 @@ def contents_object(lines: list[str]) -> bytes:
     """Return an object file of the text by which a library tells its kernels."""
     text = "\n".join(lines).encode() + b"\0"
     source = f'@{CONTENTS} = constant [{len(text)} x i8] c"{llvm_text(text)}"'
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
     target = llvm.Target.from_triple(llvm.get_process_triple())
     return target.create_target_machine(reloc="pic").emit_object(llvm.parse_assembly(source))
 

@@ -17,6 +17,7 @@ from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.report.reproduce.model_card import model_card
 from eyas.benchmark.report.reproduce.run import markdown
 from eyas.benchmark.report.reproduce.tables import TABLES, expected
+from eyas.cli.bench.measurement import Measurement, measurement_cells
 from eyas.engine.exports.label import FIELDS, LabelField, label_schema
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -40,6 +41,18 @@ def _row(field: LabelField) -> str:
     return f"| {' | '.join(cells)} |"
 
 
+def speed_table() -> str:
+    """Return what `eyas bench --out bench/results.json` has measured."""
+    found = json.loads((DOCS.parent / "bench" / "results.json").read_text())
+    results = [Measurement(**result) for result in found["results"]]
+    rows = ["| measurement | median | CPU time of one | includes |", "|---|---|---|---|"]
+    for result in results:
+        name, value, unit, cpu, includes = measurement_cells(result)
+        rows.append(f"| {name} | {value} {unit} | {cpu} | {includes} |")
+    title = f"`eyas bench` of Eyas {found['eyas']} on {found['machine']}:"
+    return "\n".join([title, "", *rows])
+
+
 def made(page: str, table: str) -> str:
     """Return a page with its made part replaced."""
     head, rest = page.split(BEGIN)
@@ -51,7 +64,9 @@ def documents() -> dict[Path, str]:
     labels = DOCS / "labels.md"
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
     plan, leaders = DOCS / "maps" / "plan.md", DOCS / "leaderboard.md"
+    speed = DOCS / "speed.md"
     return {
+        speed: made(speed.read_text(), speed_table()),
         leaders: made(leaders.read_text(), standings()),
         labels: made(labels.read_text(), label_table()),
         DOCS / "labels.schema.json": schema,

@@ -1,12 +1,13 @@
 """`eyas bench` from end to end: it measures, prints and writes. How fast is not asked here."""
 
 import json
+import re
 import subprocess
 import sys
 
 import pytest
 
-UNITS = {"s", "/s", "steps/s", "ms", "MiB"}
+UNITS = {"s", "/s", "steps/s", "ms", "MiB", "decisions/s"}
 
 
 @pytest.mark.slow
@@ -20,6 +21,8 @@ def test_bench_prints_and_writes_what_it_has_measured(tmp_path):
     assert len(set(names)) == len(names) >= 17
     starts = {name.split()[0] for name in names}
     assert starts >= {"first", "pictures", "steps,", "reset", "peak", "textures"}
+    learning = next(row for row in document["results"] if row["name"].startswith("learning"))
+    assert 95 <= sum(map(int, re.findall(r" (\d+)%", learning["includes"]))) <= 105
     for words in ("48x48, 64 views", "night", "snow", "4 samples", "horizon", "1280x720"):
         assert any(words in name for name in names), words
     for result in document["results"]:

@@ -164,13 +164,18 @@ def measurement_table(results: list[Measurement], machine: str) -> Table:
         table.add_column(title, justify="right")
     table.add_column("includes")
     for result in results:
-        digits = 0 if result.value >= 100 else 3 if result.value < 10 else 1
         counts = [getattr(result, field) for field in shown.values()]
         cells = ("" if count is None else f"{count:,.0f}" for count in counts)
-        value = f"{result.value:,.{digits}f}"
-        cpu = _duration(result.cpu_microseconds)
-        table.add_row(result.name, value, result.unit, cpu, *cells, result.includes)
+        *first, includes = measurement_cells(result)
+        table.add_row(*first, *cells, includes)
     return table
+
+
+def measurement_cells(result: Measurement) -> tuple[str, str, str, str, str]:
+    """Return name, median, unit, processor time of one, and what is included, as texts."""
+    digits = 0 if result.value >= 100 else 3 if result.value < 10 else 1
+    value, cpu = f"{result.value:,.{digits}f}", _duration(result.cpu_microseconds)
+    return result.name, value, result.unit, cpu, result.includes
 
 
 def _duration(microseconds: float | None) -> str:

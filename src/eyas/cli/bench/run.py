@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import asdict
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,8 @@ from eyas.cli.bench.pictures import (
     stage_table,
 )
 from eyas.engine.core.files import write_atomic
+from eyas.engine.core.identity.build import this_build
+from eyas.engine.core.installed import installed_version
 from eyas.engine.core.machine import describe_machine, peak_memory
 from eyas.engine.core.scratch import scratch
 from eyas.engine.sim.build import build_simulation
@@ -100,6 +103,7 @@ def run(
         console.print(camera_table(costs))
     if json_path is not None:
         document: dict[str, object] = {"machine": machine}
+        document["eyas"] = f"{installed_version()} (build {this_build().id})"
         document["results"] = [asdict(result) for result in results]
         document["stages"] = [asdict(time_) for time_ in spent]
         document["camera"] = [asdict(cost) for cost in costs]
@@ -123,6 +127,10 @@ def _measurements(seconds: float, *, cold: bool) -> Iterator[Measurement]:
     yield _textures()
     for pictures in OTHER_WEATHERS:
         yield measure_pictures(pictures, seconds)
+    if find_spec("torch") is not None:
+        from eyas.cli.bench.learning import measure_learning  # PyTorch
+
+        yield measure_learning(max(round(3.0 * seconds), 2))
 
 
 def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
