@@ -29,7 +29,7 @@ from eyas.gpu.cuda import code as ptx
 from eyas.lanes import CompiledCall, modules
 from eyas.lanes.identity import entry_of, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
-from eyas.lanes.shipped import CONTENTS, LEVEL, LIBRARY, VARIABLE, WIDE_LIBRARY, KernelLibrary
+from eyas.lanes.shipped import CONTENTS, LEVELS, VARIABLE, WIDE, KernelLibrary
 from eyas.lanes.trusted import read_trusted
 
 USES_ALL = """
@@ -124,6 +124,11 @@ with tempfile.TemporaryDirectory() as folder:
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+LEVEL, OTHER_LEVEL = LEVELS["x86_64"], LEVELS["aarch64"]
+
+MEMORY = {"memcpy", "memmove", "memset"}
+"""What LLVM itself calls to copy and to clear memory; there is only one result."""
+
 DRAWING = "draw_views"
 """The function whose modules ship: to make them takes longer than those of all others together. Its
 code also ships for AVX-512."""
@@ -134,7 +139,7 @@ MAKES_WIDE = (
     """
 import os
 from eyas.lanes import calls, entry, machine_code
-from eyas.lanes.shipped import WIDE_LEVEL
+from eyas.lanes.shipped import WIDE
 
 function_of, loaded = calls.ParallelCall._function, entry.load
 
@@ -149,7 +154,7 @@ def made(self, bundles):
     if self.function.__name__ != DRAWING:
         return function_of(self, bundles)
     level = os.environ["NUMBA_CPU_NAME"]
-    named(WIDE_LEVEL)
+    named(WIDE.name)
     entry.load = lambda code: 1
     function_of(self, bundles)
     entry.load = loaded
@@ -162,6 +167,44 @@ calls.ParallelCall._function = made
 """ + USES_ALL
 )
 """A program that makes what draws for AVX-512, and does not run it: this processor may lack it."""
+
+
+MAKES_OTHER = (
+    """
+import os
+import re
+from functools import partial
+from pathlib import Path
+import llvmlite.binding as llvm
+from eyas.lanes import compilation, machine_code
+
+TRIPLE = "aarch64-unknown-linux-gnu"
+os.cpu_count = lambda: 1  # or a second process compiles what draws
+native, native_machine = compilation.optimised, machine_code._machine
+llvm.initialize_all_targets()
+llvm.initialize_all_asmprinters()
+machine = llvm.Target.from_triple(TRIPLE).create_target_machine(opt=3, reloc="pic")
+
+
+def both(module, entry):
+    text = re.sub('target triple = ".*"', f'target triple = "{TRIPLE}"', str(module))
+    layout = f'target datalayout = "{machine.target_data}"'
+    text = re.sub('target datalayout = ".*"', layout, text)
+    text = re.sub('"target-(cpu|features)"="[^"]*"', "", text)
+    machine_code._machine = lambda: machine
+    made = native(llvm.parse_assembly(text), entry)
+    machine_code._machine = native_machine
+    folder = Path(os.environ["EYAS_CACHE_DIR"], "other")
+    folder.mkdir(exist_ok=True)
+    machine_code.write_code(folder / f"{entry}{machine_code.SUFFIX}", made)
+    return native(module, entry)
+
+
+compilation.optimised = both
+"""
+    + USES_ALL
+)
+"""A program that uses every kernel, and makes each for AArch64, too, on x86-64."""
 
 
 USES_DEVICE = """
@@ -220,7 +263,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder to write into")
     options = parser.parse_args()
     if options.check:
-        ships = KernelLibrary.opened(LIBRARY).names
+        ships = KernelLibrary.opened(LEVEL.library).names
         raise SystemExit(missing(ships) or not_wide(ships) or compiled())
 
     def place(archive: Path) -> Path:
@@ -231,15 +274,19 @@ def main() -> None:
         return options.out / archive.name
 
     with tempfile.TemporaryDirectory() as cache:
-        variables = {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
-        use_all(cache, variables)
+        variables = {"NUMBA_CPU_NAME": LEVEL.name, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
+        use_all(cache, variables, MAKES_OTHER)
         folder = Path(cache, "kernels", language_hash())
         files = set(folder.glob(f"*{SUFFIX}"))
         codes = codes_in(files)
-        link(codes, place(LIBRARY))
+        link(codes, place(LEVEL.library))
+        others = {
+            name: read_code(Path(cache, "other", f"{entry_of(name)}{SUFFIX}")) for name in codes
+        }
+        link(others, place(OTHER_LEVEL.library), "aarch64-linux-gnu-")
         place(modules.ARCHIVE).write_bytes(modules.archive_of(folder, DRAWING))
         use_all(cache, variables, MAKES_WIDE)
-        link(codes_in(set(folder.glob(f"*{SUFFIX}")) - files), place(WIDE_LIBRARY))
+        link(codes_in(set(folder.glob(f"*{SUFFIX}")) - files), place(WIDE.library))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
         place(ptx.ARCHIVE).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
@@ -268,31 +315,42 @@ def codes_in(files: Iterable[Path]) -> dict[str, MachineCode]:
     return {name: code for name, code in codes.items() if code is not None}
 
 
-def link(codes: Mapping[str, MachineCode], library: Path) -> None:
-    """Link machine code, by the names by which it is found, into a shared library."""
+def link(codes: Mapping[str, MachineCode], library: Path, tools: str = "") -> None:
+    """Link machine code, by the names by which it is found, into a shared library.
+
+    Args:
+        codes: The machine code.
+        library: The library, written completely or not at all.
+        tools: Prefix of the names of GNU's binary tools for these processors.
+    """
     with tempfile.TemporaryDirectory() as folder:
         objects = {entry_of(name): bytes(code.code) for name, code in sorted(codes.items())}
-        objects[CONTENTS] = contents_object([language_hash(), *sorted(codes)])
+        objects[CONTENTS] = contents_object([language_hash(), *sorted(codes)], tools)
         for name, code in objects.items():
             Path(folder, f"{name}.o").write_bytes(code)
         entries = "".join(f"{name};" for name in objects)
         Path(folder, "exports").write_text(f"{{global: {entries} local: *;}};")
         command = [
-            *("ld", "-shared", "-z", "defs", "--gc-sections", "--strip-all", "--build-id=none"),
-            *("--version-script=exports", "-o", str(library.resolve())),
+            *(f"{tools}ld", "-shared", "--gc-sections", "--strip-all", "--build-id=none"),
+            *("--version-script=exports", "-o", "made"),
             *(f"{name}.o" for name in objects),
         ]
         subprocess.run(command, cwd=folder, check=True)
-    library.chmod(0o644)
+        listed = [f"{tools}nm", "--dynamic", "--undefined-only", "--format=posix", "made"]
+        lines = subprocess.run(listed, cwd=folder, check=True, capture_output=True, text=True)
+        outside = {line.split()[0] for line in lines.stdout.splitlines()} - MEMORY
+        if outside:
+            raise SystemExit(f"{library}: calls {', '.join(sorted(outside))} outside")
+        library.write_bytes(Path(folder, "made").read_bytes())
 
 
-def contents_object(lines: list[str]) -> bytes:
+def contents_object(lines: list[str], tools: str) -> bytes:
     """Return an object file of the text by which a library tells its kernels."""
     text = "\n".join(lines).encode() + b"\0"
     source = f'@{CONTENTS} = constant [{len(text)} x i8] c"{llvm_text(text)}"'
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-    target = llvm.Target.from_triple(llvm.get_process_triple())
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    target = llvm.Target.from_triple(tools.rstrip("-") or llvm.get_process_triple())
     return target.create_target_machine(reloc="pic").emit_object(llvm.parse_assembly(source))
 
 
@@ -316,13 +374,13 @@ def missing(names: Iterable[str]) -> str | None:
     """Return which kernels of the package are not among those of a library; None if all are."""
     ships = {name.partition("-")[0] for name in names}
     lacks = sorted(kernels() - ships)
-    return f"not in {LIBRARY}: {', '.join(lacks)}" if lacks else None
+    return f"not in {LEVEL.library}: {', '.join(lacks)}" if lacks else None
 
 
 def not_wide(names: Iterable[str]) -> str | None:
     """Return what draws and does not ship for AVX-512; None if all does."""
-    lacks = set(filter(draws, names)) - KernelLibrary.opened(WIDE_LIBRARY).names
-    return f"not in {WIDE_LIBRARY}: {', '.join(sorted(lacks))}" if lacks else None
+    lacks = set(filter(draws, names)) - KernelLibrary.opened(WIDE.library).names
+    return f"not in {WIDE.library}: {', '.join(sorted(lacks))}" if lacks else None
 
 
 def draws(name: str) -> bool:

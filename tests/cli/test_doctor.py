@@ -12,6 +12,8 @@ from eyas.cli.main import main
 from eyas.gpu.cuda import gpu_line
 from eyas.lanes import shipped
 
+V3 = shipped.LEVELS["x86_64"]
+
 
 def told(monkeypatch, capsys, *options):
     monkeypatch.setattr(sys, "argv", ["eyas", "doctor", *options])
@@ -64,12 +66,12 @@ def test_the_cache_and_who_has_moved_it(monkeypatch, tmp_path):
 def test_why_shipped_kernels_do_not_serve(monkeypatch, tmp_path):
     for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES", shipped.VARIABLE):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(shipped, "features", lambda: shipped.needed - {"avx2"})
+    monkeypatch.setattr(shipped, "features", lambda: V3.needs - {"avx2"})
     assert "lacks avx2: kernels are compiled" in doctor.facts()["shipped kernels"]
-    monkeypatch.setattr(shipped, "features", lambda: shipped.needed)
+    monkeypatch.setattr(shipped, "features", lambda: V3.needs)
     monkeypatch.setattr(platform, "machine", lambda: "x86_64")
     monkeypatch.setattr(shipped.sys, "platform", "linux")
-    monkeypatch.setattr(doctor, "LIBRARY", tmp_path / "none.so")
+    monkeypatch.setattr(shipped, "FOLDER", tmp_path)
     assert "damaged or missing" in doctor.facts()["shipped kernels"]
     monkeypatch.setenv("EYAS_SHIPPED_CODE", "0")
     assert doctor.facts()["shipped kernels"].startswith("not used, by EYAS_SHIPPED_CODE=0")

@@ -20,14 +20,12 @@ from eyas.lanes.entry import EXTRA
 from eyas.lanes.folder import refusal
 from eyas.lanes.identity import code_name
 from eyas.lanes.shipped import (
-    LEVEL,
-    LIBRARY,
-    WIDE_LEVEL,
+    LEVELS,
+    WIDE,
     KernelLibrary,
-    features,
+    draws_wide,
     is_shipped,
     misfit,
-    wide_needed,
 )
 from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
@@ -131,12 +129,13 @@ def _shipped() -> str:
         compiled = f"kernels cannot be compiled without: pip install 'eyas[{EXTRA}]'"
     if why := misfit():
         return f"{why}: {compiled}"
+    level = LEVELS[platform.machine()]
     try:
-        kernels = len(KernelLibrary.opened(LIBRARY).names)
+        kernels = len(KernelLibrary.opened(level.library).names)
     except (OSError, ValueError) as error:
-        return f"{LIBRARY}: damaged or missing ({error}): {compiled}"
-    drawn = f" (what draws: {WIDE_LEVEL})" if wide_needed <= features() else ""
-    said = f"{kernels} for {LEVEL}{drawn}, which serve this machine"
+        return f"{level.library}: damaged or missing ({error}): {compiled}"
+    drawn = f" (what draws: {WIDE.name})" if draws_wide() else ""
+    said = f"{kernels} for {level.name}{drawn}, which serve this machine"
     if not is_shipped(code_name(draw_views.function)):
         return f"{said}, but what draws has changed since: {compiled}"
     more = "kernels of your own and rare settings are compiled" if compiles else compiled

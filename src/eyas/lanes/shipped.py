@@ -1,8 +1,8 @@
 """Machine code that comes with the package: neither numba nor LLVM is needed where it serves.
 
-A shared library for a level of x86-64, made by `tools/ship_kernels.py`; each kernel is found in it
-by what it computes (`eyas.lanes.identity`): one that was changed is compiled, as all are on other
-processors. Kernels call nothing outside, and no operation is fused or reordered, so the code
+A shared library for each kind of machine, made by `tools/ship_kernels.py`; each kernel is found in
+it by what it computes (`eyas.lanes.identity`): one that was changed is compiled, as all are on
+other processors. Kernels call nothing outside, and no operation is fused or reordered, so the code
 computes the same bytes as code compiled for the very machine. What draws ships for AVX-512, too: it
 is faster there; nothing else is.
 """
@@ -23,22 +23,31 @@ from eyas.lanes.trusted import OWNER
 
 _LOG = logging.getLogger(OWNER)
 
-LEVEL = "x86-64-v3"  # The level of the x86-64 ABI for which code is shipped, as LLVM names it
 
-needed = frozenset(
-    "abm avx avx2 bmi1 bmi2 cx16 f16c fma lahf_lm movbe pni popcnt sse4_1 sse4_2 ssse3".split()
-)
-"""What a processor needs for it, as Linux names it."""
+class Level(NamedTuple):
+    """Processors for which code ships."""
 
-LIBRARY = Path(__file__).parent / "shipped" / f"{LEVEL}.so"
+    name: str  # As LLVM names it
+    needs: frozenset[str] = frozenset()  # What a processor must have, as Linux names it
 
-WIDE_LEVEL = "x86-64-v4"
-"""The level for which only what draws is shipped: masks and twice the registers of AVX-512."""
+    @property
+    def library(self) -> Path:
+        """The library of its kernels."""
+        return FOLDER / f"{self.name}.so"
 
-wide_needed = needed | {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}
-"""What a processor needs for it."""
 
-WIDE_LIBRARY = LIBRARY.with_name(f"{WIDE_LEVEL}.so")
+FOLDER = Path(__file__).parent / "shipped"
+
+_V3 = "abm avx avx2 bmi1 bmi2 cx16 f16c fma lahf_lm movbe pni popcnt sse4_1 sse4_2 ssse3"
+
+LEVELS = {
+    "x86_64": Level("x86-64-v3", frozenset(_V3.split())),
+    "aarch64": Level("armv8-a"),
+}
+"""The level of each machine."""
+
+WIDE = Level("x86-64-v4", frozenset("avx512f avx512bw avx512cd avx512dq avx512vl".split()))
+"""The level for which only what draws ships: masks and twice the registers of AVX-512."""
 
 CONTENTS = f"{OWNER}_kernels"
 """Name of a text in a library that ends with a zero: in its first line the hash of the language of
@@ -94,8 +103,8 @@ def _shipped() -> dict[str, KernelLibrary]:
         )
     if misfit():
         return {}
-    kernels = _kernels(LIBRARY)
-    return kernels | _kernels(WIDE_LIBRARY) if wide_needed <= features() else kernels
+    kernels = _kernels(LEVELS[platform.machine()].library)
+    return kernels | _kernels(WIDE.library) if draws_wide() else kernels
 
 
 def _kernels(path: Path) -> dict[str, KernelLibrary]:
@@ -118,10 +127,16 @@ def misfit() -> str:
     if named or not wanted():
         variable = min(named, default=VARIABLE)
         return f"not used, by {variable}={os.environ[variable]}"
-    if sys.platform != "linux" or platform.machine() != "x86_64":
-        return "for Linux on x86_64 only"
-    lacking = sorted(needed - features())
-    return f"for {LEVEL}; this processor lacks {', '.join(lacking)}" if lacking else ""
+    if sys.platform != "linux" or platform.machine() not in LEVELS:
+        return f"for Linux on {' and '.join(LEVELS)} only"
+    level = LEVELS[platform.machine()]
+    lacking = sorted(level.needs - features())
+    return f"for {level.name}; this processor lacks {', '.join(lacking)}" if lacking else ""
+
+
+def draws_wide() -> bool:
+    """Return whether this processor draws with code of its own, where what ships serves it."""
+    return platform.machine() == "x86_64" and WIDE.needs <= features()
 
 
 @cache

@@ -10,7 +10,7 @@ import pytest
 
 from eyas.lanes.folder import kernel_folder
 from eyas.lanes.machine_code import SUFFIX, read_code
-from eyas.lanes.shipped import LIBRARY, WIDE_LIBRARY, KernelLibrary, misfit
+from eyas.lanes.shipped import LEVELS, WIDE, KernelLibrary
 
 TOOL = Path(__file__).parents[3] / "tools" / "ship_kernels.py"
 
@@ -51,8 +51,8 @@ def test_no_kernel_calls_a_function_of_the_c_library():
     subprocess.run([sys.executable, "-c", program["USES_ALL"]], check=True)
     codes = {file.name: read_code(file) for file in kernel_folder().glob(f"*{SUFFIX}")}
     codes = {name: code for name, code in codes.items() if _kernel(name) in program["kernels"]()}
-    libraries = [path for path in (LIBRARY, WIDE_LIBRARY) if not misfit()]
-    ships = {name for path in libraries for name in KernelLibrary.opened(path).names}
+    libraries = [level.library for level in (*LEVELS.values(), WIDE)]
+    ships = KernelLibrary.opened(LEVELS["x86_64"].library).names
     found = set(map(_kernel, (*codes, *ships)))
     assert program["kernels"]() - BAKING <= found  # none of a test's own
     needs = {name: outside(bytes(code.code)) for name, code in codes.items()}
