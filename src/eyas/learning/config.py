@@ -263,7 +263,7 @@ class TrainConfig(Section):
     """Whether pictures and weights have their channels last in memory: a third faster on
     processors with AVX2, with other last digits."""
     number_type: NumberType = NumberType.FLOAT32
-    """Numbers of the network while it learns. `bfloat16`: half of the time on processors that
+    """Numbers of the network while it learns. `bfloat16`: less time on processors that
     multiply these (AMX, AVX512-BF16), half as much again on others. `fastest`: bfloat16 where the
     device multiplies it, else float32; other machines then learn other networks."""
     device: DeviceName | None = None
