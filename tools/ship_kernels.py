@@ -1,5 +1,4 @@
-"""Make what ships in the package: machine code (`eyas.lanes.shipped`), modules of functions
-(`eyas.lanes.modules`), and PTX (`eyas.gpu.cuda.code`).
+"""Make what ships in the package: machine code (`eyas.lanes.shipped`), PTX (`eyas.gpu.cuda.code`).
 
     python tools/ship_kernels.py              # some minutes; commit what it changes
     python tools/ship_kernels.py --check      # is the code in the package that of these sources?
@@ -26,7 +25,7 @@ import eyas
 from eyas.engine.sim.step import step_of
 from eyas.engine.trackers.drone import DRONE
 from eyas.gpu.cuda import code as ptx
-from eyas.lanes import CompiledCall, modules
+from eyas.lanes import CompiledCall
 from eyas.lanes.identity import entry_of, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
 from eyas.lanes.shipped import CONTENTS, LEVELS, VARIABLE, WIDE, KernelLibrary
@@ -130,8 +129,7 @@ MEMORY = {"memcpy", "memmove", "memset"}
 """What LLVM itself calls to copy and to clear memory; there is only one result."""
 
 DRAWING = "draw_views"
-"""The function whose modules ship: to make them takes longer than those of all others together. Its
-code also ships for AVX-512."""
+"""The function whose code also ships for AVX-512."""
 
 
 MAKES_WIDE = (
@@ -284,7 +282,6 @@ def main() -> None:
             name: read_code(Path(cache, "other", f"{entry_of(name)}{SUFFIX}")) for name in codes
         }
         link(others, place(OTHER_LEVEL.library), "aarch64-linux-gnu-")
-        place(modules.ARCHIVE).write_bytes(modules.archive_of(folder, DRAWING))
         use_all(cache, variables, MAKES_WIDE)
         link(codes_in(set(folder.glob(f"*{SUFFIX}")) - files), place(WIDE.library))
     with tempfile.TemporaryDirectory() as cache:

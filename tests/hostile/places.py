@@ -155,7 +155,6 @@ OWN = {
     "lanes.container:unpacked": _CACHE,
     "gpu.cuda.driver:gpu_line": _PACKAGE,
     "gpu.cuda.code:_shipped": _PACKAGE,
-    "lanes.modules:_shipped": _PACKAGE,
     "engine.mesh.shipped:_opened": _PACKAGE,
     "engine.mesh.shipped:read_block": _PACKAGE,
     "maps.textures.shipped:build_textures": _PACKAGE,

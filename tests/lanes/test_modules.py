@@ -125,38 +125,6 @@ def test_modules_that_others_may_have_written_are_not_used(compiled, tmp_path):
     assert compiled()[1] == ["both", "ordered", "scaled", "work"]
 
 
-@pytest.fixture
-def ships(compiled, tmp_path, monkeypatch):
-    """An archive with the modules of `work`; nothing is in the cache."""
-    compiled()
-    archive = tmp_path / "modules.xz"
-    archive.write_bytes(modules.archive_of(tmp_path / "cache", "work"))
-    for file in (tmp_path / "cache").iterdir():
-        file.unlink()
-    monkeypatch.setattr(modules, "ARCHIVE", archive)
-    modules._shipped.cache_clear()
-    yield archive
-    modules._shipped.cache_clear()
-
-
-def test_an_edit_compiles_what_it_touches_where_the_other_modules_ship(ships, compiled):
-    assert compiled(SOURCE.replace("2.0", "10.0")) == (28.0, ["both", "scaled", "work"])
-    assert compiled() == (4.0, [])
-
-
-def test_a_damaged_archive_of_modules_is_told_and_not_used(ships, compiled, caplog):
-    ships.write_bytes(ships.read_bytes()[:-9])
-    modules._shipped.cache_clear()
-    assert compiled() == (4.0, ["both", "ordered", "scaled", "work"])
-    assert [record.getMessage().partition(":")[0] for record in caplog.records] == [str(ships)]
-
-
-def test_who_wants_no_shipped_code_gets_no_shipped_modules(ships, compiled, monkeypatch):
-    monkeypatch.setenv("EYAS_SHIPPED_CODE", "0")
-    modules._shipped.cache_clear()
-    assert compiled() == (4.0, ["both", "ordered", "scaled", "work"])
-
-
 @pytest.mark.parametrize(
     "kind",
     [

@@ -6,13 +6,9 @@ what its function computes (`eyas.lanes.identity`) and by the types of its argum
 """
 
 import itertools
-import logging
-import lzma
 import sys
 from collections.abc import Callable
-from functools import cache
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import llvmlite
@@ -20,24 +16,16 @@ import llvmlite.binding as llvm
 import numba
 from numba.core.codegen import JITCodeLibrary
 
-from eyas.lanes.container import Contents, packed, unpacked
 from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import digest, language_hash
 from eyas.lanes.machine_code import cpu
-from eyas.lanes.shipped import wanted
 from eyas.lanes.targets import target_name
-from eyas.lanes.trusted import OWNER, read_trusted, touch, write_trusted
+from eyas.lanes.trusted import read_trusted, touch, write_trusted
 from eyas.lanes.vector.kinds import Lanes
 
 SUFFIX = ".eym"  # End of the names of files of modules
 
 _NUMBERS = itertools.count()  # Numbers of the modules that are not kept
-
-_LOG = logging.getLogger(OWNER)
-
-ARCHIVE = Path(__file__).parent / "shipped" / "modules.xz"
-"""Modules that come with the package, so that the first edit of a kernel costs no more than later
-ones. They serve one version of numba and llvmlite, that of the release."""
 
 _LOADED: dict[str, "Module"] = {}  # Modules read or made by this process, by name
 
@@ -95,7 +83,7 @@ def kept_module(name: str) -> Module | None:
     """Return a module that is kept, with those of all that it calls; None if one is missing."""
     if name not in _LOADED:
         path = kernel_folder() / f"{name}{SUFFIX}"
-        found = read_trusted(path) or _shipped().get(name)
+        found = read_trusted(path)
         if found is None:
             return None
         symbol, names, returns = found.header
@@ -187,41 +175,6 @@ def _type_of(told: Any) -> Any:  # noqa: ANN401  # from JSON; numba's types have
         return numba.types.Array(_type_of(dtype), dimensions, layout, readonly, aligned=aligned)
     of = getattr(import_module(told[0]), told[1])
     return numba.types.BaseTuple.from_types(tuple(map(_type_of, told[2:])), of)
-
-
-@cache
-def _shipped() -> dict[str, Contents]:
-    """Return the modules that come with the package, by name."""
-    if not wanted() or not ARCHIVE.exists():
-        return {}
-    try:
-        table, pieces = unpacked(lzma.decompress(ARCHIVE.read_bytes()))
-    except (OSError, ValueError, lzma.LZMAError) as error:
-        _LOG.warning("%s: damaged or unreadable, so kernels are compiled: %s", ARCHIVE, error)
-        return {}
-    return {
-        name: Contents(header, [piece])
-        for (name, *header), piece in zip(table, pieces, strict=True)
-    }
-
-
-def archive_of(
-    folder: Path,  # Where they are kept
-    function: str,  # Name of the compiled function whose modules they are, with all that it calls
-) -> bytes:
-    """Return the content of an archive of modules."""
-    left = [path.stem for path in folder.glob(f"{function}-*{SUFFIX}")]
-    assert left, f"{function}: no module of it is kept in {folder}"
-    found: dict[str, Contents] = {}
-    while left:
-        contents = read_trusted(folder / f"{(name := left.pop())}{SUFFIX}")
-        assert contents is not None, name
-        found[name] = contents
-        left += [called for called in contents.header[1] if called not in found]
-    names = sorted(found)
-    table = [[name, *found[name].header] for name in names]
-    content = b"".join(packed(table, [found[name].pieces[0] for name in names]))
-    return lzma.compress(content, preset=lzma.PRESET_EXTREME)
 
 
 def linked(module: Module, into: llvm.ModuleRef | None = None) -> llvm.ModuleRef:
