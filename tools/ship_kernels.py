@@ -5,8 +5,7 @@
     python tools/ship_kernels.py --out /tmp/a # elsewhere, to be compared: the same versions of
                                               # numba, llvmlite and Python make the same bytes
 
-A kernel that was changed since is passed over and compiled. So the archive is made before a
-release, not with each change.
+A kernel that was changed since is passed over and compiled, where numba is installed.
 """
 
 import argparse
