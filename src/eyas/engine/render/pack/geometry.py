@@ -117,7 +117,7 @@ def _packed_chunks(scene: Scene) -> tuple[PackedMeshes, NDArray[np.float32]]:
     size = _detail_sizes(scene, corners)
     order = np.lexsort((-size, key))
     starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
-    ranges, boxes = [], []
+    boxes = []
     for first, last in itertools.pairwise(starts):
         index = order[first:last]
         part = Mesh(
@@ -129,9 +129,9 @@ def _packed_chunks(scene: Scene) -> tuple[PackedMeshes, NDArray[np.float32]]:
             palette=mesh.palette,
         )
         objects = scene.static_object[index].astype(np.int32)
-        ranges.append(pool.add(part, objects, size[index]))
+        pool.add(part, objects, size[index])
         boxes.append(box_of(mesh.positions[part.triangles].reshape(-1, 3)))
-    return pool.packed(ranges), np.array(boxes, np.float32).reshape(-1, 6)
+    return pool.packed(), np.array(boxes, np.float32).reshape(-1, 6)
 
 
 def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:

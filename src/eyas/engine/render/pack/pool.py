@@ -1,6 +1,7 @@
 """Meshes packed one after the other, wherever in a `Geometry` they come to lie."""
 
-from collections.abc import Iterable
+import itertools
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,10 +19,14 @@ from eyas.engine.render.pack.clusters import (
     by_clusters,
     cluster_order,
     clusters_of,
-    filled_up,
+    slots_of,
 )
 from eyas.engine.render.pack.triangles import gradients, solid_triangles
 from eyas.engine.state.mesh import Material, Mesh, Surface
+
+_AT_ONCE = 16_384
+"""Triangles that are packed together: many, as most meshes are tiny; not all, as that takes memory.
+"""
 
 _Palette = tuple[tuple[Material, ...], NDArray[np.int32], NDArray[np.bool_]]
 """Materials, their indices in the palette of the pool, and whether they are of leaves."""
@@ -58,10 +63,11 @@ def packed_prototypes(prototypes: Iterable[tuple[Mesh, ...]]) -> Prototypes:
     """Pack meshes with their levels of detail."""
     all_levels = tuple(prototypes)
     pool = Pool()
-    ranges = [pool.add(mesh, None) for levels in all_levels for mesh in levels]
+    for mesh in itertools.chain.from_iterable(all_levels):
+        pool.add(mesh, None)
     points = [np.concatenate([mesh.positions for mesh in levels]) for levels in all_levels]
     return Prototypes(
-        meshes=pool.packed(ranges),
+        meshes=pool.packed(),
         levels=np.array([len(levels) for levels in all_levels], np.int32),
         box=np.array([box_of(each) for each in points], np.float32).reshape(-1, 6),
         sphere=np.array([sphere_of(each) for each in points], np.float32).reshape(-1, 4),
@@ -73,38 +79,59 @@ def joined(packs: Iterable[PackedMeshes]) -> PackedMeshes:
     """Return packs one after the other, with one palette; what fills clusters up has its first."""
     every = tuple(packs)
     palette: dict[Material, int] = {}
-    material, ranges, triangles, bounds = [], [], 0, 0
+    materials = []
     for pack in every:
         index = [palette.setdefault(one, len(palette)) for one in pack.palette]
-        material.append(np.array([*index, 0], np.int32)[pack.material])
-        ranges.append(pack.ranges + np.array([triangles, triangles, bounds], np.int32))
-        triangles += len(pack.material)
-        bounds += len(pack.bounds)
-    return PackedMeshes(
-        clusters=np.concatenate([pack.clusters for pack in every]),
-        bounds=np.concatenate([pack.bounds for pack in every]),
-        corner_uvs=np.concatenate([pack.corner_uvs for pack in every]),
-        slopes=np.concatenate([pack.slopes for pack in every]),
-        material=np.concatenate(material),
-        objects=np.concatenate([pack.objects for pack in every]),
-        ranges=np.concatenate(ranges),
-        palette=tuple(palette),
+        materials.append(np.array([*index, 0], np.int32)[pack.material])
+    return _side_by_side(every, materials, tuple(palette))
+
+
+def _side_by_side(
+    packs: Sequence[PackedMeshes],
+    materials: Sequence[NDArray[np.int32]],  # Of each pack, indices into one palette
+    palette: tuple[Material, ...],
+) -> PackedMeshes:
+    """Return packs one after the other."""
+    triangles, rows = (
+        np.cumsum([0, *(len(getattr(pack, name)) for pack in packs)])
+        for name in ("material", "bounds")
     )
+    ranges = [
+        pack.ranges + np.array([first, first, row], np.int32)
+        for pack, first, row in zip(packs, triangles[:-1], rows[:-1], strict=True)
+    ]
+    return PackedMeshes(
+        clusters=np.concatenate([_NONE.clusters, *(pack.clusters for pack in packs)]),
+        bounds=np.concatenate([_NONE.bounds, *(pack.bounds for pack in packs)]),
+        corner_uvs=np.concatenate([_NONE.corner_uvs, *(pack.corner_uvs for pack in packs)]),
+        slopes=np.concatenate([_NONE.slopes, *(pack.slopes for pack in packs)]),
+        material=np.concatenate([_NONE.material, *materials]),
+        objects=np.concatenate([_NONE.objects, *(pack.objects for pack in packs)]),
+        ranges=np.concatenate([_NONE.ranges, *ranges]),
+        palette=palette,
+    )
+
+
+_NONE = PackedMeshes(
+    clusters=np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32),
+    bounds=np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32),
+    corner_uvs=np.zeros((0, UV_ROWS, CLUSTER), np.float32),
+    slopes=np.zeros((0, 24), np.float32),
+    material=np.zeros(0, np.int32),
+    objects=np.zeros(0, np.int32),
+    ranges=np.zeros((0, 3), np.int32),
+    palette=(),
+)
 
 
 class Pool:
     """All triangles, one mesh after the other, with one palette."""
 
     def __init__(self) -> None:
-        self.palette: dict[Material, int] = {}
-        self.clusters: list[NDArray[np.float32]] = []
-        self.bounds: list[NDArray[np.float32]] = []
-        self.corner_uvs: list[NDArray[np.float32]] = []
-        self.gradients: list[NDArray[np.float32]] = []
-        self.materials: list[NDArray[np.int32]] = []
-        self.objects: list[NDArray[np.int32]] = []
-        self._cluster_count = 0
-        self._bounds_count = 0
+        self._palette: dict[Material, int] = {}
+        self._packs: list[PackedMeshes] = []
+        self._waiting: list[tuple[Mesh, NDArray[np.int32], NDArray[np.float32]]] = []
+        self._triangles = 0  # Of those that wait
         self._last: _Palette = ((), np.zeros(0, np.int32), np.zeros(0, np.bool_))
 
     def add(
@@ -112,59 +139,75 @@ class Pool:
         mesh: Mesh,
         objects: NDArray[np.int32] | None,
         sizes: NDArray[np.float32] | None = None,
-    ) -> tuple[int, int, int]:
-        """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
-        keep = np.flatnonzero(solid_triangles(mesh))
-        if len(keep) == 0:  # the level of detail of what is too small to be seen
-            first = CLUSTER * self._cluster_count
-            return first, first, self._bounds_count
-        lookup, leafy = self._looked_up(mesh.palette)
-        size = np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep]
-        order = cluster_order(
-            mesh.positions[mesh.triangles[keep]], size, leafy[mesh.materials[keep]]
-        )
-        keep, size = keep[order], size[order]
-        triangles, material = mesh.triangles[keep], mesh.materials[keep]
-        slopes = gradients(mesh.positions, mesh.normals, mesh.uvs, triangles)
-        clusters = clusters_of(
-            mesh.positions[triangles],
-            size,
-            np.where(leafy[material], np.abs(slopes[:, 23]), -1.0),
-        )
-        bounds = bounds_of(clusters)
-        self.clusters.append(clusters)
-        self.bounds.append(bounds)
-        self.corner_uvs.append(by_clusters(mesh.uvs[triangles].reshape(-1, UV_ROWS)))
-        self.gradients.append(filled_up(slopes))
-        self.materials.append(filled_up(lookup[material] + 1) - 1)
-        none = np.full(len(keep), -1, np.int32)
-        self.objects.append(filled_up(none if objects is None else objects[keep]))
-        first, row = CLUSTER * self._cluster_count, self._bounds_count
-        self._cluster_count += len(clusters)
-        self._bounds_count += len(bounds)
-        return first, first + len(keep), row
+    ) -> None:
+        """Append a mesh, with the object and the `Geometry.size` of each triangle."""
+        count = len(mesh.triangles)
+        objects = np.full(count, -1, np.int32) if objects is None else objects
+        sizes = np.full(count, np.inf, np.float32) if sizes is None else sizes
+        self._waiting.append((mesh, objects, sizes))
+        self._triangles += count
+        if self._triangles >= _AT_ONCE:
+            self._pack()
 
-    def _looked_up(
-        self, palette: tuple[Material, ...]
-    ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-        """Return the index in the pool's palette of each material, and whether it is of leaves."""
-        if self._last[0] is not palette:  # all chunks have the same
-            index = [self.palette.setdefault(m, len(self.palette)) for m in palette]
-            leafy = [material.surface == Surface.FOLIAGE for material in palette]
-            self._last = palette, np.array(index, np.int32), np.array(leafy, np.bool_)
-        return self._last[1:]
+    def packed(self) -> PackedMeshes:
+        """Return all meshes."""
+        self._pack()
+        materials = [pack.material for pack in self._packs]
+        return _side_by_side(self._packs, materials, tuple(self._palette))
 
-    def packed(self, ranges: list[tuple[int, int, int]]) -> PackedMeshes:
-        """Return all meshes, with what `add` has returned of each."""
-        clusters = [np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32), *self.clusters]
-        corner_uvs = [np.zeros((0, UV_ROWS, CLUSTER), np.float32), *self.corner_uvs]
-        return PackedMeshes(
-            clusters=np.concatenate(clusters),
-            bounds=np.concatenate([np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32), *self.bounds]),
-            corner_uvs=np.concatenate(corner_uvs),
-            slopes=np.concatenate([np.zeros((0, 24), np.float32), *self.gradients]),
-            material=np.concatenate([np.zeros(0, np.int32), *self.materials]),
-            objects=np.concatenate([np.zeros(0, np.int32), *self.objects]),
-            ranges=np.array(ranges, np.int32).reshape(-1, 3),
-            palette=tuple(self.palette),
+    def _pack(self) -> None:
+        """Pack the meshes that wait."""
+        waiting, self._waiting, self._triangles = self._waiting, [], 0
+        if not waiting:
+            return
+        meshes = [mesh for mesh, _, _ in waiting]
+        whose = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
+        corners = np.concatenate([mesh.positions[mesh.triangles] for mesh in meshes])
+        keep = np.flatnonzero(solid_triangles(corners))
+        # The level of detail of what is too small to be seen is empty.
+        counts = np.bincount(whose[keep], minlength=len(meshes))
+        looks = [self._looked_up(mesh, some) for mesh, some in zip(meshes, counts, strict=True)]
+        lookup, leafy = (np.concatenate(each) for each in zip(*looks, strict=True))
+        sizes = np.concatenate([size for _, _, size in waiting])
+        keep = keep[cluster_order(corners[keep], sizes[keep], leafy[keep], whose[keep])]
+        uvs = np.concatenate([mesh.uvs[mesh.triangles] for mesh in meshes])[keep]
+        normals = np.concatenate([mesh.normals[mesh.triangles] for mesh in meshes])[keep]
+        slopes = gradients(corners[keep], normals, uvs)
+        tiles = np.where(leafy[keep], np.abs(slopes[:, 23]), np.float32(-1.0))
+        clusters = clusters_of(corners[keep], sizes[keep], tiles, counts)
+        clusters_each = -(-counts // CLUSTER)
+        source, own = slots_of(counts)
+        objects = np.concatenate([some for _, some, _ in waiting])[keep]
+        first, row = (
+            np.cumsum(each) - each for each in (clusters_each, -(-clusters_each // CLUSTER))
         )
+        self._packs.append(
+            PackedMeshes(
+                clusters=clusters,
+                bounds=bounds_of(clusters, clusters_each),
+                corner_uvs=by_clusters(
+                    np.where(own[:, None], uvs.reshape(-1, UV_ROWS)[source], np.float32(0.0))
+                ),
+                slopes=np.where(own[:, None], slopes[source], np.float32(0.0)),
+                material=np.where(own, lookup[keep][source], np.int32(-1)),
+                objects=np.where(own, objects[source], np.int32(0)),
+                ranges=np.column_stack([CLUSTER * first, CLUSTER * first + counts, row]).astype(
+                    np.int32
+                ),
+                palette=(),
+            )
+        )
+
+    def _looked_up(self, mesh: Mesh, count: int) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+        """Return each triangle's index in the pool's palette, and whether it is of leaves.
+
+        A mesh without triangles that are drawn adds nothing to the palette.
+        """
+        if count == 0:
+            return np.zeros(len(mesh.triangles), np.int32), np.zeros(len(mesh.triangles), np.bool_)
+        if self._last[0] is not mesh.palette:  # all chunks have the same
+            index = [self._palette.setdefault(m, len(self._palette)) for m in mesh.palette]
+            leafy = [material.surface == Surface.FOLIAGE for material in mesh.palette]
+            self._last = mesh.palette, np.array(index, np.int32), np.array(leafy, np.bool_)
+        _, lookup, leaves = self._last
+        return lookup[mesh.materials], leaves[mesh.materials]
