@@ -4,7 +4,7 @@ of a season.
 
 import itertools
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import Enum
 from functools import lru_cache, partial
 
@@ -15,7 +15,6 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.render.ahead import other_is_ready
 from eyas.engine.render.kernels.bundles import Geometry
 from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
 from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
@@ -141,7 +140,6 @@ def _packed(
     *,
     lenses: Lenses,
 ) -> Geometry:
-    other_is_ready()  # which may be to `paint`
     parts = load_parts(kinds)
     shown = _with_lights(parts, lenses)
     # Kept by itself: other movers on the same map are packed in a second.
@@ -163,14 +161,6 @@ def _pack_kind(kind: TargetKind) -> Prototypes:
 
 def _parts_of(kind: TargetKind) -> PartLibrary:
     return cached(EntryKind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
-
-
-def paint(
-    kinds: Sequence[int],  # See `load_geometry`
-) -> None:
-    """Put textures, and the parts of kinds of moving objects, into the cache."""
-    load_textures()
-    load_parts(tuple(kinds))
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
