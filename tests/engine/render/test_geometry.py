@@ -19,8 +19,7 @@ from eyas.engine.render.kernels.visibility.clusters import (
     SIZE,
 )
 from eyas.engine.render.pack.clusters import corners_of
-from eyas.engine.render.pack.geometry import build_geometry, packed_scene
-from eyas.engine.render.pack.pool import packed_prototypes
+from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.pack.triangles import gradients, solid_triangles
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
@@ -48,16 +47,6 @@ def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_pa
     assert PackedBundle(old).kind == PackedBundle(new).kind
     for name, array in new._asdict().items():
         np.testing.assert_array_equal(getattr(old, name), array, err_msg=name)
-
-
-def test_what_was_packed_apart_makes_the_same_geometry(images):
-    scene, parts = city_scene(), car_parts()
-    apart = packed_scene(scene), [packed_prototypes([levels]) for levels in parts.parts]
-    assert len(apart[1]) > 1
-    once = build_geometry(scene, parts, images)
-    joined = build_geometry(scene, parts, images, apart)
-    for name, array in once._asdict().items():
-        np.testing.assert_array_equal(getattr(joined, name), array, err_msg=name)
 
 
 def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):

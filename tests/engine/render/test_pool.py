@@ -1,9 +1,11 @@
 """Meshes that are packed together are packed as each alone."""
 
+from dataclasses import fields
+
 import numpy as np
 
 from eyas.engine.render.pack import pool
-from eyas.engine.render.pack.pool import packed_prototypes
+from eyas.engine.render.pack.pool import Pool
 from eyas.engine.state.mesh import Material, Mesh, Surface
 
 
@@ -13,13 +15,21 @@ def test_meshes_are_packed_alike_alone_and_with_others(monkeypatch):
     counts = (1, 8, 0, 9, 64, 65, 700)
     meshes = [mesh_of(rng, count) for count in counts]
     meshes += [mesh_of(rng, 30, leaves=1.0), mesh_of(rng, 40, spread=0.0), mesh_of(rng, 3)]
-    together = packed_prototypes([(mesh,) for mesh in meshes])
+    together = packed(meshes)
     monkeypatch.setattr(pool, "_AT_ONCE", 1)
-    alone = packed_prototypes([(mesh,) for mesh in meshes])
-    for name in ("clusters", "bounds", "corner_uvs", "slopes", "material", "objects", "ranges"):
-        one, other = (getattr(each.meshes, name) for each in (together, alone))
-        np.testing.assert_array_equal(one, other, name, strict=True)
-    assert together.meshes.palette == alone.meshes.palette
+    alone = packed(meshes)
+    for field in fields(together):
+        if field.name != "palette":
+            one, other = (getattr(each, field.name) for each in (together, alone))
+            np.testing.assert_array_equal(one, other, field.name, strict=True)
+    assert together.palette == alone.palette
+
+
+def packed(meshes):
+    made = Pool()
+    for mesh in meshes:
+        made.add(mesh)
+    return made.packed()
 
 
 def mesh_of(rng, count, *, leaves=0.3, spread=5.0):

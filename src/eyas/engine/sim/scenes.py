@@ -2,7 +2,6 @@
 of a season.
 """
 
-import itertools
 import logging
 from collections.abc import Callable
 from enum import Enum
@@ -16,8 +15,7 @@ from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.kernels.bundles import Geometry
-from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
-from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
+from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.sensors.obstacles import Solids, solids_of
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.roads import RoadNetwork
@@ -125,7 +123,7 @@ def load_geometry(
 ) -> Geometry:
     """Return the geometry of a scene and of the parts of moving objects, for the kernels."""
     scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
-    make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
+    make = partial(_packed, scene, kinds, load_textures, lenses=lenses)
     if origin is None:
         return make()
     inputs = (*origin, part_library, _chosen(kinds), _texture_maker(), lenses.value)
@@ -134,33 +132,12 @@ def load_geometry(
 
 def _packed(
     scene: Scene,
-    origin: tuple[object, ...] | None,
     kinds: tuple[int, ...],
     textures: Callable[[], dict[str, NDArray[np.uint8]]],
     *,
     lenses: Lenses,
 ) -> Geometry:
-    parts = load_parts(kinds)
-    shown = _with_lights(parts, lenses)
-    # Kept by itself: other movers on the same map are packed in a second.
-    pack = partial(packed_scene, scene)
-    still = pack() if origin is None else cached(EntryKind.GEOMETRY, pack, origin, of=PackedScene)
-    lights = packed_prototypes(shown.parts[len(parts.parts) :])
-    return build_geometry(
-        scene, shown, textures(), (still, [*map(_packed_kind, _chosen(kinds)), lights])
-    )
-
-
-def _packed_kind(kind: TargetKind) -> Prototypes:
-    return cached(EntryKind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
-
-
-def _pack_kind(kind: TargetKind) -> Prototypes:
-    return packed_prototypes(_parts_of(kind).parts)
-
-
-def _parts_of(kind: TargetKind) -> PartLibrary:
-    return cached(EntryKind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
+    return build_geometry(scene, _with_lights(load_parts(kinds), lenses), textures())
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
@@ -169,12 +146,7 @@ def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
 
 def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
-    # One entry for each kind: whoever adds another to a world makes the parts of that one only.
-    made = [_parts_of(kind) for kind in _chosen(kinds)]
-    return PartLibrary(
-        tuple(itertools.chain.from_iterable(one.parts for one in made)),
-        tuple(itertools.chain.from_iterable(one.lamps for one in made)),
-    )
+    return part_library(_chosen(kinds))
 
 
 def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
@@ -188,7 +160,7 @@ def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
 
 def load_textures() -> dict[str, NDArray[np.uint8]]:
     """Return all textures by name."""
-    return cached(EntryKind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
+    return _texture_maker()()
 
 
 def _texture_maker() -> Callable[[], dict[str, NDArray[np.uint8]]]:

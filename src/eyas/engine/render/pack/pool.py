@@ -1,8 +1,7 @@
-"""Meshes packed one after the other, wherever in a `Geometry` they come to lie."""
+"""Meshes packed one after the other, many at once."""
 
-import itertools
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +12,6 @@ from eyas.engine.render.kernels.visibility.clusters import (
     CLUSTER_ROWS,
     UV_ROWS,
 )
-from eyas.engine.render.pack.boxes import box_of, silhouette, sphere_of
 from eyas.engine.render.pack.clusters import (
     bounds_of,
     by_clusters,
@@ -41,87 +39,10 @@ class PackedMeshes:
     corner_uvs: NDArray[np.float32]
     slopes: NDArray[np.float32]  # From `gradients`
     material: NDArray[np.int32]
-    """Of each triangle, an index into the palette; -1 of what fills clusters up."""
+    """Of each triangle, an index into the palette; 0 of what fills clusters up."""
     objects: NDArray[np.int32]
     ranges: NDArray[np.int32]  # Of each mesh as in `Geometry.mesh_range`, shape (M, 3).
     palette: tuple[Material, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Prototypes:
-    """Meshes of which there are copies, with all their levels of detail."""
-
-    meshes: PackedMeshes
-    levels: NDArray[np.int32]  # Number of levels of each
-    box: NDArray[np.float32]
-    """Around all levels of each, shape (P, 6): what is culled must not stick out."""
-    sphere: NDArray[np.float32]  # Shape (P, 4)
-    silhouette: NDArray[np.float32]  # Of the finest level, shape (P, 7)
-
-
-def packed_prototypes(prototypes: Iterable[tuple[Mesh, ...]]) -> Prototypes:
-    """Pack meshes with their levels of detail."""
-    all_levels = tuple(prototypes)
-    pool = Pool()
-    for mesh in itertools.chain.from_iterable(all_levels):
-        pool.add(mesh, None)
-    points = [np.concatenate([mesh.positions for mesh in levels]) for levels in all_levels]
-    return Prototypes(
-        meshes=pool.packed(),
-        levels=np.array([len(levels) for levels in all_levels], np.int32),
-        box=np.array([box_of(each) for each in points], np.float32).reshape(-1, 6),
-        sphere=np.array([sphere_of(each) for each in points], np.float32).reshape(-1, 4),
-        silhouette=np.array([silhouette(m[0]) for m in all_levels], np.float32).reshape(-1, 7),
-    )
-
-
-def joined(packs: Iterable[PackedMeshes]) -> PackedMeshes:
-    """Return packs one after the other, with one palette; what fills clusters up has its first."""
-    every = tuple(packs)
-    palette: dict[Material, int] = {}
-    materials = []
-    for pack in every:
-        index = [palette.setdefault(one, len(palette)) for one in pack.palette]
-        materials.append(np.array([*index, 0], np.int32)[pack.material])
-    return _side_by_side(every, materials, tuple(palette))
-
-
-def _side_by_side(
-    packs: Sequence[PackedMeshes],
-    materials: Sequence[NDArray[np.int32]],  # Of each pack, indices into one palette
-    palette: tuple[Material, ...],
-) -> PackedMeshes:
-    """Return packs one after the other."""
-    triangles, rows = (
-        np.cumsum([0, *(len(getattr(pack, name)) for pack in packs)])
-        for name in ("material", "bounds")
-    )
-    ranges = [
-        pack.ranges + np.array([first, first, row], np.int32)
-        for pack, first, row in zip(packs, triangles[:-1], rows[:-1], strict=True)
-    ]
-    return PackedMeshes(
-        clusters=np.concatenate([_NONE.clusters, *(pack.clusters for pack in packs)]),
-        bounds=np.concatenate([_NONE.bounds, *(pack.bounds for pack in packs)]),
-        corner_uvs=np.concatenate([_NONE.corner_uvs, *(pack.corner_uvs for pack in packs)]),
-        slopes=np.concatenate([_NONE.slopes, *(pack.slopes for pack in packs)]),
-        material=np.concatenate([_NONE.material, *materials]),
-        objects=np.concatenate([_NONE.objects, *(pack.objects for pack in packs)]),
-        ranges=np.concatenate([_NONE.ranges, *ranges]),
-        palette=palette,
-    )
-
-
-_NONE = PackedMeshes(
-    clusters=np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32),
-    bounds=np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32),
-    corner_uvs=np.zeros((0, UV_ROWS, CLUSTER), np.float32),
-    slopes=np.zeros((0, 24), np.float32),
-    material=np.zeros(0, np.int32),
-    objects=np.zeros(0, np.int32),
-    ranges=np.zeros((0, 3), np.int32),
-    palette=(),
-)
 
 
 class Pool:
@@ -129,7 +50,16 @@ class Pool:
 
     def __init__(self) -> None:
         self._palette: dict[Material, int] = {}
-        self._packs: list[PackedMeshes] = []
+        self._packed: dict[str, list[NDArray[Any]]] = {
+            "clusters": [np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32)],
+            "bounds": [np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32)],
+            "corner_uvs": [np.zeros((0, UV_ROWS, CLUSTER), np.float32)],
+            "slopes": [np.zeros((0, 24), np.float32)],
+            "material": [np.zeros(0, np.int32)],
+            "objects": [np.zeros(0, np.int32)],
+            "ranges": [np.zeros((0, 3), np.int32)],
+        }
+        self._places = np.zeros(3, np.int32)  # Of triangles, twice, and of bounds until now
         self._waiting: list[tuple[Mesh, NDArray[np.int32], NDArray[np.float32]]] = []
         self._triangles = 0  # Of those that wait
         self._last: _Palette = ((), np.zeros(0, np.int32), np.zeros(0, np.bool_))
@@ -137,7 +67,7 @@ class Pool:
     def add(
         self,
         mesh: Mesh,
-        objects: NDArray[np.int32] | None,
+        objects: NDArray[np.int32] | None = None,
         sizes: NDArray[np.float32] | None = None,
     ) -> None:
         """Append a mesh, with the object and the `Geometry.size` of each triangle."""
@@ -150,10 +80,11 @@ class Pool:
             self._pack()
 
     def packed(self) -> PackedMeshes:
-        """Return all meshes."""
+        """Return all meshes; once, as their parts are let go of one by one."""
         self._pack()
-        materials = [pack.material for pack in self._packs]
-        return _side_by_side(self._packs, materials, tuple(self._palette))
+        names = list(self._packed)
+        whole = {name: np.concatenate(self._packed.pop(name)) for name in names}
+        return PackedMeshes(**whole, palette=tuple(self._palette))
 
     def _pack(self) -> None:
         """Pack the meshes that wait."""
@@ -176,27 +107,25 @@ class Pool:
         tiles = np.where(leafy[keep], np.abs(slopes[:, 23]), np.float32(-1.0))
         clusters = clusters_of(corners[keep], sizes[keep], tiles, counts)
         clusters_each = -(-counts // CLUSTER)
+        bounds = bounds_of(clusters, clusters_each)
         source, own = slots_of(counts)
         objects = np.concatenate([some for _, some, _ in waiting])[keep]
         first, row = (
             np.cumsum(each) - each for each in (clusters_each, -(-clusters_each // CLUSTER))
         )
-        self._packs.append(
-            PackedMeshes(
-                clusters=clusters,
-                bounds=bounds_of(clusters, clusters_each),
-                corner_uvs=by_clusters(
-                    np.where(own[:, None], uvs.reshape(-1, UV_ROWS)[source], np.float32(0.0))
-                ),
-                slopes=np.where(own[:, None], slopes[source], np.float32(0.0)),
-                material=np.where(own, lookup[keep][source], np.int32(-1)),
-                objects=np.where(own, objects[source], np.int32(0)),
-                ranges=np.column_stack([CLUSTER * first, CLUSTER * first + counts, row]).astype(
-                    np.int32
-                ),
-                palette=(),
-            )
-        )
+        ranges = np.column_stack([CLUSTER * first, CLUSTER * first + counts, row])
+        made = {
+            "clusters": clusters,
+            "bounds": bounds,
+            "corner_uvs": by_clusters(_filled(uvs.reshape(-1, UV_ROWS)[source], own)),
+            "slopes": _filled(slopes[source], own),
+            "material": _filled(lookup[keep][source], own),
+            "objects": _filled(objects[source], own),
+            "ranges": (self._places + ranges).astype(np.int32),
+        }
+        for name, array in made.items():
+            self._packed[name].append(array)
+        self._places += np.array([len(source), len(source), len(bounds)], np.int32)
 
     def _looked_up(self, mesh: Mesh, count: int) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
         """Return each triangle's index in the pool's palette, and whether it is of leaves.
@@ -211,3 +140,9 @@ class Pool:
             self._last = mesh.palette, np.array(index, np.int32), np.array(leafy, np.bool_)
         _, lookup, leaves = self._last
         return lookup[mesh.materials], leaves[mesh.materials]
+
+
+def _filled(rows: NDArray[Any], own: NDArray[np.bool_]) -> NDArray[Any]:
+    """Return rows with zeros where nothing is a mesh's own."""
+    rows[~own] = 0
+    return rows
