@@ -57,11 +57,13 @@ def build_geometry(
     names = sorted({material.texture for material in meshes.palette} | {"plain"})
     fixture_boxes = posed_boxes(box[prototype], pose)
     materials = material_table(scene, parts, meshes.palette, names)
+    shading = shading_rows(meshes.slopes, meshes.objects, materials.of(meshes.material))
+    meshes = meshes._replace(slopes=np.zeros((0, 24), np.float32))  # a quarter of all memory here
     return Geometry(
         cluster=meshes.clusters,
         bounds=meshes.bounds,
         corner_uv=meshes.corner_uvs,
-        shading=shading_rows(meshes.slopes, meshes.objects, materials.of(meshes.material)),
+        shading=shading,
         material=meshes.material,
         object_id=meshes.objects,
         object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),

@@ -1,7 +1,6 @@
 """Meshes packed one after the other, many at once."""
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,8 +29,7 @@ _Palette = tuple[tuple[Material, ...], NDArray[np.int32], NDArray[np.bool_]]
 """Materials, their indices in the palette of the pool, and whether they are of leaves."""
 
 
-@dataclass(frozen=True, slots=True)
-class PackedMeshes:
+class PackedMeshes(NamedTuple):
     """Triangles of several meshes; for most arrays see the fields of `Geometry`."""
 
     clusters: NDArray[np.float32]
