@@ -2,7 +2,6 @@
 of a season.
 """
 
-import logging
 from collections.abc import Callable
 from enum import Enum
 from functools import lru_cache, partial
@@ -39,9 +38,6 @@ class Lenses(Enum):
     COVERING = 2  # These, and what hides an amber that does not, see `lens_levels`
 
 
-_LOG = logging.getLogger("eyas")
-
-
 def load_network(map_name: str, seed: int) -> RoadNetwork:
     """Return a map's roads: shipped for seed 0 and few others, else built by netconvert.
 
@@ -60,14 +56,13 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 @lru_cache(maxsize=4)
 def _scene(map_name: str, seed: int, season: Season) -> Scene:
     # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
-    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
-    text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
-    make = partial(_built, text, network, season, recipe.name)
+    network, text = load_network(map_name, seed), _text_of(map_name, seed)
+    origin = _origin(map_name, seed, season)
+    make = partial(_built, text, network, season)
     return make() if origin is None else cached(EntryKind.SCENE, make, origin, of=Scene)
 
 
-def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
-    _LOG.info("building the map '%s', once", name)
+def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season) -> Scene:
     return planner().build(text.tobytes(), network, season)
 
 

@@ -5,7 +5,6 @@ import dataclasses
 import functools
 import gc
 import logging
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
@@ -17,6 +16,7 @@ import numpy as np
 
 from eyas.engine.core.cache.array_file import Content, array_file, map_arrays
 from eyas.engine.core.cache.entries import write_entry
+from eyas.engine.core.cache.first_start import told
 from eyas.engine.core.cache.flat import flatten, restore
 from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
@@ -26,7 +26,6 @@ Thing = TypeVar("Thing")
 
 _LOG = logging.getLogger("eyas")
 _PLAIN = frozenset({bool, float, int, type(None)})  # Types whose `repr` tells all
-_LONG = 1.0  # Values that took longer than this to make are reported in the log [s]
 
 
 def cached(
@@ -96,11 +95,8 @@ def _made_and_kept(
     kind: EntryKind, make: Callable[[], Thing], of: type[Thing], path: Path | None, limit: int
 ) -> Thing:
     """Return what is made, and keep it as an entry if that has a path."""
-    start = time.perf_counter()
-    made = make()
-    taken = time.perf_counter() - start
-    if taken > _LONG:
-        _LOG.info("made %s in %.1f s", kind, taken)
+    with told(kind):
+        made = make()
     flat, arrays = flatten(made)
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
     found = None
