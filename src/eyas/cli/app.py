@@ -137,16 +137,11 @@ class _Line(logging.Formatter):
 class _Lines(logging.StreamHandler[TextIO]):
     """Writes records as lines; on a terminal the next one takes the place of one that passes."""
 
-    _passed: object = None  # What the last that passes is of
-
     def emit(self, record: logging.LogRecord) -> None:
         """Write a record; where lines stay, none that is empty."""
-        passing, stays = hasattr(record, "passing"), not self.stream.isatty()
-        self.terminator = "\r" if passing and not stays else "\n"
-        of = record.args[0] if passing and isinstance(record.args, tuple) and record.args else None
-        if not stays or (record.msg and (of is None or of != self._passed)):
+        if record.msg or self.stream.isatty():
+            self.terminator = "\r" if hasattr(record, "passing") and self.stream.isatty() else "\n"
             super().emit(record)
-        self._passed = of or self._passed
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the text of a record, over what has passed."""

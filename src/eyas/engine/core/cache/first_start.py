@@ -8,8 +8,6 @@ from typing import Final
 
 from eyas.engine.core.cache.folder import EntryKind
 
-_LOG = logging.getLogger("eyas")
-
 _STAGES: Final = {
     EntryKind.PLAN: ("the plan of the map", 0.1),
     EntryKind.SCENE: ("streets, houses and plants", 1.3),
@@ -28,26 +26,19 @@ _made: dict[EntryKind, float] = {}  # How long this process has made what [s]
 @contextmanager
 def told(kind: EntryKind) -> Iterator[None]:
     """Tell that something is made meanwhile, in a record that passes: it has `passing`."""
-    start = time.perf_counter()
-    if kind in _STAGES:
-        _tell(kind)
+    log, start, kinds = logging.getLogger("eyas"), time.perf_counter(), list(_STAGES)
+    if kind not in _STAGES:
+        yield
+        return
+    left = sum(_STAGES[one][1] for one in kinds[kinds.index(kind) :])
+    done = 100.0 * (1.0 - left / sum(each for _, each in _STAGES.values()))
+    usual = sum(_STAGES[one][1] for one in _made)
+    left *= sum(_made.values()) / usual if usual > 1.0 else 1.0
+    if left > _WORTH_TELLING:
+        line = "making %s, once; %.0f %% done, about %.0f s left"
+        log.info(line, _STAGES[kind][0], done, max(left, 1.0), extra={"passing": True})
     try:
         yield
     finally:
-        if kind in _STAGES:
-            _made[kind] = _made.get(kind, 0.0) + time.perf_counter() - start
-            _LOG.info("", extra={"passing": True})
-
-
-def _tell(kind: EntryKind) -> None:
-    kinds = list(_STAGES)
-    done, left = (
-        sum(_STAGES[one][1] for one in some)
-        for some in (kinds[: kinds.index(kind)], kinds[kinds.index(kind) :])
-    )
-    usual = sum(_STAGES[one][1] for one in _made)
-    seconds = left * (sum(_made.values()) / usual if usual > 1.0 else 1.0)
-    if seconds > _WORTH_TELLING:
-        line, share = "making %s, once; %.0f %% done, about %.0f s left", done / (done + left)
-        args = _STAGES[kind][0], 100.0 * share, max(seconds, 1.0)
-        _LOG.info(line, *args, extra={"passing": True})
+        _made[kind] = _made.get(kind, 0.0) + time.perf_counter() - start
+        log.info("", extra={"passing": True})

@@ -139,7 +139,7 @@ def bounds_of(
 ) -> NDArray[np.float32]:
     """Return the bounds of the clusters of meshes, see `Geometry.bounds`."""
     corners = clusters[:, :9].reshape(-1, 3, 3, CLUSTER).transpose(0, 3, 1, 2).astype(np.float64)
-    points = corners.reshape(len(clusters), -1, 3)
+    points = corners.reshape(len(clusters), 3 * CLUSTER, 3)
     bounds = np.zeros((len(clusters), BOUNDS_ROWS), np.float32)
     bounds[:, 0:3], bounds[:, 3:6] = points.min(axis=1), points.max(axis=1)
     bounds[:, APEX : CUT_OFF + 1] = _cones(corners, clusters)
@@ -163,7 +163,7 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     axis = normals.sum(axis=1)
     axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
     cosine = np.where(real, exact.dot(normals, axis[:, None]), 1.0)
-    middle = corners.reshape(len(corners), -1, 3).mean(axis=1)
+    middle = corners.reshape(len(corners), 3 * CLUSTER, 3).mean(axis=1)
     height = exact.dot(middle[:, None] - corners[:, :, 0], normals)
     behind = np.where(real, height / np.maximum(cosine, 1e-9), 0.0).max(axis=1)
     narrow = (cosine.min(axis=1) > _WIDEST) & ~(clusters[:, LEAVES] >= 0.0).any(axis=1)

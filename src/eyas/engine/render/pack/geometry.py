@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,6 @@ from eyas.engine.render.pack.pool import Pool
 from eyas.engine.render.pack.triangles import shading_rows
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
-from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
 
 CHUNK = 32.0  # Side of the squares into which static triangles are sorted [m]
@@ -47,30 +47,27 @@ def build_geometry(
     prototypes = (*scene.fixtures.levels, *parts.parts)
     for mesh in itertools.chain.from_iterable(prototypes):
         pool.add(mesh)
-    meshes, chunks = pool.packed(), len(chunk_box)
+    meshes, palette, chunks = pool.packed(), tuple(pool.palette), len(chunk_box)
     # What is culled must not stick out of the box of any of its levels.
     points = [np.concatenate([mesh.positions for mesh in levels]) for levels in prototypes]
     box = np.array([box_of(each) for each in points], np.float32).reshape(-1, 6)
     order = _fixture_order(scene.fixtures.pose[:, :, 3])
     pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
     prototype = scene.fixtures.prototype[order].astype(np.int32)
-    names = sorted({material.texture for material in meshes.palette} | {"plain"})
+    names = sorted({material.texture for material in palette} | {"plain"})
     fixture_boxes = posed_boxes(box[prototype], pose)
-    materials = material_table(scene, parts, meshes.palette, names)
-    shading = shading_rows(meshes.slopes, meshes.objects, materials.of(meshes.material))
-    meshes = meshes._replace(slopes=np.zeros((0, 24), np.float32))  # a quarter of all memory here
+    materials = material_table(scene, parts, palette, names)
+    own = materials.of(meshes["material"])
+    shading = shading_rows(meshes.pop("slopes"), meshes["object_id"], own)
+    ranges = meshes.pop("ranges")
     return Geometry(
-        cluster=meshes.clusters,
-        bounds=meshes.bounds,
-        corner_uv=meshes.corner_uvs,
+        **meshes,
         shading=shading,
-        material=meshes.material,
-        object_id=meshes.objects,
         object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),
         chunk_box=columns_of(chunk_box, GROUP),
         chunk_group_box=columns_of(group_boxes(chunk_box), CLUSTER),
-        chunk_range=meshes.ranges[:chunks],
-        mesh_range=meshes.ranges[chunks:],
+        chunk_range=ranges[:chunks],
+        mesh_range=ranges[chunks:],
         level_first=np.cumsum([0, *map(len, prototypes)]).astype(np.int32),
         part_first=len(scene.fixtures.levels),
         sphere=np.array([sphere_of(each) for each in points], np.float32).reshape(-1, 4),
@@ -112,16 +109,8 @@ def _add_chunks(pool: Pool, scene: Scene) -> NDArray[np.float32]:
     boxes = []
     for first, last in itertools.pairwise(starts):
         index = order[first:last]
-        part = Mesh(
-            positions=mesh.positions,
-            normals=mesh.normals,
-            uvs=mesh.uvs,
-            triangles=mesh.triangles[index],
-            materials=mesh.materials[index],
-            palette=mesh.palette,
-        )
-        objects = scene.static_object[index].astype(np.int32)
-        pool.add(part, objects, size[index])
+        part = replace(mesh, triangles=mesh.triangles[index], materials=mesh.materials[index])
+        pool.add(part, scene.static_object[index].astype(np.int32), size[index])
         boxes.append(box_of(mesh.positions[part.triangles].reshape(-1, 3)))
     return np.array(boxes, np.float32).reshape(-1, 6)
 

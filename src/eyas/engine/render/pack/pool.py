@@ -1,14 +1,14 @@
 """Meshes packed one after the other, many at once."""
 
-from typing import Any, NamedTuple
+from collections import defaultdict
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.mesh.assembly import concatenate
 from eyas.engine.render.kernels.visibility.clusters import (
-    BOUNDS_ROWS,
     CLUSTER,
-    CLUSTER_ROWS,
     UV_ROWS,
 )
 from eyas.engine.render.pack.clusters import (
@@ -25,42 +25,24 @@ _AT_ONCE = 16_384
 """Triangles that are packed together: many, as most meshes are tiny; not all, as that takes memory.
 """
 
-_Palette = tuple[tuple[Material, ...], NDArray[np.int32], NDArray[np.bool_]]
-"""Materials, their indices in the palette of the pool, and whether they are of leaves."""
-
-
-class PackedMeshes(NamedTuple):
-    """Triangles of several meshes; for most arrays see the fields of `Geometry`."""
-
-    clusters: NDArray[np.float32]
-    bounds: NDArray[np.float32]
-    corner_uvs: NDArray[np.float32]
-    slopes: NDArray[np.float32]  # From `gradients`
-    material: NDArray[np.int32]
-    """Of each triangle, an index into the palette; 0 of what fills clusters up."""
-    objects: NDArray[np.int32]
-    ranges: NDArray[np.int32]  # Of each mesh as in `Geometry.mesh_range`, shape (M, 3).
-    palette: tuple[Material, ...]
+_NONE = Material()  # Of meshes that are not seen, where no other is
 
 
 class Pool:
-    """All triangles, one mesh after the other, with one palette."""
+    """All triangles, one mesh after the other.
+
+    Attributes:
+        palette: Their materials, and the index of each.
+    """
 
     def __init__(self) -> None:
-        self._palette: dict[Material, int] = {}
-        self._packed: dict[str, list[NDArray[Any]]] = {
-            "clusters": [np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32)],
-            "bounds": [np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32)],
-            "corner_uvs": [np.zeros((0, UV_ROWS, CLUSTER), np.float32)],
-            "slopes": [np.zeros((0, 24), np.float32)],
-            "material": [np.zeros(0, np.int32)],
-            "objects": [np.zeros(0, np.int32)],
-            "ranges": [np.zeros((0, 3), np.int32)],
-        }
+        self.palette: dict[Material, int] = {}
+        self._packed = defaultdict[str, list[NDArray[Any]]](list)
         self._places = np.zeros(3, np.int32)  # Of triangles, twice, and of bounds until now
         self._waiting: list[tuple[Mesh, NDArray[np.int32], NDArray[np.float32]]] = []
         self._triangles = 0  # Of those that wait
-        self._last: _Palette = ((), np.zeros(0, np.int32), np.zeros(0, np.bool_))
+        self._last = tuple[Material, ...](), np.zeros(0, np.int32)
+        self.add(concatenate([]))  # so that there are arrays even without a mesh
 
     def add(
         self,
@@ -77,26 +59,35 @@ class Pool:
         if self._triangles >= _AT_ONCE:
             self._pack()
 
-    def packed(self) -> PackedMeshes:
-        """Return all meshes; once, as their parts are let go of one by one."""
-        self._pack()
-        names = list(self._packed)
-        whole = {name: np.concatenate(self._packed.pop(name)) for name in names}
-        return PackedMeshes(**whole, palette=tuple(self._palette))
+    def packed(self) -> dict[str, NDArray[Any]]:
+        """Return the arrays of all meshes by their names in `Geometry`, and besides `slopes`, from
+        `gradients`, and `ranges`: of each mesh as in `Geometry.mesh_range`, shape (M, 3).
+
+        What fills clusters up has the first material. Only once: the parts are let go of.
+        """
+        if self._waiting:
+            self._pack()
+        made = {name: np.concatenate(self._packed.pop(name)) for name in [*self._packed]}
+        return made | {"ranges": made["ranges"][1:]}
 
     def _pack(self) -> None:
         """Pack the meshes that wait."""
         waiting, self._waiting, self._triangles = self._waiting, [], 0
-        if not waiting:
-            return
         meshes = [mesh for mesh, _, _ in waiting]
         whose = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
         corners = np.concatenate([mesh.positions[mesh.triangles] for mesh in meshes])
         keep = np.flatnonzero(solid_triangles(corners))
         # The level of detail of what is too small to be seen is empty.
         counts = np.bincount(whose[keep], minlength=len(meshes))
-        looks = [self._looked_up(mesh, some) for mesh, some in zip(meshes, counts, strict=True)]
-        lookup, leafy = (np.concatenate(each) for each in zip(*looks, strict=True))
+        material = np.concatenate(
+            [
+                self._looked_up(mesh)[mesh.materials] if some else mesh.materials * 0  # unseen
+                for mesh, some in zip(meshes, counts.tolist(), strict=True)
+            ]
+        )
+        leafy = np.array([one.surface == Surface.FOLIAGE for one in (*self.palette, _NONE)])[
+            material
+        ]
         sizes = np.concatenate([size for _, _, size in waiting])
         keep = keep[cluster_order(corners[keep], sizes[keep], leafy[keep], whose[keep])]
         uvs = np.concatenate([mesh.uvs[mesh.triangles] for mesh in meshes])[keep]
@@ -113,31 +104,24 @@ class Pool:
         )
         ranges = np.column_stack([CLUSTER * first, CLUSTER * first + counts, row])
         made = {
-            "clusters": clusters,
+            "cluster": clusters,
             "bounds": bounds,
-            "corner_uvs": by_clusters(_filled(uvs.reshape(-1, UV_ROWS)[source], own)),
+            "corner_uv": by_clusters(_filled(uvs.reshape(-1, UV_ROWS)[source], own)),
             "slopes": _filled(slopes[source], own),
-            "material": _filled(lookup[keep][source], own),
-            "objects": _filled(objects[source], own),
+            "material": _filled(material[keep][source], own),
+            "object_id": _filled(objects[source], own),
             "ranges": (self._places + ranges).astype(np.int32),
         }
         for name, array in made.items():
             self._packed[name].append(array)
         self._places += np.array([len(source), len(source), len(bounds)], np.int32)
 
-    def _looked_up(self, mesh: Mesh, count: int) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-        """Return each triangle's index in the pool's palette, and whether it is of leaves.
-
-        A mesh without triangles that are drawn adds nothing to the palette.
-        """
-        if count == 0:
-            return np.zeros(len(mesh.triangles), np.int32), np.zeros(len(mesh.triangles), np.bool_)
+    def _looked_up(self, mesh: Mesh) -> NDArray[np.int32]:
+        """Return the index of each material of a mesh in the palette."""
         if self._last[0] is not mesh.palette:  # all chunks have the same
-            index = [self._palette.setdefault(m, len(self._palette)) for m in mesh.palette]
-            leafy = [material.surface == Surface.FOLIAGE for material in mesh.palette]
-            self._last = mesh.palette, np.array(index, np.int32), np.array(leafy, np.bool_)
-        _, lookup, leaves = self._last
-        return lookup[mesh.materials], leaves[mesh.materials]
+            index = [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette]
+            self._last = mesh.palette, np.array(index, np.int32)
+        return self._last[1]
 
 
 def _filled(rows: NDArray[Any], own: NDArray[np.bool_]) -> NDArray[Any]:

@@ -18,12 +18,8 @@ def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.where(values <= 0.04045, values / 12.92, exact.power((values + 0.055) / 1.055, 2.4))
 
 
-def _bytes(values: NDArray[np.float64]) -> NDArray[np.uint8]:
-    return np.round(values * 255.0).astype(np.uint8)
-
-
 def _kept(light: NDArray[np.float64]) -> NDArray[np.uint8]:
-    return _bytes(np.sqrt(light))
+    return np.round(np.sqrt(light) * 255.0).astype(np.uint8)
 
 
 _LINEAR = linear(np.arange(256) / 255.0)  # Linear value of each byte of sRGB
@@ -61,7 +57,8 @@ def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
         if number > 0:
             texels = (texels[::2] + texels[1::2]) / 2
             texels = (texels[:, ::2] + texels[:, 1::2]) / 2
-            level = np.dstack([_kept(texels[..., :3]), _bytes(texels[..., 3])])
+            alpha = np.round(texels[..., 3] * 255.0).astype(np.uint8)
+            level = np.dstack([_kept(texels[..., :3]), alpha])
         packed = level.view("<u4")[..., 0]
         repeated = np.arange(len(packed) + 1) % len(packed)
         size = len(repeated)
