@@ -135,8 +135,8 @@ def _met_by(tracks: _KindTracks, line: Floats, clear: float) -> NDArray[np.int64
     """Return at which samples a vehicle is on a line, see `GapAcceptance`; some more than once."""
     middle, across = line.mean(axis=0), line[1] - line[0]
     reach = 0.5 * float(exact.hypot(*across)) + tracks.reach + clear
-    ends = np.float32([-reach - 1.0, reach + 1.0] + middle[0])
-    few = slice(*np.searchsorted(tracks.x, ends).tolist())
+    first, last = (np.float32(middle[0] + end) for end in (-reach - 1.0, reach + 1.0))
+    few = slice(int(np.searchsorted(tracks.x, first)), int(np.searchsorted(tracks.x, last)))
     near = (np.abs(tracks.x[few] - middle[0]) < reach) & (np.abs(tracks.y[few] - middle[1]) < reach)
     sample, actor = np.divmod(tracks.at[few][near], tracks.rows.shape[1])
     own, met = tracks.rows[sample, actor], []
