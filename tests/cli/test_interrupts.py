@@ -51,7 +51,7 @@ def ended(process, number, timeout=60):
     assert process.returncode == 128 + number, err
     assert line.startswith(f"eyas: {WORDS[number]}")
     # What took long to make is told, if nothing is in the cache yet.
-    first = ("warning: first start", "first start", "building the map", "made ")
+    first = ("warning: first start", "making ")
     once = tuple(f"eyas: {words}" for words in first)
     assert all(each.startswith(once) for each in told), err
     assert "Traceback" not in out

@@ -31,7 +31,7 @@ def test_what_a_first_recording_needs_is_there(tmp_path):
     assert told[0].startswith(f"{MAP}, day: ")
     assert told[1].startswith(f"{cache}: ")
     made = set(cache.rglob("*.npy"))
-    assert {path.parent.name for path in made} >= {"scene", "geometry", "motion", "textures"}
+    assert {path.parent.name for path in made} >= {"scene", "geometry", "motion"}
     brief = ("--set", "video.total_time=0.3", "--set", "video.channels=1")
     eyas(cache, "video", "--map", MAP, "--out", out, "--quiet", *brief)
     assert set(cache.rglob("*.npy")) == made

@@ -18,8 +18,8 @@ from eyas.engine.core.frames import wrap_angle
 from eyas.lanes.folder import refusal
 from eyas.engine.render import ahead
 ahead.nothing_compiled = lambda name: True  # even if Eyas brings code for this machine
-ahead.begin_ahead("")
-assert not ahead._compiling + ahead._doing_other
+ahead.begin_ahead()
+assert not ahead._compiling
 print(not refusal(), wrap_angle(1.0))
 """
 

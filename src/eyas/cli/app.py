@@ -6,7 +6,7 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, TextIO
 
 import typer
 import typer.core
@@ -134,6 +134,21 @@ class _Line(logging.Formatter):
         return f"eyas: {word}" + "\n".join(lines)
 
 
+class _Lines(logging.StreamHandler[TextIO]):
+    """Writes records as lines; on a terminal the next one takes the place of one that passes."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write a record; where lines stay, none that is empty."""
+        if record.msg or self.stream.isatty():
+            self.terminator = "\r" if hasattr(record, "passing") and self.stream.isatty() else "\n"
+            super().emit(record)
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Return the text of a record, over what has passed."""
+        text = super().format(record) if record.msg else ""
+        return f"\x1b[2K{text}" if self.stream.isatty() else text
+
+
 def _as_switches(command: Click) -> Click:
     """Return a command whose help, and that of all in it, prints switches without `<bool>`, which
     new versions of Typer add.
@@ -159,7 +174,7 @@ def _patched(get_params: Callable[[Any], list[Any]]) -> Callable[[Any], list[Any
 def run() -> int:
     """Run the command line; return the exit code."""
     warnings.showwarning = lambda message, *_, **__: say(f"warning: {message}")
-    lines = logging.StreamHandler()
+    lines = _Lines()
     lines.setFormatter(_Line())
     logging.basicConfig(handlers=[lines], level=logging.WARNING)
     logging.getLogger("eyas").setLevel(logging.INFO)

@@ -31,32 +31,27 @@ def begins(tmp_path, monkeypatch):
     monkeypatch.setattr(ahead, "_COMPILE", "import eyas; raise SystemExit(7)")
     monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
     monkeypatch.setattr(ahead, "_compiling", [])
-    monkeypatch.setattr(ahead, "_doing_other", [])
 
     def begin(*, shipped):
         monkeypatch.setattr(ahead, "nothing_compiled", lambda name: not shipped)
-        ahead.begin_ahead("import eyas; raise SystemExit(8)")
-        return ahead._compiling, ahead._doing_other
+        ahead.begin_ahead()
+        return ahead._compiling
 
     return begin
 
 
 def test_a_first_start_is_told_and_shared_by_one_of_those_that_start_together(begins, caplog):
-    (process,), none = begins(shipped=False)
-    assert not none
+    (process,) = begins(shipped=False)
     assert "first start" in caplog.text
     ahead.drawing_is_ready()
     assert process.returncode == 7
-    assert begins(shipped=False) == ([process], [])
+    assert begins(shipped=False) == [process]
 
 
-def test_where_kernels_are_shipped_the_second_process_does_something_else(begins, caplog):
-    none, (process,) = begins(shipped=True)
-    assert not none
+def test_where_kernels_are_shipped_there_is_no_second_process(begins, caplog):
+    assert begins(shipped=True) == []
     assert not caplog.text
     ahead.drawing_is_ready()  # waits for nothing
-    ahead.other_is_ready()
-    assert process.returncode == 8
 
 
 ASKS = """

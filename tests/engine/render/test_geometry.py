@@ -19,12 +19,10 @@ from eyas.engine.render.kernels.visibility.clusters import (
     SIZE,
 )
 from eyas.engine.render.pack.clusters import corners_of
-from eyas.engine.render.pack.geometry import build_geometry, packed_scene
-from eyas.engine.render.pack.pool import packed_prototypes
+from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.render.pack.triangles import gradients, solid_triangles
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
-from eyas.engine.state.mesh import Material, Mesh
 from eyas.lanes import PackedBundle, kernel
 
 from ...kit.small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
@@ -49,16 +47,6 @@ def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_pa
     assert PackedBundle(old).kind == PackedBundle(new).kind
     for name, array in new._asdict().items():
         np.testing.assert_array_equal(getattr(old, name), array, err_msg=name)
-
-
-def test_what_was_packed_apart_makes_the_same_geometry(images):
-    scene, parts = city_scene(), car_parts()
-    apart = packed_scene(scene), [packed_prototypes([levels]) for levels in parts.parts]
-    assert len(apart[1]) > 1
-    once = build_geometry(scene, parts, images)
-    joined = build_geometry(scene, parts, images, apart)
-    for name, array in once._asdict().items():
-        np.testing.assert_array_equal(getattr(joined, name), array, err_msg=name)
 
 
 def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):
@@ -160,7 +148,8 @@ def test_gradients_give_back_normals_and_texture_coordinates():
     normals = rng.normal(0, 1, (30, 3)).astype(np.float32)
     uvs = rng.uniform(0, 1, (30, 2)).astype(np.float32)
     triangles = np.arange(30, dtype=np.int32).reshape(10, 3)
-    table = gradients(positions, normals, uvs, triangles).astype(np.float64)
+    each = [values[triangles] for values in (positions, normals, uvs)]
+    table = gradients(*each).astype(np.float64)
     for row, corners in zip(table, triangles, strict=True):
         offset = positions[corners] - row[:3]
         uv = np.stack([offset @ row[3:6] + row[6], offset @ row[7:10] + row[10]], axis=1)
@@ -252,19 +241,10 @@ def test_large_pictures_show_no_line_where_mip_levels_meet():
 def test_a_sliver_without_width_is_left_out_and_gives_no_number_that_is_none():
     """Its corners lie on a line but for the last bits, as polygons of roads may leave them."""
     sliver = [[0.0, -35.74767, 0.15], [23.706552, -64.0, 0.15], [17.931557, -57.117638, 0.15]]
-    corners = np.array([*sliver, [0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
-    up = np.tile(np.array([0, 0, 1], np.float32), (6, 1))
-    triangles = np.arange(6, dtype=np.int32).reshape(2, 3)
-    mesh = replace(
-        floor(),
-        positions=corners,
-        normals=up,
-        uvs=corners[:, :2],
-        triangles=triangles,
-        materials=np.zeros(2, np.int32),
-    )
-    solid = solid_triangles(mesh)
-    assert np.isfinite(gradients(corners, up, corners[:, :2], triangles[solid])).all()
+    corners = np.array([sliver, [[0, 0, 0], [1, 0, 0], [0, 1, 0]]], np.float32)
+    up = np.tile(np.array([0, 0, 1], np.float32), (2, 3, 1))
+    solid = solid_triangles(corners)
+    assert np.isfinite(gradients(corners[solid], up[solid], corners[solid, :, :2])).all()
     assert solid[1]
 
 
@@ -274,20 +254,14 @@ def test_gradients_of_every_triangle_that_is_kept_are_right_at_its_corners():
     a, b = (rng.uniform(-600, 600, (count, 3)) for _ in range(2))
     along, aside = rng.uniform(0, 1, (count, 1)), 10.0 ** rng.uniform(-9, 0, (count, 1))
     c = a + along * (b - a) + aside * rng.normal(size=(count, 3))
-    positions = np.stack([a, b, c], axis=1).reshape(-1, 3).astype(np.float32)
-    mesh = Mesh(
-        positions=positions,
-        normals=np.tile(np.float32([0, 0, 1]), (3 * count, 1)),
-        uvs=np.tile(np.float32([[0, 0], [1, 0], [0, 1]]), (count, 1)),
-        triangles=np.arange(3 * count, dtype=np.int32).reshape(-1, 3),
-        materials=np.zeros(count, np.int32),
-        palette=(Material(),),
-    )
-    keep = solid_triangles(mesh)
+    corners = np.stack([a, b, c], axis=1).astype(np.float32)
+    keep = solid_triangles(corners)
     assert 0.4 < keep.mean() < 0.99
-    corners = positions.reshape(-1, 3, 3)[keep].astype(np.float64)
+    up = np.tile(np.float32([0, 0, 1]), (count, 3, 1))
+    uvs = np.tile(np.float32([[0, 0], [1, 0], [0, 1]]), (count, 1, 1))
     with np.errstate(all="raise"):
-        rows = gradients(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles[keep])
+        rows = gradients(corners[keep], up[keep], uvs[keep])
+    corners = corners[keep].astype(np.float64)
     slopes = rows[:, 3:6].astype(np.float64)
     for corner, u in ((1, 1.0), (2, 0.0)):
         told = np.einsum("ti,ti->t", slopes, corners[:, corner] - corners[:, 0])

@@ -1,5 +1,6 @@
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from eyas.engine.sim.config import SimConfig
 from eyas.engine.state.draw import MovingParts, Picture
 from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import Snapshot
+from eyas.engine.video import run
 from eyas.engine.video.episode import EpisodeFiles, read_complete
 
 SENSORS = SimConfig(
@@ -201,3 +203,14 @@ def test_what_one_writer_cannot_close_the_others_still_do(tmp_path):
     with pytest.raises(OutputError, match="still full"):
         files.abandon()
     assert list((tmp_path / "episode0").iterdir()) == []
+
+
+def test_a_film_is_named_to_open_next_or_else_a_picture(tmp_path):
+    folder, named = SimpleNamespace(path=tmp_path), []
+    for name in ("labels.jsonl", "000000.png", "episode.mp4"):
+        for drone in ("DRONE1", "DRONE0"):
+            (tmp_path / drone / "episode0").mkdir(parents=True, exist_ok=True)
+            (tmp_path / drone / "episode0" / name).touch()
+        named += [*run._to_open(folder)]
+    episode = tmp_path / "DRONE0" / "episode0"
+    assert named == [f"to see it, open {episode / file}" for file in ("000000.png", "episode.mp4")]

@@ -114,8 +114,9 @@ class _KindTracks(NamedTuple):
     """The motion of the vehicles of one kind."""
 
     rows: NDArray[np.void]  # Their samples, shape (samples, vehicles)
-    x: Floats  # Their places; far away where they are absent [m], shape (samples, vehicles)
-    y: Floats  # [m], the same shape
+    x: Floats  # Their places in order; far away where they are absent [m]
+    y: Floats  # Of the same samples [m]
+    at: NDArray[np.intp]  # Which samples these are, in the order of `rows`
     sections: list[Section]
     middle: float  # Distance of their middles ahead of their reference points [m]
     reach: float  # How far from its reference point a vehicle reaches, at most [m]
@@ -124,18 +125,20 @@ class _KindTracks(NamedTuple):
 def _tracks_of(vehicles: Motion, kind: int, samples: int) -> _KindTracks:
     rows, middle = vehicles.table[:samples, vehicles.kind == kind], KINDS[kind].ahead
     length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
-    x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf))
+    x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf)).ravel()
+    at = np.argsort(x)
     reach = 0.5 * (float(length) + float(width)) + abs(middle)
-    return _KindTracks(rows, x, np.ascontiguousarray(rows["y"]), _largest(kind), middle, reach)
+    return _KindTracks(rows, x[at], rows["y"].ravel()[at], at, _largest(kind), middle, reach)
 
 
 def _met_by(tracks: _KindTracks, line: Floats, clear: float) -> NDArray[np.int64]:
     """Return at which samples a vehicle is on a line, see `GapAcceptance`; some more than once."""
     middle, across = line.mean(axis=0), line[1] - line[0]
     reach = 0.5 * float(exact.hypot(*across)) + tracks.reach + clear
-    sample, actor = np.nonzero(
-        (np.abs(tracks.x - middle[0]) < reach) & (np.abs(tracks.y - middle[1]) < reach)
-    )
+    first, last = (np.float32(middle[0] + end) for end in (-reach - 1.0, reach + 1.0))
+    few = slice(int(np.searchsorted(tracks.x, first)), int(np.searchsorted(tracks.x, last)))
+    near = (np.abs(tracks.x[few] - middle[0]) < reach) & (np.abs(tracks.y[few] - middle[1]) < reach)
+    sample, actor = np.divmod(tracks.at[few][near], tracks.rows.shape[1])
     own, met = tracks.rows[sample, actor], []
     for section in tracks.sections:
         x, y = _axis(own, section, tracks.middle) - line[0][:, None, None]

@@ -1,4 +1,4 @@
-"""The first start: a second process does some of the work of the first."""
+"""The first start: a second process compiles for the first, where kernels must be compiled."""
 
 import contextlib
 import logging
@@ -28,40 +28,36 @@ _log = logging.getLogger("eyas")
 _PATIENCE = 300.0  # Longest time that this process waits for the second one [s]
 
 _compiling: list[subprocess.Popen[bytes]] = []
-"""The second process, if it compiles; kept even after that, because Python warns of processes that
-are forgotten before they end."""
-
-_doing_other: list[subprocess.Popen[bytes]] = []  # The second process, if it does something else
+"""The second process; kept even after it ends, because Python warns of processes that are forgotten
+before."""
 
 _COMPILE = "from eyas.engine.render.ahead import draw_nothing; draw_nothing()"
 
 
-def begin_ahead(other: str) -> None:
-    """Report a first start to the user, and use a second core for it if there is one.
+def begin_ahead() -> None:
+    """Report to the user that kernels must be compiled, and use a second core for it if there is
+    one.
 
-    The second process compiles the drawing kernels while this one does everything else; if they
-    come with Eyas, it takes over some of that. It never fails: what is missing when this process
-    waits for it, this process makes.
-
-    Args:
-        other: Program that makes something which is kept in the cache, and needed by this process.
+    The second process compiles the drawing kernels while this one does everything else. It never
+    fails: what is missing when this process waits for it, this process makes.
     """
-    compiles, cache = nothing_compiled(draw_views.function), kernel_folder()
-    if compiles and refusal():
+    if not nothing_compiled(draw_views.function):
+        return
+    if refusal():
         not_kept(refusal())
-    elif compiles:
-        _log.warning(
-            "first start of this version: compiling takes about half a minute, once; cached in %s",
-            cache,
-        )
+        return
+    cache = kernel_folder()
+    _log.warning(
+        "first start of this version: compiling takes about half a minute, once; cached in %s",
+        cache,
+    )
     # A frozen program has no interpreter to start.
-    if refusal() or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
+    if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
         return
     with contextlib.suppress(OSError):
         made_folder(cache)
         (cache / "started").touch(exist_ok=False)  # exactly one of several processes succeeds
-        processes = _compiling if compiles else _doing_other
-        processes.append(_started(_COMPILE if compiles else other))
+        _compiling.append(_started(_COMPILE))
 
 
 def _started(program: str) -> subprocess.Popen[bytes]:
@@ -78,16 +74,7 @@ def _started(program: str) -> subprocess.Popen[bytes]:
 
 def drawing_is_ready() -> None:
     """Wait until the drawing kernels can be loaded, if the second process compiles them."""
-    _wait(_compiling)
-
-
-def other_is_ready() -> None:
-    """Wait until the other work of the second process is done, if it does any."""
-    _wait(_doing_other)
-
-
-def _wait(processes: list[subprocess.Popen[bytes]]) -> None:
-    for process in processes:
+    for process in _compiling:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(_PATIENCE)
 

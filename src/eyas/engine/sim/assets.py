@@ -215,7 +215,7 @@ def _vehicles(
         cover=partial(cover_of, map_name, seed),
     )
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
-    begin_ahead(f"from eyas.engine.sim.scenes import paint; paint({sorted({*kind.tolist()})})")
+    begin_ahead()
     motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
     if config.lamps is Lamps.WORKING:
         lamps = kept_lamps(file, motion, load_network(map_name, seed))

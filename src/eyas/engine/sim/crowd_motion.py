@@ -1,5 +1,6 @@
 """The motion of a crowd: of the targets that are not vehicles of SUMO's, and of extras."""
 
+import itertools
 import zlib
 from collections.abc import Callable, Sequence
 from functools import cache, partial
@@ -118,9 +119,10 @@ def _all_kept(
     depends_on = [
         _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
-    make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
-    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
     counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
+    shape = around.clock.samples, sum(counts, sum(table.shape[1] for table in tables))
+    make, inputs = partial(_side_by_side, tables, parts, shape), (_numbers_of, *tables, *depends_on)
+    numbers = cached(EntryKind.MOTION, make, inputs, of=NDArray[np.float32])
     indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
     table = numbers.view(SAMPLE)[..., 0]
@@ -140,10 +142,16 @@ def _ground(around: CrowdSurroundings, driven: bool) -> "WalkingGround":
 
 
 def _side_by_side(
-    tables: Sequence[NDArray[np.void]], parts: Sequence[Callable[[], NDArray[np.float32]]]
+    tables: Sequence[NDArray[np.void]],
+    parts: Sequence[Callable[[], NDArray[np.float32]]],
+    shape: tuple[int, int],  # Of the whole: samples, actors
 ) -> NDArray[np.float32]:
-    driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
-    return np.concatenate([*driven, *(part() for part in parts)], axis=1)
+    made, first = np.zeros((*shape, len(SAMPLE.names or ())), np.float32), 0
+    driven = (table.view(np.float32).reshape(*table.shape, -1) for table in tables)
+    for numbers in itertools.chain(driven, (part() for part in parts)):  # one at a time in memory
+        made[:, first : first + numbers.shape[1]] = numbers
+        first += numbers.shape[1]
+    return made
 
 
 def _kept(

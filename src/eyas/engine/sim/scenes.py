@@ -2,9 +2,7 @@
 of a season.
 """
 
-import itertools
-import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import Enum
 from functools import lru_cache, partial
 
@@ -15,10 +13,8 @@ from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.doors import first_brought
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.render.ahead import other_is_ready
 from eyas.engine.render.kernels.bundles import Geometry
-from eyas.engine.render.pack.geometry import PackedScene, build_geometry, packed_scene
-from eyas.engine.render.pack.pool import Prototypes, packed_prototypes
+from eyas.engine.render.pack.geometry import build_geometry
 from eyas.engine.sensors.obstacles import Solids, solids_of
 from eyas.engine.state.draw import PartLibrary
 from eyas.engine.state.roads import RoadNetwork
@@ -42,9 +38,6 @@ class Lenses(Enum):
     COVERING = 2  # These, and what hides an amber that does not, see `lens_levels`
 
 
-_LOG = logging.getLogger("eyas")
-
-
 def load_network(map_name: str, seed: int) -> RoadNetwork:
     """Return a map's roads: shipped for seed 0 and few others, else built by netconvert.
 
@@ -63,14 +56,13 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 @lru_cache(maxsize=4)
 def _scene(map_name: str, seed: int, season: Season) -> Scene:
     # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
-    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
-    text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
-    make = partial(_built, text, network, season, recipe.name)
+    network, text = load_network(map_name, seed), _text_of(map_name, seed)
+    origin = _origin(map_name, seed, season)
+    make = partial(_built, text, network, season)
     return make() if origin is None else cached(EntryKind.SCENE, make, origin, of=Scene)
 
 
-def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
-    _LOG.info("building the map '%s', once", name)
+def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season) -> Scene:
     return planner().build(text.tobytes(), network, season)
 
 
@@ -91,8 +83,10 @@ def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
 
 
 def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
-    plan = recipe.complete_plan(network, seed)
-    return np.frombuffer(planner().text_of(plan).encode(), np.uint8)
+    text = recipe.shipped_plan(seed)
+    if text is None:
+        text = planner().text_of(recipe.complete_plan(network, seed)).encode()
+    return np.frombuffer(text, np.uint8)
 
 
 @lru_cache(maxsize=4)
@@ -126,7 +120,7 @@ def load_geometry(
 ) -> Geometry:
     """Return the geometry of a scene and of the parts of moving objects, for the kernels."""
     scene, origin = load_scene(map_name, seed, season), _origin(map_name, seed, season)
-    make = partial(_packed, scene, origin, kinds, load_textures, lenses=lenses)
+    make = partial(_packed, scene, kinds, load_textures, lenses=lenses)
     if origin is None:
         return make()
     inputs = (*origin, part_library, _chosen(kinds), _texture_maker(), lenses.value)
@@ -135,42 +129,12 @@ def load_geometry(
 
 def _packed(
     scene: Scene,
-    origin: tuple[object, ...] | None,
     kinds: tuple[int, ...],
     textures: Callable[[], dict[str, NDArray[np.uint8]]],
     *,
     lenses: Lenses,
 ) -> Geometry:
-    other_is_ready()  # which may be to `paint`
-    parts = load_parts(kinds)
-    shown = _with_lights(parts, lenses)
-    # Kept by itself: other movers on the same map are packed in a second.
-    pack = partial(packed_scene, scene)
-    still = pack() if origin is None else cached(EntryKind.GEOMETRY, pack, origin, of=PackedScene)
-    lights = packed_prototypes(shown.parts[len(parts.parts) :])
-    return build_geometry(
-        scene, shown, textures(), (still, [*map(_packed_kind, _chosen(kinds)), lights])
-    )
-
-
-def _packed_kind(kind: TargetKind) -> Prototypes:
-    return cached(EntryKind.PARTS, partial(_pack_kind, kind), (kind,), of=Prototypes)
-
-
-def _pack_kind(kind: TargetKind) -> Prototypes:
-    return packed_prototypes(_parts_of(kind).parts)
-
-
-def _parts_of(kind: TargetKind) -> PartLibrary:
-    return cached(EntryKind.PARTS, partial(part_library, (kind,)), (kind,), of=PartLibrary)
-
-
-def paint(
-    kinds: Sequence[int],  # See `load_geometry`
-) -> None:
-    """Put textures, and the parts of kinds of moving objects, into the cache."""
-    load_textures()
-    load_parts(tuple(kinds))
+    return build_geometry(scene, _with_lights(load_parts(kinds), lenses), textures())
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
@@ -179,12 +143,7 @@ def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
 
 def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
     """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
-    # One entry for each kind: whoever adds another to a world makes the parts of that one only.
-    made = [_parts_of(kind) for kind in _chosen(kinds)]
-    return PartLibrary(
-        tuple(itertools.chain.from_iterable(one.parts for one in made)),
-        tuple(itertools.chain.from_iterable(one.lamps for one in made)),
-    )
+    return part_library(_chosen(kinds))
 
 
 def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
@@ -198,7 +157,7 @@ def _with_lights(parts: PartLibrary, wanted: Lenses) -> PartLibrary:
 
 def load_textures() -> dict[str, NDArray[np.uint8]]:
     """Return all textures by name."""
-    return cached(EntryKind.TEXTURES, _texture_maker(), (), of=dict[str, NDArray[np.uint8]])
+    return _texture_maker()()
 
 
 def _texture_maker() -> Callable[[], dict[str, NDArray[np.uint8]]]:

@@ -323,8 +323,16 @@ def print_report(
     console.print(table)
     frames = total(summary for episodes in recorder.episodes for _, summary in episodes).frames
     line = f"{frames} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
-    for text in (line, *missed(every, video)):
+    for text in (line, *missed(every, video), *_to_open(folder)):
         console.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def _to_open(folder: VideoFolder) -> Iterator[str]:
+    """Yield what a user may open next: a film, or a picture."""
+    for pattern in ("*/*/episode.webp", "*/*/episode.mp4", "*/*/*.jpeg", "*/*/*.png"):
+        for file in sorted(folder.path.glob(pattern))[:1]:
+            yield f"to see it, open {file}"
+            return
 
 
 def _means(whole: Summary) -> tuple[str, str]:

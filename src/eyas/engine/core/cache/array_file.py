@@ -35,8 +35,10 @@ def array_file(
     return packed([name, table, content.flat], map(_bytes_of, content.arrays))
 
 
-def map_arrays(path: Path) -> Content:
+def map_arrays(path: Path, *, checked: bool = True) -> Content:
     """Return the content of a file. Writes into its arrays are visible only in this process.
+
+    Unless it is `checked`, its checksum is not computed, for which every byte is read.
 
     Raises:
         OSError: The file does not exist or cannot be read.
@@ -50,7 +52,7 @@ def map_arrays(path: Path) -> Content:
         whole = np.asarray(np.memmap(file, np.uint8, mode="c"))
     # Kernels index these arrays without checking bounds, so not a single bit may be wrong.
     try:
-        (name, table, flat), pieces = unpacked(whole.data)
+        (name, table, flat), pieces = unpacked(whole.data, checked=checked)
         arrays = [
             np.ndarray(tuple(shape), _plain(kind), piece)
             for (kind, shape), piece in zip(table, pieces, strict=True)

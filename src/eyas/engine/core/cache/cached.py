@@ -1,10 +1,10 @@
 """Values that take long to compute and are always the same, kept from run to run."""
 
+import ctypes
 import dataclasses
 import functools
 import gc
 import logging
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import Enum
@@ -16,6 +16,7 @@ import numpy as np
 
 from eyas.engine.core.cache.array_file import Content, array_file, map_arrays
 from eyas.engine.core.cache.entries import write_entry
+from eyas.engine.core.cache.first_start import told
 from eyas.engine.core.cache.flat import flatten, restore
 from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
@@ -25,7 +26,6 @@ Thing = TypeVar("Thing")
 
 _LOG = logging.getLogger("eyas")
 _PLAIN = frozenset({bool, float, int, type(None)})  # Types whose `repr` tells all
-_LONG = 1.0  # Values that took longer than this to make are reported in the log [s]
 
 
 def cached(
@@ -85,29 +85,50 @@ def _found_or_made(
         _LOG.debug("%s is made at each start: %s", kind, error)
         path = None
     found = None if path is None else _found(path, of)
-    if found is not None:
-        return found
-    start = time.perf_counter()
-    made = make()
-    taken = time.perf_counter() - start
+    if found is None:
+        found = _made_and_kept(kind, make, of, path, limit)
+        _give_back()
+    return found
+
+
+def _made_and_kept(
+    kind: EntryKind, make: Callable[[], Thing], of: type[Thing], path: Path | None, limit: int
+) -> Thing:
+    """Return what is made, and keep it as an entry if that has a path."""
+    with told(kind):
+        made = make()
     flat, arrays = flatten(made)
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
-    # A value just made is restored like one read from the file, so that both have the same types.
-    restored = restore(of, *content)
+    found = None
     if path is not None:
         try:
             write_entry(path, array_file(content, path.name), limit)
         except OSError as error:
             not_kept(error)
-    if taken > _LONG:
-        _LOG.info("made %s in %.1f s", kind, taken)
-    return restored
+        else:
+            # The file takes the place of what was made: of that a process needs a part only.
+            found = _found(path, of, written=True)
+    # A value just made is restored like one read from the file, so that both have the same types.
+    return restore(of, *content) if found is None else found
 
 
-def _found(path: Path, of: type[Thing]) -> Thing | None:
-    """Return the value of an entry; None if there is none, or it is damaged."""
+def _give_back() -> None:
+    """Give free memory back to the system, where the C library can, as glibc does.
+
+    Making leaves tens of megabytes of it, in pieces too small to go back by themselves.
+    """
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:
+        trim(0)
+
+
+def _found(path: Path, of: type[Thing], *, written: bool = False) -> Thing | None:
+    """Return the value of an entry; None if there is none, or it is damaged.
+
+    If this process has just written it, it is not read to see whether it is whole.
+    """
     try:
-        found = restore(of, *map_arrays(path))
+        found = restore(of, *map_arrays(path, checked=not written))
     except (FileNotFoundError, NotADirectoryError, PermissionError):
         return None  # if it cannot be replaced either, that is told
     except (OSError, ValueError):

@@ -24,8 +24,6 @@ class EntryKind(StrEnum):
 
     PLAN = "plan"
     SCENE = "scene"
-    TEXTURES = "textures"
-    PARTS = "parts"
     GEOMETRY = "geometry"
     SOLIDS = "solids"
     SKY = "sky"

@@ -27,7 +27,8 @@ WORLD = frozenset(
 
 _ROOT = Path(__file__).parents[3]
 _ENGINE = "engine"
-_SILENT = (SUFFIX, ".md")  # what sources say, once more, and what only people read
+# What sources say, once more, what their code makes (`MapRecipe.shipped_plan`), what people read.
+_SILENT = (SUFFIX, ".eyl", ".md")
 # It computes what the sources say, or is not used.
 _CODE_OF_KERNELS = ("lanes/shipped/", "gpu/shipped/")
 _LIBRARIES = ("onnxruntime", "torch")  # Their versions change what networks compute

@@ -43,8 +43,11 @@ class UnknownCodeError(TypeError):
     """It is not known where the code of something lies: it was typed in, or made by `exec`."""
 
 
-def code_of(what: Callable[..., Any]) -> str:
+def code_of(what: Callable[..., Any], *, libraries: bool = True) -> str:
     """Return what identifies the code of a function, of a `partial` of one, or of a class.
+
+    The versions of `libraries` count, too, unless it is for what is the same with all that are
+    allowed, on another machine.
 
     Raises:
         UnknownCodeError: It is not known where its code lies.
@@ -56,15 +59,15 @@ def code_of(what: Callable[..., Any]) -> str:
         found = getattr(found, inner, found)
     if not hasattr(found, "__qualname__"):  # an object that can be called
         found = type(found)
-    return _code(found.__module__ or "", found.__qualname__.partition(".")[0])
+    return _code(found.__module__ or "", found.__qualname__.partition(".")[0], libraries)
 
 
 @cache
-def _code(module: str, name: str) -> str:
+def _code(module: str, name: str, libraries: bool) -> str:
     texts = []
     for at, what in sorted(closure_of(module, name)):
         if not what:
-            texts.append(_library(at))
+            texts.append(_library(at) if libraries else "")
         elif what == _LANGUAGE:
             texts.append(f"language of kernels {language_hash()}")
         else:

@@ -62,30 +62,29 @@ def columns_of(boxes: NDArray[np.float32], group: int) -> NDArray[np.float32]:
 
 def silhouette(mesh: Mesh) -> NDArray[np.float32]:
     """Return the two boxes of a mesh, see `Geometry.silhouette`, shape (7,)."""
-    points, weight = _points(mesh)
-    if len(points) == 0:
+    (x, y, z), weight = _points(mesh)
+    if len(z) == 0:
         return np.zeros(7, np.float32)
-    z = points[:, 2]
     rise = (z - z.min()) / max(float(np.ptp(z)), 1e-9)
     low, high = rise <= WAIST, rise >= CHEST
     ends = [
-        *_ends(points[high, 0], weight[high]),
-        *_ends(points[high, 1], weight[high]),
-        *_ends(points[low, 1], weight[low]),
+        *_ends(x[high], weight[high]),
+        *_ends(y[high], weight[high]),
+        *_ends(y[low], weight[low]),
     ]
     return np.array([z.min() + WAIST * np.ptp(z), *ends], np.float32)
 
 
 def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return points spread over all triangles, and the area that each represents."""
+    """Return points spread over all triangles, shape (3, N), and the area that each represents."""
     first, second = (a.ravel() for a in np.mgrid[: _GRID + 1, : _GRID + 1])
     inside = first + second <= _GRID
     share = np.stack([first, second, _GRID - first - second], axis=1)[inside] / _GRID
     corners = mesh.positions[mesh.triangles].astype(np.float64)
-    points = exact.product(share, corners).reshape(-1, 3)
+    points = exact.product(np.moveaxis(corners, 2, 0), share.T)
     across = exact.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
-    return points, np.repeat(area, len(share))
+    return points.reshape(3, -1), np.repeat(area, len(share))
 
 
 def _ends(positions: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, float]:

@@ -30,51 +30,84 @@ angles."""
 Number = TypeVar("Number", bound=np.generic)
 
 
-def filled_up(values: NDArray[Number]) -> NDArray[Number]:
-    """Return rows filled up with zeros to whole clusters."""
-    missing = -len(values) % CLUSTER
-    return np.concatenate([values, np.zeros((missing, *values.shape[1:]), values.dtype)])
+def slots_of(counts: NDArray[np.intp]) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return which row each place of whole clusters holds, and whether it is one of its own.
+
+    Rows lie one mesh after the other, so many of each; what fills a mesh's last cluster up holds
+    the mesh's last row once more.
+    """
+    places = counts + -counts % CLUSTER
+    mesh = np.repeat(np.arange(len(counts)), places)
+    rank = np.arange(len(mesh)) - (np.cumsum(places) - places)[mesh]
+    last = counts[mesh] - 1
+    return (np.cumsum(counts) - counts)[mesh] + np.minimum(rank, last), rank <= last
 
 
 def cluster_order(
     corners: NDArray[np.float32],  # [m], shape (T, 3, 3)
     sizes: NDArray[np.float32],  # See `SIZE`, shape (T,)
     leafy: NDArray[np.bool_],  # Whether they are leaves, shape (T,)
+    mesh: NDArray[np.intp],  # Numbers of their meshes, never falling, shape (T,)
 ) -> NDArray[np.intp]:
-    """Return an order in which each eight triangles in a row lie together and face alike.
+    """Return an order in which each eight triangles of a mesh lie together and face alike.
 
-    Leaves come last, in the order in which they are given.
+    Leaves come last in each mesh, in the order in which they are given.
     """
     solid = np.flatnonzero(~leafy)
     points = corners[solid].astype(np.float64)
     normals = exact.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    middle = (points.min(axis=1) + points.max(axis=1)) / 2
-    reach = max(float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0, 1e-6)
+    least, most = points.min(axis=1), points.max(axis=1)
+    first = np.flatnonzero(np.diff(mesh[solid], prepend=-1))
     small = np.where(np.isfinite(sizes[solid]), exact.log2(np.maximum(sizes[solid], 1e-3)), 8.0)
-    places = np.concatenate([middle / reach, TURN * normals, 0.1 * small[:, None]], axis=1)
-    return np.concatenate([solid[_together(places)], np.flatnonzero(leafy)])
+    found = solid
+    if len(solid):
+        span = np.maximum.reduceat(most, first) - np.minimum.reduceat(least, first)
+        count = np.diff(first, append=len(solid))
+        reach = np.repeat(np.maximum(span.max(axis=1), 1e-6), count)[:, None]
+        places = [(least + most) / 2 / reach, TURN * normals, 0.1 * small[:, None]]
+        found = solid[_together(np.concatenate(places, axis=1), first, count)]
+    order = np.concatenate([found, np.flatnonzero(leafy)])
+    return order[np.argsort(mesh[order], kind="stable")]
 
 
-def _together(places: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return an order of places: cut in two across their longest side, again and again."""
-    done, left = [], [np.arange(len(places))]
-    while left:
-        part = left.pop()
-        if len(part) <= CLUSTER:
-            done.append(part)
-            continue
-        side = places[part]
-        axis = int(np.argmax(np.ptp(side, axis=0)))
-        half = CLUSTER * ((len(part) // CLUSTER + 1) // 2)
-        order = np.argsort(side[:, axis], kind="stable")
-        left += [part[order[half:]], part[order[:half]]]
-    return np.concatenate([np.zeros(0, np.intp), *done])
+def _together(
+    places: NDArray[np.float64],  # Shape (T, n)
+    first: NDArray[np.intp],  # Of each mesh
+    count: NDArray[np.intp],  # The same, at least 1
+) -> NDArray[np.intp]:
+    """Return an order of places: each mesh cut in two across its longest side, again and again.
+
+    All parts of all meshes are cut at once. What is sorted are whole numbers: of the part, of the
+    place along its longest side, equal ones of which count as one, and of the order until then.
+    """
+    bits = len(places).bit_length()
+    assert 3 * bits - 3 < 63, f"{len(places)} triangles in a mesh"  # of parts are an eighth as many
+    rank = np.empty(places.T.shape, np.int64)
+    for along, side in zip(rank, places.T, strict=True):
+        sort = np.argsort(side, kind="stable")
+        along[sort] = np.cumsum(np.diff(side[sort], prepend=-np.inf) != 0.0) - 1
+    order = np.arange(len(places))
+    while (large := count > CLUSTER).any():
+        first, count = first[large], count[large]
+        start = np.cumsum(count) - count
+        part = np.repeat(np.arange(len(count)), count)
+        at = np.arange(len(part)) + (first - start)[part]
+        who = order[at]
+        sides = places[who]
+        longest = np.argmax(
+            np.maximum.reduceat(sides, start) - np.minimum.reduceat(sides, start), axis=1
+        )
+        key = (((part << bits) | rank[longest[part], who]) << bits) | np.arange(len(part))
+        order[at] = who[np.sort(key) & ((1 << bits) - 1)]
+        half = CLUSTER * ((count // CLUSTER + 1) // 2)
+        first = np.concatenate([first, first + half])
+        count = np.concatenate([half, count - half])
+    return order
 
 
-def by_clusters(values: NDArray[Number]) -> NDArray[Number]:
-    """Return rows of triangles, shape (T, n), as columns of clusters, shape (T / 8, n, 8)."""
-    rows = filled_up(values)
+def by_clusters(rows: NDArray[Number]) -> NDArray[Number]:
+    """Return rows of whole clusters, shape (T, n), as columns, shape (T / 8, n, 8)."""
     return np.ascontiguousarray(rows.reshape(-1, CLUSTER, rows.shape[1]).swapaxes(1, 2))
 
 
@@ -82,14 +115,16 @@ def clusters_of(
     corners: NDArray[np.float32],  # [m], shape (T, 3, 3)
     sizes: NDArray[np.float32],  # Row `SIZE`, shape (T,)
     tiles: NDArray[np.float32],  # Row `LEAVES`, shape (T,)
+    counts: NDArray[np.intp],  # Number of triangles of each mesh, which sum up to T
 ) -> NDArray[np.float32]:
-    """Return clusters of T triangles in their order, see `Geometry.cluster`."""
-    missing = -len(corners) % CLUSTER
-    rows = np.empty((len(corners) + missing, CLUSTER_ROWS), np.float32)
-    rows[: len(corners), :SIZE] = corners.reshape(-1, 9)
-    rows[len(corners) :, :SIZE] = np.tile(corners[-1:, 0], (missing, 3))
-    rows[:, SIZE], rows[:, LEAVES] = -1.0, -1.0
-    rows[: len(corners), SIZE], rows[: len(corners), LEAVES] = sizes, tiles
+    """Return clusters of the triangles of meshes in their order, see `Geometry.cluster`."""
+    source, own = slots_of(counts)
+    rows = np.empty((len(source), CLUSTER_ROWS), np.float32)
+    rows[:, :SIZE] = np.where(own[:, None, None], corners[source], corners[source, :1]).reshape(
+        -1, SIZE
+    )
+    rows[:, SIZE] = np.where(own, sizes[source], -1.0)
+    rows[:, LEAVES] = np.where(own, tiles[source], -1.0)
     return by_clusters(rows)
 
 
@@ -98,19 +133,21 @@ def corners_of(clusters: NDArray[np.float32]) -> NDArray[np.float32]:
     return clusters[:, :9].swapaxes(1, 2).reshape(-1, 3, 3)
 
 
-def bounds_of(clusters: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the bounds of the clusters of a mesh, see `Geometry.bounds`."""
+def bounds_of(
+    clusters: NDArray[np.float32],
+    counts: NDArray[np.intp],  # Number of clusters of each mesh
+) -> NDArray[np.float32]:
+    """Return the bounds of the clusters of meshes, see `Geometry.bounds`."""
     corners = clusters[:, :9].reshape(-1, 3, 3, CLUSTER).transpose(0, 3, 1, 2).astype(np.float64)
-    points = corners.reshape(len(clusters), -1, 3)
+    points = corners.reshape(len(clusters), 3 * CLUSTER, 3)
     bounds = np.zeros((len(clusters), BOUNDS_ROWS), np.float32)
     bounds[:, 0:3], bounds[:, 3:6] = points.min(axis=1), points.max(axis=1)
     bounds[:, APEX : CUT_OFF + 1] = _cones(corners, clusters)
     bounds[:, LARGEST] = clusters[:, SIZE].max(axis=1)
-    missing = -len(bounds) % CLUSTER
-    nothing = np.zeros((missing, BOUNDS_ROWS), np.float32)
-    nothing[:, 0:3], nothing[:, 3:6] = NOWHERE, -NOWHERE
-    groups = np.concatenate([bounds, nothing]).reshape(-1, CLUSTER, BOUNDS_ROWS)
-    return np.ascontiguousarray(groups.swapaxes(1, 2))
+    source, own = slots_of(counts)
+    nothing = np.zeros(BOUNDS_ROWS, np.float32)
+    nothing[0:3], nothing[3:6] = NOWHERE, -NOWHERE
+    return by_clusters(np.where(own[:, None], bounds[source], nothing))
 
 
 def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -126,7 +163,7 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     axis = normals.sum(axis=1)
     axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
     cosine = np.where(real, exact.dot(normals, axis[:, None]), 1.0)
-    middle = corners.reshape(len(corners), -1, 3).mean(axis=1)
+    middle = corners.reshape(len(corners), 3 * CLUSTER, 3).mean(axis=1)
     height = exact.dot(middle[:, None] - corners[:, :, 0], normals)
     behind = np.where(real, height / np.maximum(cosine, 1e-9), 0.0).max(axis=1)
     narrow = (cosine.min(axis=1) > _WIDEST) & ~(clusters[:, LEAVES] >= 0.0).any(axis=1)

@@ -1,21 +1,27 @@
 """Packing of a scene and a part library into the arrays of the kernels."""
 
 import itertools
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import GROUP, Geometry
 from eyas.engine.render.kernels.visibility.clusters import CLUSTER
-from eyas.engine.render.pack.boxes import box_of, columns_of, group_boxes, posed_boxes
+from eyas.engine.render.pack.boxes import (
+    box_of,
+    columns_of,
+    group_boxes,
+    posed_boxes,
+    silhouette,
+    sphere_of,
+)
 from eyas.engine.render.pack.materials import material_table
-from eyas.engine.render.pack.pool import PackedMeshes, Pool, Prototypes, joined, packed_prototypes
+from eyas.engine.render.pack.pool import Pool
 from eyas.engine.render.pack.triangles import shading_rows
 from eyas.engine.render.textures.mipmap import packed_layers
 from eyas.engine.state.draw import PartLibrary
-from eyas.engine.state.mesh import Mesh
 from eyas.engine.state.scene import ObjectClass, Scene
 
 CHUNK = 32.0  # Side of the squares into which static triangles are sorted [m]
@@ -26,64 +32,47 @@ _FIXTURE_CELL = 6.0
 _HIGH = 4.0  # Height above which things are grouped separately [m]
 
 
-@dataclass(frozen=True, slots=True)
-class PackedScene:
-    """What of a `Geometry` a scene decides alone."""
-
-    ground: PackedMeshes  # Its static mesh, square by square
-    chunk_box: NDArray[np.float32]  # Around each square, shape (C, 6)
-    fixtures: Prototypes
-
-
-def packed_scene(scene: Scene) -> PackedScene:
-    """Pack what does not move."""
-    ground, boxes = _packed_chunks(scene)
-    return PackedScene(ground, boxes, packed_prototypes(scene.fixtures.levels))
-
-
 def build_geometry(
     scene: Scene,  # The static scene
     parts: PartLibrary,  # Parts of the moving things
     textures: Mapping[str, NDArray[np.uint8]],  # sRGB and alpha by name, shape (256, 256, 4) each
-    # The scene, and all parts in their order, where they are packed already
-    packed: tuple[PackedScene, Sequence[Prototypes]] | None = None,
 ) -> Geometry:
     """Return everything that can be drawn.
 
     Raises:
         UnknownNameError: A material names a missing texture.
     """
-    still, moving = packed or (packed_scene(scene), [packed_prototypes(parts.parts)])
-    prototypes = [still.fixtures, *moving]
-    meshes = joined([still.ground, *(each.meshes for each in prototypes)])
-    box, sphere, outline, levels = (
-        np.concatenate([getattr(each, name) for each in prototypes])
-        for name in ("box", "sphere", "silhouette", "levels")
-    )
-    chunks = len(still.ground.ranges)
+    pool = Pool()
+    chunk_box = _add_chunks(pool, scene)
+    prototypes = (*scene.fixtures.levels, *parts.parts)
+    for mesh in itertools.chain.from_iterable(prototypes):
+        pool.add(mesh)
+    meshes, palette, chunks = pool.packed(), tuple(pool.palette), len(chunk_box)
+    # What is culled must not stick out of the box of any of its levels.
+    points = [np.concatenate([mesh.positions for mesh in levels]) for levels in prototypes]
+    box = np.array([box_of(each) for each in points], np.float32).reshape(-1, 6)
     order = _fixture_order(scene.fixtures.pose[:, :, 3])
     pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
     prototype = scene.fixtures.prototype[order].astype(np.int32)
-    names = sorted({material.texture for material in meshes.palette} | {"plain"})
+    names = sorted({material.texture for material in palette} | {"plain"})
     fixture_boxes = posed_boxes(box[prototype], pose)
-    materials = material_table(scene, parts, meshes.palette, names)
+    materials = material_table(scene, parts, palette, names)
+    own = materials.of(meshes["material"])
+    shading = shading_rows(meshes.pop("slopes"), meshes["object_id"], own)
+    ranges = meshes.pop("ranges")
     return Geometry(
-        cluster=meshes.clusters,
-        bounds=meshes.bounds,
-        corner_uv=meshes.corner_uvs,
-        shading=shading_rows(meshes.slopes, meshes.objects, materials.of(meshes.material)),
-        material=meshes.material,
-        object_id=meshes.objects,
+        **meshes,
+        shading=shading,
         object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),
-        chunk_box=columns_of(still.chunk_box, GROUP),
-        chunk_group_box=columns_of(group_boxes(still.chunk_box), CLUSTER),
-        chunk_range=meshes.ranges[:chunks],
-        mesh_range=meshes.ranges[chunks:],
-        level_first=np.cumsum([0, *levels]).astype(np.int32),
+        chunk_box=columns_of(chunk_box, GROUP),
+        chunk_group_box=columns_of(group_boxes(chunk_box), CLUSTER),
+        chunk_range=ranges[:chunks],
+        mesh_range=ranges[chunks:],
+        level_first=np.cumsum([0, *map(len, prototypes)]).astype(np.int32),
         part_first=len(scene.fixtures.levels),
-        sphere=sphere,
+        sphere=np.array([sphere_of(each) for each in points], np.float32).reshape(-1, 4),
         box=box,
-        silhouette=outline,
+        silhouette=np.array([silhouette(m[0]) for m in prototypes], np.float32).reshape(-1, 7),
         lamps=_lamps(scene, parts),
         fixture_prototype=prototype,
         fixture_pose=pose,
@@ -104,9 +93,9 @@ def _lamps(scene: Scene, parts: PartLibrary) -> NDArray[np.bool_]:
     return np.array((False,) * len(scene.fixtures.levels) + of_parts, np.bool_)
 
 
-def _packed_chunks(scene: Scene) -> tuple[PackedMeshes, NDArray[np.float32]]:
-    """Return the static mesh square by square, and boxes around them, shape (C, 6)."""
-    pool, mesh = Pool(), scene.static
+def _add_chunks(pool: Pool, scene: Scene) -> NDArray[np.float32]:
+    """Add the static mesh square by square; return boxes around them, shape (C, 6)."""
+    mesh = scene.static
     corners = mesh.positions[mesh.triangles]
     middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
     cell = np.floor(middle / CHUNK).astype(np.int64)
@@ -117,21 +106,13 @@ def _packed_chunks(scene: Scene) -> tuple[PackedMeshes, NDArray[np.float32]]:
     size = _detail_sizes(scene, corners)
     order = np.lexsort((-size, key))
     starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
-    ranges, boxes = [], []
+    boxes = []
     for first, last in itertools.pairwise(starts):
         index = order[first:last]
-        part = Mesh(
-            positions=mesh.positions,
-            normals=mesh.normals,
-            uvs=mesh.uvs,
-            triangles=mesh.triangles[index],
-            materials=mesh.materials[index],
-            palette=mesh.palette,
-        )
-        objects = scene.static_object[index].astype(np.int32)
-        ranges.append(pool.add(part, objects, size[index]))
+        part = replace(mesh, triangles=mesh.triangles[index], materials=mesh.materials[index])
+        pool.add(part, scene.static_object[index].astype(np.int32), size[index])
         boxes.append(box_of(mesh.positions[part.triangles].reshape(-1, 3)))
-    return pool.packed(ranges), np.array(boxes, np.float32).reshape(-1, 6)
+    return np.array(boxes, np.float32).reshape(-1, 6)
 
 
 def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -5,16 +5,17 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import SHADING_COLUMNS
 from eyas.engine.render.pack.materials import MaterialTable
-from eyas.engine.state.mesh import Mesh
 from eyas.lanes import exact
 
 _SLIVER = 1e-12
 """Squared sine of the least angle between sides: thousands of times the rounding of a float64."""
 
 
-def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
+def solid_triangles(
+    corners: NDArray[np.float32],  # [m], shape (T, 3, 3)
+) -> NDArray[np.bool_]:
     """Return which triangles have an area, shape (T,)."""
-    a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
+    a, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
     e1, e2 = b - a, c - a
     solid: NDArray[np.bool_] = np.linalg.norm(exact.cross(e1, e2), axis=1) > 1e-10
     # `gradients` divides by this difference, in which the rounding of its terms remains: of a long
@@ -25,10 +26,9 @@ def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
 
 
 def gradients(
-    positions: NDArray[np.float32],  # Vertices [m], shape (V, 3)
-    normals: NDArray[np.float32],  # Unit normals, shape (V, 3)
-    uvs: NDArray[np.float32],  # Texture coordinates [tiles], shape (V, 2)
-    triangles: NDArray[np.int32],  # Corners of triangles with an area, shape (T, 3)
+    corners: NDArray[np.float32],  # Of triangles with an area [m], shape (T, 3, 3)
+    normals: NDArray[np.float32],  # Unit normals there, shape (T, 3, 3)
+    uvs: NDArray[np.float32],  # Texture coordinates there [tiles], shape (T, 3, 2)
 ) -> NDArray[np.float32]:
     """Return how texture coordinates and normals change on triangles, shape (T, 24): a corner;
     then gradient and value at that corner of u and of v; normal at the corner; gradients of the
@@ -37,22 +37,22 @@ def gradients(
     A linear quantity on a triangle is `value + gradient @ (point - corner)`, with a gradient in
     the triangle's plane.
     """
-    corner, b, c = np.moveaxis(positions[triangles].astype(np.float64), 1, 0)
+    corner, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
     e1, e2 = b - corner, c - corner
     d11, d12, d22 = _dot(e1, e1), _dot(e1, e2), _dot(e2, e2)
     square = d11 * d22 - d12 * d12
     toward_b = (d22 * e1 - d12 * e2) / square
     toward_c = (d11 * e2 - d12 * e1) / square
 
-    uv = uvs[triangles].astype(np.float64)
+    uv = uvs.astype(np.float64)
     # Whole repeats have no effect, and small numbers keep their precision; a shift of 64 repeats
     # does not change the choice of lit windows either.
     uv -= 64.0 * np.floor(uv[:, :1] / 64.0)
-    normal = normals[triangles].astype(np.float64)
+    normal = normals.astype(np.float64)
     du1, du2 = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     dn1, dn2 = normal[:, 1] - normal[:, 0], normal[:, 2] - normal[:, 0]
 
-    table = np.empty((len(triangles), 24))
+    table = np.empty((len(corners), 24))
     table[:, 0:3] = corner
     for k in range(2):
         table[:, 3 + 4 * k : 6 + 4 * k] = du1[:, k, None] * toward_b + du2[:, k, None] * toward_c

@@ -18,7 +18,12 @@ def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.where(values <= 0.04045, values / 12.92, exact.power((values + 0.055) / 1.055, 2.4))
 
 
+def _kept(light: NDArray[np.float64]) -> NDArray[np.uint8]:
+    return np.round(np.sqrt(light) * 255.0).astype(np.uint8)
+
+
 _LINEAR = linear(np.arange(256) / 255.0)  # Linear value of each byte of sRGB
+_KEPT = _kept(_LINEAR)  # What is kept of it
 
 
 def packed_layers(
@@ -43,19 +48,20 @@ def packed_layers(
 
 
 def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
-    texels = image[::-1].astype(np.float64) / 255.0  # v grows upwards, rows grow downwards
-    texels[..., :3] = _LINEAR[image[::-1, :, :3]]
-    shifts = np.array([0, 8, 16, 24], np.uint32)
+    texels = np.empty(image.shape)  # v grows upwards, rows grow downwards
+    texels[..., :3], texels[..., 3] = _LINEAR[image[::-1, :, :3]], image[::-1, :, 3] / 255.0
+    level = np.dstack([_KEPT[image[::-1, :, :3]], image[::-1, :, 3:]])
     sheet = np.zeros((TEXELS // TEXELS_IN_ROW, TEXELS_IN_ROW), np.uint32)
     top, left = 0, 0
-    for level in range(LEVELS):
-        if level > 0:
+    for number in range(LEVELS):
+        if number > 0:
             texels = (texels[::2] + texels[1::2]) / 2
             texels = (texels[:, ::2] + texels[:, 1::2]) / 2
-        encoded = np.concatenate([np.sqrt(texels[..., :3]), texels[..., 3:]], axis=-1)
-        packed = np.bitwise_or.reduce(np.round(encoded * 255.0).astype(np.uint32) << shifts, axis=2)
-        repeated = np.pad(packed, (0, 1), mode="wrap")
+            alpha = np.round(texels[..., 3] * 255.0).astype(np.uint8)
+            level = np.dstack([_kept(texels[..., :3]), alpha])
+        packed = level.view("<u4")[..., 0]
+        repeated = np.arange(len(packed) + 1) % len(packed)
         size = len(repeated)
-        sheet[top : top + size, left : left + size] = repeated
-        top, left = SIDE + 1, left + size if level > 0 else 0
+        sheet[top : top + size, left : left + size] = packed[repeated][:, repeated]
+        top, left = SIDE + 1, left + size if number > 0 else 0
     return sheet.reshape(-1)

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.core.files import require_sum
-from eyas.engine.core.identity.program import definitions_in
+from eyas.engine.core.identity.program import code_of, definitions_in
 from eyas.engine.core.registry import OWN
 from eyas.engine.core.rng import TEST_SEEDS
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.world.maps.planner import planner
 from eyas.engine.world.weather import WEATHERS, Season, Weather, unchanged
+from eyas.lanes.container import unpacked
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -26,6 +27,7 @@ ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 PLAN_FILE = "map.plan.json"  # File in the folder of an imported map with its plan
 PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")  # Endings of the names of files with plans
 NETWORK_FILE = "network.npz"  # File in a map's package with the processed roads of its seed 0
+MADE_PLAN_SUFFIX = ".eyl"  # Ending of the file in a map's package with the plan of its seed 0
 TRAFFIC_FILE = "traffic.npz"  # File in a map's package with the canonical recording of its traffic
 
 
@@ -214,6 +216,23 @@ class MapRecipe:
             require_sum(path, self.checksums)
             return load_network(path)
 
+    def shipped_plan(self, seed: int) -> bytes | None:
+        """Return the text of the plan of a seed, if today's code has made the one that ships."""
+        file = self.shipped(f"{self.name}{MADE_PLAN_SUFFIX}") if seed == 0 else None
+        if file is None:
+            return None
+        import lzma  # not needed to describe a map
+
+        made_by, (text,) = unpacked(lzma.decompress(file.read_bytes()))
+        return bytes(text) if made_by == self.plan_code() else None
+
+    def plan_code(self) -> str:
+        """Return what identifies all that the plan of seed 0 is made of."""
+        makers = self.plan, planner().complete, planner().text_of
+        roads = self.shipped(NETWORK_FILE)
+        data = "" if roads is None else _digest_of([roads])
+        return f"{data} {self.data_hash()} {' '.join(code_of(m, libraries=False) for m in makers)}"
+
     def _known(self, name: str) -> Weather:
         here = f"on the map '{self.name}'"
         try:
@@ -230,7 +249,7 @@ def _files_in(folder: Traversable, *, sources: bool) -> Iterator[Traversable]:
         if path.is_dir():
             if path.name != "__pycache__":  # which comes with the first start
                 yield from _files_in(path, sources=sources)
-        elif not path.name.endswith(".npz") and (sources or not path.name.endswith(".py")):
+        elif not path.name.endswith((".npz", MADE_PLAN_SUFFIX, *([] if sources else [".py"]))):
             yield path
 
 
