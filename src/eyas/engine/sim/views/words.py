@@ -11,7 +11,7 @@ from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of
 from eyas.engine.targets.grammar.in_view import InView
-from eyas.engine.targets.words import ObjectInView, distinguishing_phrase
+from eyas.engine.targets.words import ObjectInView, distinguishing_phrase, phrases
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
@@ -28,9 +28,20 @@ def target_in_words(
 
     No other actor of which a part is in the camera's view shares it, hidden or not.
     """
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
-    target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
     actors, _, model, colour = around
+    target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
+    own = phrases(int(model[target]), colour[target].tolist())
+    near = _near(shown, around, tracker, aspect, lens)
+    alike = [
+        actor
+        for actor in near.tolist()
+        if actor == target
+        or not {*own}.isdisjoint(phrases(int(model[actor]), colour[actor].tolist()))
+    ]
+    if len(alike) == 1:
+        return own[0]
+    chosen = np.array(alike)
+    inside, corners = _boxes(shown, around, chosen, tracker, aspect, lens)
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
     middle = corners.mean(axis=1)
     forward, column = middle[:, 0], _placed(middle, wide, aspect, lens)[:, 0]
@@ -46,9 +57,8 @@ def target_in_words(
             distance=float(forward[row]),
         )
 
-    (own,) = np.flatnonzero(chosen == target).tolist()
     others = np.flatnonzero(inside & (chosen != target)).tolist()
-    return distinguishing_phrase(seen(own), [seen(row) for row in others])
+    return distinguishing_phrase(seen(alike.index(target)), [seen(row) for row in others])
 
 
 def in_view(
@@ -59,7 +69,8 @@ def in_view(
     lens: Lens | None = None,  # Its lens; None: a pinhole
 ) -> InView:
     """Return the moving objects, and the target, of which a part is in a tracker's view."""
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
+    chosen = _near(shown, around, tracker, aspect, lens)
+    inside, corners = _boxes(shown, around, chosen, tracker, aspect, lens)
     inside |= chosen == shown.targets.actor[tracker]
     actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
     actors, _, model, colour = around
@@ -96,27 +107,40 @@ def _placed(
     return np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=-1)
 
 
-def _surely_near(
+def _near(
     shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None
-) -> tuple[NDArray[np.int64], NDArray[np.bool_], Floats]:
-    """Return actors that are near a tracker's view or its target, shape (K,), of which a part is
-    inside, (K,), and the corners of their boxes forward, left and up of the camera [m], (K, 8, 3).
-    """
-    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
-    actors, _, model, _ = around
-    wide = _half_width(cameras, tracker)
-    middles = _in_camera(actors.position[0], cameras, tracker)
+) -> NDArray[np.int64]:
+    """Return the actors that may be in a tracker's view, and its target, in order, shape (K,)."""
+    actors, wide = around.state, _half_width(shown.cameras, tracker)
+    middles = _in_camera(actors.position[0], shown.cameras, tracker)
     seen = wide if lens is None else widest(lens, (1.0, aspect), (0.5 / wide, 0.5 / wide))
     near = _may_be_in_view(
-        middles, _reach(len(MODELS))[model], seen, wide * aspect if lens is None else seen
+        middles, _reach(len(MODELS))[around.model], seen, wide * aspect if lens is None else seen
     )
-    near &= actors.present[0] & ~_flying(len(MODELS))[model]
-    near[target] = True
-    chosen = np.flatnonzero(near)
-    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
+    near &= actors.present[0] & ~_flying(len(MODELS))[around.model]
+    near[shown.targets.actor[tracker]] = True
+    return near.nonzero()[0]
+
+
+def _boxes(
+    shown: Snapshot,
+    around: ActorView,
+    chosen: NDArray[np.int64],
+    tracker: int,
+    aspect: float,
+    lens: Lens | None,
+) -> tuple[NDArray[np.bool_], Floats]:
+    """Return whether parts of actors are in a tracker's view, shape (K,), and the corners of their
+    boxes forward, left and up of the camera [m], shape (K, 8, 3).
+    """
+    corners, wide = (
+        _corners(around.state, chosen, around.model),
+        _half_width(shown.cameras, tracker),
+    )
+    corners = _in_camera(corners, shown.cameras, tracker)
     if lens is not None:
-        return chosen, _in_bent_view(corners, wide, aspect, lens), corners
-    return chosen, _in_view(corners, wide, wide * aspect), corners
+        return _in_bent_view(corners, wide, aspect, lens), corners
+    return _in_view(corners, wide, wide * aspect), corners
 
 
 def _half_width(cameras: CameraState, tracker: int) -> float:
@@ -190,8 +214,8 @@ def _extent(actors: ActorState, actor: int, model: int) -> Floats | tuple[list[f
 def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
     """Return points forward, left and up of a tracker's camera [m], shape (..., 3)."""
     away, axes = points - cameras.position[tracker], cameras.rotation[tracker]
-    seen = [sum(away[..., k] * axes[k, axis] for k in range(3)) for axis in range(3)]
-    return np.stack(seen, axis=-1)
+    shares: Floats = away[..., None] * axes  # summed one by one: `sum` adds in another order
+    return shares[..., 0, :] + shares[..., 1, :] + shares[..., 2, :]
 
 
 def _in_bent_view(corners: Floats, wide: float, aspect: float, lens: Lens) -> NDArray[np.bool_]:
