@@ -94,9 +94,8 @@ class Mp4Episode(FilmEpisode):
 
     def add_picture(self, rgb: NDArray[np.uint8]) -> None:
         """Append the next picture, shape (H, W, 3)."""
-        if np.any(self._padding):
-            rgb = np.pad(rgb, self._padding, mode="edge")
-        image = self._av.VideoFrame.from_numpy_buffer(rgb, format="rgb24")  # it is not copied
+        rgb = np.pad(rgb, self._padding, mode="edge") if np.any(self._padding) else rgb
+        image = self._av.VideoFrame.from_numpy_buffer(np.ascontiguousarray(rgb), format="rgb24")
         with refusals(self._path):
             self._container.mux(self._stream.encode(image))
 

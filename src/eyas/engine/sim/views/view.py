@@ -333,6 +333,7 @@ class View:
     @property
     def exposure(self) -> ExposureState | None:
         """Exposure times and speeds of the last pictures; None: cameras have no modelled sensor."""
+        self._sensors.optics.ready()
         camera = self._sensors.optics.model
         return None if camera is None or camera.development is None else camera.development.exposure
 
