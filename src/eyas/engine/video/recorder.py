@@ -10,13 +10,14 @@ have ended.
 """
 
 import hashlib
+import operator
 import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import ParamSpec
 
@@ -71,13 +72,7 @@ class ReachedShares:
 
     def plus(self, other: "ReachedShares") -> "ReachedShares":
         """Return both together."""
-        return ReachedShares(
-            self.frames + other.frames,
-            self.in_view + other.in_view,
-            self.hidden + other.hidden,
-            self.cut + other.cut,
-            self.small + other.small,
-        )
+        return ReachedShares(*map(operator.add, astuple(self), astuple(other)))
 
 
 def missed(reached: ReachedShares, video: VideoConfig) -> Iterator[str]:
