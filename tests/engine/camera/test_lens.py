@@ -54,11 +54,9 @@ def vignette(strength: float, middle: tuple[float, float], size: tuple[int, int]
     By the law of cos⁴ (natural vignetting): cos² = 1 / (1 + tan²), and tan grows with the distance
     from the principal point; at a corner's distance from the middle, 1 - `strength` is left.
     """
-    half = 0.5 * np.array(size)
     column, row = np.meshgrid(*(np.arange(side) + 0.5 for side in size))
-    away = ((column - middle[0]) ** 2 + (row - middle[1]) ** 2) / np.sum(
-        np.square(0.5 * np.array(size))
-    )
+    half = 0.5 * np.array(size)
+    away = ((column - middle[0]) ** 2 + (row - middle[1]) ** 2) / (half @ half)
     return 1.0 / np.square(1.0 + away * (1.0 / np.sqrt(1.0 - strength) - 1.0))
 
 

@@ -152,10 +152,11 @@ class CameraModel:
         if self._defocus is not None:
             self._blur[tracker] = sample(self._defocus, rng)
         # Each part has a stream of its own: one more changes nothing in the others.
-        parts = self.development, self._dirt, self._link
-        for part, own in zip(parts, rng.spawn(len(parts)), strict=True):
+        parts, seed = (self.development, self._dirt, self._link), rng.bit_generator.seed_seq
+        assert isinstance(seed, np.random.SeedSequence)
+        for part, own in zip(parts, seed.spawn(len(parts)), strict=True):
             if part is not None:
-                part.begin(tracker, own)
+                part.begin(tracker, np.random.Generator(np.random.PCG64(own)))
 
     def draw(
         self,
