@@ -15,7 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-CLIENT = Path(__file__).parents[1] / "tests" / "wire" / "client.py"
+CLIENT = Path(__file__).parents[1] / "tests" / "dat" / "wire" / "client.py"
 
 
 def main(agents: int = 4, rounds: int = 1000, *overrides: str) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from eyas.lanes import PackedBundle, compiled, vector
+from eyas.lanes.bundles import flatten
 from eyas.lanes.compilation import size_of
 
 f4 = np.float32
@@ -91,6 +92,16 @@ def test_bundles_of_the_same_types_are_of_one_kind_and_others_of_another():
 def test_what_kernels_cannot_read_is_refused():
     with pytest.raises(TypeError, match="str"):
         PackedBundle((1, "text"))
+
+
+def test_arrays_are_read_where_numpy_has_them():
+    whole = np.arange(24.0).reshape(4, 6)
+    frozen = whole.copy()
+    frozen.flags.writeable = False
+    for array in (whole, whole[1:, ::2], whole.T, frozen, np.float32([1.0])):
+        words = []
+        flatten((array,), words, [])
+        assert words[4] == array.ctypes.data
 
 
 def test_lanes_that_are_not_wanted_may_be_read_from_an_empty_array():

@@ -18,6 +18,11 @@ _SPARE = np.zeros(512)
 NOTHING = _SPARE.ctypes.data
 """Address of empty arrays: lanes that are not wanted are read from where the first elements are."""
 
+_DATA = object.__basicsize__
+"""Bytes from the beginning of an array to the address of its elements: numpy's C interface has that
+first (`PyArrayObject.data`). Its own `ctypes.data` takes seven times as long, half of a short call.
+"""
+
 _FORMATS = {bool: "?", int: "q", float: "d"}  # Formats of numbers, in the language of `struct`
 
 
@@ -65,8 +70,7 @@ def flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: A
             flatten(part, words, key)
     elif isinstance(value, np.ndarray):
         key += (value.dtype, value.ndim, value.flags.num)
-        # Asking for an address takes two microseconds, and most outputs of a picture are empty.
-        address = value.ctypes.data if value.size else NOTHING
+        address = ctypes.c_ssize_t.from_address(id(value) + _DATA).value if value.size else NOTHING
         words += (0, 0, value.size, value.itemsize, address)
         words += value.shape
         words += value.strides

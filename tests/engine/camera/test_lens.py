@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eyas.engine.camera.glass import change_light, vignette
+from eyas.engine.camera.glass import change_light
 from eyas.engine.camera.lens import LensConfig, LensSet
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.optics import pinhole
@@ -46,6 +46,18 @@ def test_numbers_are_sampled_for_each_episode():
     lenses.begin(1, np.random.default_rng(0))
     assert lenses.of_tracker(1) == first
     np.testing.assert_array_equal(lenses.fringes, [[0.01, 0.0], [0.01, 0.0]])
+
+
+def vignette(strength: float, middle: tuple[float, float], size: tuple[int, int]) -> np.ndarray:
+    """Return the share of light that reaches each pixel, shape (height, width).
+
+    By the law of cos⁴ (natural vignetting): cos² = 1 / (1 + tan²), and tan grows with the distance
+    from the principal point; at a corner's distance from the middle, 1 - `strength` is left.
+    """
+    column, row = np.meshgrid(*(np.arange(side) + 0.5 for side in size))
+    half = 0.5 * np.array(size)
+    away = ((column - middle[0]) ** 2 + (row - middle[1]) ** 2) / (half @ half)
+    return 1.0 / np.square(1.0 + away * (1.0 / np.sqrt(1.0 - strength) - 1.0))
 
 
 def test_vignetting_takes_its_share_of_the_corners_by_cos_4():

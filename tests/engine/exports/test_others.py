@@ -79,6 +79,27 @@ def test_there_are_none_where_nobody_wants_them(simulation):
     assert (frame.others, frame.target.words) == ((), "")
 
 
+def test_trackers_of_a_world_share_its_actors_and_are_told_the_same(simulation):
+    picture = picture_of(simulation, actors=simulation.actors)
+    first, second = around = simulation.view.around([0, 1])
+    assert first is second
+    for tracker, shared in enumerate(around):
+        own, same = (
+            moment_of(simulation, tracker, picture, tracker, {"words"}, given)
+            for given in (None, shared)
+        )
+        assert own.words == same.words
+        np.testing.assert_array_equal(own.whole_box, same.whole_box)
+
+
+def test_a_frame_keeps_only_the_arrays_that_are_wanted(simulation):
+    picture = picture_of(simulation, depth=True)
+    moment = FrameMoment(simulation.snapshot, simulation.snapshot.episodes)
+    frame = frame_of(moment, 0, picture, 0, 0, RecordedAction(-1, None), {"rgb"})
+    assert frame.rgb is not None
+    assert frame.depth is None
+
+
 @pytest.mark.parametrize("wanted", [set(), {"words"}])
 def test_the_target_is_in_words_only_where_somebody_wants_them(simulation, wanted):
     picture = picture_of(simulation, actors=simulation.actors)

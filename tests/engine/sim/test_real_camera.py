@@ -44,6 +44,16 @@ def test_a_tracker_alone_sees_what_it_sees_among_others():
         few.advance(np.zeros((1, 4)), 20)
 
 
+def test_what_is_random_does_not_depend_on_which_episodes_are_shown():
+    settings = {"imager": {"full_well": {"uniform": [3000.0, 9000.0]}}, "dirt": {"drops": 2}}
+    shown, unseen = (simulation_of(shutter={"blur": True}, **settings) for _ in range(2))
+    for trackers in (None, np.array([True, False]), None):
+        picture_of(shown)
+        for simulation in (shown, unseen):
+            simulation.reset(trackers)
+    np.testing.assert_array_equal(picture_of(unseen).rgb, picture_of(shown).rgb)
+
+
 def test_ids_are_those_of_the_clean_picture():
     plain, real = simulation_of(), simulation_of(imager={}, dirt={}, link={})
     seen, shown = picture_of(plain), picture_of(real)

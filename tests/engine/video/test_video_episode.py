@@ -54,7 +54,7 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
         action, now = RecordedAction(-1, None), snapshot.episodes
         told = {"lidar": np.ones(400), "sensors": np.ones(19), "events": np.zeros(0, EVENT)}
         told |= {"parts": PARTS, "clean": picture.rgb[0].copy(), "traffic": traffic}
-        moment = FrameMoment(snapshot, now, **told)
+        moment = FrameMoment(snapshot, now, further=told)
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 

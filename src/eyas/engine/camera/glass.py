@@ -1,6 +1,5 @@
 """Edges of pictures behind a lens: darker, and with fringes of colour."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -24,29 +23,6 @@ from eyas.lanes.vector import (
 )
 
 Floats = NDArray[np.float64]
-
-
-def vignette(
-    strength: float,  # Share that is missing there
-    middle: tuple[float, float],  # Column and row of the principal point [pixels]
-    size: tuple[int, int],  # Width and height of the picture [pixels]
-) -> Floats:
-    """Return the share of light that reaches each pixel, shape (height, width).
-
-    By the law of cos⁴ (natural vignetting): cos² = 1 / (1 + tan²), and tan grows with the distance
-    from the principal point; at a corner's distance from the middle, 1 - `strength` is left.
-    """
-    width, height = size
-    right = np.asarray((np.arange(width) + 0.5 - middle[0]) / (0.5 * width), np.float64)
-    down = np.asarray((np.arange(height) + 0.5 - middle[1]) / (0.5 * height), np.float64)
-    away = _squares(width, height, right, down)
-    return np.asarray(1.0 / np.square(1.0 + away * (1.0 / math.sqrt(1.0 - strength) - 1.0)))
-
-
-def _squares(width: int, height: int, right: Floats, down: Floats) -> Floats:
-    """Return squares of distances, 1 from the middle to a corner; places in halves of the sides."""
-    across = width * width / (width * width + height * height)
-    return np.asarray(across * np.square(right) + (1.0 - across) * np.square(down)[:, None])
 
 
 def change_light(

@@ -1,7 +1,7 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.engine.core.clock import PHYSICS_STEP
 from eyas.engine.core.optics.lens import NO_LENS, Lens
 from eyas.engine.exports.frame import (
+    OUTPUTS,
     CameraPicture,
     CameraPose,
     Floats,
@@ -23,7 +24,7 @@ from eyas.engine.render.outputs import picture_size
 from eyas.engine.sim.simulation import Simulation
 from eyas.engine.sim.views.parked import SeenParked
 from eyas.engine.sim.views.view import View
-from eyas.engine.state.draw import MovingParts, Picture
+from eyas.engine.state.draw import Picture
 from eyas.engine.state.episode import EpisodeState
 from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.scene import ACTOR_OBJECT, ObjectClass
@@ -35,6 +36,8 @@ from eyas.engine.task.done import DoneReason
 from eyas.engine.task.packet_rows import SENSOR_COLUMNS
 from eyas.engine.trackers.tracker import ROTORS
 from eyas.lanes import interpreted
+
+Number = TypeVar("Number", bound=np.generic)
 
 _target_centre = interpreted(target_centre)
 _target_direction = interpreted(target_direction)
@@ -50,25 +53,13 @@ class FrameMoment(NamedTuple):
     whole_box: Floats | None = None
     """See `Subject.whole_box`, of each of these actors, shape (A, 4); only rows of the target and
     of actors in the picture are read."""
-    lidar: Floats | None = None
-    """Distances of its lidar [m], shape (points,), which nothing changes later; None: it has
-    none."""
-    sensors: Floats | None = None
-    """Readings of its other sensors, see `Frame.sensors`; nothing changes them later."""
-    parts: MovingParts | None = None  # See `Frame.parts`; nothing changes it later.
-    clean: NDArray[np.uint8] | None = None  # See `Frame.clean`; nothing changes it later.
-    cameras: tuple[CameraPicture, ...] = ()  # See `Frame.cameras`; nothing changes them later.
-    exposure: tuple[float, float] | None = None  # See `Frame.exposure`.
-    events: NDArray[np.void] | None = None  # See `Frame.events`; nothing changes it later.
     lens: Lens | None = None  # The lens of its camera; None: it is a pinhole
     lamps: NDArray[np.uint8] | None = None
     """See `Subject.lamps`, of each actor, shape (A,); None: nobody signals."""
-    rotors: Floats | None = None  # See `Frame.rotors`; nothing changes it later.
-    traffic: ActorView | None = None  # See `Frame.traffic`; nothing changes it later.
-    signals: Mapping[str, Floats] = {}  # See `Frame.signals`; nothing changes it later.
     words: str = ""  # The target in words that nothing else in view shares
     parked: Sequence[SeenParked] = ()
     """The parked objects in its picture, in the order of their ids."""
+    further: Mapping[str, Any] = {}  # Other fields of `Frame`; nothing changes them later
 
 
 def moment_of(
@@ -77,6 +68,7 @@ def moment_of(
     picture: Picture,
     view: int,
     wanted: Collection[Output] = (),
+    around: ActorView | None = None,
 ) -> FrameMoment:
     """Return what is known of a tracker at the time of its picture, which has just been drawn.
 
@@ -88,41 +80,42 @@ def moment_of(
         view: The tracker's row in `picture`.
         wanted: What is asked for besides: "words", "parts", "clean", "cameras", "events",
             "traffic"; others are in the picture.
+        around: The actors around it, see `View.around`; None: not known yet.
     """
     seen, shown = simulation.view, simulation.view.state.shown
-    actors = whole_box = None
+    around, whole_box = around or seen.actors(tracker), None
     parked: Sequence[SeenParked] = ()
     if picture.actor_pixels is not None:
         if picture.object_id is not None and picture.depth is not None:
             parked = seen.parked(tracker, picture.object_id[view], picture.depth[view])
-        actors = seen.actors(tracker)
         boxed = picture.actor_pixels[view, :, 0] > 0
         boxed[shown.targets.actor[tracker]] = True
         whole_box = np.zeros((simulation.actors, 4))
-        whole_box[boxed] = seen.whole_boxes(tracker, actors, np.flatnonzero(boxed))
-    lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
-    exposed = seen.exposure
-    now = simulation.snapshot.episodes
+        whole_box[boxed] = seen.whole_boxes(tracker, around, np.flatnonzero(boxed))
+    lidar, exposed = seen.lidar, seen.exposure
     rotors = simulation.told().get(ROTORS)
+    further = {
+        "lidar": None if lidar is None else lidar.ranges(seen.state.late)[tracker],
+        "sensors": seen.packets()[0][tracker, SENSOR_COLUMNS],
+        "exposure": None if exposed is None else (exposed.time[tracker], exposed.iso[tracker]),
+        "rotors": None if rotors is None else rotors[tracker],
+        "signals": {name: values[tracker] for name, values in seen.further_readings().items()},
+        "parts": seen.parts(tracker, around) if "parts" in wanted else None,
+        "clean": seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None,
+        "cameras": _through_further(seen, tracker) if "cameras" in wanted else (),
+        "events": _events(seen, tracker) if "events" in wanted else None,
+        "traffic": _kept(around) if "traffic" in wanted else None,
+    }
     return FrameMoment(
         shown,
-        now,
-        actors=actors,
+        simulation.snapshot.episodes,
+        actors=around if picture.actor_pixels is not None else None,
         whole_box=whole_box,
-        lidar=lidar,
-        sensors=seen.packets()[0][tracker, SENSOR_COLUMNS],
-        parts=seen.parts(tracker, actors or seen.actors(tracker)) if "parts" in wanted else None,
-        clean=seen.clean(tracker, *picture_size(picture)) if "clean" in wanted else None,
-        cameras=_through_further(seen, tracker) if "cameras" in wanted else (),
-        exposure=None if exposed is None else (exposed.time[tracker], exposed.iso[tracker]),
-        events=_events(seen, tracker) if "events" in wanted else None,
         lens=seen.lens_of(tracker),
         lamps=seen.lamps(tracker),
-        rotors=None if rotors is None else rotors[tracker],
-        traffic=_kept(actors or seen.actors(tracker)) if "traffic" in wanted else None,
-        signals={name: values[tracker] for name, values in seen.further_readings().items()},
-        words=seen.words(tracker, picture.aspect, actors) if "words" in wanted else "",
+        words=seen.words(tracker, picture.aspect, around) if "words" in wanted else "",
         parked=parked,
+        further=further,
     )
 
 
@@ -156,6 +149,7 @@ def frame_of(
     view: int,
     number: int,
     action: RecordedAction,
+    kept: Collection[Output] = OUTPUTS,
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -167,6 +161,7 @@ def frame_of(
         view: The tracker's row in `picture`.
         number: Number of the frame in its episode.
         action: The tracker's action.
+        kept: Which of the arrays of its picture are wanted; others may serve to measure it.
     """
     shown, now = moment.shown, moment.now
     others: tuple[Subject, ...] = ()
@@ -184,22 +179,17 @@ def frame_of(
         reward=float(now.reward[tracker]),
         direction=TargetDirection(shown.episodes.direction[tracker]),
         reason=DoneReason(now.reason[tracker]),
-        rgb=None if picture.rgb is None else picture.rgb[view].copy(),
-        depth=None if picture.depth is None else picture.depth[view].copy(),
-        object_id=None if picture.object_id is None else picture.object_id[view].copy(),
-        class_id=None if picture.class_id is None else picture.class_id[view].copy(),
-        normal=None if picture.normal is None else picture.normal[view].copy(),
-        lidar=moment.lidar,
-        sensors=moment.sensors,
-        signals=moment.signals,
-        rotors=moment.rotors,
-        parts=moment.parts,
-        clean=moment.clean,
-        cameras=moment.cameras,
-        exposure=moment.exposure,
-        events=moment.events,
-        traffic=moment.traffic,
+        rgb=_plane(picture.rgb, view) if "rgb" in kept else None,
+        depth=_plane(picture.depth, view) if "depth" in kept else None,
+        object_id=_plane(picture.object_id, view) if "object_id" in kept else None,
+        class_id=_plane(picture.class_id, view) if "class_id" in kept else None,
+        normal=_plane(picture.normal, view) if "normal" in kept else None,
+        **moment.further,
     )
+
+
+def _plane(array: NDArray[Number] | None, view: int) -> NDArray[Number] | None:
+    return None if array is None else array[view].copy()
 
 
 def _body(trackers: TrackerState, tracker: int) -> RecordedBody:

@@ -32,20 +32,24 @@ _MOST = np.iinfo(np.uint16).max  # Largest value of a pixel of 16 bits
 _LABELLED = sorted(map(int, LABELLED))
 
 
-class PngWriter(PerFrameWriter):
+class PlaneWriter(PerFrameWriter):
+    """An array of a frame as PNG, as it is."""
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return the bytes of the one array that is wanted."""
+        (plane,) = self.wants
+        return png_bytes(getattr(frame, plane))
+
+
+class PngWriter(PlaneWriter):
     """`NNNNNN.png`: the colours."""
 
     name = "{:06d}.png"
     wants = frozenset({"rgb"})
     files = Files(frame=(name,))
 
-    def encoded(self, frame: Frame) -> bytes:
-        """Return a frame's picture."""
-        assert frame.rgb is not None
-        return png_bytes(frame.rgb)
 
-
-class CleanWriter(PerFrameWriter):
+class CleanWriter(PlaneWriter):
     """`clean/NNNNNN.png`: the colours without noise, blur, dirt and the like, of the same instant,
     pose and lens as the picture.
     """
@@ -53,11 +57,6 @@ class CleanWriter(PerFrameWriter):
     name = "clean/{:06d}.png"
     wants = frozenset({"clean"})
     files = Files(frame=(name,))
-
-    def encoded(self, frame: Frame) -> bytes:
-        """Return a frame's clean picture."""
-        assert frame.clean is not None
-        return png_bytes(frame.clean)
 
 
 class MaskWriter(PerFrameWriter):
@@ -80,17 +79,12 @@ class MaskWriter(PerFrameWriter):
         return png_bytes(np.where(parked, _MOST - shown, masks).astype(np.uint16))
 
 
-class ClassWriter(PerFrameWriter):
+class ClassWriter(PlaneWriter):
     """`classes/NNNNNN.png`: the `ObjectClass` of each pixel, 8 bits."""
 
     name = "classes/{:06d}.png"
     wants = frozenset({"class_id"})
     files = Files(frame=(name,))
-
-    def encoded(self, frame: Frame) -> bytes:
-        """Return a frame's classes."""
-        assert frame.class_id is not None
-        return png_bytes(frame.class_id)
 
 
 class DepthWriter(PerFrameWriter):
@@ -112,7 +106,7 @@ class DepthWriter(PerFrameWriter):
         return png_bytes(np.where(units <= _MOST, units, 0.0).astype(np.uint16))
 
 
-class NormalWriter(PerFrameWriter):
+class NormalWriter(PlaneWriter):
     """`normals/NNNNNN.png`: the surface normal of each pixel in the camera's frame, right, down and
     ahead, each from -1 to 1 as 0 to 255; all 0 for the sky.
     """
@@ -120,11 +114,6 @@ class NormalWriter(PerFrameWriter):
     name = "normals/{:06d}.png"
     wants = frozenset({"normal"})
     files = Files(frame=(name,))
-
-    def encoded(self, frame: Frame) -> bytes:
-        """Return a frame's normals."""
-        assert frame.normal is not None
-        return png_bytes(frame.normal)
 
 
 class ArrayWriter(PerFrameWriter):

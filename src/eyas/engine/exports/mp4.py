@@ -74,7 +74,7 @@ class Mp4Episode(FilmEpisode):
         self._av = pyav("MP4")
         super().__init__(path)
         # yuv420p shares colours among 2 x 2 pixels, so sizes must be even.
-        self._padding = ((0, height % 2), (0, width % 2), (0, 0))
+        self._padding = (0, height % 2), (0, width % 2), (0, 0)
         self._container = self._av.open(
             self._file, "w", format="mp4", container_options={"fflags": "+bitexact"}
         )
@@ -94,8 +94,8 @@ class Mp4Episode(FilmEpisode):
 
     def add_picture(self, rgb: NDArray[np.uint8]) -> None:
         """Append the next picture, shape (H, W, 3)."""
-        padded = np.pad(rgb, self._padding, mode="edge")
-        image = self._av.VideoFrame.from_ndarray(padded, format="rgb24")
+        rgb = np.pad(rgb, self._padding, mode="edge") if np.any(self._padding) else rgb
+        image = self._av.VideoFrame.from_numpy_buffer(np.ascontiguousarray(rgb), format="rgb24")
         with refusals(self._path):
             self._container.mux(self._stream.encode(image))
 

@@ -6,6 +6,7 @@ by where it is in the picture: "a red SUV, the left one of two".
 """
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Final, NamedTuple
 
 from eyas.engine.state.scene import ObjectClass
@@ -49,7 +50,11 @@ def phrases(
     colour: Sequence[float],  # Its colour, sRGB 0 to 1
 ) -> tuple[str, ...]:
     """Return descriptions of a target, from short to long."""
-    seen = colour_name(colour)
+    return _phrases(model, colour_name(colour))
+
+
+@cache
+def _phrases(model: int, seen: str) -> tuple[str, ...]:
     return tuple(
         phrase.replace("a {}", with_article(seen)).replace("{}", seen)
         for phrase in MODELS[model].words

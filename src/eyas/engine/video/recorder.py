@@ -10,13 +10,14 @@ have ended.
 """
 
 import hashlib
+import operator
 import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import ParamSpec
 
@@ -71,13 +72,7 @@ class ReachedShares:
 
     def plus(self, other: "ReachedShares") -> "ReachedShares":
         """Return both together."""
-        return ReachedShares(
-            self.frames + other.frames,
-            self.in_view + other.in_view,
-            self.hidden + other.hidden,
-            self.cut + other.cut,
-            self.small + other.small,
-        )
+        return ReachedShares(*map(operator.add, astuple(self), astuple(other)))
 
 
 def missed(reached: ReachedShares, video: VideoConfig) -> Iterator[str]:
@@ -245,7 +240,7 @@ class Recorder:
         self._folder = folder
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
-        wanted = {output for writer in folder.writers for output in writer.wants}
+        self._wanted = wanted = {output for writer in folder.writers for output in writer.wants}
         self._besides = wanted & {"words", "parts", "clean", "cameras", "events", "traffic"}
         self._overlay = config.video.overlay and "rgb" in wanted
         pictures = wanted - self._besides - {"others"}
@@ -284,8 +279,16 @@ class Recorder:
         picture = self._picture.first(len(drawn))
         overlaid = self._sim.rules if self._overlay else None
         self._sim.view.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
+        around = self._sim.view.around(drawn)
         for view, tracker in enumerate(drawn):
-            self._write(tracker, picture, view, action_of(tracker))
+            moment = moment_of(self._sim, tracker, picture, view, self._besides, around[view])
+            going, action = self._begin(tracker), action_of(tracker)
+            number = going.summary.frames
+            frame = frame_of(moment, tracker, picture, view, number, action, self._wanted)
+            going.summary = going.summary.plus(frame)
+            self.reached[tracker].add(frame)
+            assert going.files is not None
+            self._threads.submit(tracker, going.files.add, frame)
         self.drawn += len(drawn)
 
     def _begin(self, tracker: int) -> _OpenEpisode:
@@ -306,17 +309,6 @@ class Recorder:
         files = EpisodeFiles(writers, episode)
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
         return _OpenEpisode(episode, files, Summary(0, Scores()))
-
-    def _write(self, tracker: int, picture: Picture, view: int, action: RecordedAction) -> None:
-        going = self._open[tracker]
-        assert going is not None
-        assert going.files is not None
-        number = going.summary.frames
-        moment = moment_of(self._sim, tracker, picture, view, self._besides)
-        frame = frame_of(moment, tracker, picture, view, number, action)
-        going.summary = going.summary.plus(frame)
-        self.reached[tracker].add(frame)
-        self._threads.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:
         """End the episodes of the trackers of a mask, shape (N,); those without frames are dropped.

@@ -174,10 +174,6 @@ class SeenState:
         """Whether `record` must be called after each physics step."""
         return bool(self._past)
 
-    def age_of(self, tracker: int) -> int:
-        """Return how many physics steps ago the pictures of a tracker show."""
-        return int(self._now.episodes.tick[tracker] - self.shown.episodes.tick[tracker])
-
     def sample(self, tracker: int, key: EpisodeKey) -> None:
         """Sample what is random in a tracker's episode."""
         if self.late is not None:

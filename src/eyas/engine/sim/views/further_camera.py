@@ -1,6 +1,5 @@
 """Cameras of trackers beside their own: the other eye of a stereo pair, one that looks aside."""
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,7 @@ from eyas.engine.sim.assets import Assets
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.light import LightChanges
 from eyas.engine.sim.views.delay import SeenState
-from eyas.engine.sim.views.optics import Optics
+from eyas.engine.sim.views.optics import Optics, Stream
 from eyas.engine.sim.views.pictures import PictureDrawer
 from eyas.engine.sim.worlds import Worlds
 from eyas.engine.state.draw import DrawStage, Picture
@@ -48,11 +47,13 @@ class FurtherOptics(Optics):
         self.config = config
         self.field_of_view = np.ones(count)
 
-    def begin(self, tracker: int, stream: Callable[[str], np.random.Generator]) -> None:
+    def begin(self, tracker: int, stream: Stream) -> None:
         """Begin an episode, see `Optics`."""
-        field = stream(f"field of view of {self.config.name}")
-        self.field_of_view[tracker] = sample(self.config.field_of_view, field)
         super().begin(tracker, lambda part: stream(f"{part} of {self.config.name}"))
+
+    def _sample(self, tracker: int, stream: Stream) -> None:
+        self.field_of_view[tracker] = sample(self.config.field_of_view, stream("field of view"))
+        super()._sample(tracker, stream)
 
 
 class _Shown(NamedTuple):
@@ -107,6 +108,7 @@ class FurtherCamera:
 
     def place(self) -> None:
         """Set the poses to what they are now."""
+        self._optics.ready()
         shown, place, turn = self._state.shown, self._mount.place, self._mount.turn
         cameras, trackers = self.cameras, shown.trackers
         if self.config.on == "camera":

@@ -32,6 +32,8 @@ from eyas.engine.state.draw import DrawList, Picture, Views
 from eyas.engine.state.lighting import Lighting
 from eyas.engine.state.scene import ACTOR_OBJECT
 
+Stream = Callable[[str], np.random.Generator]  # Returns the random stream of a part, by its name
+
 # Thermal pictures of trackers: from what the renderer says of each pixel, not from light.
 
 
@@ -150,10 +152,11 @@ class CameraModel:
         if self._defocus is not None:
             self._blur[tracker] = sample(self._defocus, rng)
         # Each part has a stream of its own: one more changes nothing in the others.
-        parts = self.development, self._dirt, self._link
-        for part, own in zip(parts, rng.spawn(len(parts)), strict=True):
+        parts, seed = (self.development, self._dirt, self._link), rng.bit_generator.seed_seq
+        assert isinstance(seed, np.random.SeedSequence)
+        for part, own in zip(parts, seed.spawn(len(parts)), strict=True):
             if part is not None:
-                part.begin(tracker, own)
+                part.begin(tracker, np.random.Generator(np.random.PCG64(own)))
 
     def draw(
         self,
@@ -227,13 +230,14 @@ class Optics:
         self.thermal: ThermalViews | None = None
         if config.spectrum is Spectrum.THERMAL:
             self.thermal = ThermalViews(config.thermal, assets, hour, count)
+        self._begun: dict[int, Stream] = {}  # Streams of episodes that no picture has shown yet
 
     @property
     def bent(self) -> LensSet | None:
         """The lenses, if they bend pictures."""
         return self.lenses if self.lenses is not None and self.lenses.bend else None
 
-    def begin(self, tracker: int, stream: Callable[[str], np.random.Generator]) -> None:
+    def begin(self, tracker: int, stream: Stream) -> None:
         """Begin an episode.
 
         Args:
@@ -242,6 +246,14 @@ class Optics:
         """
         if self.lenses is not None and self.lenses.vary:
             self.lenses.begin(tracker, stream("lens"))
+        self._begun[tracker] = stream
+
+    def ready(self) -> None:
+        """Sample what only pictures show of the episodes that have begun since the last call."""
+        while self._begun:
+            self._sample(*self._begun.popitem())
+
+    def _sample(self, tracker: int, stream: Stream) -> None:
         if self.shutter is not None:
             self.shutter.begin(tracker, stream("shutter"))
         if self.model is not None:

@@ -11,7 +11,7 @@ from eyas.engine.core.optics.pinhole import focal_length
 from eyas.engine.render.kernels.bundles import NEAR
 from eyas.engine.sim.scenes import load_parts
 from eyas.engine.state.draw import DrawList
-from eyas.engine.state.motion import ActorView
+from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState
 from eyas.engine.targets.kind import Looks
 from eyas.engine.targets.rig import Rigs
@@ -53,13 +53,22 @@ class Outlines:
     ) -> None:
         self._rigs, self._kinds = Rigs(kind), tuple(sorted({*kind.tolist()}))
         self._posed = self._rigs.draw_list(1)
+        self._actors: ActorView | None = None  # Whom it shows
+        # Buffers of its own: arrays that are always the same need not be laid out for kernels.
+        self._state = ActorState.create(1, len(kind))
+        self._looks = Looks(np.zeros((1, len(kind)), np.int32), np.ones((1, len(kind), 3), "f4"))
         self._width, self._height = width, height
 
     def posed(self, actors: ActorView) -> DrawList:
         """Return the parts of all actors, in the slots of `Rigs.first_slot`; the next call
-        overwrites them.
+        overwrites them, but for one with the same actors.
         """
-        self._rigs.pose(actors.state, Looks(actors.model[None], actors.colour[None]), self._posed)
+        if actors is not self._actors:
+            self._actors = actors
+            for own, array in zip(self._state, actors.state, strict=True):
+                own[:] = array
+            self._looks.model[0], self._looks.colour[0] = actors.model, actors.colour
+            self._rigs.pose(self._state, self._looks, self._posed)
         return self._posed
 
     def of(

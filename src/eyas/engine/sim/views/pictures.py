@@ -61,7 +61,7 @@ class PictureDrawer:
         self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
         self._snapshot = snapshot
-        self._camera = None if optics is None else optics.model
+        self._optics, self._camera = optics, None if optics is None else optics.model
         self._thermal = None if optics is None else optics.thermal
         self._lenses = None if optics is None else optics.bent
         self._flakes = config.light.flakes
@@ -90,6 +90,8 @@ class PictureDrawer:
         one show the same view distorted, like the original's observations: 320x240 resized to
         84x84.
         """
+        if self._optics is not None:
+            self._optics.ready()
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
         views, movers = self._own_views(chosen, cameras)
         deep = picture if overlaid is None else with_depth(picture)

@@ -1,5 +1,6 @@
 """What is seen of a simulation at an instant: pictures and packets."""
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -254,6 +255,14 @@ class View:
         before, _ = self._worlds.actors_around(tracker, tick - 1)
         return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
 
+    def around(self, trackers: Sequence[int]) -> list[ActorView]:
+        """Return `actors` of some trackers: one and the same for all that see a world at a time."""
+        ticks, found = self.state.shown.episodes.tick, dict[tuple[int, int], ActorView]()
+        keys = [(int(self._worlds.of[n]), int(ticks[n])) for n in trackers]
+        for key, tracker in zip(keys, trackers, strict=True):
+            found[key] = found.get(key) or self.actors(tracker)
+        return [found[key] for key in keys]
+
     def lamps(self, tracker: int) -> NDArray[np.uint8] | None:
         """Return what the actors around a tracker signal at the instant that its pictures show, a
         `Lamp` each, shape (A,); None: nobody does.
@@ -324,6 +333,7 @@ class View:
     @property
     def exposure(self) -> ExposureState | None:
         """Exposure times and speeds of the last pictures; None: cameras have no modelled sensor."""
+        self._sensors.optics.ready()
         camera = self._sensors.optics.model
         return None if camera is None or camera.development is None else camera.development.exposure
 

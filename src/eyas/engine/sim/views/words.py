@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,26 @@ from eyas.engine.state.motion import ActorState, ActorView
 from eyas.engine.state.snapshot import CameraState, Snapshot
 from eyas.engine.targets.catalogue import MODELS, extent_of, kind_of
 from eyas.engine.targets.grammar.in_view import InView
-from eyas.engine.targets.words import ObjectInView, distinguishing_phrase
+from eyas.engine.targets.words import ObjectInView, distinguishing_phrase, phrases
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]
+
+
+class _Look(NamedTuple):
+    """The camera of a tracker."""
+
+    position: Floats  # [m], shape (3,)
+    axes: Floats  # Camera to world; columns forward, left, up, shape (3, 3)
+    wide: float  # Tangent of half the horizontal field of view
+    aspect: float  # Height of the picture over its width
+    lens: Lens | None  # None: a pinhole
+
+    @classmethod
+    def of(cls, cameras: CameraState, tracker: int, aspect: float, lens: Lens | None) -> "_Look":
+        """Return the camera of a tracker."""
+        wide = float(exact.tan(0.5 * float(cameras.field_of_view[tracker])))
+        return cls(cameras.position[tracker], cameras.rotation[tracker], wide, aspect, lens)
 
 
 def target_in_words(
@@ -28,12 +45,21 @@ def target_in_words(
 
     No other actor of which a part is in the camera's view shares it, hidden or not.
     """
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
-    target, wide = int(shown.targets.actor[tracker]), _half_width(shown.cameras, tracker)
+    look, target = _Look.of(shown.cameras, tracker, aspect, lens), shown.targets.actor[tracker]
     actors, _, model, colour = around
+
+    def known(actor: int) -> tuple[str, ...]:
+        return phrases(int(model[actor]), colour[actor].tolist())
+
+    own, near = known(target), _near(look, around, target)
+    # Who shares no phrase is told apart wherever it is, and mostly nobody does.
+    chosen = near[[n == target or not {*own}.isdisjoint(known(n)) for n in near.tolist()]]
+    if len(chosen) == 1:
+        return own[0]
+    inside, corners = _boxes(look, around, chosen)
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
     middle = corners.mean(axis=1)
-    forward, column = middle[:, 0], _placed(middle, wide, aspect, lens)[:, 0]
+    forward, column = middle[:, 0], _placed(middle, look)[:, 0]
 
     def seen(row: int) -> ObjectInView:
         actor = chosen[row]
@@ -46,9 +72,9 @@ def target_in_words(
             distance=float(forward[row]),
         )
 
-    (own,) = np.flatnonzero(chosen == target).tolist()
+    (row,) = np.flatnonzero(chosen == target).tolist()
     others = np.flatnonzero(inside & (chosen != target)).tolist()
-    return distinguishing_phrase(seen(own), [seen(row) for row in others])
+    return distinguishing_phrase(seen(row), [seen(other) for other in others])
 
 
 def in_view(
@@ -59,11 +85,11 @@ def in_view(
     lens: Lens | None = None,  # Its lens; None: a pinhole
 ) -> InView:
     """Return the moving objects, and the target, of which a part is in a tracker's view."""
-    chosen, inside, corners = _surely_near(shown, around, tracker, aspect, lens)
-    inside |= chosen == shown.targets.actor[tracker]
-    actor, wide = chosen[inside], _half_width(shown.cameras, tracker)
-    actors, _, model, colour = around
-    place = _placed(corners[inside].mean(axis=1), wide, aspect, lens)
+    look, target = _Look.of(shown.cameras, tracker, aspect, lens), shown.targets.actor[tracker]
+    chosen = _near(look, around, target)
+    inside, corners = _boxes(look, around, chosen)
+    inside |= chosen == target
+    actor, (actors, _, model, colour) = chosen[inside], around
     heading, ahead = actors.yaw[0, actor], np.array([kind_of(m).ahead for m in model[actor]])
     along = np.stack([exact.cos(heading), exact.sin(heading)], axis=1)
     return InView(
@@ -75,53 +101,45 @@ def in_view(
         heading=heading,
         middle=actors.position[0, actor, :2] + ahead[:, None] * along,
         size=np.array([MODELS[m].size[:2] for m in model[actor]]).reshape(-1, 2),
-        place=place,
+        place=_placed(corners[inside].mean(axis=1), look),
     )
 
 
-def _placed(
-    points: Floats,  # Forward, left and up of the camera [m], shape (..., 3)
-    wide: float,  # Tangent of half the horizontal field of view
-    aspect: float,  # Height of the picture over its width
-    lens: Lens | None,  # The lens; None: a pinhole
-) -> Floats:
-    """Return where points are in a picture, in shares of its sides, also if they are behind it."""
+def _placed(points: Floats, look: _Look) -> Floats:
+    """Return where points, forward, left and up of a camera [m], shape (..., 3), are in its
+    picture, in shares of its sides, also if they are behind it.
+    """
     forward, left, up = np.moveaxis(points, -1, 0)
     before = np.maximum(forward, 1e-3)
-    if lens is not None:
-        bent = places(lens, np.stack([-left, -up, before], axis=-1)) / (2.0 * wide)
-        column, row = principal_point(lens, 1.0, 1.0)
-        return np.stack([column + bent[..., 0], row + bent[..., 1] / aspect], axis=-1)
-    reach = before * wide
-    return np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * aspect)], axis=-1)
+    if look.lens is not None:
+        bent = places(look.lens, np.stack([-left, -up, before], axis=-1)) / (2.0 * look.wide)
+        column, row = principal_point(look.lens, 1.0, 1.0)
+        return np.stack([column + bent[..., 0], row + bent[..., 1] / look.aspect], axis=-1)
+    reach = before * look.wide
+    return np.stack([0.5 - 0.5 * left / reach, 0.5 - 0.5 * up / (reach * look.aspect)], axis=-1)
 
 
-def _surely_near(
-    shown: Snapshot, around: ActorView, tracker: int, aspect: float, lens: Lens | None
-) -> tuple[NDArray[np.int64], NDArray[np.bool_], Floats]:
-    """Return actors that are near a tracker's view or its target, shape (K,), of which a part is
-    inside, (K,), and the corners of their boxes forward, left and up of the camera [m], (K, 8, 3).
-    """
-    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+def _near(look: _Look, around: ActorView, target: np.integer) -> NDArray[np.int64]:
+    """Return the actors that may be in a view, and its target, in order, shape (K,)."""
+    seen, high = look.wide, look.wide * look.aspect
+    if look.lens is not None:
+        seen = high = widest(look.lens, (1.0, look.aspect), (0.5 / seen, 0.5 / seen))
     actors, _, model, _ = around
-    wide = _half_width(cameras, tracker)
-    middles = _in_camera(actors.position[0], cameras, tracker)
-    seen = wide if lens is None else widest(lens, (1.0, aspect), (0.5 / wide, 0.5 / wide))
-    near = _may_be_in_view(
-        middles, _reach(len(MODELS))[model], seen, wide * aspect if lens is None else seen
-    )
+    middles = _in_camera(actors.position[0], look)
+    near = _may_be_in_view(middles, _reach(len(MODELS))[model], seen, high)
     near &= actors.present[0] & ~_flying(len(MODELS))[model]
     near[target] = True
-    chosen = np.flatnonzero(near)
-    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
-    if lens is not None:
-        return chosen, _in_bent_view(corners, wide, aspect, lens), corners
-    return chosen, _in_view(corners, wide, wide * aspect), corners
+    return near.nonzero()[0]
 
 
-def _half_width(cameras: CameraState, tracker: int) -> float:
-    """Return the tangent of half the horizontal field of view of a tracker's camera."""
-    return float(exact.tan(0.5 * float(cameras.field_of_view[tracker])))
+def _boxes(
+    look: _Look, around: ActorView, chosen: NDArray[np.int64]
+) -> tuple[NDArray[np.bool_], Floats]:
+    """Return whether a part of actors is in a view, shape (K,), and the corners of their boxes
+    forward, left and up of its camera [m], shape (K, 8, 3).
+    """
+    corners = _in_camera(_corners(around.state, chosen, around.model), look)
+    return (_in_view if look.lens is None else _in_bent_view)(corners, look), corners
 
 
 _LIMBS = 2.0
@@ -187,30 +205,27 @@ def _extent(actors: ActorState, actor: int, model: int) -> Floats | tuple[list[f
     return [middle - 0.5 * length, -half, 0.0], [middle + 0.5 * length, half, height]
 
 
-def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
-    """Return points forward, left and up of a tracker's camera [m], shape (..., 3)."""
-    away, axes = points - cameras.position[tracker], cameras.rotation[tracker]
-    seen = [sum(away[..., k] * axes[k, axis] for k in range(3)) for axis in range(3)]
-    return np.stack(seen, axis=-1)
+def _in_camera(points: Floats, look: _Look) -> Floats:
+    """Return points forward, left and up of a camera [m], shape (..., 3)."""
+    shares: Floats = (points - look.position)[..., None] * look.axes
+    # One by one: `sum` may add them in another order.
+    return shares[..., 0, :] + shares[..., 1, :] + shares[..., 2, :]
 
 
-def _in_bent_view(corners: Floats, wide: float, aspect: float, lens: Lens) -> NDArray[np.bool_]:
+def _in_bent_view(corners: Floats, look: _Look) -> NDArray[np.bool_]:
     """Return the same through a lens: whether the boxes around their corners reach the picture."""
     before = corners[..., 0] > 1e-3
-    place = _placed(corners, wide, aspect, lens)
+    place = _placed(corners, look)
     low = np.where(before[..., None], place, np.inf).min(axis=1)
     high = np.where(before[..., None], place, -np.inf).max(axis=1)
     inside: NDArray[np.bool_] = ((low < 1.0) & (high > 0.0)).all(axis=1)
     return inside
 
 
-def _in_view(
-    corners: Floats,  # Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3)
-    wide: float,  # Tangent of half the horizontal field of view
-    high: float,  # Tangent of half the vertical field of view
-) -> NDArray[np.bool_]:
+def _in_view(corners: Floats, look: _Look) -> NDArray[np.bool_]:
     """Return whether any part of boxes may be in a view: none is outside of one of its planes."""
-    forward, left, up = np.moveaxis(corners, -1, 0)
+    (forward, left, up), wide = np.moveaxis(corners, -1, 0), look.wide
+    high = wide * look.aspect
     planes = [forward, forward * wide - left, forward * wide + left]
     planes += [forward * high - up, forward * high + up]
     inside: NDArray[np.bool_] = np.all([(plane > 0.0).any(axis=1) for plane in planes], axis=0)

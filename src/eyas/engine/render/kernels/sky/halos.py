@@ -5,7 +5,6 @@ none of it: then a lamp that is hidden has no halo, and no band need know what o
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,17 +57,6 @@ _FAINTEST = 0.02  # Peak below which there is nothing to see
 
 _WHITE: Colour = (f4(1.0), f4(0.94), f4(0.82))
 _RED: Colour = (f4(1.0), f4(0.06), f4(0.035))
-
-
-class Halo(NamedTuple):
-    """Light round a lamp."""
-
-    row: float  # Of its middle [pixels]
-    column: float
-    ahead: float  # Distance of the lamp along the optical axis [m]
-    tall: float  # Half its height [pixels]
-    wide: float  # Half its width [pixels]
-    peak: float  # Radiance in its middle
 
 
 @kernel
