@@ -12,6 +12,7 @@ from eyas.lanes import vector as lanes
 from eyas.lanes.vector import (
     WIDTH,
     all_of,
+    any_bits,
     any_of,
     bit_pattern,
     bits_of,
@@ -199,18 +200,21 @@ def counted(a, out):
         out[at, 3] = first_bit(bits) if bits else -1
         out[at, 4] = lane(lane_numbers(), 5)
         out[at, 5] = i8(lane(splat(f4(2.5)), 3) * f4(2.0))
+        out[at, 6] = any_bits(lane_numbers() & to_i4(load(a, at)))
+        out[at, 7] = any_bits(lane(lane_numbers(), 6))
 
 
 def test_masks_are_counted():
     signs = np.where(RNG.random(COUNT) < 0.5, 1, -1).astype(f4)
     signs[:WIDTH], signs[WIDTH : 2 * WIDTH] = 1, -1
-    out = np.zeros((COUNT, 6), i8)
+    out = np.zeros((COUNT, 8), i8)
     counted(signs, out)
     for at in range(0, COUNT, WIDTH):
         mask = signs[at : at + WIDTH] > 0
         bits = int((mask << np.arange(WIDTH)).sum())
         first = int(np.argmax(mask)) if bits else -1
-        assert out[at].tolist() == [bits, mask.any(), mask.all(), first, 5, 5]
+        joined = np.bitwise_or.reduce(np.where(mask, np.arange(WIDTH) & 1, np.arange(WIDTH)))
+        assert out[at].tolist() == [bits, mask.any(), mask.all(), first, 5, 5, joined, 6]
 
 
 @kernel

@@ -15,6 +15,7 @@ __all__ = [
     "WIDTH",
     "agree",
     "all_of",
+    "any_bits",
     "any_of",
     "bit_pattern",
     "bits_of",
@@ -92,6 +93,7 @@ store_words = Intrinsic(_STORES, "store_words")
 transposed = Intrinsic(_LOADS, "transposed")
 
 all_of = Intrinsic(_VALUES, "all_of")
+any_bits = Intrinsic(_VALUES, "any_bits")
 any_of = Intrinsic(_VALUES, "any_of")
 bit_pattern = Intrinsic(_VALUES, "bit_pattern")
 bits_of = Intrinsic(_VALUES, "bits_of")

@@ -28,6 +28,7 @@ from eyas.lanes.vector import (
     lane_numbers,
     lesser,
     like,
+    load,
     own,
     root,
     select,
@@ -329,6 +330,18 @@ def _sky_bits(band: Band, row: int, first: int) -> int:
 
 
 @kernel(inline=True)
+def _has_sky(band: Band, row: int) -> bool:
+    """Return whether any sample of a row of pixels shows the sky, whose key is 0."""
+    key, down, width = band.key, band.camera.down, band.columns * band.camera.across
+    less = splat(i8(0))
+    for line in range(row * down, (row + 1) * down):
+        for first in range(0, width, WIDTH):
+            last = max(width - WIDTH, 0)  # what lies beside the picture is 0
+            less |= load(key, line * key.shape[1] + min(first, last)) - i8(1)
+    return width < WIDTH or any_of(less < i8(0))
+
+
+@kernel(inline=True)
 def _middle(band: Band, row: int, first: int) -> tuple[float, float]:
     """Return line and column in their face of the middles of eight pixels."""
     across, down = band.camera.across, band.camera.down
@@ -354,6 +367,8 @@ def draw_backdrop(
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
     for k in range(*own_rows(band, 0, band.lines)):
         row = pixel_row(band, k)
+        if not _has_sky(band, row):
+            continue
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:

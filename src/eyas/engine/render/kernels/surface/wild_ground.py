@@ -20,6 +20,19 @@ CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
 DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
 
+
+def bit(*surfaces: int) -> int:
+    """Return the bits of some surfaces, see `wild`."""
+    return sum(1 << int(surface) for surface in surfaces)
+
+
+ON_GROUND = bit(*range(DESERT, max(Surface) + 1))  # Those whose texture lies on the ground
+SANDY = bit(*range(DESERT, DRIFT + 1))
+EDGED, TRODDEN = ON_GROUND & ~bit(DESERT), bit(TRACK, PATH)
+STREWN, VERGES, SNOWY = bit(DRIFT), bit(VERGE), bit(CAPPED)
+SHORES, HEATHY = bit(GREEN_SHORE, HEATH_SHORE), bit(HEATH, HEATH_SHORE)
+HILLY = bit(HILLSIDE) | ON_GROUND & ~SANDY & ~HEATHY
+
 NO_BLEND = False  # Mip levels of ridges are not blended: noise lies over where they meet
 
 RIDGES = f4(1.0 / 54.0)
@@ -75,6 +88,7 @@ class Look(NamedTuple):
 @kernel(inline=True)
 def wild(
     surface: int,  # A `Surface` of each
+    kinds: int,  # The bits of all of them
     look: Look,  # Of their textures
     colour: Colour,  # Of the textures
     along: float,  # u, where that is a distance [m]
@@ -84,23 +98,29 @@ def wild(
 ) -> Colour:
     """Return the colours of points with what grows or lies on wild ground, linear."""
     result = colour
-    sandy = (surface >= DESERT) & (surface <= DRIFT)
-    heathy = (surface == HEATH) | (surface == HEATH_SHORE)
-    hilly = (surface == HILLSIDE) | ((surface > DRIFT) & ~heathy)
-    if any_of(hilly):
+    if kinds & HILLY != 0:
+        hilly = (surface == HILLSIDE) | ((surface > DRIFT) & (surface != HEATH_SHORE))
         result = _where(hilly, hillside(colour, point, rise, footprint), result)
-    if any_of(heathy):
+    if kinds & HEATHY != 0:
+        heathy = (surface == HEATH) | (surface == HEATH_SHORE)
         result = _where(heathy, heath(colour, point, footprint), result)
-    if any_of(sandy):
+    if kinds & SANDY != 0:
+        sandy = (surface >= DESERT) & (surface <= DRIFT)
         result = _where(sandy, desert(look, colour, point, rise), result)
-    if any_of(surface > DESERT):
-        result = _edged(surface, result, along, point, rise, footprint)
+    if kinds & EDGED != 0:
+        result = _edged(surface, kinds, result, along, point, rise, footprint)
     return result
 
 
 @kernel(inline=True)
 def _edged(
-    surface: int, colour: Colour, along: float, point: Colour, rise: float, footprint: float
+    surface: int,
+    kinds: int,
+    colour: Colour,
+    along: float,
+    point: Colour,
+    rise: float,
+    footprint: float,
 ) -> Colour:
     """Return the colours of ground that changes along an edge, ragged by noise."""
     x, y, result = point[0], point[1], colour
@@ -108,8 +128,8 @@ def _edged(
     clump = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint)
     fine = seen_swing(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint)
     fine += f4(0.8) * seen_swing(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), f4(2.0) * footprint)
-    trodden = (surface == TRACK) | (surface == PATH)
-    if any_of(trodden):
+    if kinds & TRODDEN != 0:
+        trodden = (surface == TRACK) | (surface == PATH)
         ragged = along + f4(0.34) * clump + f4(0.3) * fine
         share = _clip(f4(3.4) * ragged) * (f4(0.86) + f4(0.3) * wide)
         light = f4(0.86) + f4(0.5) * fine + f4(0.24) * clump
@@ -118,31 +138,30 @@ def _edged(
         sand = (f4(0.74) * colour[0], f4(0.72) * colour[1], f4(0.74) * colour[2])
         ground = _where(surface == TRACK, sand, earth)
         result = _where(trodden, _toward(colour, ground, share), result)
-    strewn = surface == DRIFT
-    if any_of(strewn):
+    if kinds & STREWN != 0:
         ragged = along + f4(1.3) * wide + f4(1.5) * clump + f4(0.9) * fine
         share = _clip(f4(0.62) * (ragged - f4(0.5)))
         light = f4(0.095) + f4(0.04) * fine
-        result = _where(strewn, _toward(result, (light, light, f4(0.96) * light), share), result)
-    verge = surface == VERGE
-    if any_of(verge):
+        result = _where(
+            surface == DRIFT, _toward(result, (light, light, f4(0.96) * light), share), result
+        )
+    if kinds & VERGES != 0:
         ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
         light = f4(0.9) + f4(0.8) * fine + f4(0.2) * clump
         gravel = (f4(0.255) * light, f4(0.225) * light, f4(0.180) * light)
         share = f4(0.95) * _clip(f4(3.0) * (f4(1.0) - ragged))
-        result = _where(verge, _toward(result, gravel, share), result)
-    shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
-    if any_of(shore):
+        result = _where(surface == VERGE, _toward(result, gravel, share), result)
+    if kinds & SHORES != 0:
+        shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
         result = _where(shore, _shore(colour, along, (wide, clump, fine)), result)
-    capped = surface == CAPPED
-    if any_of(capped):
+    if kinds & SNOWY != 0:
         # Thin snow lies in the lee of ripples and tufts first, and hardly where it is steep.
         over = f4(0.2) * (along - f4(32.0)) + f4(2.2) * wide + f4(1.3) * clump + f4(0.8) * fine
         over -= f4(2.4) * greater(f4(0.86) - rise, f4(0.0))
         share = f4(0.97) * _clip(f4(0.9) * over + f4(0.1))
         light = f4(0.95) + f4(0.1) * wide + f4(0.05) * clump
         white = (f4(0.84) * light, f4(0.86) * light, f4(0.89) * light)
-        result = _where(capped, _toward(colour, white, share), result)
+        result = _where(surface == CAPPED, _toward(colour, white, share), result)
     return result
 
 
