@@ -337,7 +337,8 @@ def _has_sky(band: Band, row: int) -> bool:
     for line in range(row * down, (row + 1) * down):
         for first in range(0, width, WIDTH):
             last = max(width - WIDTH, 0)  # what lies beside the picture is 0
-            less |= load(key, line * key.shape[1] + min(first, last)) - i8(1)
+            keys = load(key, line * key.shape[1] + min(first, last))
+            less |= (keys - i8(1)) & ~keys  # below 0 for 0 alone
     return width < WIDTH or any_of(less < i8(0))
 
 
