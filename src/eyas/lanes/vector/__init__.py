@@ -50,7 +50,6 @@ __all__ = [
     "store_largest",
     "store_triples",
     "store_triples_two",
-    "store_where",
     "store_words",
     "to_f4",
     "to_f8",
@@ -88,7 +87,6 @@ store_greater = Intrinsic(_STORES, "store_greater")
 store_largest = Intrinsic(_STORES, "store_largest")
 store_triples = Intrinsic(_STORES, "store_triples")
 store_triples_two = Intrinsic(_STORES, "store_triples_two")
-store_where = Intrinsic(_STORES, "store_where")
 store_words = Intrinsic(_STORES, "store_words")
 transposed = Intrinsic(_LOADS, "transposed")
 

@@ -52,12 +52,6 @@ def ballot(builder: Any, mask: ir.Value) -> ir.Value:  # noqa: ANN401
     return builder.trunc(builder.lshr(bits, _first(builder)), ir.IntType(WIDTH))
 
 
-def joined_bits(builder: Any, value: ir.Value) -> ir.Value:  # noqa: ANN401
-    """Return the bits that any lane has set."""
-    kind = ir.FunctionType(_I32, [_I32, _I32])
-    return _call(builder, "redux.sync.or", kind, value, _members(builder))
-
-
 def from_lane(builder: Any, value: ir.Value, number: ir.Value) -> ir.Value:  # noqa: ANN401
     """Return the value that a lane has."""
     if value.type == _I64:

@@ -102,7 +102,7 @@ def any_bits(typing_context, a):
         if not isinstance(a, Lanes):
             return context.cast(builder, args[0], a, types.int32)
         if lanes_are_threads(context):
-            return threads.joined_bits(builder, args[0])
+            raise NotImplementedError("any_bits: of lanes that are threads, ask each for its own")
         kind = ir.FunctionType(ir.IntType(32), [args[0].type])
         name = f"llvm.vector.reduce.or.v{WIDTH}i32"
         return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), args)

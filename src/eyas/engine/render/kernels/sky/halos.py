@@ -5,12 +5,12 @@ none of it: then a lamp that is hidden has no halo, and no band need know what o
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.light.caster import Caster, caster_of, has_lamps
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
@@ -38,8 +38,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-Colour = tuple[float, float, float]
-
 _FARTHEST = 140.0  # Distance beyond which lamps have no halo [m]
 
 _ANGLE = 0.042  # Angle from a lamp at which its halo ends [rad]
@@ -58,17 +56,6 @@ _FAINTEST = 0.02  # Peak below which there is nothing to see
 
 _WHITE: Colour = (f4(1.0), f4(0.94), f4(0.82))
 _RED: Colour = (f4(1.0), f4(0.06), f4(0.035))
-
-
-class Halo(NamedTuple):
-    """Light round a lamp."""
-
-    row: float  # Of its middle [pixels]
-    column: float
-    ahead: float  # Distance of the lamp along the optical axis [m]
-    tall: float  # Half its height [pixels]
-    wide: float  # Half its width [pixels]
-    peak: float  # Radiance in its middle
 
 
 @kernel

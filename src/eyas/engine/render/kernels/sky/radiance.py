@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
+from eyas.engine.render.kernels.colours import Colour, blended
 from eyas.engine.render.kernels.pixels import keys_of, write_colours
 from eyas.engine.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
@@ -53,9 +54,6 @@ _FARTHEST = f4(1000.0 * HAZE_END)
 _FOOT = f4(0.012)  # Sine of the elevation over which the plain turns into hills
 
 
-Colour = tuple[float, float, float]
-
-
 @kernel(inline=True)
 def _panorama(
     # Shape (rows, columns, channels); the number of columns is a power of 2
@@ -81,12 +79,6 @@ def _panorama(
     d = to_f4(gather(values, (high + right) * step + first))
     lower, upper = a + across * (b - a), c + across * (d - c)
     return (lower + up * (upper - lower)) * f4(1.0 / 255.0)
-
-
-@kernel(inline=True)
-def blended(a: Colour, b: Colour, share: float) -> Colour:
-    """Return a colour on the way from one to another."""
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
 @kernel(inline=True)

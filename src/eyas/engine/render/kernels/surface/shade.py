@@ -4,13 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band
+from eyas.engine.render.kernels.colours import Colour, Vector, blended, where
 from eyas.engine.render.kernels.light.ambient import openness
 from eyas.engine.render.kernels.light.lamps import night_light, window_light
 from eyas.engine.render.kernels.light.sunlight import sunlight
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.sky.fog import land_fog
 from eyas.engine.render.kernels.sky.mist import aired
-from eyas.engine.render.kernels.sky.radiance import blended, reflection
+from eyas.engine.render.kernels.sky.radiance import reflection
 from eyas.engine.render.kernels.surface.attributes import attributes_of, instance_frame
 from eyas.engine.render.kernels.surface.litter import littered
 from eyas.engine.render.kernels.surface.signalling import signalled
@@ -71,9 +72,6 @@ TILES = f4(1.0 / 8.0)  # Repeats of the texture in a metre where u is something 
 SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
-
-Colour = tuple[float, float, float]
-Vector = tuple[float, float, float]
 
 
 @kernel(inline=True)
@@ -201,11 +199,7 @@ def shade_point(
     if air.windy > zero and kinds & LEAVES != 0:
         leaves = (surface == FOLIAGE) | (surface == CROWN)
         turned = shimmer(lit.wind, point, normal, distance * pixel)
-        normal = (
-            select(leaves, turned[0], normal[0]),
-            select(leaves, turned[1], normal[1]),
-            select(leaves, turned[2], normal[2]),
-        )
+        normal = where(leaves, turned, normal)
 
     u, v, density = at.u, at.v, at.density
     if kinds & LEVEL != 0:
@@ -222,15 +216,10 @@ def shade_point(
     blend = pixel < SHARP
     bright = like(span, one)
     if kinds & WET != 0:
-        wet = surface == WATER
         waves, bright = _wavy(
             geometry.texture, at.layer, detail, blend, (at.u, at.v), normal, cosine
         )
-        normal = (
-            select(wet, waves[0], normal[0]),
-            select(wet, waves[1], normal[1]),
-            select(wet, waves[2], normal[2]),
-        )
+        normal = where(surface == WATER, waves, normal)
         cosine = -_dot(normal, way)
 
     # What lies anywhere in memory is read in one go, so that one wait for it covers the others.
@@ -247,23 +236,21 @@ def shade_point(
     asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
     red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
     if kinds & MARKED != 0:
-        marked = surface == MARKING
         share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
         paint, rest = share * alpha, one - share
-        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
-        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
-        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
+        marked = (
+            paint * at.tint[0] + rest * asphalt_r,
+            paint * at.tint[1] + rest * asphalt_g,
+            paint * at.tint[2] + rest * asphalt_b,
+        )
+        red, green, blue = where(surface == MARKING, marked, (red, green, blue))
     if row >= 0 and kinds & PAINTED != 0:
-        painted = surface == PAINT
         frame = instance_frame(band, row)
-        red = select(painted, red * frame.red, red)
-        green = select(painted, green * frame.green, green)
-        blue = select(painted, blue * frame.blue, blue)
+        coat = red * frame.red, green * frame.green, blue * frame.blue
+        red, green, blue = where(surface == PAINT, coat, (red, green, blue))
     if kinds & WET != 0:
-        wet = surface == WATER
-        red = select(wet, at.tint[0] * bright, red)
-        green = select(wet, at.tint[1] * bright, green)
-        blue = select(wet, at.tint[2] * bright, blue)
+        water = at.tint[0] * bright, at.tint[1] * bright, at.tint[2] * bright
+        red, green, blue = where(surface == WATER, water, (red, green, blue))
     if kinds & UNTENDED != 0:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
