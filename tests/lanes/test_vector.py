@@ -12,6 +12,7 @@ from eyas.lanes import vector as lanes
 from eyas.lanes.vector import (
     WIDTH,
     all_of,
+    any_bits,
     any_of,
     bit_pattern,
     bits_of,
@@ -41,7 +42,6 @@ from eyas.lanes.vector import (
     store_greater,
     store_triples,
     store_triples_two,
-    store_where,
     store_words,
     to_f4,
     to_f8,
@@ -199,18 +199,21 @@ def counted(a, out):
         out[at, 3] = first_bit(bits) if bits else -1
         out[at, 4] = lane(lane_numbers(), 5)
         out[at, 5] = i8(lane(splat(f4(2.5)), 3) * f4(2.0))
+        out[at, 6] = any_bits(lane_numbers() & to_i4(load(a, at)))
+        out[at, 7] = any_bits(lane(lane_numbers(), 6))
 
 
 def test_masks_are_counted():
     signs = np.where(RNG.random(COUNT) < 0.5, 1, -1).astype(f4)
     signs[:WIDTH], signs[WIDTH : 2 * WIDTH] = 1, -1
-    out = np.zeros((COUNT, 6), i8)
+    out = np.zeros((COUNT, 8), i8)
     counted(signs, out)
     for at in range(0, COUNT, WIDTH):
         mask = signs[at : at + WIDTH] > 0
         bits = int((mask << np.arange(WIDTH)).sum())
         first = int(np.argmax(mask)) if bits else -1
-        assert out[at].tolist() == [bits, mask.any(), mask.all(), first, 5, 5]
+        joined = np.bitwise_or.reduce(np.where(mask, np.arange(WIDTH) & 1, np.arange(WIDTH)))
+        assert out[at].tolist() == [bits, mask.any(), mask.all(), first, 5, 5, joined, 6]
 
 
 @kernel
@@ -333,19 +336,14 @@ def test_tiles_lie_in_two_rows():
 
 
 @kernel
-def written(numbers, long, bytes_, words):
-    store_where(numbers, 3, lane_numbers() > i4(4), f4(9.0))
-    store_where(long, 1, lane_numbers() < i4(2), to_i8(lane_numbers()) + i8(1 << 40))
+def written(bytes_, words):
     store_triples(bytes_, 2, to_u4(lane_numbers()) * u4(0x030201))
     store_words(words, 5, load_words(bytes_, 2))
 
 
 def test_stores_touch_nothing_else():
-    numbers, long = np.zeros(16, f4), np.zeros(16, i8)
     bytes_, words = np.full(64, 200, np.uint8), np.zeros(64, np.uint8)
-    written(numbers, long, bytes_, words)
-    assert numbers.tolist() == [0] * 8 + [9] * 3 + [0] * 5
-    assert long.tolist() == [0, 1 << 40, (1 << 40) + 1] + [0] * 13
+    written(bytes_, words)
     triples = [k * factor for k in range(8) for factor in (1, 2, 3)]
     assert bytes_.tolist() == [200] * 2 + triples + [200] * 38
     assert words.tolist() == [0] * 5 + bytes_.tolist()[2:34] + [0] * 27

@@ -157,13 +157,9 @@ class ThermalImager:
 
     def develop(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> None:
         """Write pictures, grey, shape (V, H, W, 3)."""
-        self.measure(frames, rgb)
-
-    def measure(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Write pictures, and return the temperature of each pixel [Celsius], shape (V, H, W)."""
-        degrees = np.empty(frames.depth.shape, np.float32)
-        _sense(min(thread_count(), len(rgb)), _Work(self._scene, frames, degrees, rgb))
-        return degrees
+        workers, (height, width) = min(thread_count(), len(rgb)), rgb.shape[1:3]
+        degrees = np.empty((workers, height, width), np.float32)
+        _sense(workers, _Work(self._scene, frames, degrees, np.empty((workers, width)), rgb))
 
 
 _DEVIATION = 147.8
@@ -231,8 +227,23 @@ def _direction(
     return -right / ahead, -down / ahead, area > 0.0
 
 
-@kernel
-def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, column: int) -> float:
+@kernel(inline=True)
+def _facing(frames: ThermalFrames, view: int, normal: int) -> tuple[int, int]:
+    """Return the direction, see `direction_of`, of a normal, its three bytes in one number."""
+    axes = frames.rotation[view]
+    right, down = (normal & 255) / 127.5 - 1.0, ((normal >> 8) & 255) / 127.5 - 1.0
+    ahead = (normal >> 16) / 127.5 - 1.0
+    return direction_of(
+        ahead * axes[0, 0] - right * axes[0, 1] - down * axes[0, 2],
+        ahead * axes[1, 0] - right * axes[1, 1] - down * axes[1, 2],
+        ahead * axes[2, 0] - right * axes[2, 1] - down * axes[2, 2],
+    )
+
+
+@kernel(inline=True)
+def _temperature(
+    scene: _Scene, frames: ThermalFrames, view: int, row: int, column: int, facing: tuple[int, int]
+) -> float:
     """Return what a pixel shows [Celsius]; where a lens ends, its mount, as warm as the air."""
     axes = frames.rotation[view]
     left, up, lit = _direction(frames, view, row, column)
@@ -246,14 +257,6 @@ def _temperature(scene: _Scene, frames: ThermalFrames, view: int, row: int, colu
     if shown < 0:
         clear = min(max(z / stretch / _SKY_AT_HORIZON, 0.0), 1.0)
         return float(scene.air + clear * (scene.sky - scene.air))
-    right = frames.normal[view, row, column, 0] / 127.5 - 1.0
-    down = frames.normal[view, row, column, 1] / 127.5 - 1.0
-    ahead = frames.normal[view, row, column, 2] / 127.5 - 1.0
-    facing = direction_of(
-        ahead * axes[0, 0] - right * axes[0, 1] - down * axes[0, 2],
-        ahead * axes[1, 0] - right * axes[1, 1] - down * axes[1, 2],
-        ahead * axes[2, 0] - right * axes[2, 1] - down * axes[2, 2],
-    )
     if shown >= ACTOR_OBJECT:
         eye = frames.eye[view]
         point = (eye[0] + away * x, eye[1] + away * y, eye[2] + away * z)
@@ -300,31 +303,41 @@ class _Work(NamedTuple):
 
     scene: _Scene
     frames: ThermalFrames
-    degrees: NDArray[np.float32]
+    degrees: NDArray[np.float32]  # Of the picture that a worker makes, shape (workers, H, W)
+    columns: NDArray[np.float64]  # The error of its columns, before it is scaled
     rgb: NDArray[np.uint8]
 
 
 @parallel
 def _sense(worker: int, workers: int, work: _Work) -> None:
     """Make the pictures whose turn is this worker's."""
-    scene, frames, degrees, rgb = work.scene, work.frames, work.degrees, work.rgb
-    height, width = degrees.shape[1], degrees.shape[2]
-    for view in range(worker, degrees.shape[0], workers):
+    scene, frames, rgb, normals = work.scene, work.frames, work.rgb, work.frames.normal
+    degrees, columns = work.degrees[worker], work.columns[worker]
+    height, width = degrees.shape
+    for view in range(worker, len(rgb), workers):
         own = mixed(frames.seed[view])
         now = mixed(own ^ (frames.step[view] & 0xFFFFFFFF))
+        before, facing = -1, (0, 0)
+        for column in range(width):
+            columns[column] = _random(own ^ (-1 - column))
         for row in range(height):
             for column in range(width):
                 at = row * width + column
-                degrees[view, row, column] = (
-                    _temperature(scene, frames, view, row, column)
-                    + scene.pattern * (_random(own ^ at) + _random(own ^ (-1 - column)))
+                normal = int(normals[view, row, column, 0])
+                normal |= int(normals[view, row, column, 1]) << 8
+                normal |= int(normals[view, row, column, 2]) << 16
+                if normal != before:  # most pixels face as their neighbours do
+                    before, facing = normal, _facing(frames, view, normal)
+                degrees[row, column] = (
+                    _temperature(scene, frames, view, row, column, facing)
+                    + scene.pattern * (_random(own ^ at) + columns[column])
                     + scene.noise * _random(now ^ at)
                 )
-        low, high = _limits(degrees[view], scene)
+        low, high = _limits(degrees, scene)
         scale = 255.0 / (high - low)
         for row in range(height):
             for column in range(width):
-                value = (degrees[view, row, column] - low) * scale + 0.5
+                value = (degrees[row, column] - low) * scale + 0.5
                 grey = int(min(max(value, 0.0), 255.0))
                 for channel in range(3):
                     rgb[view, row, column, channel] = grey

@@ -15,6 +15,7 @@ __all__ = [
     "WIDTH",
     "agree",
     "all_of",
+    "any_bits",
     "any_of",
     "bit_pattern",
     "bits_of",
@@ -49,7 +50,6 @@ __all__ = [
     "store_largest",
     "store_triples",
     "store_triples_two",
-    "store_where",
     "store_words",
     "to_f4",
     "to_f8",
@@ -87,11 +87,11 @@ store_greater = Intrinsic(_STORES, "store_greater")
 store_largest = Intrinsic(_STORES, "store_largest")
 store_triples = Intrinsic(_STORES, "store_triples")
 store_triples_two = Intrinsic(_STORES, "store_triples_two")
-store_where = Intrinsic(_STORES, "store_where")
 store_words = Intrinsic(_STORES, "store_words")
 transposed = Intrinsic(_LOADS, "transposed")
 
 all_of = Intrinsic(_VALUES, "all_of")
+any_bits = Intrinsic(_VALUES, "any_bits")
 any_of = Intrinsic(_VALUES, "any_of")
 bit_pattern = Intrinsic(_VALUES, "bit_pattern")
 bits_of = Intrinsic(_VALUES, "bits_of")

@@ -7,12 +7,11 @@ from numba.core import cgutils, types
 from numba.extending import intrinsic
 
 from eyas.lanes.vector import WIDTH, threads
-from eyas.lanes.vector.kinds import Lanes, as_lanes, ir_type, lanes_are_threads
+from eyas.lanes.vector.kinds import Lanes, lanes_are_threads
 from eyas.lanes.vector.places import (
     I32,
     I64,
     each_index,
-    loaded,
     order_of,
     place_of_half,
     place_of_lanes,
@@ -149,27 +148,6 @@ def scatter(typing_context, array, index, mask, value):
 def store_words(typing_context, array, at, value):
     """Write eight uint32 into an array of bytes, from byte `at` on."""
     return types.void(array, at, value), _storing(4)
-
-
-@intrinsic
-def store_where(typing_context, array, at, mask, value):
-    """Write those of eight elements in a row whose mask is set; the others are written back."""
-    kind = Lanes(array.dtype)
-
-    def generate(context, builder, sig, args):
-        size = array.dtype.bitwidth // 8
-        held = ir_type(kind, threads=lanes_are_threads(context))
-        pointer, align = place_of_lanes(context, builder, sig, args, held, size)
-        new = as_lanes(context, builder, sig.args[3], args[3], kind)
-        if lanes_are_threads(context):  # others may write beside what is wanted
-            with builder.if_then(args[2]):
-                builder.store(new, pointer).align = align
-            threads.agree(builder)
-            return context.get_dummy_value()
-        chosen = builder.select(args[2], new, loaded(builder, pointer, align))
-        return _store(context, builder, chosen, pointer, align)
-
-    return types.void(array, at, mask, value), generate
 
 
 @intrinsic

@@ -95,6 +95,22 @@ def all_of(typing_context, mask):
 
 
 @intrinsic
+def any_bits(typing_context, a):
+    """Return the bits that are set in any lane of int32, as one number."""
+
+    def generate(context, builder, sig, args):
+        if not isinstance(a, Lanes):
+            return context.cast(builder, args[0], a, types.int32)
+        if lanes_are_threads(context):
+            raise NotImplementedError("any_bits: of lanes that are threads, ask each for its own")
+        kind = ir.FunctionType(ir.IntType(32), [args[0].type])
+        name = f"llvm.vector.reduce.or.v{WIDTH}i32"
+        return builder.call(cgutils.get_or_insert_function(builder.module, kind, name), args)
+
+    return types.int32(a), generate
+
+
+@intrinsic
 def bits_of(typing_context, mask):
     """Return the mask as a number, lane 0 in its lowest bit."""
 

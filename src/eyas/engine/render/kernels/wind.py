@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Illumination, Light, Wind
+from eyas.engine.render.kernels.colours import Vector
 from eyas.engine.render.kernels.scalars import f4
 from eyas.engine.render.kernels.surface.texture import fraction
 from eyas.lanes import kernel
@@ -20,8 +21,6 @@ _MOST = 0.06
 _PER_SPEED = 0.0008
 """Lean by a speed of 1 m/s; it grows with the power 1.5, not 2, since crowns yield (Vogel, Drag and
 reconfiguration of broad leaves in high winds, Journal of Experimental Botany 40, 1989)."""
-
-Vector = tuple[float, float, float]
 
 
 @kernel(inline=True)

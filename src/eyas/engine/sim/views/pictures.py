@@ -1,6 +1,6 @@
 """Pictures of the worlds of a simulation, from its trackers' cameras or from any others."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 
 import numpy as np
@@ -100,7 +100,9 @@ class PictureDrawer:
             draw = partial(self._exposures.draw, chosen, until)
         step = self._snapshot.episodes.step_count
         if self._thermal is not None and deep.rgb is not None:
-            draw(replace(deep, rgb=None, depth=with_depth(deep).depth))
+            others = replace(deep, rgb=None)
+            if any(getattr(others, one.name) is not None for one in fields(others)):
+                draw(replace(others, depth=with_depth(deep).depth))
             self._thermal.draw(views, movers, chosen, step, deep.rgb)
             if self._camera is not None:
                 self._camera.send(chosen, step, deep.rgb)

@@ -25,6 +25,7 @@ from eyas.engine.render.kernels.visibility.transform import view_along
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (
     WIDTH,
+    any_of,
     gather,
     load,
     magnitude,
@@ -127,7 +128,10 @@ def look_through(
     for row in range(bent.lines * bent.camera.down):
         for first in range(0, columns, WIDTH):
             here = row * columns + first
-            mine = load(glass.face, here) == face
+            mine, to = load(glass.face, here) == face, row * stride + first
+            if not any_of(mine):
+                store(bent.key, to, splat(i8(ELSEWHERE)))
+                continue
             column, line = load(glass.column, here), load(glass.line, here) - top
             column, line = select(mine, column, f4(1.5)), select(mine, line, f4(1.5))
             x, y = to_i4(column), to_i4(line)
@@ -137,7 +141,6 @@ def look_through(
             inverse = _inverse_at(source, keys, at, aside, below)
             shown = key_of(inverse, keys & i8(0xFFFFFFFF))
             shown = select(keys == i8(0), splat(i8(0)), shown)
-            to = row * stride + first
             store(bent.key, to, select(mine, shown, splat(i8(ELSEWHERE))))
             if words:
                 store_words(bent.shade, 4 * to, gather(word, at))

@@ -10,6 +10,7 @@ from eyas.engine.render.kernels.bundles import Light
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.lanes import exact, kernel, parallel
 from eyas.lanes.vector import (
+    any_of,
     gather_pair,
     gather_pair_after,
     greater,
@@ -193,19 +194,21 @@ def openness(
     across, down = column - to_f4(j), row - to_f4(i)
     at = to_i4(i * i4(columns) + j)
     upper, lower = gather_pair(shares, at), gather_pair_after(shares, at, columns)
-    byte, half = u4(255), u4(16)
-    a, b = to_f4(to_i4(upper & byte)), to_f4(to_i4((upper >> half) & byte))
-    c, d = to_f4(to_i4(lower & byte)), to_f4(to_i4((lower >> half) & byte))
-    first, second = a + across * (b - a), c + across * (d - c)
-    hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
-    # Higher up less is hidden; at the top of what hides it, nothing. Of four texels two on a
-    # diagonal hold the top, two the base. Where neighbours differ, the lower ones are walls' feet.
-    even = (to_i4(i + j) & i4(1)) == i4(0)
-    eight = u4(8)
-    one_a, one_b = to_i4((upper >> eight) & byte), to_i4(lower >> u4(24))
-    two_a, two_b = to_i4(upper >> u4(24)), to_i4((lower >> eight) & byte)
-    one_c, two_c = to_f4(lesser(one_a, one_b)), to_f4(lesser(two_a, two_b))
-    top, base = select(even, one_c, two_c), select(even, two_c, one_c)
-    above = z - (frame.ground + base)
-    climb = one - lesser(greater(above / greater(top - base, one), zero), one)
-    return select(inside, one - hidden * climb * climb, one)
+    share, open_ = one, u4(0x00FF00FF)
+    if any_of((upper & lower & open_) != open_):
+        byte, half, eight = u4(255), u4(16), u4(8)
+        a, b = to_f4(to_i4(upper & byte)), to_f4(to_i4((upper >> half) & byte))
+        c, d = to_f4(to_i4(lower & byte)), to_f4(to_i4((lower >> half) & byte))
+        first, second = a + across * (b - a), c + across * (d - c)
+        hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
+        # Higher up less is hidden; at the top of what hides it, nothing. Of four texels two on a
+        # diagonal hold the top, two the base. Where neighbours differ, the lower are walls' feet.
+        even = (to_i4(i + j) & i4(1)) == i4(0)
+        one_a, one_b = to_i4((upper >> eight) & byte), to_i4(lower >> u4(24))
+        two_a, two_b = to_i4(upper >> u4(24)), to_i4((lower >> eight) & byte)
+        one_c, two_c = to_f4(lesser(one_a, one_b)), to_f4(lesser(two_a, two_b))
+        top, base = select(even, one_c, two_c), select(even, two_c, one_c)
+        above = z - (frame.ground + base)
+        climb = one - lesser(greater(above / greater(top - base, one), zero), one)
+        share = select(inside, one - hidden * climb * climb, one)
+    return share

@@ -123,7 +123,8 @@ def cast_beam(
                 & (x < length + f4(_REACH))
                 & (x > -length - f4(_BEHIND))
             )
-            seen &= magnitude(y) < f4(_SPREAD)
+            away = magnitude(x) - length  # ahead or behind; wider than both lights are there
+            seen &= (away > f4(0.0)) & (magnitude(y) < f4(0.35) * away + f4(1.01))
             if not any_of(seen):
                 continue
             head, tail = _head(x - length, y, z), _tail(-x - length, y, z)

@@ -11,6 +11,7 @@ from eyas.engine.render.kernels.visibility.clusters import (
     CLUSTER,
     CLUSTER_ROWS,
     UV_ROWS,
+    along_row,
     has_leaves,
 )
 from eyas.engine.render.kernels.visibility.fill import fill
@@ -125,11 +126,6 @@ def _is_in(reach: NDArray[np.float32], thing: int, top: int, left: int) -> bool:
 
 
 @kernel(inline=True)
-def _along(row: Row, x: float, y: float, z: float) -> float:
-    return row.x * x + row.y * y + row.z * z + row.w
-
-
-@kernel(inline=True)
 def _corner(
     cluster: NDArray[np.float32], at: int, screen: Projection
 ) -> tuple[float, float, float]:
@@ -137,9 +133,9 @@ def _corner(
     y = to_f8(load(cluster, at + CLUSTER))
     z = to_f8(load(cluster, at + 2 * CLUSTER))
     return (
-        _along(screen.column, x, y, z),
-        _along(screen.row, x, y, z),
-        _along(screen.distance, x, y, z),
+        along_row(screen.column, x, y, z),
+        along_row(screen.row, x, y, z),
+        along_row(screen.distance, x, y, z),
     )
 
 

@@ -18,6 +18,8 @@ from eyas.lanes.vector import (
 
 TILE_BITS = i4(TILE.bit_length() - 1)
 
+_EMPTY = i4((TILE + 1) ** 2)  # Texels of the first tile, in which nothing casts a shadow
+
 
 @kernel(inline=True)
 def _first_texel(light: Light, line: int, column: int) -> int:
@@ -35,22 +37,25 @@ def sunlit(light: Light, x: float, y: float, z: float) -> float:
     lines, columns = light.shadow_tile.shape
     column = x * rows[0, 0] + y * rows[0, 1] + (rows[0, 3] - f4(0.5))  # which are level
     line = x * rows[1, 0] + y * rows[1, 1] + z * rows[1, 2] + (rows[1, 3] - f4(0.5))
-    height = x * rows[2, 0] + y * rows[2, 1] + z * rows[2, 2] + rows[2, 3]
     zero, one = f4(0.0), like(x, f4(1.0))
     # The outermost tiles are empty: places beyond them are lit, like theirs.
     column = greater(lesser(column, f4(i4(columns * TILE - 1))), zero)
     line = greater(lesser(line, f4(i4(lines * TILE - 1))), zero)
-    top = to_i4(greater(height, zero))  # the map's zero is nothing at all
     i, j = to_i4(line), to_i4(column)
-    across, down = column - to_f4(j), line - to_f4(i)
-    at = _first_texel(light, i, j)
-    upper, lower = gather_pair(texels, at), gather_pair_after(texels, at, TILE + 1)
-    half, low, left = u4(16), u4(0xFFFF), one - across
-    above = select(to_i4(upper & low) <= top, left, zero)
-    above += select(to_i4(upper >> half) <= top, across, zero)
-    below = select(to_i4(lower & low) <= top, left, zero)
-    below += select(to_i4(lower >> half) <= top, across, zero)
-    return above + down * (below - above)
+    across = column - to_f4(j)
+    at, left = _first_texel(light, i, j), one - across
+    lit = left + across
+    if any_of(at >= _EMPTY):
+        height = x * rows[2, 0] + y * rows[2, 1] + z * rows[2, 2] + rows[2, 3]
+        top = to_i4(greater(height, zero))  # the map's zero is nothing at all
+        upper, lower = gather_pair(texels, at), gather_pair_after(texels, at, TILE + 1)
+        half, low = u4(16), u4(0xFFFF)
+        above = select(to_i4(upper & low) <= top, left, zero)
+        above += select(to_i4(upper >> half) <= top, across, zero)
+        below = select(to_i4(lower & low) <= top, left, zero)
+        below += select(to_i4(lower >> half) <= top, across, zero)
+        lit = above + (line - to_f4(i)) * (below - above)
+    return lit
 
 
 @kernel(inline=True)
@@ -62,12 +67,13 @@ def sunlight(
     normal: tuple[float, float, float],  # Unit normal of the surface
     sun_share: float,  # Sunlight that moving things let through, 0 to 1
     leafy: bool,  # Whether light goes through the surface
+    any_leafy: bool,  # Whether it does at any point, the same for all
 ) -> tuple[float, float]:
     """Return the sunlight on a surface, and the share of the sun's light that reaches it."""
     zero, one = f4(0.0), f4(1.0)
     lean = normal[0] * sun.x + normal[1] * sun.y + normal[2] * sun.z
     away, through = like(lean, offset), like(lean, zero)
-    if any_of(leafy):  # light goes through leaves, and gaps between them are not on the map
+    if any_leafy:  # light goes through leaves, and gaps between them are not on the map
         both = f4(0.2) + select(lean > zero, f4(0.8) * lean, f4(-0.3) * lean)
         lean = select(leafy, both, lean)
         away = select(leafy, away + f4(0.7), away)

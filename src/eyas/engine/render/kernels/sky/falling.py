@@ -4,12 +4,11 @@ import math
 from typing import NamedTuple
 
 from eyas.engine.render.kernels.bundles import Band, Illumination, Light
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.light.lamps import night_light
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
-
-Colour = tuple[float, float, float]
 
 _CROWN = 16.0  # Height above the ground up to which leaves fall [m]
 

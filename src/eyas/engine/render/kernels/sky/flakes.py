@@ -10,6 +10,7 @@ import math
 from typing import NamedTuple
 
 from eyas.engine.render.kernels.bundles import Band, Canvas, Light, View
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.hash_noise import scrambled, tenth
 from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.light.tone import tone_bytes
@@ -30,8 +31,6 @@ from eyas.engine.render.kernels.sky.falling import (
 from eyas.engine.render.kernels.visibility.key import distance_inverse
 from eyas.engine.render.kernels.wind import wave
 from eyas.lanes import address_of, kernel
-
-Colour = tuple[float, float, float]
 
 NEAREST = 0.7  # Distance of the first shell [m]; nearer flakes would be blurs
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.light.caster import Caster, caster_of, has_lamps
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
@@ -36,8 +37,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-Colour = tuple[float, float, float]
 
 _FARTHEST = 140.0  # Distance beyond which lamps have no halo [m]
 

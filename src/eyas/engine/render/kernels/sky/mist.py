@@ -1,24 +1,13 @@
 """Mist that lies on the land, and light that haze and lens scatter forward from a low sun."""
 
 from eyas.engine.render.kernels.bundles import Illumination, Light
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.hash_noise import noise
 from eyas.engine.render.kernels.light.land import land_at
 from eyas.engine.render.kernels.scalars import f4
-from eyas.engine.render.kernels.sky.fog import land_fog
+from eyas.engine.render.kernels.sky.fog import land_fog, vanishing
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser
-
-Colour = tuple[float, float, float]
-
-
-@kernel(inline=True)
-def _vanishing(x: float) -> float:
-    """Return exp(-x), nearly, for x from 0 up: (1 + x/8 + (x/8)^2 / 2)^-8."""
-    eighth = f4(0.125) * x
-    power = f4(1.0) + eighth * (f4(1.0) + f4(0.5) * eighth)
-    power *= power
-    power *= power
-    return f4(1.0) / (power * power)
 
 
 @kernel(inline=True)
@@ -39,7 +28,7 @@ def mist_share(
     here = greater((point[2] - ground) * deep, zero)
     there = greater((eye[2] - ground) * deep, zero)
     low, climb = lesser(here, there), greater(greater(here, there) - lesser(here, there), f4(0.02))
-    mean = (_vanishing(low) - _vanishing(low + climb)) / climb
+    mean = (vanishing(low) - vanishing(low + climb)) / climb
     # Looked up in the middle of the part of the ray that lies within the layer, seen from above.
     part = half * lesser(one / climb, one)
     x, y = point[0] + part * (eye[0] - point[0]), point[1] + part * (eye[1] - point[1])
@@ -47,7 +36,7 @@ def mist_share(
     _, open_here = land_at(light, point[0], point[1])
     wisps = f4(0.35) + f4(1.3) * noise(f4(0.021) * x + f4(0.011) * y, f4(0.034) * y - f4(0.012) * x)
     thickness = air.mist * mean * away * wisps * half * (open_ + open_here)
-    return one - _vanishing(thickness)
+    return one - vanishing(thickness)
 
 
 @kernel(inline=True)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
+from eyas.engine.render.kernels.colours import Colour, Vector
 from eyas.engine.render.kernels.hash_noise import scrambled, tenth
 from eyas.engine.render.kernels.lens.resampling import shown_at
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
@@ -36,9 +37,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-Colour = tuple[float, float, float]
-Vector = tuple[float, float, float]
 
 _REACH = 2.0  # Radius of a puff, in its widths
 

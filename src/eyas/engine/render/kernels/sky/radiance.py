@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas, Direction, Illumination, Light
+from eyas.engine.render.kernels.colours import Colour, blended
 from eyas.engine.render.kernels.pixels import keys_of, write_colours
 from eyas.engine.render.kernels.rays import Rays, place_in_face, ray_of, rays_of
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
@@ -28,6 +29,7 @@ from eyas.lanes.vector import (
     lane_numbers,
     lesser,
     like,
+    load,
     own,
     root,
     select,
@@ -50,9 +52,6 @@ _HAZE_DEPTH = f4(0.25 * 150.0)
 """A quarter of the depth of the haze if it were equally thick all the way up [m]."""
 _FARTHEST = f4(1000.0 * HAZE_END)
 _FOOT = f4(0.012)  # Sine of the elevation over which the plain turns into hills
-
-
-Colour = tuple[float, float, float]
 
 
 @kernel(inline=True)
@@ -80,12 +79,6 @@ def _panorama(
     d = to_f4(gather(values, (high + right) * step + first))
     lower, upper = a + across * (b - a), c + across * (d - c)
     return (lower + up * (upper - lower)) * f4(1.0 / 255.0)
-
-
-@kernel(inline=True)
-def blended(a: Colour, b: Colour, share: float) -> Colour:
-    """Return a colour on the way from one to another."""
-    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
 @kernel(inline=True)
@@ -329,6 +322,19 @@ def _sky_bits(band: Band, row: int, first: int) -> int:
 
 
 @kernel(inline=True)
+def _has_sky(band: Band, row: int) -> bool:
+    """Return whether any sample of a row of pixels shows the sky, whose key is 0."""
+    key, down, width = band.key, band.camera.down, band.columns * band.camera.across
+    less = splat(i8(0))
+    for line in range(row * down, (row + 1) * down):
+        for first in range(0, width, WIDTH):
+            last = max(width - WIDTH, 0)  # what lies beside the picture is 0
+            keys = load(key, line * key.shape[1] + min(first, last))
+            less |= (keys - i8(1)) & ~keys  # below 0 for 0 alone
+    return width < WIDTH or any_of(less < i8(0))
+
+
+@kernel(inline=True)
 def _middle(band: Band, row: int, first: int) -> tuple[float, float]:
     """Return line and column in their face of the middles of eight pixels."""
     across, down = band.camera.across, band.camera.down
@@ -354,6 +360,8 @@ def draw_backdrop(
     rays, across, down = rays_of(view), f4(view.across), f4(view.down)
     for k in range(*own_rows(band, 0, band.lines)):
         row = pixel_row(band, k)
+        if not _has_sky(band, row):
+            continue
         for first in range(0, width, WIDTH):
             chosen = _sky_bits(band, row, first)
             if width - first < WIDTH:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import SHADING_COLUMNS, Band
+from eyas.engine.render.kernels.colours import Vector
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.wind import sways
 from eyas.lanes import kernel
@@ -19,8 +20,6 @@ from eyas.lanes.vector import (
     to_i4,
     transposed,
 )
-
-Vector = tuple[float, float, float]
 
 
 class Frame(NamedTuple):

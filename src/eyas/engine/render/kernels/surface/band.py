@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
+from eyas.engine.render.kernels.colours import Colour
 from eyas.engine.render.kernels.light.tone import tone_bytes
 from eyas.engine.render.kernels.pixels import (
     ACROSS,
@@ -47,7 +48,6 @@ from eyas.lanes.vector import (
     to_u4,
 )
 
-Colour = tuple[float, float, float]
 Four = tuple[int, int, int, int]
 
 

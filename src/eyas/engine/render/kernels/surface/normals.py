@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Direction
+from eyas.engine.render.kernels.colours import Vector
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels
 from eyas.engine.render.kernels.rays import camera_axes, place_in_face, ray_of, rays_of
 from eyas.engine.render.kernels.scalars import f4, i4, i8, u4
@@ -29,8 +30,6 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-
-Vector = tuple[float, float, float]
 
 
 @kernel(inline=True)

@@ -4,13 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band
+from eyas.engine.render.kernels.colours import Colour, Vector, blended, where
 from eyas.engine.render.kernels.light.ambient import openness
 from eyas.engine.render.kernels.light.lamps import night_light, window_light
 from eyas.engine.render.kernels.light.sunlight import sunlight
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.sky.fog import land_fog
 from eyas.engine.render.kernels.sky.mist import aired
-from eyas.engine.render.kernels.sky.radiance import blended, reflection
+from eyas.engine.render.kernels.sky.radiance import reflection
 from eyas.engine.render.kernels.surface.attributes import attributes_of, instance_frame
 from eyas.engine.render.kernels.surface.litter import littered
 from eyas.engine.render.kernels.surface.signalling import signalled
@@ -24,14 +25,29 @@ from eyas.engine.render.kernels.surface.wild_ground import (
     HEATH,
     HEATH_SHORE,
     HILLSIDE,
+    ON_GROUND,
+    SANDY,
+    SHORES,
     Look,
+    bit,
     downwind,
     wild,
 )
 from eyas.engine.render.kernels.wind import shimmer
 from eyas.engine.state.mesh import MARGIN, Surface
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4, to_i4
+from eyas.lanes.vector import (
+    any_bits,
+    any_of,
+    greater,
+    lesser,
+    like,
+    magnitude,
+    root,
+    select,
+    to_f4,
+    to_i4,
+)
 
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
@@ -42,6 +58,11 @@ WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
 MARKING = i4(int(Surface.MARKING))
 
+WET, MARKED, PAINTED, LEAFY = bit(WATER), bit(MARKING), bit(PAINT), bit(FOLIAGE)
+SIGNALS, WINDOWS, LEAVES = bit(SIGNAL), bit(FACADE), bit(FOLIAGE, CROWN)
+SMOOTH = bit(PAINT, WATER, FACADE, GLASS)  # What mirrors
+LEVEL, UNTENDED = MARKED | ON_GROUND, bit(HILLSIDE, HEATH) | ON_GROUND
+
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
 rows of pixels, and a blend would cost a tenth of the shading to hide what is hardly seen."""
@@ -51,9 +72,6 @@ TILES = f4(1.0 / 8.0)  # Repeats of the texture in a metre where u is something 
 SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
-
-Colour = tuple[float, float, float]
-Vector = tuple[float, float, float]
 
 
 @kernel(inline=True)
@@ -172,77 +190,72 @@ def shade_point(
     point = (eye[0] + ray[0] * distance, eye[1] + ray[1] * distance, eye[2] + ray[2] * distance)
     at = attributes_of(band, row, triangle, point)
     normal, surface = at.normal, at.surface
+    # Of which kinds any point is: a number tells it faster than masks do, one for each kind.
+    kinds = any_bits(to_i4(like(surface, i4(1)) << surface))
     stretch = root(_dot(ray, ray))
     shrink = one / stretch
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -_dot(normal, way)
-    if air.windy > zero:
+    if air.windy > zero and kinds & LEAVES != 0:
         leaves = (surface == FOLIAGE) | (surface == CROWN)
-        if any_of(leaves):
-            turned = shimmer(lit.wind, point, normal, distance * pixel)
-            normal = (
-                select(leaves, turned[0], normal[0]),
-                select(leaves, turned[1], normal[1]),
-                select(leaves, turned[2], normal[2]),
-            )
+        turned = shimmer(lit.wind, point, normal, distance * pixel)
+        normal = where(leaves, turned, normal)
 
-    marked, u, v, density = surface == MARKING, at.u, at.v, at.density
-    level = marked | (surface >= DESERT)
-    if any_of(level):
+    u, v, density = at.u, at.v, at.density
+    if kinds & LEVEL != 0:
+        level = (surface == MARKING) | (surface >= DESERT)
         u, v = select(level, TILES * point[0], u), select(level, TILES * point[1], v)
         density = select(level, like(density, TILES), density)
-        sandy = level & (surface >= DESERT) & (surface <= DRIFT)
-        if any_of(sandy):  # its ripples lie across the wind
+        if kinds & SANDY != 0:  # its ripples lie across the wind
+            sandy = (surface >= DESERT) & (surface <= DRIFT)
             down, along = downwind(point)
             u, v = select(sandy, SAND * along, u), select(sandy, SAND * down, v)
             density = select(sandy, like(density, SAND), density)
     span = f4(256.0) * density * distance * pixel
     detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
     blend = pixel < SHARP
-    painted, wet, bright = surface == PAINT, surface == WATER, like(span, one)
-    if any_of(wet):
+    bright = like(span, one)
+    if kinds & WET != 0:
         waves, bright = _wavy(
             geometry.texture, at.layer, detail, blend, (at.u, at.v), normal, cosine
         )
-        normal = (
-            select(wet, waves[0], normal[0]),
-            select(wet, waves[1], normal[1]),
-            select(wet, waves[2], normal[2]),
-        )
+        normal = where(surface == WATER, waves, normal)
         cosine = -_dot(normal, way)
 
     # What lies anywhere in memory is read in one go, so that one wait for it covers the others.
-    leafy = surface == FOLIAGE
     unit = f4(1.0 / 255.0)
     sun_share, sky_share = _byte(shade, 0) * unit, _byte(shade, 8) * unit
     direct, reaching = like(sun_share, zero), like(sun_share, zero)
     if lit.sun_colour.x > zero:  # not below a closed sky
-        direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
+        direct, reaching = sunlight(
+            light, lit.sun, air.offset, point, normal, sun_share,
+            surface == FOLIAGE, kinds & LEAFY != 0,
+        )  # fmt: skip
     open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
     low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
     asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
     red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
-    if any_of(marked):
+    if kinds & MARKED != 0:
         share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
         paint, rest = share * alpha, one - share
-        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
-        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
-        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
-    if row >= 0 and any_of(painted):
+        marked = (
+            paint * at.tint[0] + rest * asphalt_r,
+            paint * at.tint[1] + rest * asphalt_g,
+            paint * at.tint[2] + rest * asphalt_b,
+        )
+        red, green, blue = where(surface == MARKING, marked, (red, green, blue))
+    if row >= 0 and kinds & PAINTED != 0:
         frame = instance_frame(band, row)
-        red = select(painted, red * frame.red, red)
-        green = select(painted, green * frame.green, green)
-        blue = select(painted, blue * frame.blue, blue)
-    if any_of(wet):
-        red = select(wet, at.tint[0] * bright, red)
-        green = select(wet, at.tint[1] * bright, green)
-        blue = select(wet, at.tint[2] * bright, blue)
-    untended = (surface == HILLSIDE) | (surface == HEATH) | (surface >= DESERT)
-    if any_of(untended):
+        coat = red * frame.red, green * frame.green, blue * frame.blue
+        red, green, blue = where(surface == PAINT, coat, (red, green, blue))
+    if kinds & WET != 0:
+        water = at.tint[0] * bright, at.tint[1] * bright, at.tint[2] * bright
+        red, green, blue = where(surface == WATER, water, (red, green, blue))
+    if kinds & UNTENDED != 0:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
         red, green, blue = wild(
-            surface, look, (red, green, blue), at.u, point, normal[2], footprint
+            surface, kinds, look, (red, green, blue), at.u, point, normal[2], footprint
         )
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
@@ -251,8 +264,8 @@ def shade_point(
             (red, green, blue), light, air.snow, at.bed, at.crown_middle, point, at.own,
             normal[2], footprint,
         )  # fmt: skip
-        shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
-        if any_of(shore):  # it melts where the water wets it
+        if kinds & SHORES != 0:  # it melts where the water wets it
+            shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
             melted = select(shore, lesser(greater(f4(1.5) - at.u, zero), one), zero)
             red, green, blue = blended((red, green, blue), (bare_r, bare_g, bare_b), melted)
     if air.litter > zero:
@@ -262,7 +275,8 @@ def shade_point(
         )
 
     tilt = f4(0.5) * normal[2]
-    tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
+    if kinds & LEAFY != 0:  # leaves get light through those above
+        tilt = select(surface == FOLIAGE, f4(0.2) + f4(0.5) * tilt, tilt)
     up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share * open_share
     # Where walls hide the sky, what they and the ground throw back is not blue.
     seen, thrown = up * open_share, up * (one - open_share)
@@ -270,23 +284,21 @@ def shade_point(
     light_r = direct * sun.x + seen * above.x + thrown * tinge.x + down * below.x
     light_g = direct * sun.y + seen * above.y + thrown * tinge.y + down * below.y
     light_b = direct * sun.z + seen * above.z + thrown * tinge.z + down * below.z
-    signal = surface == SIGNAL
-    if any_of(signal):
-        glow = select(signal, at.emission, zero)
+    if kinds & SIGNALS != 0:
+        glow = select(surface == SIGNAL, at.emission, zero)
         light_r, light_g, light_b = light_r + glow, light_g + glow, light_b + glow
     if air.lamps > zero:
         head, tail = _byte(shade, 16), _byte(shade, 24)
         lamp_r, lamp_g, lamp_b = night_light(light, air.lamps, point, normal, head, tail)
-        glow = air.lamps * select(signal, zero, at.emission)
+        glow = air.lamps * select(surface == SIGNAL, zero, at.emission)
         light_r += lamp_r + glow
         light_g += lamp_g + glow
         light_b += lamp_b + glow
     elif air.daytime_lamps > zero:
-        glow = air.daytime_lamps * select(signal, zero, at.emission)
+        glow = air.daytime_lamps * select(surface == SIGNAL, zero, at.emission)
         light_r, light_g, light_b = light_r + glow, light_g + glow, light_b + glow
-    window = surface == FACADE
-    if air.windows > zero and any_of(window):
-        shown = select(window, one - alpha, zero)
+    if air.windows > zero and kinds & WINDOWS != 0:
+        shown = select(surface == FACADE, one - alpha, zero)
         window_r, window_g, window_b = window_light(air.windows, at.building, detail, at.u, at.v)
         # Blinds and curtains are paler than dark rooms, so more light comes out through them.
         red, green, blue = (
@@ -300,7 +312,7 @@ def shade_point(
         shining = instance_frame(band, row).lamps
         if shining != i4(0):
             red, green, blue = signalled((red, green, blue), surface, shining)
-    if any_of(painted | wet | window | (surface == GLASS)):
+    if kinds & SMOOTH != 0:
         mirror = _smoothness(surface, alpha)
         if any_of(mirror > zero):
             facing = lesser(greater(cosine, zero), one)
@@ -308,7 +320,8 @@ def shade_point(
                 lit, way, normal, facing, mirror, reaching, one - open_share
             )
             # Clear coat is no perfect mirror, even at a grazing angle.
-            share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
+            coat = select(surface == PAINT, like(alpha, f4(0.85)), one)
+            share *= select(surface == FACADE, one - alpha, coat)
             share = select(mirror > zero, share, zero)
             red, green, blue = blended((red, green, blue), mirrored, share)
     if air.wet > zero:

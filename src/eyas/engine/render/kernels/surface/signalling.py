@@ -1,9 +1,10 @@
 """Lamps with which vehicles signal: brake lamps and indicators."""
 
+from eyas.engine.render.kernels.colours import Colour, where
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, select
+from eyas.lanes.vector import any_of
 
 _TAIL = int(Surface.TAIL_LAMP)
 
@@ -27,8 +28,6 @@ for 60 cd at least of the one and allows 12 cd at most of the other."""
 _AMBER = (f4(3.6), f4(0.46), f4(0.03))
 """Radiance of indicators, of 50 cd and more (UN Regulation 6, 6.1)."""
 
-Colour = tuple[float, float, float]
-
 
 @kernel(inline=True)
 def signalled(
@@ -37,23 +36,21 @@ def signalled(
     lamps: int,  # See `eyas.engine.state.draw.DrawList.lamps`, the same number for all points
 ) -> Colour:
     """Return radiances with those of the lamps of one vehicle that shine."""
-    red, green, blue = colour
     braking = i4(BRAKING)
     if lamps & braking == braking:
         shines = (surface == TAIL_LAMP) | (surface == HIGH_BRAKE_LAMP)
-        red, green, blue = _with(red, green, blue, shines, _RED)
+        colour = _with(colour, shines, _RED)
     if lamps & i4(LEFT) != 0:
-        red, green, blue = _with(red, green, blue, surface == INDICATOR_LEFT, _AMBER)
+        colour = _with(colour, surface == INDICATOR_LEFT, _AMBER)
     if lamps & i4(RIGHT) != 0:
-        red, green, blue = _with(red, green, blue, surface == INDICATOR_RIGHT, _AMBER)
-    return red, green, blue
+        colour = _with(colour, surface == INDICATOR_RIGHT, _AMBER)
+    return colour
 
 
 @kernel(inline=True)
-def _with(red: float, green: float, blue: float, shines: bool, light: Colour) -> Colour:
+def _with(colour: Colour, shines: bool, light: Colour) -> Colour:
     """Return radiances with a light where it shines."""
     if any_of(shines):
-        red = select(shines, red + light[0], red)
-        green = select(shines, green + light[1], green)
-        blue = select(shines, blue + light[2], blue)
-    return red, green, blue
+        lit = colour[0] + light[0], colour[1] + light[1], colour[2] + light[2]
+        colour = where(shines, lit, colour)
+    return colour

@@ -3,6 +3,7 @@
 from enum import IntEnum
 
 from eyas.engine.render.kernels.bundles import Light
+from eyas.engine.render.kernels.colours import Colour, clip, where
 from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
@@ -10,15 +11,12 @@ from eyas.lanes.vector import (
     any_of,
     gather,
     greater,
-    lesser,
     like,
     root,
     select,
     to_f4,
     to_i4,
 )
-
-Colour = tuple[float, float, float]
 
 
 class Bed(IntEnum):
@@ -37,12 +35,6 @@ LEAVES, VEHICLE, POROUS = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE)), i4(int(Bed.
 
 
 @kernel(inline=True)
-def _clip(value: float) -> float:
-    """Return a value brought into 0 to 1."""
-    return lesser(greater(value, f4(0.0)), f4(1.0))
-
-
-@kernel(inline=True)
 def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     """Return how far wheels have worn the snow at a point, 0 to 1, see `tracks.TrackMap`."""
     frame, tracks = light.track_frame, light.tracks
@@ -57,7 +49,7 @@ def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     column, row = select(inside, column, zero), select(inside, row, zero)
     i, j = to_i4(row), to_i4(column)
     across, down = column - to_f4(j), row - to_f4(i)
-    far = _clip(f4(1.7) * footprint - f4(0.25))
+    far = clip(f4(1.7) * footprint - f4(0.25))
     step = i4(2 * columns)
     at = (i * i4(columns) + j) * i4(2)
     a, b = _texel(light, at, far), _texel(light, at + i4(2), far)
@@ -92,9 +84,9 @@ def _on_leaves(
     open_ = f4(0.7) * above[2] / away + f4(0.3) * rise
     # The second axis runs down the crown's sides too, faster: boughs are wider than high.
     bough = seen_noise(x + f4(0.3) * y, y + f4(1.7) * z - f4(0.3) * x, f4(0.75), footprint)
-    leaf = _clip(f4(5.5) * green)
+    leaf = clip(f4(5.5) * green)
     cover = f4(0.8) * open_ + (bough - f4(0.5)) + f4(1.1) * (leaf - f4(0.5))
-    return f4(0.92) * _clip(f4(1.7) * (cover - f4(0.1))), f4(0.78) + f4(0.2) * leaf
+    return f4(0.92) * clip(f4(1.7) * (cover - f4(0.1))), f4(0.78) + f4(0.2) * leaf
 
 
 @kernel(inline=True)
@@ -106,13 +98,13 @@ def _on_road(
 ) -> Colour:
     """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks."""
     ragged = worn * (f4(0.74) + f4(0.24) * grain + f4(0.32) * fine)
-    share = f4(0.9) * greater(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
+    share = f4(0.9) * greater(clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
     # Wheels compress and soil the snow that they do not push away.
-    light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
+    light = f4(0.96) - f4(0.52) * clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     # Beside them lies what the plough has thrown up: lumps, grey with grit.
     lumps = f4(0.6) * grain + f4(0.4) * fine
-    light -= f4(0.34) * _clip(f4(1.0) - f4(2.5) * worn) * _clip(f4(1.3) - f4(1.9) * lumps)
-    wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
+    light -= f4(0.34) * clip(f4(1.0) - f4(2.5) * worn) * clip(f4(1.3) - f4(1.9) * lumps)
+    wet = f4(1.0) - f4(0.34) * clip(f4(1.6) * ragged)
     return _mixed((wet * colour[0], wet * colour[1], wet * colour[2]), share, light)
 
 
@@ -123,11 +115,6 @@ def _mixed(colour: Colour, share: float, light: float) -> Colour:
         colour[1] + share * (f4(0.86) * light - colour[1]),
         colour[2] + share * (f4(0.89) * light - colour[2]),
     )
-
-
-@kernel(inline=True)
-def _where(mask: int, a: Colour, b: Colour) -> Colour:
-    return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
 
 
 @kernel(inline=True)
@@ -151,18 +138,18 @@ def _lying(
     if any_of(partly):
         # Steep faces are bare; where little has fallen, it lies in the hollows.
         ragged = f4(0.7) * (patch - half) + f4(0.4) * (fine - half)
-        hollow = _clip((rise - f4(0.45) + ragged) * f4(3.0))
-        hollow = greater(hollow, foot * _clip(half + patch + f4(0.6) * (fine - half)))
+        hollow = clip((rise - f4(0.45) + ragged) * f4(3.0))
+        hollow = greater(hollow, foot * clip(half + patch + f4(0.6) * (fine - half)))
         much = greater(depth - f4(0.9), f4(0.0)) * f4(40.0)
         fallen = (patch + f4(0.5) * (fine - half) + (depth - f4(0.76))) * f4(4.0) + much
-        lies = select(partly, hollow * _clip(fallen), lies)
+        lies = select(partly, hollow * clip(fallen), lies)
     # Stubble, tufts and stones stick out; from what is paved or warm, it has melted here and there.
     ground, stalk = bed == POROUS, like(rise, half)
     if any_of(ground):
         stalk = seen_noise(x + f4(0.8) * y, y - f4(0.8) * x, f4(11.0), f4(2.0) * footprint)
     out = f4(5.0) * (f4(0.3) * fine + f4(0.3) * patch + f4(0.4) * stalk - f4(0.62))
     gone = f4(5.0) * (f4(0.24) - f4(0.75) * patch - f4(0.25) * fine)
-    lies *= one - select(ground, f4(0.6) * _clip(out), f4(0.7) * _clip(gone))
+    lies *= one - select(ground, f4(0.6) * clip(out), f4(0.7) * clip(gone))
     share = lies * (f4(0.12) + f4(0.85) * depth)
     bright = f4(0.865) + f4(0.1) * drift + f4(0.13) * (patch - half) + f4(0.06) * (fine - half)
     return _mixed(colour, share, bright)
@@ -187,13 +174,13 @@ def snowed(
     if any_of(leaves):
         above = own[0], own[1], own[2] - middle
         share, bright = _on_leaves(colour[1], point, above, rise, footprint)
-        result = _where(leaves, _mixed(colour, depth * share, bright), result)
+        result = where(leaves, _mixed(colour, depth * share, bright), result)
     if any_of(vehicle):
         grain = seen_noise(own[0], own[1], f4(9.0), footprint)
-        share = depth * _clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
-        result = _where(vehicle, _mixed(colour, share, f4(0.9)), result)
+        share = depth * clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
+        result = where(vehicle, _mixed(colour, share, f4(0.9)), result)
     # Wind piles it up against kerbs and the feet of walls.
-    foot = _clip(f4(1.6) - f4(5.0) * point[2])
+    foot = clip(f4(1.6) - f4(5.0) * point[2])
     ground = white & (bed != LEAVES) & (bed != VEHICLE) & ((rise >= f4(0.1)) | (foot > f4(0.0)))
     road = ground & (bed == DRIVEN) & (rise > f4(0.9))
     if any_of(road):
@@ -204,8 +191,8 @@ def snowed(
         grain = seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
         fine = seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
         worn += f4(1.2) * (f4(1.0) - depth)
-        result = _where(road, _on_road(colour, worn, grain, fine), result)
+        result = where(road, _on_road(colour, worn, grain, fine), result)
     lying = ground & ~road
     if any_of(lying):
-        result = _where(lying, _lying(colour, depth, bed, point, rise, foot, footprint), result)
+        result = where(lying, _lying(colour, depth, bed, point, rise, foot, footprint), result)
     return result

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Illumination, Light
+from eyas.engine.render.kernels.colours import Colour, clip
 from eyas.engine.render.kernels.light.lamps import lamp_gloss
 from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.sky.radiance import surroundings
@@ -12,15 +13,11 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import (
     any_of,
     gather_pair,
-    greater,
-    lesser,
     like,
     select,
     to_f4,
     to_i4,
 )
-
-Colour = tuple[float, float, float]
 
 DRIVEN, OPEN = i4(int(Bed.DRIVEN)), i4(int(Bed.OPEN))
 LEAVES, POROUS = i4(int(Bed.LEAVES)), i4(int(Bed.POROUS))
@@ -33,12 +30,6 @@ _SIDE = 64  # Texels along a side of the picture of hollows, see `eyas.engine.re
 _PER_METRE = 1.1  # Texels of it in a metre
 
 _LEVEL = f4(0.92)  # Upward component of the normal from which water stays on a surface
-
-
-@kernel(inline=True)
-def _clip(value: float) -> float:
-    """Return a value brought into 0 to 1."""
-    return lesser(greater(value, f4(0.0)), f4(1.0))
 
 
 @kernel(inline=True)
@@ -61,7 +52,7 @@ def wetted(
     is porous swallows the water and darkens less. Nothing under a roof gets wet.
     """
     zero, one, x, y, rise = f4(0.0), f4(1.0), point[0], point[1], normal[2]
-    fallen = lit.air.wet * _clip(f4(5.0) * open_share - f4(0.25))
+    fallen = lit.air.wet * clip(f4(5.0) * open_share - f4(0.25))
     driven, porous, leaves = bed == DRIVEN, bed == POROUS, bed == LEAVES
     paved = driven | (bed == OPEN)
     taken = select(driven, f4(0.54), select(paved, f4(0.34), like(rise, zero)))
@@ -110,7 +101,7 @@ def _puddle(
     depth = f4(1.0 / 255.0) * (first + down * (c + across * (d - c) - first))
     dry = select(porous, f4(0.72), select(driven, f4(0.615), like(x, f4(0.65))))
     # A large pixel shows a mean.
-    return _clip((depth - dry) * (f4(26.0) / (f4(1.0) + f4(2.0) * footprint)))
+    return clip((depth - dry) * (f4(26.0) / (f4(1.0) + f4(2.0) * footprint)))
 
 
 @kernel(inline=True)
@@ -127,11 +118,11 @@ def _mirrored(
     steeply as the eye looks down, and no sun shines.
     """
     one, horizon, zenith, walls = f4(1.0), lit.horizon, lit.zenith, surroundings(lit)
-    graze = one - _clip(rise)
+    graze = one - clip(rise)
     low = graze * graze
     low *= low
     share = film * (_LEAST + (one - _LEAST) * low * graze)
-    around = f4(0.8) * _clip((f4(1.5) * hidden - rise) * f4(5.0))
+    around = f4(0.8) * clip((f4(1.5) * hidden - rise) * f4(5.0))
     # What stands on the road is dark below, and so is its mirror image.
     seen = f4(0.2) + f4(0.8) * unblocked
     walls_share, low = seen * around, seen * (one - around) * low

@@ -5,20 +5,32 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.render.kernels.colours import Colour, blended, clip, where
 from eyas.engine.render.kernels.hash_noise import seen_swing, swing
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.surface.texture import colour_of, texel
 from eyas.engine.state.mesh import Surface
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, magnitude, select, to_i4
-
-Colour = tuple[float, float, float]
+from eyas.lanes.vector import any_of, greater, magnitude, to_i4
 
 HILLSIDE, HEATH = i4(int(Surface.HILLSIDE)), i4(int(Surface.HEATH))
 DESERT, TRACK = i4(int(Surface.DESERT)), i4(int(Surface.DESERT_TRACK))
 CAPPED, PATH = i4(int(Surface.DESERT_SNOW)), i4(int(Surface.HILLSIDE_PATH))
 DRIFT, VERGE = i4(int(Surface.DESERT_DRIFT)), i4(int(Surface.HILLSIDE_VERGE))
 GREEN_SHORE, HEATH_SHORE = i4(int(Surface.HILLSIDE_SHORE)), i4(int(Surface.HEATH_SHORE))
+
+
+def bit(*surfaces: int) -> int:
+    """Return the bits of some surfaces, see `wild`."""
+    return sum(1 << int(surface) for surface in surfaces)
+
+
+ON_GROUND = bit(*range(DESERT, max(Surface) + 1))  # Those whose texture lies on the ground
+SANDY = bit(*range(DESERT, DRIFT + 1))
+EDGED, TRODDEN = ON_GROUND & ~bit(DESERT), bit(TRACK, PATH)
+STREWN, VERGES, SNOWY = bit(DRIFT), bit(VERGE), bit(CAPPED)
+SHORES, HEATHY = bit(GREEN_SHORE, HEATH_SHORE), bit(HEATH, HEATH_SHORE)
+HILLY = bit(HILLSIDE) | ON_GROUND & ~SANDY & ~HEATHY
 
 NO_BLEND = False  # Mip levels of ridges are not blended: noise lies over where they meet
 
@@ -28,27 +40,6 @@ RIDGES = f4(1.0 / 54.0)
 _ROCK = f4(0.75)  # Upward component of the normal below which rock shows, on average
 
 _PER_SOIL = f4(4.0)  # About half of one over the mean green of the texture `soil`
-
-
-@kernel(inline=True)
-def _clip(value: float) -> float:
-    """Return a value brought into 0 to 1."""
-    return lesser(greater(value, f4(0.0)), f4(1.0))
-
-
-@kernel(inline=True)
-def _where(mask: int, a: Colour, b: Colour) -> Colour:
-    return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
-
-
-@kernel(inline=True)
-def _toward(colour: Colour, other: Colour, share: float) -> Colour:
-    """Return a colour on the way to a constant one."""
-    return (
-        colour[0] + share * (other[0] - colour[0]),
-        colour[1] + share * (other[1] - colour[1]),
-        colour[2] + share * (other[2] - colour[2]),
-    )
 
 
 @kernel(inline=True)
@@ -75,6 +66,7 @@ class Look(NamedTuple):
 @kernel(inline=True)
 def wild(
     surface: int,  # A `Surface` of each
+    kinds: int,  # The bits of all of them
     look: Look,  # Of their textures
     colour: Colour,  # Of the textures
     along: float,  # u, where that is a distance [m]
@@ -84,23 +76,29 @@ def wild(
 ) -> Colour:
     """Return the colours of points with what grows or lies on wild ground, linear."""
     result = colour
-    sandy = (surface >= DESERT) & (surface <= DRIFT)
-    heathy = (surface == HEATH) | (surface == HEATH_SHORE)
-    hilly = (surface == HILLSIDE) | ((surface > DRIFT) & ~heathy)
-    if any_of(hilly):
-        result = _where(hilly, hillside(colour, point, rise, footprint), result)
-    if any_of(heathy):
-        result = _where(heathy, heath(colour, point, footprint), result)
-    if any_of(sandy):
-        result = _where(sandy, desert(look, colour, point, rise), result)
-    if any_of(surface > DESERT):
-        result = _edged(surface, result, along, point, rise, footprint)
+    if kinds & HILLY != 0:
+        hilly = (surface == HILLSIDE) | ((surface > DRIFT) & (surface != HEATH_SHORE))
+        result = where(hilly, hillside(colour, point, rise, footprint), result)
+    if kinds & HEATHY != 0:
+        heathy = (surface == HEATH) | (surface == HEATH_SHORE)
+        result = where(heathy, heath(colour, point, footprint), result)
+    if kinds & SANDY != 0:
+        sandy = (surface >= DESERT) & (surface <= DRIFT)
+        result = where(sandy, desert(look, colour, point, rise), result)
+    if kinds & EDGED != 0:
+        result = _edged(surface, kinds, result, along, point, rise, footprint)
     return result
 
 
 @kernel(inline=True)
 def _edged(
-    surface: int, colour: Colour, along: float, point: Colour, rise: float, footprint: float
+    surface: int,
+    kinds: int,
+    colour: Colour,
+    along: float,
+    point: Colour,
+    rise: float,
+    footprint: float,
 ) -> Colour:
     """Return the colours of ground that changes along an edge, ragged by noise."""
     x, y, result = point[0], point[1], colour
@@ -108,41 +106,40 @@ def _edged(
     clump = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.9), footprint)
     fine = seen_swing(x + f4(0.5) * y, y - f4(0.5) * x, f4(5.3), footprint)
     fine += f4(0.8) * seen_swing(x - f4(0.3) * y, y + f4(0.3) * x, f4(17.0), f4(2.0) * footprint)
-    trodden = (surface == TRACK) | (surface == PATH)
-    if any_of(trodden):
+    if kinds & TRODDEN != 0:
+        trodden = (surface == TRACK) | (surface == PATH)
         ragged = along + f4(0.34) * clump + f4(0.3) * fine
-        share = _clip(f4(3.4) * ragged) * (f4(0.86) + f4(0.3) * wide)
+        share = clip(f4(3.4) * ragged) * (f4(0.86) + f4(0.3) * wide)
         light = f4(0.86) + f4(0.5) * fine + f4(0.24) * clump
         earth = (f4(0.235) * light, f4(0.178) * light, f4(0.115) * light)
         # Wheels compact sand, and stir up what is darker below.
         sand = (f4(0.74) * colour[0], f4(0.72) * colour[1], f4(0.74) * colour[2])
-        ground = _where(surface == TRACK, sand, earth)
-        result = _where(trodden, _toward(colour, ground, share), result)
-    strewn = surface == DRIFT
-    if any_of(strewn):
+        ground = where(surface == TRACK, sand, earth)
+        result = where(trodden, blended(colour, ground, share), result)
+    if kinds & STREWN != 0:
         ragged = along + f4(1.3) * wide + f4(1.5) * clump + f4(0.9) * fine
-        share = _clip(f4(0.62) * (ragged - f4(0.5)))
+        share = clip(f4(0.62) * (ragged - f4(0.5)))
         light = f4(0.095) + f4(0.04) * fine
-        result = _where(strewn, _toward(result, (light, light, f4(0.96) * light), share), result)
-    verge = surface == VERGE
-    if any_of(verge):
+        result = where(
+            surface == DRIFT, blended(result, (light, light, f4(0.96) * light), share), result
+        )
+    if kinds & VERGES != 0:
         ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
         light = f4(0.9) + f4(0.8) * fine + f4(0.2) * clump
         gravel = (f4(0.255) * light, f4(0.225) * light, f4(0.180) * light)
-        share = f4(0.95) * _clip(f4(3.0) * (f4(1.0) - ragged))
-        result = _where(verge, _toward(result, gravel, share), result)
-    shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
-    if any_of(shore):
-        result = _where(shore, _shore(colour, along, (wide, clump, fine)), result)
-    capped = surface == CAPPED
-    if any_of(capped):
+        share = f4(0.95) * clip(f4(3.0) * (f4(1.0) - ragged))
+        result = where(surface == VERGE, blended(result, gravel, share), result)
+    if kinds & SHORES != 0:
+        shore = (surface == GREEN_SHORE) | (surface == HEATH_SHORE)
+        result = where(shore, _shore(colour, along, (wide, clump, fine)), result)
+    if kinds & SNOWY != 0:
         # Thin snow lies in the lee of ripples and tufts first, and hardly where it is steep.
         over = f4(0.2) * (along - f4(32.0)) + f4(2.2) * wide + f4(1.3) * clump + f4(0.8) * fine
         over -= f4(2.4) * greater(f4(0.86) - rise, f4(0.0))
-        share = f4(0.97) * _clip(f4(0.9) * over + f4(0.1))
+        share = f4(0.97) * clip(f4(0.9) * over + f4(0.1))
         light = f4(0.95) + f4(0.1) * wide + f4(0.05) * clump
         white = (f4(0.84) * light, f4(0.86) * light, f4(0.89) * light)
-        result = _where(capped, _toward(colour, white, share), result)
+        result = where(surface == CAPPED, blended(colour, white, share), result)
     return result
 
 
@@ -156,14 +153,14 @@ def _shore(
     wide, clump, fine = noises
     ragged = away + f4(1.5) * wide + f4(1.0) * clump + f4(0.35) * fine
     grain = f4(0.9) + f4(0.5) * fine + f4(0.3) * clump
-    lush = f4(0.75) * _clip(f4(1.6) - f4(0.55) * magnitude(ragged - f4(3.4)))
+    lush = f4(0.75) * clip(f4(1.6) - f4(0.55) * magnitude(ragged - f4(3.4)))
     blades = f4(0.8) + f4(1.0) * fine + f4(0.4) * clump
     green = (f4(0.120) * blades, f4(0.140) * blades, f4(0.048) * blades)
-    result = _toward(colour, green, lush * _clip(f4(0.7) + f4(2.0) * clump + f4(1.2) * fine))
+    result = blended(colour, green, lush * clip(f4(0.7) + f4(2.0) * clump + f4(1.2) * fine))
     silt = (f4(0.255) * grain, f4(0.210) * grain, f4(0.150) * grain)
-    result = _toward(result, silt, _clip(f4(1.6) * (f4(2.1) - ragged)))
+    result = blended(result, silt, clip(f4(1.6) * (f4(2.1) - ragged)))
     mud = (f4(0.075) * grain, f4(0.062) * grain, f4(0.046) * grain)
-    return _toward(result, mud, f4(0.92) * _clip(f4(1.5) * (f4(0.95) - ragged)))
+    return blended(result, mud, f4(0.92) * clip(f4(1.5) * (f4(0.95) - ragged)))
 
 
 @kernel(inline=True)
@@ -185,20 +182,20 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     _, crest, _, patch = colour_of(low, high)
     ridge, patch, grit = crest * f4(1.908) - one, patch - half, look.alpha - half
     # Stones stay where the wind takes the sand away: on level ground, in broad stripes.
-    level = _clip(f4(14.0) * (rise - f4(0.93)))
+    level = clip(f4(14.0) * (rise - f4(0.93)))
     bare = f4(2.8) * wide + f4(1.4) * patch
-    stony = level * _clip(f4(1.6) * (bare + f4(1.6) * ridge + f4(0.8) * grit))
+    stony = level * clip(f4(1.6) * (bare + f4(1.6) * ridge + f4(0.8) * grit))
     light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.2) * wide + f4(0.3) * grit
     red, green, blue = light * colour[0], light * colour[1], light * colour[2]
     pebble = f4(0.85) + f4(1.5) * grit + f4(0.3) * patch
     gravel = (f4(0.27) * pebble, f4(0.205) * pebble, f4(0.138) * pebble)
-    red, green, blue = _toward((red, green, blue), gravel, f4(0.66) * stony)
+    red, green, blue = blended((red, green, blue), gravel, f4(0.66) * stony)
     # Grass finds water at the edges of the stony flats.
-    dry = level * _clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
+    dry = level * clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
     tuft = f4(0.2) + f4(2.6) * grit + f4(1.0) * patch
     blades = f4(0.9) + f4(0.9) * grit
     straw = (f4(0.190) * blades, f4(0.172) * blades, f4(0.075) * blades)
-    return _toward((red, green, blue), straw, f4(0.9) * dry * _clip(tuft))
+    return blended((red, green, blue), straw, f4(0.9) * dry * clip(tuft))
 
 
 @kernel(inline=True)
@@ -215,21 +212,20 @@ def hillside(
     wide = swing(f4(0.021) * x + f4(0.012) * y, f4(0.021) * y - f4(0.012) * x)
     tuft = seen_swing(x - f4(0.6) * y, y + f4(0.6) * x, f4(0.13), footprint)
     blade = seen_swing(x + f4(0.4) * y, y - f4(0.4) * x, f4(13.0), f4(4.0) * footprint)
-    dry = _clip(f4(0.12) + f4(1.5) * wide + f4(0.9) * tuft)
+    dry = clip(f4(0.12) + f4(1.5) * wide + f4(0.9) * tuft)
     bright = one + f4(0.28) * tuft + f4(0.5) * blade
     red = colour[0] * bright * (one + f4(0.62) * dry)
     green = colour[1] * bright * (one + f4(0.06) * dry)
     blue = colour[2] * bright * (one - f4(0.10) * dry)
-    bare = _clip((_ROCK - rise + f4(0.26) * tuft + f4(0.22) * wide) * f4(7.0))
+    bare = clip((_ROCK - rise + f4(0.26) * tuft + f4(0.22) * wide) * f4(7.0))
     if any_of(bare > f4(0.0)):
         layer = seen_swing(f4(0.3) * (x + y), f4(1.7) * z + f4(0.2) * x, one, footprint)
         crack = seen_swing(x + y, f4(2.0) * z - y, f4(0.45), footprint)
         stone = f4(0.825) + f4(0.55) * layer + f4(0.4) * crack
         # Grass keeps to the ledges.
-        bare = _clip(bare * (f4(1.05) - f4(0.9) * crack))
-        red += bare * (f4(0.150) * stone - red)
-        green += bare * (f4(0.138) * stone - green)
-        blue += bare * (f4(0.118) * stone - blue)
+        bare = clip(bare * (f4(1.05) - f4(0.9) * crack))
+        rock = f4(0.150) * stone, f4(0.138) * stone, f4(0.118) * stone
+        red, green, blue = blended((red, green, blue), rock, bare)
     return red, green, blue
 
 
@@ -248,16 +244,12 @@ def heath(
     # Grass spreads from the hollows; scrub stands in it, in clumps with ragged edges.
     lush = f4(0.18) + f4(1.8) * wide + f4(1.6) * patch
     ragged = f4(0.62) * clump + f4(0.38) * blade
-    cover = f4(0.8) * _clip(lush + f4(2.6) * ragged + f4(0.35))
-    scrub = f4(0.75) * cover * _clip(lush + f4(6.0) * ragged - f4(0.96))
-    red, green, blue = colour
+    cover = f4(0.8) * clip(lush + f4(2.6) * ragged + f4(0.35))
+    scrub = f4(0.75) * cover * clip(lush + f4(6.0) * ragged - f4(0.96))
     # The grain of the soil shows through, and with it the size of what is seen.
-    bright = (f4(0.8) + f4(0.5) * blade) * (f4(0.45) + green * _PER_SOIL)
-    red += cover * (f4(0.215) * bright - red)
-    green += cover * (f4(0.195) * bright - green)
-    blue += cover * (f4(0.088) * bright - blue)
-    red += scrub * (f4(0.070) * bright - red)
-    green += scrub * (f4(0.088) * bright - green)
-    blue += scrub * (f4(0.036) * bright - blue)
+    bright = (f4(0.8) + f4(0.5) * blade) * (f4(0.45) + colour[1] * _PER_SOIL)
+    grass = f4(0.215) * bright, f4(0.195) * bright, f4(0.088) * bright
+    shrub = f4(0.070) * bright, f4(0.088) * bright, f4(0.036) * bright
+    red, green, blue = blended(blended(colour, grass, cover), shrub, scrub)
     dust = f4(1.0) + f4(0.2) * wide
     return red * dust, green * dust, blue * dust

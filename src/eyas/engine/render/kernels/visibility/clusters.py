@@ -68,7 +68,8 @@ def clusters_seen(
 
 
 @kernel(inline=True)
-def _along(row: Row, x: float, y: float, z: float) -> float:
+def along_row(row: Row, x: float, y: float, z: float) -> float:
+    """Return a coordinate on the screen, times the distance; or the distance."""
     return row.x * x + row.y * y + row.z * z + row.w
 
 
@@ -82,11 +83,11 @@ def _corner(
     x = to_f8(load(cluster, at))
     y = to_f8(load(cluster, at + CLUSTER))
     z = to_f8(load(cluster, at + 2 * CLUSTER))
-    distance = _along(screen.distance, x, y, z)
+    distance = along_row(screen.distance, x, y, z)
     front = distance >= NEAR
     inverse = 1.0 / select(front, distance, 1.0)
-    column = 0.5 * view.width + _along(screen.column, x, y, z) * inverse
-    row = 0.5 * view.height + _along(screen.row, x, y, z) * inverse
+    column = 0.5 * view.width + along_row(screen.column, x, y, z) * inverse
+    row = 0.5 * view.height + along_row(screen.row, x, y, z) * inverse
     return column, row, inverse, front
 
 
@@ -96,7 +97,7 @@ def _reaches(plane: Plane, cluster: NDArray[np.float32], at: int) -> bool:
     row, inside = Row(plane.x, plane.y, plane.z, plane.w), lane_numbers() < i4(0)
     for corner in range(0, 9 * CLUSTER, 3 * CLUSTER):
         x, y = to_f8(load(cluster, at + corner)), to_f8(load(cluster, at + corner + CLUSTER))
-        inside |= _along(row, x, y, to_f8(load(cluster, at + corner + 2 * CLUSTER))) >= 0.0
+        inside |= along_row(row, x, y, to_f8(load(cluster, at + corner + 2 * CLUSTER))) >= 0.0
     return inside
 
 
