@@ -8,7 +8,9 @@ import shutil
 import signal
 import sys
 from pathlib import Path
+from subprocess import CompletedProcess
 from types import SimpleNamespace
+from warnings import catch_warnings, simplefilter
 
 import pytest
 from hypothesis import settings
@@ -74,6 +76,33 @@ def emulated():
     from emulated_card import emulated_card
 
     return emulated_card
+
+
+@pytest.fixture
+def eyas_command(monkeypatch, capsys):
+    """Runs a command of `eyas` in this process, which saves the seconds that a start takes; where
+    the process is the subject, tests start one. `eyas_command("video", ..., folder=...)`.
+    """
+
+    def run(*words, folder=None):
+        from eyas.cli.main import main
+
+        with (
+            monkeypatch.context() as patch,
+            catch_warnings(),
+            pytest.raises(SystemExit) as caught,
+        ):
+            simplefilter("default")
+            patch.setattr(logging.root, "handlers", [])  # or it would print no line of the log
+            patch.setattr(sys, "argv", ["eyas", *map(str, words)])
+            patch.setattr(sys, "path", [*sys.path])
+            if folder is not None:
+                patch.chdir(folder)
+            main()
+        told = capsys.readouterr()
+        return CompletedProcess(words, caught.value.code or 0, told.out, told.err)
+
+    return run
 
 
 @pytest.fixture
