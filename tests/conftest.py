@@ -87,18 +87,15 @@ def eyas_command(monkeypatch, capsys):
     def run(*words, folder=None):
         from eyas.cli.main import main
 
-        with (
-            monkeypatch.context() as patch,
-            catch_warnings(),
-            pytest.raises(SystemExit) as caught,
-        ):
+        with monkeypatch.context() as patch, catch_warnings():
             simplefilter("default")
             patch.setattr(logging.root, "handlers", [])  # or it would print no line of the log
             patch.setattr(sys, "argv", ["eyas", *map(str, words)])
             patch.setattr(sys, "path", [*sys.path])
             if folder is not None:
                 patch.chdir(folder)
-            main()
+            with pytest.raises(SystemExit) as caught:
+                main()
         told = capsys.readouterr()
         return CompletedProcess(words, caught.value.code or 0, told.out, told.err)
 

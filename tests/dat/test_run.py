@@ -2,6 +2,7 @@
 
 import json
 import socket
+from types import SimpleNamespace
 
 import pytest
 
@@ -34,8 +35,10 @@ def test_video_records(run, tmp_path):
     assert (tmp_path / "runs/video/DRONE0/episode0/mark.json").exists()
 
 
-@pytest.mark.slow
-def test_demo_shows_the_reward(run, tmp_path):
+def test_demo_shows_the_reward(run, tmp_path, monkeypatch):
+    slept = [0.0]  # for the ten seconds of the original
+    clock = SimpleNamespace(monotonic=lambda: sum(slept), sleep=slept.append)
+    monkeypatch.setattr("eyas.demo.run.time", clock)
     file = settings(tmp_path / "env_config.json", "demo")
     code, out, _ = run(tmp_path, "--config", file, "--headless", "--set", "camera.width=32")
     assert code == 0

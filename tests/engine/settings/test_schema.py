@@ -1,8 +1,6 @@
 """The schema of settings accepts what Eyas does, and describes every setting."""
 
 import json
-import subprocess
-import sys
 
 import jsonschema
 import pytest
