@@ -57,14 +57,38 @@ def pytest_ignore_collect(collection_path):
     return True if named & {*STREET} - HOUSES else None
 
 
+LONGEST_FIRST = ("tests/hostile", "tests/engine/recordings/test_export")
+"""Files that would keep one of two workers busy alone if they came last."""
+
+
+def pytest_configure(config):
+    """Workers take files in the order below, not those first that have most tests: what is loaded
+    for one file is there for the next in its folder.
+    """
+    config.option.loadscopereorder = False
+
+
 def pytest_collection_modifyitems(config, items):
-    """What only a release must prove is left out, unless `-m` asks for it."""
+    """What only a release must prove is left out, unless `-m` asks for it; what takes long begins
+    first.
+    """
+    items.sort(key=lambda item: not item.nodeid.startswith(LONGEST_FIRST))
     if "thorough" in config.option.markexpr:
         return
-    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    left_out = {item for item in items if item.get_closest_marker("thorough")}
     if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+        config.hook.pytest_deselected(items=[*left_out])
+        items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node, error):
+    """A worker that is lost ends the tests with a line; pytest-xdist waits for ever, or fails."""
+    if error:
+        work = node.config.pluginmanager.getplugin("dsession").sched.assigned_work.get(node, {})
+        left = [test for tests in work.values() for test, done in tests.items() if not done]
+        test = left[0] if left else "nothing"
+        pytest.exit(f"worker {node.gateway.id} has ended while it ran {test}; out of memory?")
 
 
 @pytest.fixture(scope="session")
@@ -120,6 +144,17 @@ def signals():
     sys.unraisablehook = hook
     for number, handler in zip(numbers, before, strict=True):
         signal.signal(number, handler)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def memory():
+    """Worlds that earlier files have loaded go when a process has a gigabyte."""
+    yield
+    pages = Path("/proc/self/statm")
+    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1 << 30:
+        for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
+            for each in vars(sys.modules.get(name, sys)).values():
+                getattr(each, "cache_clear", int)()
 
 
 @pytest.fixture(autouse=True)
