@@ -57,8 +57,8 @@ def pytest_ignore_collect(collection_path):
     return True if named & {*STREET} - HOUSES else None
 
 
-LONGEST_FIRST = ("tests/hostile", "tests/engine/recordings/test_export")
-"""Files that would keep one of two workers busy alone if they came last."""
+FIRST = "tests/test_wheel"
+"""What would keep one of two workers busy alone if it came last."""
 
 
 def pytest_configure(config):
@@ -72,7 +72,7 @@ def pytest_collection_modifyitems(config, items):
     """What only a release must prove is left out, unless `-m` asks for it; what takes long begins
     first.
     """
-    items.sort(key=lambda item: not item.nodeid.startswith(LONGEST_FIRST))
+    items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
     if "thorough" in config.option.markexpr:
         return
     left_out = {item for item in items if item.get_closest_marker("thorough")}
