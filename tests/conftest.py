@@ -8,7 +8,9 @@ import shutil
 import signal
 import sys
 from pathlib import Path
+from subprocess import CompletedProcess
 from types import SimpleNamespace
+from warnings import catch_warnings, simplefilter
 
 import pytest
 from hypothesis import settings
@@ -55,14 +57,38 @@ def pytest_ignore_collect(collection_path):
     return True if named & {*STREET} - HOUSES else None
 
 
+FIRST = "tests/test_wheel"
+"""What would keep one of two workers busy alone if it came last."""
+
+
+def pytest_configure(config):
+    """Workers take files in the order below, not those first that have most tests: what is loaded
+    for one file is there for the next in its folder.
+    """
+    config.option.loadscopereorder = False
+
+
 def pytest_collection_modifyitems(config, items):
-    """What only a release must prove is left out, unless `-m` asks for it."""
+    """What only a release must prove is left out, unless `-m` asks for it; what takes long begins
+    first.
+    """
+    items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
     if "thorough" in config.option.markexpr:
         return
-    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    left_out = {item for item in items if item.get_closest_marker("thorough")}
     if left_out:
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+        config.hook.pytest_deselected(items=[*left_out])
+        items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node, error):
+    """A worker that is lost ends the tests with a line; pytest-xdist waits for ever, or fails."""
+    if error:
+        work = node.config.pluginmanager.getplugin("dsession").sched.assigned_work.get(node, {})
+        left = [test for tests in work.values() for test, done in tests.items() if not done]
+        test = left[0] if left else "nothing"
+        pytest.exit(f"worker {node.gateway.id} has ended while it ran {test}; out of memory?")
 
 
 @pytest.fixture(scope="session")
@@ -74,6 +100,30 @@ def emulated():
     from emulated_card import emulated_card
 
     return emulated_card
+
+
+@pytest.fixture
+def eyas_command(monkeypatch, capsys):
+    """Runs a command of `eyas` in this process, which saves the seconds that a start takes; where
+    the process is the subject, tests start one. `eyas_command("video", ..., folder=...)`.
+    """
+
+    def run(*words, folder=None):
+        from eyas.cli.main import main
+
+        with monkeypatch.context() as patch, catch_warnings():
+            simplefilter("default")
+            patch.setattr(logging.root, "handlers", [])  # or it would print no line of the log
+            patch.setattr(sys, "argv", ["eyas", *map(str, words)])
+            patch.setattr(sys, "path", [*sys.path])
+            if folder is not None:
+                patch.chdir(folder)
+            with pytest.raises(SystemExit) as caught:
+                main()
+        told = capsys.readouterr()
+        return CompletedProcess(words, caught.value.code or 0, told.out, told.err)
+
+    return run
 
 
 @pytest.fixture
@@ -94,6 +144,17 @@ def signals():
     sys.unraisablehook = hook
     for number, handler in zip(numbers, before, strict=True):
         signal.signal(number, handler)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def memory():
+    """Worlds that earlier files have loaded go when a process has a gigabyte."""
+    yield
+    pages = Path("/proc/self/statm")
+    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1 << 30:
+        for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
+            for each in vars(sys.modules.get(name, sys)).values():
+                getattr(each, "cache_clear", int)()
 
 
 @pytest.fixture(autouse=True)

@@ -11,11 +11,9 @@ a name of code stands in backticks, and is not read.
 
 import argparse
 import ast
-import io
 import re
 import subprocess
 import sys
-import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TypeGuard
@@ -36,6 +34,10 @@ NO_PROSE = re.compile(
     | --[a-z][\w-]*            # options
     """,
     re.MULTILINE | re.DOTALL | re.VERBOSE,
+)
+STRING_OR_COMMENT = re.compile(  # twenty times as fast as `tokenize`
+    r"""(\"{3}|'{3})(?:\\.|.)*?\1 | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*' | \#[^\n]*""",
+    re.DOTALL | re.VERBOSE,
 )
 WORD = re.compile(r"[^\W\d_]{3,}(?:'[^\W\d_]+)?")
 
@@ -86,9 +88,9 @@ def _texts(root: Path) -> Iterator[tuple[str, int, str]]:
     for folder in CODE:
         for file in sorted((root / folder).rglob("*.py")):
             place, source = file.relative_to(root).as_posix(), file.read_text()
-            for token in tokenize.generate_tokens(io.StringIO(source).readline):
-                if token.type == tokenize.COMMENT:
-                    yield place, token.start[0], token.string
+            for found in STRING_OR_COMMENT.finditer(source):
+                if found[0].startswith("#"):
+                    yield place, source.count("\n", 0, found.start()) + 1, found[0]
             if folder != "tests":  # their texts are mistakes on purpose, and parts of files
                 for node in ast.walk(ast.parse(source)):
                     if isinstance(node, ast.Constant) and _is_prose(node.value):

@@ -213,13 +213,15 @@ def test_the_table_is_printed_as_published_too(tmp_path, capsys):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("arguments", [(), ("--latency-curve",)])
-def test_a_policy_that_fails_in_all_episodes_is_an_error(tmp_path, arguments):
+def test_a_policy_that_fails_in_all_episodes_is_an_error(
+    tmp_path, arguments, monkeypatch, eyas_command
+):
     """Also if nothing else is to be printed: a job on a cluster must not look successful."""
     (tmp_path / "mine.py").write_text("def act(picture):\n    raise RuntimeError('boom')\n")
-    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", "--quiet", *arguments]
-    command += ["--policy", "mine:act", "--episodes", "1", "--out", str(tmp_path / "out")]
-    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
-    done = subprocess.run(command, env=path, capture_output=True, text=True, check=False)
+    monkeypatch.delitem(sys.modules, "mine", raising=False)
+    monkeypatch.syspath_prepend(tmp_path)
+    command = ["evaluate", "--quiet", *arguments, "--policy", "mine:act", "--episodes", "1"]
+    done = eyas_command(*command, "--out", tmp_path / "out")
     assert done.returncode == 1
     assert done.stdout == ""
     said = done.stderr.partition("eyas: warning: the policy failed in 4 of 4 episodes, first in ")[

@@ -10,6 +10,7 @@ import pytest
 
 from eyas.cli.verify.cases import cases
 from eyas.cli.verify.run import compared, read_manifest
+from eyas.engine.core.identity.build import this_build
 from eyas.engine.settings.preset import PRESETS
 from eyas.engine.world.maps import MAPS
 
@@ -68,16 +69,17 @@ def test_what_differs_is_named():
     assert verdict.same == sum(map(len, known.values())) - 2
 
 
-def test_a_map_of_another_name_is_refused_in_one_line():
-    run = verify("--map", "vilage")
+def test_a_map_of_another_name_is_refused_in_one_line(eyas_command):
+    run = eyas_command("verify", "--map", "vilage")
     assert run.returncode == 2
     assert "did you mean 'village'" in run.stderr
     assert len(run.stderr.splitlines()) == 1
 
 
 @pytest.mark.slow
-def test_the_report_as_json_holds_all_hashes_and_the_machine():
-    run = verify("--map", "desert-bare", "--json")
+def test_the_report_as_json_holds_all_hashes_and_the_machine(eyas_command):
+    this_build()  # reads all sources for seconds, unless the cache knows them, which is empty then
+    run = eyas_command("verify", "--map", "desert-bare", "--json")
     told = json.loads(run.stdout)
     assert told["hashes"].keys() == {c.name for c in cases() if c.map == "desert-bare"}
     assert {"machine", "packages", "libraries"} <= told["machine"].keys()

@@ -229,10 +229,9 @@ def test_a_page_comes_back_to_where_it_was(served, viewer):
     again.close()
 
 
-def test_a_port_that_is_taken_is_one_line(served):
+def test_a_port_that_is_taken_is_one_line(served, eyas_command):
     port = str(served.port)
-    command = [sys.executable, "-m", "eyas.cli.main", "demo", "--no-browser", "--port", port]
-    done = subprocess.run([*command, *QUICK], capture_output=True, text=True, check=False)
+    done = eyas_command("demo", "--no-browser", "--port", port, *QUICK)
     assert done.returncode == 2
     assert done.stdout == ""
     assert port in done.stderr
@@ -240,9 +239,8 @@ def test_a_port_that_is_taken_is_one_line(served):
     assert done.stderr.count("\n") == 1
 
 
-def test_without_a_screen_the_terminal_gets_the_lines_of_the_original():
-    command = [sys.executable, "-m", "eyas.cli.main", "demo", "--headless", "--seconds", "0.5"]
-    done = subprocess.run([*command, *QUICK], capture_output=True, text=True, check=True)
+def test_without_a_screen_the_terminal_gets_the_lines_of_the_original(eyas_command):
+    done = eyas_command("demo", "--headless", "--seconds", "0.5", *QUICK)
     lines = done.stdout.splitlines()
     assert len(lines) == 5
     assert all(line.startswith("id: DRONE0 done: ") and " reward: " in line for line in lines)

@@ -18,7 +18,9 @@ from eyas.engine.core.folder_lock import folder_lock
 pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 
-def test_a_killed_one_is_continued_to_the_same_bytes(recipe_file, made, contents, start, tmp_path):
+def test_a_killed_one_is_continued_to_the_same_bytes(
+    recipe_file, plan, made, contents, start, tmp_path
+):
     out = tmp_path / "killed"
     process = start("make", recipe_file, "--out", out, "--workers", "2")
     until = time.monotonic() + 300
@@ -31,9 +33,7 @@ def test_a_killed_one_is_continued_to_the_same_bytes(recipe_file, made, contents
     assert not (out / "dataset.json").exists()
     with pytest.raises(DataFileError, match="not a recording"):
         eyas.load(out)
-    again = start("make", recipe_file, "--out", out, "--workers", "2", "--resume")
-    said = again.communicate()
-    assert again.returncode == 0, said
+    make(plan, out, Making(resume=True, workers=2))
     assert contents(out) == contents(made)
 
 
@@ -52,7 +52,7 @@ def test_one_that_was_damaged_is_mended(plan, made, contents, tmp_path, caplog):
         content = path.read_bytes()[:100]
         path.unlink()  # it may be a link
         path.write_bytes(content)
-    make(plan, out, Making(resume=True))
+    make(plan, out, Making(resume=True, workers=1))
     assert contents(out) == before
     assert "README.md: not as it was made (3 such files)" in caplog.text
 

@@ -4,6 +4,7 @@ Nobody has run Eyas there. What is looked at here is the text of the program.
 """
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -31,12 +32,17 @@ FUNCTIONS = {
 """What some of Windows, macOS and Linux lack in modules that all have."""
 
 
+MENTIONED = re.compile(rf"\b({'|'.join(MODULES.union(*FUNCTIONS.values()))})\b")
+
+
 def unguarded(text: str) -> list[str]:
     """Return what a program uses of these and has no guard for.
 
     A guard is `except ImportError` around the import of a module. For a function it is a guarded
     module in the same file, whose absence the code asks for, or `hasattr` with its name.
     """
+    if not MENTIONED.search(text):
+        return []
     tree = ast.parse(text)
     tries = [
         each

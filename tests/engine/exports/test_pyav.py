@@ -1,8 +1,6 @@
 """Whoever has no PyAV, which is an extra, can do without it."""
 
 import json
-import os
-import subprocess
 import sys
 
 import pytest
@@ -41,23 +39,11 @@ def test_it_is_found_where_it_is():
 
 
 @pytest.fixture
-def record(tmp_path):
-    """Records for a moment in a process that cannot import it, into a folder of a name."""
-    (tmp_path / "av.py").write_text("raise ImportError('not here')")
+def record(tmp_path, missing, eyas_command):
+    """Records for a moment without it, into a folder of a name."""
     brief = {"video.channels": 1, "video.total_time": 0.2, "camera.width": 64, "camera.height": 48}
     sets = [f"--set={key}={value}" for key, value in brief.items()]
-    path = os.pathsep.join([str(tmp_path), *filter(None, sys.path)])
-
-    def recorded(name: str, *more: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "eyas", "video", f"--out={tmp_path / name}", *sets, *more],
-            env={**os.environ, "PYTHONPATH": path},
-            check=False,
-            capture_output=True,
-            text=True,
-        )
-
-    return recorded
+    return lambda name, *more: eyas_command("video", f"--out={tmp_path / name}", *sets, *more)
 
 
 @pytest.mark.slow

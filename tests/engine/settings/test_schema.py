@@ -1,8 +1,6 @@
 """The schema of settings accepts what Eyas does, and describes every setting."""
 
 import json
-import subprocess
-import sys
 
 import jsonschema
 import pytest
@@ -68,7 +66,5 @@ def test_it_tells_what_settings_are_for():
     assert "name" in camera
 
 
-def test_the_command_prints_it():
-    command = [sys.executable, "-m", "eyas", "config", "schema"]
-    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    assert json.loads(printed) == config_schema()
+def test_the_command_prints_it(eyas_command):
+    assert json.loads(eyas_command("config", "schema").stdout) == config_schema()

@@ -33,7 +33,8 @@ OTHERS = [kind for kind in LOOKS_LIKE if kind is not VehicleType.TRUCK]
 )
 def test_a_fleet_is_followed_and_drawn_as_what_it_is(vehicle):
     config = SimConfig(
-        start=StartConfig(pitch=1.37, height=22.0), traffic=TrafficConfig(vehicle_type=vehicle)
+        start=StartConfig(pitch=1.37, height=22.0),
+        traffic=TrafficConfig(vehicle_type=vehicle, max_vehicles=8),
     )
     simulation = build_simulation(config, together(2))
     simulation.reset()

@@ -29,7 +29,7 @@ def simulation_with(solids, config: SimConfig, world_of: np.ndarray) -> Simulati
     return Simulation(config, assets, tracker_in(config, assets), world_of)
 
 
-def slab(top: float, half: float = 5000.0) -> Solids:
+def slab(top: float, half: float = 1000.0) -> Solids:
     """A block over everything, as high as asked."""
     builder = SceneBuilder("slab", 0, (1.0, 1.0), Terrain.flat(0.0))
     owner = builder.add(ObjectClass.BUILDING)

@@ -188,11 +188,12 @@ def test_a_later_start_does_without_numba(tmp_path):
     camera = CONFIG.camera.model_copy(update={"events": events})
     config = CONFIG.model_copy(update={"video": with_overlay, "lidar": lidar, "camera": camera})
     program = RUN + 'print("numba" in sys.modules)'
-    said = []
     for out in ("first", "later"):
         command = [sys.executable, "-c", program, config.model_dump_json(), str(tmp_path / out)]
-        said.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
-    assert said[1] == "False\n"
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        if said == "False\n":
+            break  # the first found all that earlier tests had compiled
+    assert said == "False\n"
 
 
 def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path):

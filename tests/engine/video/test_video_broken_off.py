@@ -25,13 +25,13 @@ pytestmark = pytest.mark.slow  # what its tests share takes long to make
 
 KILLS = int(os.environ.get("EYAS_TEST_KILLS", "4"))
 
-# Two trackers, seven episodes of 0.3 s each, a frame every 4 ms.
+# Two trackers, seven episodes of 0.3 s each, a frame every 8 ms.
 CONFIG = EyasConfig(
     seed=5,
     camera=CameraConfig(width=64, height=48),
     done=DoneConfig(total_steps=150, grace_steps=20),
     video=VideoConfig(
-        channels=2, fps=250.0, start_time=0.7, total_time=2.1, warm_up_steps=10,
+        channels=2, fps=125.0, start_time=0.7, total_time=2.1, warm_up_steps=10,
         writers=("jpeg", "mp4", "webp", "labels", "mark"),
     ),
 )  # fmt: skip

@@ -46,20 +46,14 @@ class Writer:
 """
 
 
+VIDEO = ("video", "--config", "settings.json", "--trust", "--out", "out")
+
+
 def eyas(work: Path, *options: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    command = [
-        sys.executable,
-        "-m",
-        "eyas.cli.main",
-        "video",
-        "--config",
-        "settings.json",
-        "--trust",
-    ]
     paths = [str(work), os.environ.get("PYTHONPATH", "")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)} | variables
     return subprocess.run(
-        [*command, "--out", "out", *options],
+        [sys.executable, "-m", "eyas.cli.main", *VIDEO, *options],
         cwd=work,
         env=environment,
         capture_output=True,
@@ -90,12 +84,12 @@ def test_it_writes_what_the_labels_say(work):
 
 
 @pytest.mark.slow
-def test_an_episode_that_misses_its_file_is_drawn_anew(work):
+def test_an_episode_that_misses_its_file_is_drawn_anew(work, eyas_command):
     whole = contents(work / "out")
     kept = work / "out" / "DRONE0" / "episode0" / "labels.jsonl"
     written_at = kept.stat().st_mtime_ns
     (work / "out" / "DRONE1" / "episode0" / "boxes.csv").unlink()
-    assert eyas(work, "--resume").returncode == 0
+    assert eyas_command(*VIDEO, "--resume", folder=work).returncode == 0
     assert contents(work / "out") == whole
     assert kept.stat().st_mtime_ns == written_at
 
@@ -109,10 +103,11 @@ def test_a_recording_is_overwritten_where_its_writer_has_gone(work):
 
 
 @pytest.mark.slow
-def test_a_writer_that_ends_the_program_is_an_error(tmp_path):
+def test_a_writer_that_ends_the_program_is_an_error(tmp_path, eyas_command):
     (tmp_path / "ends.py").write_text(ENDS)
     (tmp_path / "settings.json").write_text(json.dumps({"video": {"channels": 1, "total_time": 1}}))
-    done = eyas(tmp_path, "--set", 'video.writers=["labels", "ends:Writer"]', "--quiet")
+    writers = ("--set", 'video.writers=["labels", "ends:Writer"]', "--quiet")
+    done = eyas_command(*VIDEO, *writers, folder=tmp_path)
     assert done.returncode == 2
     (line,) = [each for each in done.stderr.splitlines() if each.startswith("eyas: error: ")]
     assert "tried to end the program: SystemExit(0) in " in line

@@ -112,7 +112,7 @@ def timed(call: Callable[[], object], seconds: float) -> Timing:
     end = time.perf_counter() + seconds
     while time.perf_counter() < end or len(rates) < 3:
         start, on_processor, calls = time.perf_counter(), time.process_time(), 0
-        while (elapsed := time.perf_counter() - start) < _BLOCK:
+        while (elapsed := time.perf_counter() - start) < _BLOCK or not calls:
             call()
             calls += 1
         rates.append(calls / elapsed)

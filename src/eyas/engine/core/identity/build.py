@@ -116,13 +116,13 @@ def _installed() -> Iterator[tuple[str, str]]:
 
 def _digest_of(folder: Path, rooms: Collection[Path]) -> str:
     """Return a digest of the files in a folder, without those of rooms in it."""
-    inner = [room for room in rooms if folder in room.parents]
+    inner = tuple(f"{room.as_posix()}/" for room in rooms if folder in room.parents)
     digest = sha256()
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(_ROOT).as_posix()
         if not path.is_file() or "__pycache__" in path.parts or path.suffix in _SILENT:
             continue
-        if inside.startswith(_CODE_OF_KERNELS) or any(room in path.parents for room in inner):
+        if inside.startswith(_CODE_OF_KERNELS) or path.as_posix().startswith(inner):
             continue
         content = path.read_bytes()
         if path.suffix == ".py":
