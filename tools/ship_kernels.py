@@ -124,6 +124,8 @@ with tempfile.TemporaryDirectory() as folder:
 
 LEVEL, OTHER_LEVEL = LEVELS["x86_64"], LEVELS["aarch64"]
 
+ARM_TOOLS = "aarch64-linux-gnu-"  # Prefix of GNU's binary tools for AArch64
+
 MEMORY = {"memcpy", "memmove", "memset"}
 """What LLVM itself calls to copy and to clear memory; there is only one result."""
 
@@ -131,77 +133,50 @@ DRAWING = "draw_views"
 """The function whose code also ships for AVX-512."""
 
 
-MAKES_WIDE = (
-    f"DRAWING = {DRAWING!r}"
-    """
-import os
-from eyas.lanes import calls, entry, machine_code
-from eyas.lanes.shipped import WIDE
-
-function_of, loaded = calls.ParallelCall._function, entry.load
-
-
-def named(level):
-    os.environ["NUMBA_CPU_NAME"] = level
-    machine_code.cpu.cache_clear()
-    machine_code._machine.cache_clear()
-
-
-def made(self, bundles):
-    if self.function.__name__ != DRAWING:
-        return function_of(self, bundles)
-    level = os.environ["NUMBA_CPU_NAME"]
-    named(WIDE.name)
-    entry.load = lambda code: 1
-    function_of(self, bundles)
-    entry.load = loaded
-    named(level)
-    return nothing
-
-
-nothing = calls._ENTRY(lambda *_: 0)
-calls.ParallelCall._function = made
-""" + USES_ALL
-)
-"""A program that makes what draws for AVX-512, and does not run it: this processor may lack it."""
-
-
-MAKES_OTHER = (
+MAKES_ALL = (
     """
 import os
 import re
-from functools import partial
 from pathlib import Path
 import llvmlite.binding as llvm
 from eyas.lanes import compilation, machine_code
 
-TRIPLE = "aarch64-unknown-linux-gnu"
-os.cpu_count = lambda: 1  # or a second process compiles what draws
-native, native_machine = compilation.optimised, machine_code._machine
-llvm.initialize_all_targets()
-llvm.initialize_all_asmprinters()
-machine = llvm.Target.from_triple(TRIPLE).create_target_machine(opt=3, reloc="pic")
+def target(triple, cpu):
+    options = {"opt": 3, "reloc": "pic", "codemodel": "small"}
+    return llvm.Target.from_triple(triple).create_target_machine(cpu, **options)
 
 
-def both(module, entry):
-    text = re.sub('target triple = ".*"', f'target triple = "{TRIPLE}"', str(module))
-    layout = f'target datalayout = "{machine.target_data}"'
-    text = re.sub('target datalayout = ".*"', layout, text)
-    text = re.sub('"target-(cpu|features)"="[^"]*"', "", text)
-    machine_code._machine = lambda: machine
-    made = native(llvm.parse_assembly(text), entry)
-    machine_code._machine = native_machine
-    folder = Path(os.environ["EYAS_CACHE_DIR"], "other")
-    folder.mkdir(exist_ok=True)
-    machine_code.write_code(folder / f"{entry}{machine_code.SUFFIX}", made)
+def made_for_all(module, entry):
+    text = re.sub('"target-(cpu|features)"="[^"]*"', "", str(module))
+    for level, machine in MACHINES.items():
+        if level == WIDE and not entry.startswith(DRAWING):
+            continue
+        other = re.sub('target triple = ".*"', f'target triple = "{machine.triple}"', text)
+        layout = f'target datalayout = "{machine.target_data}"'
+        other = llvm.parse_assembly(re.sub('target datalayout = ".*"', layout, other))
+        machine_code._machine = lambda: machine
+        code = native(other, entry)
+        machine_code._machine = native_machine
+        folder = Path(os.environ["EYAS_CACHE_DIR"], level)
+        folder.mkdir(exist_ok=True)
+        machine_code.write_code(folder / f"{entry}{machine_code.SUFFIX}", code)
     return native(module, entry)
 
 
-compilation.optimised = both
+llvm.initialize_all_targets()
+llvm.initialize_all_asmprinters()
+native, native_machine = compilation.optimised, machine_code._machine
+compilation.optimised = made_for_all
 """
-    + USES_ALL
+    f"OTHER, WIDE, DRAWING = {OTHER_LEVEL.name!r}, {WIDE.name!r}, {DRAWING!r}"
+    """
+MACHINES = {
+    OTHER: target("aarch64-unknown-linux-gnu", ""),
+    WIDE: target(llvm.get_process_triple(), WIDE),
+}
+""" + USES_ALL
 )
-"""A program that uses every kernel, and makes each for AArch64, too, on x86-64."""
+"""A program that uses every kernel, and makes each for other levels, too."""
 
 
 USES_DEVICE = """
@@ -272,17 +247,13 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory() as cache:
         variables = {"NUMBA_CPU_NAME": LEVEL.name, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"}
-        use_all(cache, variables, MAKES_OTHER)
+        use_all(cache, variables, MAKES_ALL)
         folder = Path(cache, "kernels", language_hash())
-        files = set(folder.glob(f"*{SUFFIX}"))
-        codes = codes_in(files)
+        codes = codes_in(folder.glob(f"*{SUFFIX}"))
         link(codes, place(LEVEL.library))
-        others = {
-            name: read_code(Path(cache, "other", f"{entry_of(name)}{SUFFIX}")) for name in codes
-        }
-        link(others, place(OTHER_LEVEL.library), "aarch64-linux-gnu-")
-        use_all(cache, variables, MAKES_WIDE)
-        link(codes_in(set(folder.glob(f"*{SUFFIX}")) - files), place(WIDE.library))
+        link(codes_of(codes, Path(cache, OTHER_LEVEL.name)), place(OTHER_LEVEL.library), ARM_TOOLS)
+        drawing = filter(draws, codes)
+        link(codes_of(drawing, Path(cache, WIDE.name)), place(WIDE.library))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {}, USES_DEVICE)
         place(ptx.ARCHIVE).write_bytes(ptx.archive_of(ptx_in(Path(cache))))
@@ -353,6 +324,14 @@ def contents_object(lines: list[str], tools: str) -> bytes:
 def llvm_text(text: bytes) -> str:
     """Return a text as LLVM's assembly has it between quotes."""
     return "".join(f"\\{byte:02x}" for byte in text)
+
+
+def codes_of(names: Iterable[str], folder: Path) -> dict[str, MachineCode]:
+    """Return the machine code of some kernels for another level, from its folder."""
+    codes = {name: read_code(folder / f"{entry_of(name)}{SUFFIX}") for name in names}
+    missing_codes = sorted(name for name, code in codes.items() if code is None)
+    assert not missing_codes, missing_codes
+    return {name: code for name, code in codes.items() if code is not None}
 
 
 def ptx_in(cache: Path) -> dict[str, ptx.Ptx]:

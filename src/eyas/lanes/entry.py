@@ -16,8 +16,8 @@ from eyas.lanes.folder import kernel_folder, refusal
 from eyas.lanes.identity import code_name, entry_of
 from eyas.lanes.interrupts import shielded
 from eyas.lanes.jit import CompilerError
-from eyas.lanes.shipped import is_shipped, misfit, shipped_address
-from eyas.lanes.trusted import OWNER, touch
+from eyas.lanes.shipped import misfit, shipped_address
+from eyas.lanes.trusted import OWNER, not_kept, touch
 
 if TYPE_CHECKING:
     from eyas.lanes.machine_code import MachineCode
@@ -85,22 +85,18 @@ def _made(
         address = load(kept)
         if address is not None:
             return address
+    if misfit() and not refusal() and not any(path.parent.glob(f"*{path.suffix}")):
+        _LOG.warning("first start here: compiling takes a minute, once; kept in %s", path.parent)
     start = time.perf_counter()
     code = _compiled(function, bundles, entry_of(name), over_workers=over_workers)
     _LOG.debug("compiled %s in %.1f s", name.partition("-")[0], time.perf_counter() - start)
     address = load(code)
     assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
-    if keeps and not refusal():
+    if keeps and (why := refusal()):
+        not_kept(why)
+    elif keeps:
         write_code(path, code)
     return address
-
-
-def nothing_compiled(
-    function: Callable[..., Any],  # See `eyas.lanes.calls.CompiledCall`
-) -> bool:
-    """Return whether a kernel is neither cached nor shipped for any bundles, as at first."""
-    name = code_name(function)
-    return not any(kernel_folder().glob(f"{name}-*.eyk")) and not is_shipped(name)
 
 
 def _compiled(

@@ -1,6 +1,6 @@
 """The renderer: pictures, depths, object ids and subject measurements of many views at once."""
 
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -48,11 +48,8 @@ class CpuRenderer:
         self,
         geometry: Geometry,  # Everything that can be drawn
         light: Light,  # Light and air
-        # Called before anything is drawn; returns when the kernels are compiled
-        ready: Callable[[], object] | None = None,
     ) -> None:
         self._geometry, self._light = geometry, light
-        self._ready = ready
         self._held = PackedBundle(geometry), PackedBundle(light)
         self._last = PackedBundle(_NO_MOVERS), PackedBundle(NO_OUTPUT), PackedBundle(NO_TABLES)
         self._scratch: dict[tuple[object, ...], PackedBundle[Scratch]] = {}
@@ -88,8 +85,6 @@ class CpuRenderer:
         """Draw views into the arrays of a picture that are not None, see `Renderer`."""
         if samples not in GRIDS:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 2, 4")
-        if self._ready is not None:
-            self._ready()
         position = checked(views.position, FARTHEST, "position of a camera")
         rotation = checked(views.rotation, 1e3, "rotation of a camera")
         if position is not views.position or rotation is not views.rotation:
@@ -215,7 +210,6 @@ def build_renderer(
     lighting: Lighting,  # Light and air
     *,
     cache: Path | None = None,  # Folder of the cache; None: the user's
-    ready: Callable[[], object] | None = None,  # See `Renderer`
 ) -> CpuRenderer:
     """Return a renderer of a scene, its shadows baked."""
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
@@ -226,7 +220,7 @@ def build_renderer(
     light = build_light(scene, lighting, Baked(shadows, ambient, land, tracks), geometry)
     if len(light.sway):
         geometry = with_room(geometry, light.sway)
-    return CpuRenderer(geometry, light, ready)
+    return CpuRenderer(geometry, light)
 
 
 Key = TypeVar("Key", bound=Hashable)

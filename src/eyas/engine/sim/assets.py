@@ -12,7 +12,6 @@ from eyas.engine.core.cache.array_file import let_go
 from eyas.engine.core.cache.cached import cached
 from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.render.ahead import begin_ahead, drawing_is_ready
 from eyas.engine.render.renderer import build_renderer
 from eyas.engine.sensors.obstacles import Solids
 from eyas.engine.sim.cover import cover_of
@@ -215,7 +214,6 @@ def _vehicles(
         cover=partial(cover_of, map_name, seed),
     )
     kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
-    begin_ahead()
     motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
     if config.lamps is Lamps.WORKING:
         lamps = kept_lamps(file, motion, load_network(map_name, seed))
@@ -234,7 +232,6 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], lenses: Lenses) -> Ren
         load_scene(world.map, world.seed, season),
         load_geometry(world.map, world.seed, season, kinds, lenses=lenses),
         _lighting(world),
-        ready=drawing_is_ready,
     )
 
 
