@@ -35,8 +35,7 @@ _COMPILE = "from eyas.engine.render.ahead import draw_nothing; draw_nothing()"
 
 
 def begin_ahead() -> None:
-    """Report to the user that kernels must be compiled, and use a second core for it if there is
-    one.
+    """Tell the user that kernels must be compiled, and use a second core for it if there is one.
 
     The second process compiles the drawing kernels while this one does everything else. It never
     fails: what is missing when this process waits for it, this process makes.
@@ -46,11 +45,8 @@ def begin_ahead() -> None:
     if refusal():
         not_kept(refusal())
         return
-    cache = kernel_folder()
-    _log.warning(
-        "first start of this version: compiling takes about half a minute, once; cached in %s",
-        cache,
-    )
+    cache, takes = kernel_folder(), "compiling takes about half a minute, once"
+    _log.warning("first start of this version: %s; cached in %s", takes, cache)
     # A frozen program has no interpreter to start.
     if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
         return

@@ -50,8 +50,6 @@ class _Reader:
     def __init__(self, text: bytes) -> None:
         self._body = cast("ast.Module", tree_of(text)).body
         self._imports = dict(_imported(self._body))
-        lines = enumerate(text.splitlines(), start=1)
-        self._importing = [number for number, line in lines if b"import" in line]
         self._texts: dict[str, list[str]] = {}
         self._refers: dict[str, set[str]] = {}
 
@@ -76,9 +74,7 @@ class _Reader:
 
     def _references(self, node: ast.stmt, own: set[str]) -> set[str]:
         """Return what a statement refers to, by its own imports and those of the module."""
-        last = node.end_lineno or node.lineno
-        may = any(node.lineno <= line <= last for line in self._importing)
-        inside = [one for one in _walked(node) if isinstance(one, _IMPORTS)] if may else []
+        inside = [one for one in _walked(node) if isinstance(one, _IMPORTS)]
         imports = self._imports | dict(pair for one in inside for pair in _names_of(one))
         found = set()
         for chain in _read(node):
