@@ -87,7 +87,8 @@ def _found_or_made(
     found = None if path is None else _found(path, of)
     if found is None:
         found = _made_and_kept(kind, make, of, path, limit)
-        _give_back()
+        # Making leaves tens of megabytes free, in pieces that glibc gives back only if it is asked.
+        getattr(ctypes.CDLL(None), "malloc_trim", bool)(0)
     return found
 
 
@@ -110,16 +111,6 @@ def _made_and_kept(
             found = _found(path, of, written=True)
     # A value just made is restored like one read from the file, so that both have the same types.
     return restore(of, *content) if found is None else found
-
-
-def _give_back() -> None:
-    """Give free memory back to the system, where the C library can, as glibc does.
-
-    Making leaves tens of megabytes of it, in pieces too small to go back by themselves.
-    """
-    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
-    if trim is not None:
-        trim(0)
 
 
 def _found(path: Path, of: type[Thing], *, written: bool = False) -> Thing | None:

@@ -18,8 +18,6 @@ _STAGES: Final = {
 }
 """What is made, in this order: in words of a user, and how long it takes at the usual speed [s]."""
 
-_WORTH_TELLING: Final = 0.5  # Shorter rests are not told [s]
-
 _made: dict[EntryKind, float] = {}  # How long this process has made what [s]
 
 
@@ -34,7 +32,7 @@ def told(kind: EntryKind) -> Iterator[None]:
     done = 100.0 * (1.0 - left / sum(each for _, each in _STAGES.values()))
     usual = sum(_STAGES[one][1] for one in _made)
     left *= sum(_made.values()) / usual if usual > 1.0 else 1.0
-    if left > _WORTH_TELLING:
+    if left > 0.5:  # a shorter rest is not worth telling
         line = "making %s, once; %.0f %% done, about %.0f s left"
         log.info(line, _STAGES[kind][0], done, max(left, 1.0), extra={"passing": True})
     try:
