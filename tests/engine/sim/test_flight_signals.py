@@ -10,6 +10,7 @@ from eyas.engine.sim.flights.signals import (
     later,
     rates_of,
     sampled_at,
+    steps_in,
     trailing,
 )
 
@@ -51,3 +52,16 @@ def test_a_spline_keeps_the_rates_of_its_points():
     for order, most in enumerate(rates, 1):
         own = np.linalg.norm(np.diff(fine, n=order, axis=0), axis=1).max() / 0.002**order
         assert own <= most * 1.001
+
+
+@pytest.mark.parametrize("steady", [False, True])
+@pytest.mark.parametrize("seconds", [0.2, 0.6, 9.0])
+def test_signals_go_on_beyond_their_ends_as_numpy_pads_them(steady, seconds):
+    signal = np.random.default_rng(0).normal(size=(20, 3)).cumsum(axis=0)
+    half, smooth = steps_in(seconds) // 3, signal
+    how = {"mode": "reflect", "reflect_type": "odd"} if steady else {"mode": "edge"}
+    for _ in range(3):
+        wide = np.pad(smooth - smooth[0], [(half, half), (0, 0)], **how)
+        sums = np.concatenate([np.zeros((1, 3)), wide]).cumsum(axis=0)
+        smooth = smooth[0] + (sums[2 * half + 1 :] - sums[: -2 * half - 1]) / (2 * half + 1)
+    np.testing.assert_array_equal(averaged(signal, seconds, steady=steady), smooth)

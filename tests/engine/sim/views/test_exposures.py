@@ -183,6 +183,7 @@ def test_the_number_of_samples_follows_the_motion():
     simulation.advance(np.array([[0, 0, 0, 0.0], [0, 0, 0, 1.0], [0, 0, 0, 2.0]]), 200)
     drawer = simulation.view.pictures._exposures
     chosen = np.arange(3, dtype=np.int32)
+    simulation.draw(chosen, Picture.create(3, SIZE, SIZE))  # before which no shutter is sampled
     exposure = exposure_of(chosen, simulation.view.state.steady, None)
     samples, bands = drawer._pieces(chosen, exposure, np.array([SIZE, 1.0, 1.0]), SIZE)
     np.testing.assert_array_equal(bands, 1)

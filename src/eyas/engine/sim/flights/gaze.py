@@ -6,7 +6,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.engine.core.optics.pinhole import field_along
 from eyas.engine.sim.flights.signals import STEP, averaged, steps_in
 from eyas.lanes import exact
 
@@ -96,7 +95,8 @@ def turned_aside(
     # 1 brings it to the border; while searching, the sweep alone takes it out of the picture.
     halves = cut if how.searches else np.maximum(cut, (1.0 + how.margin) * away)
     shallow = averaged((pitch < _SHALLOW).astype(np.float64), 0.6)
-    tangent = exact.tan(0.5 * field) * halves
+    half_width = exact.tan(0.5 * field)
+    tangent = half_width * halves
     along, across = exact.cos(pitch), exact.sin(pitch)
     # The target at this pitch, the camera turned by an angle d: its column is
     # along sin(d) / (along^2 cos(d) + across^2), which is to be the tangent.
@@ -104,7 +104,7 @@ def turned_aside(
     length = np.sqrt(along * along + ahead * ahead)
     sine = np.minimum(tangent * across * across / length, 1.0)
     turn = exact.atan2(ahead, along) + exact.asin(sine)
-    upright = np.array([field_along(f, aspect) for f in field.tolist()])
+    upright = 2.0 * exact.atan(half_width * aspect)
     higher = exact.atan(exact.tan(0.5 * upright) * halves)
     new_yaw = yaw + how.side * shallow * turn
     new_pitch = pitch - (1.0 - shallow) * higher
