@@ -5,6 +5,7 @@ import pytest
 
 import eyas
 from eyas.engine.core.errors import ConfigError
+from eyas.engine.render.renderer import CpuRenderer
 
 HOT = {"world": {"map": "citystreet", "hour": 22.0}}
 
@@ -28,6 +29,19 @@ def test_a_thermal_picture_is_grey_and_shows_the_target_warm():
     assert not np.array_equal(thermal, plain)
     # The target is in the middle, on a road that has cooled down less than the lawns.
     assert thermal[:, 36:48, 36:48].max() > thermal.mean() + 20
+
+
+def test_for_a_thermal_picture_nothing_is_drawn_but_what_it_is_made_of(monkeypatch):
+    drawn, draw = [], CpuRenderer.draw
+
+    def noted(renderer, views, movers, picture, *settings):
+        drawn.append(picture)
+        draw(renderer, views, movers, picture, *settings)
+
+    monkeypatch.setattr(CpuRenderer, "draw", noted)
+    _images(_camera(spectrum="thermal"), count=1)
+    assert len(drawn) == 3
+    assert all(picture.normal is not None for picture in drawn)
 
 
 def test_thermal_pictures_do_not_depend_on_the_number_of_drones():

@@ -157,9 +157,14 @@ class ThermalImager:
 
     def develop(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> None:
         """Write pictures, grey, shape (V, H, W, 3)."""
-        workers, (height, width) = min(thread_count(), len(rgb)), rgb.shape[1:3]
-        degrees = np.empty((workers, height, width), np.float32)
-        _sense(workers, _Work(self._scene, frames, degrees, np.empty((workers, width)), rgb))
+        self.measure(frames, rgb)
+
+    def measure(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> NDArray[np.float32]:
+        """Write pictures, and return the temperature of each pixel [Celsius], shape (V, H, W)."""
+        degrees, workers = np.empty(frames.depth.shape, np.float32), min(thread_count(), len(rgb))
+        columns = np.empty((workers, rgb.shape[2]))
+        _sense(workers, _Work(self._scene, frames, degrees, columns, rgb))
+        return degrees
 
 
 _DEVIATION = 147.8
@@ -303,8 +308,8 @@ class _Work(NamedTuple):
 
     scene: _Scene
     frames: ThermalFrames
-    degrees: NDArray[np.float32]  # Of the picture that a worker makes, shape (workers, H, W)
-    columns: NDArray[np.float64]  # The error of its columns, before it is scaled
+    degrees: NDArray[np.float32]
+    columns: NDArray[np.float64]  # Errors of the columns of a worker's picture, before scaling
     rgb: NDArray[np.uint8]
 
 
@@ -312,12 +317,11 @@ class _Work(NamedTuple):
 def _sense(worker: int, workers: int, work: _Work) -> None:
     """Make the pictures whose turn is this worker's."""
     scene, frames, rgb, normals = work.scene, work.frames, work.rgb, work.frames.normal
-    degrees, columns = work.degrees[worker], work.columns[worker]
-    height, width = degrees.shape
+    columns, height, width = work.columns[worker], rgb.shape[1], rgb.shape[2]
     for view in range(worker, len(rgb), workers):
         own = mixed(frames.seed[view])
         now = mixed(own ^ (frames.step[view] & 0xFFFFFFFF))
-        before, facing = -1, (0, 0)
+        degrees, before, facing = work.degrees[view], -1, (0, 0)
         for column in range(width):
             columns[column] = _random(own ^ (-1 - column))
         for row in range(height):
