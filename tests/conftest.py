@@ -127,6 +127,20 @@ def eyas_command(monkeypatch, capsys):
 
 
 @pytest.fixture
+def empty_cache(tmp_path):
+    """A folder for a cache with nothing but what sources say, which takes seconds to read: a wheel
+    brings it.
+    """
+    from eyas.engine.core.identity.build import this_build
+    from eyas.lanes.text_index import FOLDER
+    from eyas.lanes.trusted import cache_folder
+
+    this_build()
+    shutil.copytree(cache_folder() / FOLDER, tmp_path / "cache" / FOLDER)
+    return tmp_path / "cache"
+
+
+@pytest.fixture
 def regenerate(request):
     return request.config.getoption("--regenerate")
 
