@@ -162,10 +162,10 @@ def signals():
 
 @pytest.fixture(autouse=True, scope="module")
 def memory():
-    """Worlds that earlier files have loaded go when a process has a gigabyte."""
+    """Worlds that earlier files have loaded go when a process has 900 MiB."""
     yield
     pages = Path("/proc/self/statm")
-    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1 << 30:
+    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 900 << 20:
         for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
             for each in vars(sys.modules.get(name, sys)).values():
                 getattr(each, "cache_clear", int)()
