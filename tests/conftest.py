@@ -127,6 +127,20 @@ def eyas_command(monkeypatch, capsys):
 
 
 @pytest.fixture
+def empty_cache(tmp_path):
+    """A folder for a cache with nothing but what sources say, which takes seconds to read: a wheel
+    brings it.
+    """
+    from eyas.engine.core.identity.build import this_build
+    from eyas.lanes.text_index import FOLDER
+    from eyas.lanes.trusted import cache_folder
+
+    this_build()
+    shutil.copytree(cache_folder() / FOLDER, tmp_path / "cache" / FOLDER)
+    return tmp_path / "cache"
+
+
+@pytest.fixture
 def regenerate(request):
     return request.config.getoption("--regenerate")
 
@@ -148,10 +162,10 @@ def signals():
 
 @pytest.fixture(autouse=True, scope="module")
 def memory():
-    """Worlds that earlier files have loaded go when a process has a gigabyte."""
+    """Worlds that earlier files have loaded go when a process has 900 MiB."""
     yield
     pages = Path("/proc/self/statm")
-    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 1 << 30:
+    if pages.is_file() and int(pages.read_text().split()[1]) * 4096 > 900 << 20:
         for name in ("eyas.engine.sim.assets", "eyas.engine.sim.scenes"):
             for each in vars(sys.modules.get(name, sys)).values():
                 getattr(each, "cache_clear", int)()

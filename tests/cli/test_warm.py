@@ -1,7 +1,6 @@
 """`eyas cache warm`: nothing is left to be made afterwards."""
 
 import os
-import shutil
 import subprocess
 import sys
 
@@ -9,11 +8,8 @@ import pytest
 
 from eyas.cli.cache import run_warm
 from eyas.engine.core.errors import OutputError, UnknownNameError
-from eyas.engine.core.identity.build import this_build
 from eyas.engine.sim.scenes import load_scene
 from eyas.engine.world.weather import Season
-from eyas.lanes.text_index import FOLDER
-from eyas.lanes.trusted import cache_folder
 
 MAP = "farmland-bare"
 SMALL = ("camera.width=64", "camera.height=48")
@@ -30,10 +26,8 @@ def eyas(folder, *arguments):
 
 
 @pytest.mark.slow
-def test_what_a_first_recording_needs_is_there(tmp_path):
-    cache, out = tmp_path / "cache", tmp_path / "out"
-    this_build()  # what it reads from sources for seconds is kept; a wheel brings it
-    shutil.copytree(cache_folder() / FOLDER, cache / FOLDER)
+def test_what_a_first_recording_needs_is_there(tmp_path, empty_cache):
+    cache, out = empty_cache, tmp_path / "out"
     told = eyas(cache, "cache", "warm", "--map", MAP, "--weather", "day").stdout.splitlines()
     assert told[0].startswith(f"{MAP}, day: ")
     assert told[1].startswith(f"{cache}: ")

@@ -135,6 +135,8 @@ def test_what_is_not_seen_is_held():
 def test_rows_are_made_once(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(flights, "_STEPS", 400)
     monkeypatch.setattr(flights, "_FLIGHTS", 2)
+    monkeypatch.setattr(flights, "_TURN", ("citystreet",))
+    monkeypatch.setattr(flights, "WEATHERS", ("day",) * 4)
     monkeypatch.setattr(TOOL, "PLACES", (("paper", "simpleway-grass", "day", 2),))
     words = ["--out", str(tmp_path), "--rows", "no-box", "no-own-flights", "--share", "0.001"]
     monkeypatch.setattr(sys, "argv", ["ablations.py", *words])

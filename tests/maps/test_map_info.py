@@ -42,9 +42,9 @@ def test_the_originals_figures_stand_beside_ours():
 @pytest.mark.slow
 @pytest.mark.sumo
 def test_a_new_map_of_a_kind_is_made_at_once_with_its_traffic(
-    monkeypatch, capsys, caplog, tmp_path
+    monkeypatch, capsys, caplog, empty_cache
 ):
-    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(empty_cache))
     monkeypatch.setattr(sys, "argv", ["eyas", "maps", "new", "farmland-bare", "--map-seed", "3"])
     with pytest.raises(SystemExit, match="0"):
         main()

@@ -113,10 +113,10 @@ def test_a_map_is_the_same_on_another_processor(name):
 
 
 @pytest.mark.slow
-def test_people_walk_the_same_ways_on_another_processor(tmp_path, monkeypatch):
+def test_people_walk_the_same_ways_on_another_processor(empty_cache, monkeypatch):
     here = MAKERS["people"]()
     # With nothing in the cache: it would hold what this processor has made.
-    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(empty_cache))
     assert list(differences(here, elsewhere("people"))) == []
 
 

@@ -43,8 +43,8 @@ def test_several_processes_write_the_same_files_as_one(tmp_path: Path):
 @pytest.mark.sumo
 @pytest.mark.usefixtures("sumo")
 def test_an_error_in_a_process_is_told_as_in_this_one(tmp_path: Path):
-    many = TrafficConfig(max_vehicles=1000, vehicle_type=Mix(trailer=1))
-    with pytest.raises(ConfigError, match=r"^traffic\.max_vehicles: 1000 is too many"):
+    many = TrafficConfig(max_vehicles=400, vehicle_type=Mix(trailer=1))
+    with pytest.raises(ConfigError, match=r"^traffic\.max_vehicles: 400 is too many"):
         recording.run(WorldConfig(), many, 1.0, tmp_path, seeds=(1, 2), workers=2)
 
 

@@ -202,3 +202,11 @@ def test_a_mesh_in_millimetres_is_suspected_and_refused(tmp_path: Path):
     trimesh.creation.box((900, 400, 300)).export(tmp_path / "drawn.stl")
     with pytest.raises(ConfigError, match=r"in millimetres\? then use custom\.scale=0\.001"):
         kind_name_of(CustomConfig(mesh=str(tmp_path / "drawn.stl")))
+
+
+def test_triangles_that_are_mere_points_are_left_out_of_a_simpler_mesh():
+    corners = np.repeat(np.arange(300)[:, None], 3, axis=1)
+    corners[:10, 1:] += [1, 2]
+    points = np.random.default_rng(0).random((300, 3))
+    few = simplified(Triangles(points, corners, np.zeros((300, 3))), 20)
+    assert len(few.corners) == 10

@@ -36,7 +36,7 @@ def simplified(shape: Triangles, most: int) -> Triangles:
     extent = max(shape.size)
     low, high = 0.0, extent
     best = _clustered(shape, extent)
-    while high - low > 0.05 * high:
+    while high - low > max(0.05 * high, 1e-6 * extent):  # many triangles may be mere points
         cell = 0.5 * (low + high)
         tried = _clustered(shape, cell)
         if len(tried.corners) <= most:
