@@ -36,6 +36,7 @@ import numpy as np
 import eyas
 from eyas.lanes.elementary.arrays import sin
 from eyas.engine.camera.config import Colours
+from eyas.engine.core.optics.lens import BROWN, lens_of, places
 from eyas.engine.sensors.stack import FrameStack
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.sim.build import build_simulation
@@ -60,6 +61,7 @@ TRACKERS = (
 MOUNTED_IN_MOTION = {"mount": {}, "shutter": {"readout": 0.01}}
 
 sin(np.zeros(1))
+places(lens_of(BROWN), np.ones((1, 3)))
 winds_over(np.zeros((4, 4)))
 picture = Picture.create(1, 84, 84)
 for settings in (
