@@ -1,8 +1,7 @@
 """Learning in `eyas bench`: where the processor's time of a run with the preset `fast` goes."""
 
 import time
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from functools import wraps
 from typing import Any
 
@@ -19,18 +18,17 @@ from eyas.learning.network import TrackingNetwork
 from eyas.learning.rollout import Roller, Teacher
 from eyas.learning.trainer import train
 
-Method = tuple[type, str]  # A class, and the name of a method of it
+_ALL = "all"
 
-_WHOLE: tuple[Method, ...] = ((Roller, "roll"), (Dagger, "update"))
-"""All that is done for a decision."""
-
-_PARTS: dict[str, Method] = {
-    "environments": (EyasVectorEnv, "step"),
-    "teacher": (Teacher, "lesson"),
-    "network in flight": (TrackingNetwork, "forward"),
-    "learning": (Algorithm, "descend"),
+_METHODS: dict[tuple[type, str], str] = {
+    (Roller, "roll"): _ALL,
+    (Dagger, "update"): _ALL,
+    (EyasVectorEnv, "step"): "environments",
+    (Teacher, "lesson"): "teacher",
+    (TrackingNetwork, "forward"): "network in flight",
+    (Algorithm, "descend"): "learning",
 }
-"""Parts of it, by the methods in which they are done; the rest is Python."""
+"""Methods in which a decision is made and learned from, by the part of it; the rest is Python."""
 
 
 def measure_learning(
@@ -39,43 +37,31 @@ def measure_learning(
     """Return the speed of learning, and the shares of its parts in the processor's time."""
     config = load_settings(preset_file("fast"))
     decisions = updates * TrainConfig.of(config).update_decisions
-    config = updated(config, {"train": {"stages": [{"total_timesteps": decisions}]}})
-    whole, spent = _Spent(), {name: _Spent() for name in _PARTS}
+    changes = {"stages": [{"total_timesteps": decisions}], "evaluation": {"every": 0}}
+    config = updated(config, {"train": changes})
+    wall, cpu = (dict.fromkeys(_METHODS.values(), 0.0) for _ in range(2))
     with scratch() as folder, ExitStack() as stack:
-        for owner, method in _WHOLE:
-            stack.enter_context(whole.of(owner, method))
-        for name, (owner, method) in _PARTS.items():
-            stack.enter_context(spent[name].of(owner, method))
+        for (owner, method), part in _METHODS.items():
+            before = getattr(owner, method)
+            stack.callback(setattr, owner, method, before)
+            setattr(owner, method, _counted(before, part, wall, cpu))
         train(config, folder / "run", say=lambda _: None)
-    shares = {name: each.cpu / whole.cpu for name, each in spent.items()}
+    shares = {part: spent / cpu[_ALL] for part, spent in cpu.items() if part != _ALL}
     shares["Python"] = 1.0 - sum(shares.values())
-    includes = ", ".join(f"{name} {share:.0%}" for name, share in shares.items())
-    rate, cpu = decisions / whole.wall, 1e6 * whole.cpu / decisions
-    return Measurement("learning, preset fast", rate, "decisions/s", includes, updates, cpu)
+    includes = ", ".join(f"{part} {share:.0%}" for part, share in shares.items())
+    rate, spent = decisions / wall[_ALL], 1e6 * cpu[_ALL] / decisions
+    return Measurement("learning, preset fast", rate, "decisions/s", includes, updates, spent)
 
 
-class _Spent:
-    """Time spent in calls of some methods [s]."""
+def _counted(method: Any, part: str, wall: dict[str, float], cpu: dict[str, float]) -> Any:  # noqa: ANN401
+    """Return a method whose calls add to the time of a part [s]."""
 
-    def __init__(self) -> None:
-        self.wall = self.cpu = 0.0
+    @wraps(method)
+    def counted(*args: object) -> object:
+        start, on_processor = time.perf_counter(), time.process_time()
+        result = method(*args)
+        wall[part] += time.perf_counter() - start
+        cpu[part] += time.process_time() - on_processor
+        return result
 
-    @contextmanager
-    def of(self, owner: type, name: str) -> Iterator[None]:
-        """Count the calls of a method."""
-        method: Callable[..., Any] = getattr(owner, name)
-
-        @wraps(method)
-        def counted(*args: object, **options: object) -> Any:  # noqa: ANN401  # as the method
-            wall, cpu = time.perf_counter(), time.process_time()
-            try:
-                return method(*args, **options)
-            finally:
-                self.wall += time.perf_counter() - wall
-                self.cpu += time.process_time() - cpu
-
-        setattr(owner, name, counted)
-        try:
-            yield
-        finally:
-            setattr(owner, name, method)
+    return counted
