@@ -4,7 +4,8 @@ from eyas.engine.render.kernels.scalars import f4
 from eyas.lanes import kernel
 from eyas.lanes.vector import greater, lesser, select
 
-Colour = Vector = tuple[float, float, float]
+Colour = tuple[float, float, float]
+Vector = Colour
 
 
 @kernel(inline=True)
