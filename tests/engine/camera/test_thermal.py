@@ -107,7 +107,7 @@ def test_behind_a_fisheye_the_sky_is_as_cold_as_its_elevation_says():
 def test_pictures_depend_neither_on_threads_nor_on_other_views():
     frames, imager = _frames(5, 1), _imager()
     together = np.empty((5, *SIZE, 3), np.uint8)
-    imager.develop(frames, together)
+    imager.measure(frames, together)
     alone = np.empty((1, *SIZE, 3), np.uint8)
     last = ThermalFrames(
         *(
@@ -117,7 +117,7 @@ def test_pictures_depend_neither_on_threads_nor_on_other_views():
     )._replace(world=frames.world[3:4])
     limit_threads(1)
     try:
-        imager.develop(last, alone)
+        imager.measure(last, alone)
     finally:
         limit_threads(2)
     assert np.array_equal(together[3], alone[0])

@@ -155,12 +155,8 @@ class ThermalImager:
             config.fixed_pattern / _DEVIATION, low, high, config.least_span,
         )  # fmt: skip
 
-    def develop(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> None:
-        """Write pictures, grey, shape (V, H, W, 3)."""
-        self.measure(frames, rgb)
-
     def measure(self, frames: ThermalFrames, rgb: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Write pictures, and return the temperature of each pixel [Celsius], shape (V, H, W)."""
+        """Write grey pictures, (V, H, W, 3); return the temperature of each pixel [Celsius]."""
         degrees, workers = np.empty(frames.depth.shape, np.float32), min(thread_count(), len(rgb))
         columns = np.empty((workers, rgb.shape[2]))
         _sense(workers, _Work(self._scene, frames, degrees, columns, rgb))

@@ -92,7 +92,7 @@ class ThermalViews:
             seed=self._seed[trackers],
             step=step[trackers],
         )
-        self._imager.develop(frames, rgb)
+        self._imager.measure(frames, rgb)
 
 
 # Pictures of trackers as a real camera gives them, from the radiances that the renderer draws.
