@@ -66,8 +66,7 @@ def mesh_of(shape: Triangles) -> Mesh:
 
 def _clustered(shape: Triangles, cell: float) -> Triangles:
     cells = np.floor(shape.points / cell).astype(np.int64)
-    cells -= cells.min(axis=0)
-    place = np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1))
+    place = np.ravel_multi_index(tuple((cells - cells.min(0)).T), tuple(np.ptp(cells, 0) + 1))
     _, member = np.unique(place, return_inverse=True)  # ten times as fast as of rows
     count = np.bincount(member)
     columns = [np.bincount(member, shape.points[:, axis]) / count for axis in range(3)]
