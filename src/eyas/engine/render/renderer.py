@@ -14,7 +14,7 @@ from eyas.engine.render.bake.ambient import bake_ambient
 from eyas.engine.render.bake.land import land_map, no_land
 from eyas.engine.render.bake.shadows import bake_shadows
 from eyas.engine.render.bake.sway import with_room
-from eyas.engine.render.bake.tracks import TrackMap, track_map
+from eyas.engine.render.bake.tracks import TrackMap, kept_track_map
 from eyas.engine.render.jobs import Size, new_task, set_views
 from eyas.engine.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.engine.render.kernels.draw import draw_views
@@ -213,7 +213,7 @@ def build_renderer(
 ) -> CpuRenderer:
     """Return a renderer of a scene, its shadows baked."""
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
-    tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
+    tracks = kept_track_map(scene, cache) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)
     covered = max(lighting.mist, lighting.litter, lighting.leaves) > 0
     land = land_map(scene, ambient, cache) if covered else no_land()

@@ -2,11 +2,15 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.engine.core.cache.cached import cached
+from eyas.engine.core.cache.folder import EntryKind
 from eyas.engine.state.roads import RoadNetwork
 from eyas.engine.state.scene import Scene
 from eyas.lanes import exact
@@ -55,6 +59,15 @@ class TrackMap:
     def empty(cls) -> "TrackMap":
         """Return a map without tracks."""
         return cls(np.zeros((2, 2, 2), np.uint8), np.array([0.0, 0.0, 1.0]))
+
+
+def kept_track_map(
+    scene: Scene,
+    folder: Path | None = None,  # Folder of the cache; None: the user's
+) -> TrackMap:
+    """Return the `track_map` of a scene, kept in the cache."""
+    inputs, make = (scene.network, scene.colliders), partial(track_map, scene)
+    return cached(EntryKind.AMBIENT, make, inputs, of=TrackMap, folder=folder)
 
 
 def track_map(scene: Scene) -> TrackMap:
