@@ -12,10 +12,7 @@ from eyas import EyasVecEnv
 SETTINGS = {
     "start": {"pitch": 1.37, "height": 22.0},
     "reward": {"view_range": 1.0},
-    "env": {
-        "action_repeat": 4,
-        "observation": {"width": 48, "height": 48, "layout": "chw"},
-    },
+    "env": {"action_repeat": 4, "observation": {"width": 48, "height": 48, "layout": "chw"}},
 }
 
 

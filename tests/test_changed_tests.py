@@ -42,8 +42,7 @@ def test_tests_of_a_house_are_its_own_business():
 
 
 @pytest.mark.parametrize(
-    "path",
-    ["pyproject.toml", "tests/kit/frames.py", "tests/conftest.py", "src/eyas/__init__.py"],
+    "path", ["pyproject.toml", "tests/kit/frames.py", "tests/conftest.py", "src/eyas/__init__.py"]
 )
 def test_what_belongs_to_no_house_runs_everything(path):
     assert TOOL["chosen"]([path, "docs/start.md"]) == (TOOL["ALL"], TOOL["PROSE"])

@@ -143,12 +143,7 @@ def _panel(
 
 
 def _skin(
-    frame: Frame,
-    shape: CarShape,
-    detail: _Detail,
-    x: float,
-    rise: float,
-    strip: tuple[int, int],
+    frame: Frame, shape: CarShape, detail: _Detail, x: float, rise: float, strip: tuple[int, int]
 ) -> Material:
     """Return the material of a panel whose middle is at x [m], where the roof is `rise` above the
     belt line [m]; `strip` are the lower and the upper point of the section.

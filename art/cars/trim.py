@@ -5,14 +5,7 @@ plates, the third brake lamp, rails, walls of the arches.
 import numpy as np
 from numpy.typing import NDArray
 
-from art.cars.finishes import (
-    BRIGHT,
-    GLASS,
-    HIGH_BRAKE_LAMP,
-    PAINT,
-    PLATE,
-    TRIM,
-)
+from art.cars.finishes import BRIGHT, GLASS, HIGH_BRAKE_LAMP, PAINT, PLATE, TRIM
 from art.cars.frame import Frame
 from art.cars.regions import COOLER, PLAIN, body_paint
 from art.cars.shape import CarShape, arch_radius, half_widths, height_at, sections

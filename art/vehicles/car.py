@@ -22,10 +22,7 @@ _VARIANTS: Mapping[str, tuple[dict[str, Any], ...]] = {
         {"bodywork": "hatch_worn", "dark_bumpers": True, "rack": False},
         {"bodywork": "hatch_sunroof", "rack": True},
     ),
-    "van": (
-        {"dark_bumpers": False, "rack": True},
-        {"bodywork": "van_worn", "rack": True},
-    ),
+    "van": ({"dark_bumpers": False, "rack": True}, {"bodywork": "van_worn", "rack": True}),
 }
 """What each further body of a kind of bodywork has that the first has not."""
 

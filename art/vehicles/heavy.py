@@ -21,13 +21,7 @@ from art.cars.finishes import (
 from art.cars.frame import Axle
 from art.cars.regions import CAB_SIDE, PLAIN, SIDE_PANE, WINDSCREEN, body_paint
 from art.parts import levels_of
-from art.vehicles.vehicle import (
-    CAB,
-    CHASSIS_BEHIND,
-    Trailer,
-    VehicleModel,
-    vehicle,
-)
+from art.vehicles.vehicle import CAB, CHASSIS_BEHIND, Trailer, VehicleModel, vehicle
 from eyas.engine.mesh.panels import fan
 from eyas.engine.mesh.shell import Shell
 from eyas.engine.traffic.config import VehicleType

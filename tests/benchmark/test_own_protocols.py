@@ -14,13 +14,7 @@ import eyas
 from eyas.benchmark.plan.entry import entry_class
 from eyas.benchmark.plan.plan import EvaluationPlan, opened
 from eyas.benchmark.policies.box_trackers import BOX_TRACKERS
-from eyas.benchmark.policies.table import (
-    ORACLES,
-    POLICIES,
-    open_policy,
-    policy_names,
-    runs_code,
-)
+from eyas.benchmark.policies.table import ORACLES, POLICIES, open_policy, policy_names, runs_code
 from eyas.benchmark.protocols.flown import FLOWN
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.benchmark.protocols.table import PROTOCOLS, protocol_named

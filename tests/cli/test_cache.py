@@ -38,10 +38,7 @@ def test_info_tells_the_place_the_limit_and_the_kinds(folder, capsys):
         f"{folder} (EYAS_CACHE_DIR moves it)",
         "4.5 MiB of at most 2,048.0 MiB (EYAS_CACHE_LIMIT changes it)",
     ]
-    assert rows(said) == {
-        "geometry": ["2", "4.0 MiB"],
-        "traffic": ["1", "0.5 MiB"],
-    }
+    assert rows(said) == {"geometry": ["2", "4.0 MiB"], "traffic": ["1", "0.5 MiB"]}
 
 
 def test_clear_removes_one_kind_or_all_and_says_how_much(folder, capsys):

@@ -58,11 +58,7 @@ def shell(line, *arguments, flags=(), **environment):
     ("line", "flags", "environment"),
     [
         ('"$@"', ["-I", "-B", "-W", "error"], {"HOME": "/nowhere"}),
-        (
-            'exec "$@" >&- 2>&- <&-',
-            ["-OO"],
-            {"TERM": "dumb", "NO_COLOR": "1"},
-        ),
+        ('exec "$@" >&- 2>&- <&-', ["-OO"], {"TERM": "dumb", "NO_COLOR": "1"}),
         (
             'umask 077; "$@" | head -c 1',
             [],

@@ -13,12 +13,7 @@ from eyas.datasets.tracking.run import near_look_alikes
 
 @pytest.mark.parametrize(
     ("moved", "changes", "count"),
-    [
-        (199.0, {}, 1),
-        (201.0, {}, 0),
-        (10.0, {"class_id": 12}, 0),
-        (10.0, {"parked": True}, 0),
-    ],
+    [(199.0, {}, 1), (201.0, {}, 0), (10.0, {"class_id": 12}, 0), (10.0, {"parked": True}, 0)],
 )
 def test_look_alikes_count_within_four_diagonals_of_the_target(moved, changes, count):
     other = {"class_id": 9, "box": [moved, 0.0, moved + 30.0, 40.0], **changes}
@@ -53,10 +48,7 @@ class Lost:
 
 def test_a_tracker_is_restarted_five_frames_after_a_failure():
     frame = SimpleNamespace(picture=lambda: np.zeros((8, 8, 3), np.uint8))
-    arrays = {
-        "target_box": np.tile([1, 1, 4, 4], (14, 1)),
-        "visible_fraction": np.ones(14),
-    }
+    arrays = {"target_box": np.tile([1, 1, 4, 4], (14, 1)), "visible_fraction": np.ones(14)}
 
     class Episode(dict):
         def __getitem__(self, number):

@@ -18,10 +18,7 @@ SMALL = validated(
     EyasConfig,
     {
         "done": {"total_steps": 60, "grace_steps": 0, "no_reward_steps": 28},
-        "env": {
-            "action_repeat": 4,
-            "observation": {"width": 24, "height": 24, "layout": "chw"},
-        },
+        "env": {"action_repeat": 4, "observation": {"width": 24, "height": 24, "layout": "chw"}},
         "train": {
             "method": "dagger+ppo",
             "dagger": {"total_timesteps": 64, "guided_timesteps": 40},

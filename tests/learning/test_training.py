@@ -29,10 +29,7 @@ from eyas.learning.trainer import train
 SMALL = validated(
     EyasConfig,
     {
-        "env": {
-            "action_repeat": 4,
-            "observation": {"width": 24, "height": 24, "layout": "chw"},
-        },
+        "env": {"action_repeat": 4, "observation": {"width": 24, "height": 24, "layout": "chw"}},
         "train": {
             "environments": 4,
             "n_steps": 8,

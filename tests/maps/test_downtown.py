@@ -143,11 +143,7 @@ def test_planning_again_gives_the_same_city(plan, scenery, streets, city):
     for parts, others in zip(plan.buildings, again.buildings, strict=True):
         for part, other in zip(parts, others, strict=True):
             assert part.footprint.tobytes() == other.footprint.tobytes()
-            assert (part.height, part.facade, part.tint) == (
-                other.height,
-                other.facade,
-                other.tint,
-            )
+            assert (part.height, part.facade, part.tint) == (other.height, other.facade, other.tint)
     assert again_scenery.park.trees.tobytes() == scenery.park.trees.tobytes()
     assert again_scenery.kerbs.cars.tobytes() == scenery.kerbs.cars.tobytes()
     first = plan.buildings[0][0].footprint

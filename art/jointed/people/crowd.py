@@ -6,16 +6,7 @@ Shares of ages, builds, clothes and skin are rough estimates of what European st
 from collections.abc import Sequence
 from typing import TypeVar
 
-from art.jointed.people.person import (
-    Build,
-    Carried,
-    Garment,
-    Head,
-    Lower,
-    Person,
-    Posture,
-    Shoes,
-)
+from art.jointed.people.person import Build, Carried, Garment, Head, Lower, Person, Posture, Shoes
 
 LOOKS = 112  # Number of people
 

@@ -7,15 +7,7 @@ of the cranks is 2.2 turns of the wheels (a chain of 40 to 18 teeth), so at 5 m/
 from dataclasses import dataclass
 from functools import partial
 
-from art.cars.bicycle import (
-    AXLES,
-    CRANK,
-    PAINTS,
-    SADDLE,
-    WHEEL_RADIUS,
-    add_frame,
-    add_wheel,
-)
+from art.cars.bicycle import AXLES, CRANK, PAINTS, SADDLE, WHEEL_RADIUS, add_frame, add_wheel
 from art.jointed.figure import Figure, Gait, Joint, Leg, Swing
 from art.jointed.model import JointedModel
 from art.jointed.outlines import block, limb, matt, stack

@@ -74,11 +74,7 @@ _FIGURE = Figure(
         _leg(-0.11, -1.0, 0.0),
     ),
     gait=Gait(
-        stride=0.17,
-        duty=0.5,
-        lift=0.03,
-        slowest=0.08,
-        z=Swing(lean=-0.006, size=0.004, beats=2),
+        stride=0.17, duty=0.5, lift=0.03, slowest=0.08, z=Swing(lean=-0.006, size=0.004, beats=2)
     ),
 )
 """It trots: diagonal legs step together."""

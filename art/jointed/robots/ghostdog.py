@@ -77,10 +77,7 @@ _FIGURE = Figure(
         # The two halves of the body turn about joints in the back.
         Joint(name="chest", shape=_chest, pivot=(0.04, 0.0, _HIP), pitch=Swing(size=0.13)),
         Joint(
-            name="croup",
-            shape=_croup,
-            pivot=(-0.04, 0.0, _HIP),
-            pitch=Swing(size=0.13, phase=0.5),
+            name="croup", shape=_croup, pivot=(-0.04, 0.0, _HIP), pitch=Swing(size=0.13, phase=0.5)
         ),
         Joint(
             name="head",

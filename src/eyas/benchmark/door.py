@@ -5,9 +5,7 @@ from eyas.engine.core.doors import House
 HOUSE = House(
     results=True,
     brings={
-        "eyas.policy_opener": {
-            "open_policy": "eyas.benchmark.policies.table:open_policy",
-        },
+        "eyas.policy_opener": {"open_policy": "eyas.benchmark.policies.table:open_policy"},
         "eyas.commands": {
             "evaluate": "eyas.benchmark.commands:evaluate",
             "compare": "eyas.benchmark.commands:compare",

@@ -11,13 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from eyas.benchmark.flight.policy_runner import Runner, run_here
 from eyas.benchmark.plan.plan import EvaluationPlan, Stamp, batches, check, stamp

@@ -19,14 +19,7 @@ from eyas.lanes import thread_count
 from eyas.lanes.entry import EXTRA
 from eyas.lanes.folder import refusal
 from eyas.lanes.identity import code_name
-from eyas.lanes.shipped import (
-    LEVELS,
-    WIDE,
-    KernelLibrary,
-    draws_wide,
-    is_shipped,
-    misfit,
-)
+from eyas.lanes.shipped import LEVELS, WIDE, KernelLibrary, draws_wide, is_shipped, misfit
 from eyas.lanes.trusted import FOLDER_VARIABLE, cache_folder
 
 _NEEDED = ("numpy",)

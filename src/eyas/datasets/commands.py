@@ -36,8 +36,7 @@ def export(
         Path | None, to_write("Folder of the exports; by default RECORDING/exports.")
     ] = None,
     copy: Annotated[
-        bool,
-        typer.Option("--copy/--link", help="Copy the pictures, or make hard links to them."),
+        bool, typer.Option("--copy/--link", help="Copy the pictures, or make hard links to them.")
     ] = False,
     least_side: Annotated[
         int,
@@ -86,8 +85,7 @@ def track(
     tracker: Annotated[
         str,
         typer.Option(
-            "--tracker",
-            help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class.",
+            "--tracker", help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class."
         ),
     ],
     out: Annotated[
@@ -136,8 +134,7 @@ dataset_app = typer.Typer(no_args_is_help=True, help="Make data sets from recipe
 @dataset_app.command("make")
 def make_dataset(
     recipe: Annotated[
-        str,
-        typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False),
+        str, typer.Argument(help="detect, follow, sot, or a JSON file.", show_default=False)
     ],
     out: Annotated[str, to_write("Folder to write to.")],
     workers: Workers = None,

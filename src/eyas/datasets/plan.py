@@ -273,19 +273,11 @@ def _settings(
     changes: dict[str, Any] = {
         "seed": recipe.seed + number,
         "target": chosen["target"],
-        "world": {
-            "map": chosen["map"],
-            "weather": chosen["weather"],
-            "hour": chosen["hour"],
-        },
+        "world": {"map": chosen["map"], "weather": chosen["weather"], "hour": chosen["hour"]},
         "camera": chosen["camera"].model_dump(),
         "start": {"height": chosen["height"], "pitch": chosen["pitch"]},
         "extras": chosen["extras"],
-        "video": {
-            "fps": recipe.fps,
-            "flight": chosen["flight"],
-            "writers": recipe.writers,
-        },
+        "video": {"fps": recipe.fps, "flight": chosen["flight"], "writers": recipe.writers},
     }
     config = updated(EyasConfig(), changes)
     named: list[tuple[str, Mapping[str, Any]]] = [("settings", recipe.settings)]

@@ -29,13 +29,7 @@ from eyas.lanes.front_end import SETTINGS, Compiler, Library, flags, typing
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import let_in
 from eyas.lanes.machine_code import MachineCode, optimised
-from eyas.lanes.modules import (
-    Module,
-    kept_module,
-    linked,
-    module_name,
-    module_of,
-)
+from eyas.lanes.modules import Module, kept_module, linked, module_name, module_of
 from eyas.lanes.targets import current_context, for_threads, target_name
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 

@@ -40,10 +40,7 @@ FOLDER = Path(__file__).parent / "shipped"
 
 _V3 = "abm avx avx2 bmi1 bmi2 cx16 f16c fma lahf_lm movbe pni popcnt sse4_1 sse4_2 ssse3"
 
-LEVELS = {
-    "x86_64": Level("x86-64-v3", frozenset(_V3.split())),
-    "aarch64": Level("armv8-a"),
-}
+LEVELS = {"x86_64": Level("x86-64-v3", frozenset(_V3.split())), "aarch64": Level("armv8-a")}
 """The level of each machine."""
 
 _V4 = "avx512f avx512bw avx512cd avx512dq avx512vl avx512_bf16"

@@ -202,8 +202,7 @@ configs = st.fixed_dictionaries(
         "light": st.one_of(
             st.fixed_dictionaries({"background": st.floats(-1, 1), "visibility": variations}),
             st.builds(
-                lambda pair: {"sun": {"uniform": pair}, "sun_replaces": True},
-                st.tuples(unit, unit),
+                lambda pair: {"sun": {"uniform": pair}, "sun_replaces": True}, st.tuples(unit, unit)
             ),
         ),
         "objects": st.fixed_dictionaries({"offset": two_sided}),
@@ -256,10 +255,7 @@ def test_saved_files_load_back(tmp_path):
 @pytest.mark.parametrize(
     ("values", "line"),
     [
-        (
-            {"Control_Frequence": 0},
-            "Control_Frequence: 0 is not allowed: a number from 1 to 500",
-        ),
+        ({"Control_Frequence": 0}, "Control_Frequence: 0 is not allowed: a number from 1 to 500"),
         (
             {"Control_Frequency": 9},
             "Control_Frequency: unknown key; did you mean 'Control_Frequence'?",

@@ -17,10 +17,7 @@ def test_older_keys_and_values_are_read_with_a_line_each(caplog):
         "Reward_Config": {"reward_range": 6.5},
         "Sumo_Params": {"car_type": "private"},
     }
-    newer = {
-        "Reward_Config": {"distance_range": 6.5},
-        "Sumo_Params": {"car_type": "passenger"},
-    }
+    newer = {"Reward_Config": {"distance_range": 6.5}, "Sumo_Params": {"car_type": "passenger"}}
     assert from_original(older) == from_original(newer)
     lines = [record.getMessage() for record in caplog.records]
     for key in ("Sumo_Random_Mode", "Reward_Config.reward_range", "Sumo_Params.car_type"):

@@ -105,7 +105,7 @@ SOLIDS = {"Solid", "Robot", "Camera", "Lidar", "GPS", "InertialUnit", "Gyro", "A
 never shown again by USE (reference/def-and-use.md)."""
 
 CHILDREN = SOLIDS | {
-    *("Group", "Pose", "Transform", "Shape", "HingeJoint", "DirectionalLight", "SpotLight"),
+    *("Group", "Pose", "Transform", "Shape", "HingeJoint", "DirectionalLight", "SpotLight")
 }
 """What `children` may hold."""
 

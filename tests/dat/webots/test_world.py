@@ -202,10 +202,7 @@ def test_sky_sun_fog_and_lamps_are_those_of_the_weather(scene):
         (Node("Transform", {"children": [Node("Solid")]}), "below a Transform"),
         (Node("Shape", {"geometry": Node("Solid")}), "holds a Solid"),
         (Node("Solid", {"boundingObject": Node("Transform")}), "Transform"),
-        (
-            Node("ElevationGrid", {"xDimension": 2, "yDimension": 2, "height": []}),
-            "ElevationGrid|",
-        ),
+        (Node("ElevationGrid", {"xDimension": 2, "yDimension": 2, "height": []}), "ElevationGrid|"),
     ],
 )
 def test_the_grammar_refuses_what_webots_would(wrong, what):

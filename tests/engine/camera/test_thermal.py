@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.engine.camera.temperature import SurfaceTemperatures, direction_of
-from eyas.engine.camera.thermal import (
-    HEAT,
-    ThermalConfig,
-    ThermalFrames,
-    ThermalImager,
-    slot_heat,
-)
+from eyas.engine.camera.thermal import HEAT, ThermalConfig, ThermalFrames, ThermalImager, slot_heat
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.optics.lens import FISHEYE, lens_of, rays
 from eyas.engine.state.draw import DrawList
@@ -19,11 +13,7 @@ from eyas.engine.world.weather import DAY, FOGGY, SNOW
 from eyas.lanes import interpreted, limit_threads
 
 _cell = interpreted(direction_of)
-UP, EAST, WEST = (
-    _cell(0.0, 0.0, 1.0),
-    _cell(1.0, 0.0, 0.0),
-    _cell(-1.0, 0.0, 0.0),
-)
+UP, EAST, WEST = (_cell(0.0, 0.0, 1.0), _cell(1.0, 0.0, 0.0), _cell(-1.0, 0.0, 0.0))
 SIZE = 24, 32
 
 

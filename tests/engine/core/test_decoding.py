@@ -29,8 +29,7 @@ def test_numbers_below_2_64_are_read_exactly():
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["18446744073709551616", "-18446744073709551616", "1e20", "1E+020", "NaN", "-Infinity"],
+    "text", ["18446744073709551616", "-18446744073709551616", "1e20", "1E+020", "NaN", "-Infinity"]
 )
 def test_larger_numbers_and_those_that_are_none_are_refused(text):
     with pytest.raises(ValueError, match="is not allowed"):

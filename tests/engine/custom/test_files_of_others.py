@@ -54,12 +54,7 @@ def gltf() -> bytes:
                 {"buffer": 0, "byteOffset": 0, "byteLength": 48},
                 {"buffer": 0, "byteOffset": 48, "byteLength": 12},
             ],
-            "buffers": [
-                {
-                    "byteLength": 60,
-                    "uri": f"data:application/octet-stream;base64,{data}",
-                }
-            ],
+            "buffers": [{"byteLength": 60, "uri": f"data:application/octet-stream;base64,{data}"}],
         }
     ).encode()
 

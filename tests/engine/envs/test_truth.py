@@ -10,8 +10,7 @@ from eyas.engine.policies.sight import subjects, visible_shares
 from eyas.engine.settings.config import EyasConfig
 
 SMALL = validated(
-    EyasConfig,
-    {"env": {"action_repeat": 16, "observation": {"width": 32, "height": 24}}},
+    EyasConfig, {"env": {"action_repeat": 16, "observation": {"width": 32, "height": 24}}}
 )
 MIXED = updated(
     SMALL,

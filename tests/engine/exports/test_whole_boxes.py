@@ -35,11 +35,7 @@ def frames_of(**settings) -> list:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "settings",
-    [
-        CAR,
-        {"target": "Pedestrian", **WALK},
-        {"target": "Mantis", **WALK},
-    ],
+    [CAR, {"target": "Pedestrian", **WALK}, {"target": "Mantis", **WALK}],
     ids=["car", "person", "robot"],
 )
 def test_a_whole_box_is_what_a_larger_picture_would_show(settings):

@@ -28,11 +28,7 @@ def view(rows: int = SIDE - TOP) -> View:
 
 @kernel
 def hidden(
-    boxes: np.ndarray,
-    shown: View,
-    key: np.ndarray,
-    tiles: np.ndarray,
-    result: np.ndarray,
+    boxes: np.ndarray, shown: View, key: np.ndarray, tiles: np.ndarray, result: np.ndarray
 ) -> None:
     """Write which boxes are hidden behind a picture."""
     measure_tiles(key, shown.width, tiles)

@@ -139,10 +139,7 @@ def test_streaks_are_long_and_upright(seen):
 
 
 def test_lamps_light_the_drops_below_them(seen):
-    dark = dataclasses.replace(
-        FALLING,
-        **dict.fromkeys(DARK, (0.0, 0.0, 0.0)),
-    )
+    dark = dataclasses.replace(FALLING, **dict.fromkeys(DARK, (0.0, 0.0, 0.0)))
     road = plate("asphalt")
     spots = np.array([[x, y, 6.0] for x in range(2, 12, 3) for y in range(-6, 7, 3)], np.float32)
     road.lamps = Lamps(spots, np.tile(np.array([0, 0, -1.0], "f4"), (len(spots), 1)))

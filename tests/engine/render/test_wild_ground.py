@@ -38,8 +38,7 @@ def test_rock_shows_where_a_hill_is_steep_and_grass_where_it_is_not(seen):
 
 
 @pytest.mark.parametrize(
-    ("surface", "texture"),
-    [(Surface.HILLSIDE, "lawn"), (Surface.HEATH, "soil")],
+    ("surface", "texture"), [(Surface.HILLSIDE, "lawn"), (Surface.HEATH, "soil")]
 )
 def test_wild_ground_is_uneven_over_metres(seen, surface, texture):
     wild, plain = seen(slope(surface, 0.0, texture)), seen(slope(Surface.MATT, 0.0, texture))

@@ -55,8 +55,7 @@ def test_without_errors_the_truth_is_read():
 
 
 @pytest.mark.parametrize(
-    ("field", "columns"),
-    list(zip(FIELDS, (POSITION, VELOCITY, FELT, TURN, EULER), strict=True)),
+    ("field", "columns"), list(zip(FIELDS, (POSITION, VELOCITY, FELT, TURN, EULER), strict=True))
 )
 def test_noise_is_normal_of_its_deviation_and_in_its_columns_only(field, columns):
     clean, noisy = (

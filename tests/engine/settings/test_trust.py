@@ -95,13 +95,7 @@ def test_a_folder_can_be_trusted(someones, monkeypatch):
 
 @pytest.mark.parametrize(
     "command",
-    [
-        ["video"],
-        ["train"],
-        ["demo", "--headless"],
-        ["traffic", "record"],
-        ["serve", "--root", "."],
-    ],
+    [["video"], ["train"], ["demo", "--headless"], ["traffic", "record"], ["serve", "--root", "."]],
     ids=lambda command: command[0],
 )
 def test_each_command_refuses_and_is_told_to_trust_by_a_flag(someones, command, monkeypatch, capfd):

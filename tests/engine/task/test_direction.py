@@ -2,11 +2,7 @@ import math
 
 import pytest
 
-from eyas.engine.task.direction import (
-    TargetDirection,
-    target_centre,
-    target_direction,
-)
+from eyas.engine.task.direction import TargetDirection, target_centre, target_direction
 
 HEADINGS = [-3.0, -1.0, 0.0, 1.0, 3.0, math.pi, -math.pi]
 

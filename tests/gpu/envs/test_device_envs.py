@@ -76,8 +76,7 @@ def rows_of(observation, index):
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize(
-    ("count", "workers", "mode"),
-    [(1, 1, MODES[0]), (7, 3, MODES[1]), (7, 64, MODES[2])],
+    ("count", "workers", "mode"), [(1, 1, MODES[0]), (7, 3, MODES[1]), (7, 64, MODES[2])]
 )
 def test_they_give_what_the_usual_ones_give(case, count, workers, mode):
     usual, ours = pair(case, count, workers, mode, copy=mode is not AutoresetMode.SAME_STEP)

@@ -138,9 +138,7 @@ def on_ray() -> Iterator[Runner]:
 
 
 def _fly(
-    ray: Ray,
-    plan: EvaluationPlan,
-    parts: list[list[EpisodeSpec]],
+    ray: Ray, plan: EvaluationPlan, parts: list[list[EpisodeSpec]]
 ) -> Iterator[list[EpisodeRecord]]:
     """Yield the records of batches as they are done."""
     cores = int(ray.cluster_resources().get("CPU", 1))

@@ -49,12 +49,7 @@ class OnnxPolicy:
     """
 
     def __init__(
-        self,
-        path: Path,
-        session: Session,
-        changes: Mapping[str, Any],
-        *,
-        sampled: bool,
+        self, path: Path, session: Session, changes: Mapping[str, Any], *, sampled: bool
     ) -> None:
         self._session = session
         settings = settings_in(path, f"metadata '{METADATA}'", metadata(path, session, METADATA))

@@ -13,14 +13,7 @@ from eyas.benchmark.policies.simple import HOVER
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.core.own_code import imported, left_out, running, takes
 from eyas.engine.envs.observation import Observation
-from eyas.engine.policies.policy import (
-    Decision,
-    Failure,
-    Policy,
-    PolicyInput,
-    Start,
-    env_config,
-)
+from eyas.engine.policies.policy import Decision, Failure, Policy, PolicyInput, Start, env_config
 from eyas.engine.policies.steering import pixel_offset, towards
 from eyas.engine.settings.env import EnvConfig
 
@@ -43,11 +36,7 @@ class PerEpisodePolicy:
     sampled = False
 
     def __init__(
-        self,
-        make: Callable[[], Any],
-        env: EnvConfig,
-        path: str,
-        told: frozenset[str] = frozenset(),
+        self, make: Callable[[], Any], env: EnvConfig, path: str, told: frozenset[str] = frozenset()
     ) -> None:
         self.env, self._make, self._path, self.told = env, make, path, told
 

@@ -21,13 +21,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import ConfigError
-from eyas.engine.policies.policy import (
-    Decision,
-    Failure,
-    PolicyFailedError,
-    PolicyInput,
-    Start,
-)
+from eyas.engine.policies.policy import Decision, Failure, PolicyFailedError, PolicyInput, Start
 from eyas.engine.settings.env import EnvConfig
 
 Array = NDArray[Any]
@@ -99,11 +93,7 @@ class _Child:
     def __init__(self, said: str, changes: Mapping[str, Any], *, sampled: bool) -> None:
         paths = [path for path in sys.path if path]
         self._process = subprocess.Popen(
-            [
-                sys.executable,
-                "-c",
-                f"from {_WORKER} import main; main()",
-            ],
+            [sys.executable, "-c", f"from {_WORKER} import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},

@@ -74,11 +74,7 @@ CORRUPTIONS: Mapping[str, tuple[Settings, ...]] = {
     ),
     "dirt": tuple(
         _camera(
-            dirt={
-                "spots": count,
-                "spot_size": _between(0.06, 0.14),
-                "opacity": _between(0.5, 0.9),
-            }
+            dirt={"spots": count, "spot_size": _between(0.06, 0.14), "opacity": _between(0.5, 0.9)}
         )
         for count in (4, 8, 14, 22, 32)
     ),

@@ -62,7 +62,7 @@ def croissant(made: Stamp, sha256: str) -> dict[str, Any]:
             "Episodes are starts in a few recordings of simulated traffic on the named maps.",
         ],
         "rai:dataBiases": [
-            "Roads, cars, people and light are of a few made-up places; most targets are cars.",
+            "Roads, cars, people and light are of a few made-up places; most targets are cars."
         ],
         "rai:dataUseCases": ["Comparison of policies that track a target with a drone."],
         "rai:dataSocialImpact": (

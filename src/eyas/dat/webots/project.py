@@ -122,10 +122,7 @@ def _robots(name: str) -> list[Node]:
         "supervisor": True,
     }
     roads: dict[str, Value] = {"networkFiles": f"{name}_net", "maxVehicles": 40}
-    return [
-        Node("Robot", receiver, "GLOBAL_RECEIVER"),
-        Node(INTERFACE, roads, "SUMO_INTERFACE"),
-    ]
+    return [Node("Robot", receiver, "GLOBAL_RECEIVER"), Node(INTERFACE, roads, "SUMO_INTERFACE")]
 
 
 def _ground(scene: Scene) -> dict[str, bytes]:

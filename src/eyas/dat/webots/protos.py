@@ -159,11 +159,7 @@ def _lidar() -> Node:
 
 
 def _joint(
-    name: str,
-    axis: tuple[float, ...],
-    anchor: tuple[float, ...],
-    limit: float,
-    carried: list[Node],
+    name: str, axis: tuple[float, ...], anchor: tuple[float, ...], limit: float, carried: list[Node]
 ) -> Node:
     """Return a joint of the gimbal; what it carries has its origin in the joint."""
     motor: dict[str, Value] = {

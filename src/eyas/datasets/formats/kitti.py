@@ -26,14 +26,7 @@ from numpy.typing import NDArray
 from eyas.engine.core.frames import wrap_angle
 from eyas.engine.exports.boxes import box_of, camera_pose
 from eyas.engine.exports.label import Label
-from eyas.engine.recordings.format import (
-    Exported,
-    Format,
-    SeenObject,
-    by_split,
-    lines,
-    objects_of,
-)
+from eyas.engine.recordings.format import Exported, Format, SeenObject, by_split, lines, objects_of
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 from eyas.lanes import exact, interpreted

@@ -28,10 +28,7 @@ CAMERA = "observation.images.camera"
 _CHUNK = 1000  # Files in a folder
 _LOOKED_AT = 16  # Pictures of an episode by which the statistics of its colours are estimated
 
-_FEATURES = {
-    "observation.state": STATE_NAMES,
-    "observation.environment_state": TRUTH_NAMES,
-}
+_FEATURES = {"observation.state": STATE_NAMES, "observation.environment_state": TRUTH_NAMES}
 _ACTION = "action"
 _COUNTERS = ("timestamp", "frame_index", "episode_index", "index", "task_index")
 

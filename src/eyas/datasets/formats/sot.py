@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.exports.label import Label
-from eyas.engine.recordings.format import (
-    CLASS_NAMES,
-    Exported,
-    Format,
-    by_split,
-    lines,
-    split_of,
-)
+from eyas.engine.recordings.format import CLASS_NAMES, Exported, Format, by_split, lines, split_of
 from eyas.engine.recordings.recording import RecordedEpisode
 from eyas.engine.state.scene import ObjectClass
 

@@ -36,9 +36,7 @@ def on_ray() -> Iterator[Recorded]:
 
 
 def _recorded(
-    ray: Ray,
-    parts: Sequence[DatasetPart],
-    root: Path,
+    ray: Ray, parts: Sequence[DatasetPart], root: Path
 ) -> Iterator[tuple[DatasetPart, PartFacts]]:
     cores = max(1, int(ray.cluster_resources().get("CPU", 1)))
     task = ray.remote(num_cpus=1, max_retries=_RETRIES)(_archive_of)

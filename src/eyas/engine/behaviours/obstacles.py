@@ -27,12 +27,7 @@ _EDGE: Final = 5.0  # Distance to the edge of the map that is kept [m]
 
 _FAR: Final = 1e5  # Farther than anything is put [m]
 
-_SOLID: Final = (
-    ObjectClass.BUILDING,
-    ObjectClass.TREE,
-    ObjectClass.STRUCTURE,
-    ObjectClass.POLE,
-)
+_SOLID: Final = (ObjectClass.BUILDING, ObjectClass.TREE, ObjectClass.STRUCTURE, ObjectClass.POLE)
 
 Floats = NDArray[np.float64]
 

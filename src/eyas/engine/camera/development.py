@@ -273,12 +273,7 @@ def _develop_grey(
 
 @kernel
 def _develop_mosaic(
-    work: _Work,
-    developed: _Developed,
-    view: int,
-    first: int,
-    last: int,
-    raw: NDArray[np.float32],
+    work: _Work, developed: _Developed, view: int, first: int, last: int, raw: NDArray[np.float32]
 ) -> None:
     """Develop some rows of a picture behind a mosaic, whose photosites have been read."""
     height, width = developed.radiance.shape[2], developed.radiance.shape[3]

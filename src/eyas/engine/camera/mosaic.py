@@ -7,13 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.camera.counting import Counts
-from eyas.engine.camera.photosites import (
-    Readout,
-    noise_bits,
-    pattern_bits,
-    read_out,
-    row_error,
-)
+from eyas.engine.camera.photosites import Readout, noise_bits, pattern_bits, read_out, row_error
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, lane_numbers, load, select, splat, store, to_u4

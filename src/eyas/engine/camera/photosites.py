@@ -11,17 +11,7 @@ from eyas.engine.render.kernels.hash_noise import scrambled
 from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel
 from eyas.lanes.elementary import exp
-from eyas.lanes.vector import (
-    any_of,
-    greater,
-    lesser,
-    root,
-    select,
-    to_f4,
-    to_i4,
-    to_u4,
-    whole,
-)
+from eyas.lanes.vector import any_of, greater, lesser, root, select, to_f4, to_i4, to_u4, whole
 
 _DEVIATION_OF_FOUR, _DEVIATION_OF_TWO = 147.8, 104.5
 """Standard deviations of the sums of four and of two random bytes: (k (256^2 - 1) / 12)^(1/2)."""

@@ -177,9 +177,7 @@ def _shine(lighting: Lighting, *, dark: bool) -> float:
 
 
 def _stored(
-    normals: NDArray[np.float64],
-    suns: list[tuple[tuple[float, float, float], float]],
-    hours: float,
+    normals: NDArray[np.float64], suns: list[tuple[tuple[float, float, float], float]], hours: float
 ) -> NDArray[np.float64]:
     """Return the share of vertical sunshine that surfaces still hold, 0 to 1."""
     held, whole = np.zeros(normals.shape[:-1]), 0.0

@@ -143,9 +143,7 @@ def validated(
 
 
 def updated(
-    config: Model,
-    changes: Mapping[str, Any],
-    retell: Callable[[Problem], Problem] | None = None,
+    config: Model, changes: Mapping[str, Any], retell: Callable[[Problem], Problem] | None = None
 ) -> Model:
     """Return the settings with some values changed.
 

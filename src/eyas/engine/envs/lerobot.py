@@ -105,11 +105,7 @@ def make_lerobot_env(
     choices.setdefault("actions", "velocity")
     return LeRobotVectorEnv(
         EyasVectorEnv(
-            n_envs,
-            cfg,
-            autoreset_mode=AutoresetMode.SAME_STEP,
-            render_mode="rgb_array",
-            **choices,
+            n_envs, cfg, autoreset_mode=AutoresetMode.SAME_STEP, render_mode="rgb_array", **choices
         )
     )
 

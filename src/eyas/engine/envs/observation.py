@@ -230,10 +230,7 @@ class Observer:
         stack.add(picture.rgb, chosen, begun)
 
     def _draw(
-        self,
-        chosen: NDArray[np.int32],
-        begun: NDArray[np.bool_],
-        covered: NDArray[np.bool_] | None,
+        self, chosen: NDArray[np.int32], begun: NDArray[np.bool_], covered: NDArray[np.bool_] | None
     ) -> None:
         """Draw what the cameras of some trackers see, see `look`."""
         picture = self._picture.first(len(chosen))

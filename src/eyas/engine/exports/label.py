@@ -73,8 +73,7 @@ EXTENT = _array("4 numbers", NUMBER.schema, 4)
 VECTOR = _array("3 numbers", NUMBER.schema, 3)
 MATRIX = _array("3 rows of 3 numbers", VECTOR.schema, 3)
 COEFFICIENTS = Type(
-    "4 or 5 numbers",
-    {"type": "array", "items": NUMBER.schema, "minItems": 4, "maxItems": 5},
+    "4 or 5 numbers", {"type": "array", "items": NUMBER.schema, "minItems": 4, "maxItems": 5}
 )
 SIGNALS = Type(
     "lists of numbers by name",

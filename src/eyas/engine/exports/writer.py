@@ -43,9 +43,7 @@ class Scores:
         """Return the sums including one more frame."""
         finite = math.isfinite(reward)
         return Scores(
-            self.rewarded + finite,
-            self.reward + (reward if finite else 0.0),
-            self.sightings + seen,
+            self.rewarded + finite, self.reward + (reward if finite else 0.0), self.sightings + seen
         )
 
 

@@ -64,12 +64,7 @@ def box_panels(
     (x0, y0, z0), (x1, y1, z1), t = low, high, taper
     bottom = np.array([(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)])
     top = np.array(
-        [
-            (x0 + t, y0 + t, z1),
-            (x1 - t, y0 + t, z1),
-            (x1 - t, y1 - t, z1),
-            (x0 + t, y1 - t, z1),
-        ]
+        [(x0 + t, y0 + t, z1), (x1 - t, y0 + t, z1), (x1 - t, y1 - t, z1), (x0 + t, y1 - t, z1)]
     )
     return np.concatenate([[bottom[::-1]], [top], cells(closed([bottom, top]))])
 

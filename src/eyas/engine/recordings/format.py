@@ -251,9 +251,5 @@ def numbered(frame: RecordedFrame, first: int, digits: int, ending: str) -> str:
 
 SETTING = "--format"
 
-FORMATS: Registry[type[Any]] = Registry(
-    SETTING,
-    type,
-    group="eyas.formats",
-)
+FORMATS: Registry[type[Any]] = Registry(SETTING, type, group="eyas.formats")
 """All formats; a user's own is selected by its path, `my_package.module:Class`."""

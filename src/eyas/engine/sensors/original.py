@@ -76,11 +76,7 @@ GPS_VELOCITY = Sensor(
     name="gps_velocity", unit="m/s", parts=_vector("velocity"), read=_velocity, noise=0.05
 )
 ACCELEROMETER = Sensor(
-    name="accelerometer",
-    unit="m/s²",
-    parts=_vector("felt_acceleration"),
-    read=_felt,
-    noise=0.012,
+    name="accelerometer", unit="m/s²", parts=_vector("felt_acceleration"), read=_felt, noise=0.012
 )
 GYROSCOPE = Sensor(
     name="gyroscope", unit="rad/s", parts=_vector("angular_velocity"), read=_turn, noise=0.0006

@@ -17,13 +17,7 @@ from eyas.engine.sensors.obstacles import Solids
 from eyas.engine.sim.cover import cover_of
 from eyas.engine.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.engine.sim.crowd_motion import CrowdSurroundings, live_motions, with_crowd
-from eyas.engine.sim.scenes import (
-    Lenses,
-    load_geometry,
-    load_network,
-    load_scene,
-    load_solids,
-)
+from eyas.engine.sim.scenes import Lenses, load_geometry, load_network, load_scene, load_solids
 from eyas.engine.sim.views.additions import SignalLights, lights_of, signal_poles
 from eyas.engine.state.draw import Renderer
 from eyas.engine.state.lighting import Lighting

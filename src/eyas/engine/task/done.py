@@ -57,11 +57,7 @@ _ORIGINALS = {
     DoneReason.TILT: "pitch or yaw angle",
 }
 
-_NONE, _HEIGHT, _DISTANCE = (
-    int(DoneReason.NONE),
-    int(DoneReason.HEIGHT),
-    int(DoneReason.DISTANCE),
-)
+_NONE, _HEIGHT, _DISTANCE = (int(DoneReason.NONE), int(DoneReason.HEIGHT), int(DoneReason.DISTANCE))
 _VELOCITY, _YAW_RATE, _TILT = (
     int(DoneReason.VELOCITY),
     int(DoneReason.YAW_RATE),

@@ -45,8 +45,7 @@ MapName = Annotated[
     typer.Option("--map", help="Name of the map, FILE.plan.json, or package.module:attribute."),
 ]
 Weather = Annotated[
-    str | None,
-    typer.Option("--weather", help="Name of the weather, or package.module:attribute."),
+    str | None, typer.Option("--weather", help="Name of the weather, or package.module:attribute.")
 ]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
 UntilIdle = Annotated[

@@ -72,12 +72,7 @@ def within_power(thrusts: Thrusts, most: float) -> Thrusts:
     """
     a, b, c, d = thrusts
     excess = max(0.0, max(max(a, b), max(c, d)) - most)
-    return (
-        max(0.0, a - excess),
-        max(0.0, b - excess),
-        max(0.0, c - excess),
-        max(0.0, d - excess),
-    )
+    return (max(0.0, a - excess), max(0.0, b - excess), max(0.0, c - excess), max(0.0, d - excess))
 
 
 @kernel

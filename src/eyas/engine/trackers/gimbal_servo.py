@@ -70,11 +70,7 @@ def _carried_along(gimbal: NDArray[np.float64], change: Vector) -> Vector:
     """Return what the body's turn is about the axes of the original's joints: roll, pitch, yaw."""
     (sp, cp), (sy, cy) = sin_cos(gimbal[1]), sin_cos(gimbal[2])
     ahead = cy * change[0] + sy * change[1]
-    return (
-        cp * ahead - sp * change[2],
-        cy * change[1] - sy * change[0],
-        change[2],
-    )
+    return (cp * ahead - sp * change[2], cy * change[1] - sy * change[0], change[2])
 
 
 @kernel

@@ -33,10 +33,7 @@ def car(config: TrackerConfig) -> Tracker:
 TRACKERS: Registry[Callable[[TrackerConfig], Any]] = Registry(
     "tracker.kind",
     Callable,  # type: ignore[arg-type]  # a class to `isinstance`
-    {
-        TrackerKind.DRONE.value: f"{__name__}:drone",
-        TrackerKind.CAR.value: f"{__name__}:car",
-    },
+    {TrackerKind.DRONE.value: f"{__name__}:drone", TrackerKind.CAR.value: f"{__name__}:car"},
 )
 """Functions, or classes, that return a `Tracker` for its settings."""
 

@@ -143,9 +143,7 @@ def walk_plan(net: SumoNet) -> SignalPlan:
     return _plan(shown)
 
 
-def _plan(
-    shown: dict[str, tuple[NetProgram, list[tuple[float, Aspect]]]],
-) -> SignalPlan:
+def _plan(shown: dict[str, tuple[NetProgram, list[tuple[float, Aspect]]]]) -> SignalPlan:
     """Return the plan of lights, from the program and the phases of each."""
     phases = [own for _, own in shown.values()]
     most = max((len(own) for own in phases), default=1)

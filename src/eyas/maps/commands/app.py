@@ -42,9 +42,7 @@ def list_maps(*, as_json: AsJson = False) -> None:
 
 @app.command("gallery")
 def draw_gallery(
-    out: Out = Path("runs/gallery"),
-    map_name: OnlyMaps = None,
-    weather: OnlyWeathers = None,
+    out: Out = Path("runs/gallery"), map_name: OnlyMaps = None, weather: OnlyWeathers = None
 ) -> None:
     """Draw a page of pictures of each map in each weather."""
     from eyas.maps.gallery import run as gallery
@@ -156,8 +154,7 @@ def export_map(
         ),
     ],
     out: Annotated[
-        Path | None,
-        to_write("File or folder to write; by default NAME with an ending."),
+        Path | None, to_write("File or folder to write; by default NAME with an ending.")
     ] = None,
     seed: Seed = 0,
     detail: Annotated[

@@ -139,8 +139,7 @@ def test_someone_else_s_folder_is_one_line(cache):
 def test_a_user_without_a_home_is_one_line():
     reading = "+dac_read_search"  # of this Python, which may lie in root's home
     check_unused(
-        None,
-        *("setpriv", "--reuid=54321", f"--inh-caps={reading}", f"--ambient-caps={reading}"),
+        None, *("setpriv", "--reuid=54321", f"--inh-caps={reading}", f"--ambient-caps={reading}")
     )
 
 

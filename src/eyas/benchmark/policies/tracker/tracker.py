@@ -21,12 +21,7 @@ from eyas.benchmark.policies.tracker.settings import TrackerSettings
 from eyas.benchmark.policies.tracker.steering import Steering, turned
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import DataFileError
-from eyas.engine.policies.policy import (
-    Decision,
-    Failure,
-    PolicyInput,
-    Start,
-)
+from eyas.engine.policies.policy import Decision, Failure, PolicyInput, Start
 from eyas.lanes import exact
 
 Floats = NDArray[np.float64]

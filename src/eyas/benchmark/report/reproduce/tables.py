@@ -252,9 +252,7 @@ def _long_flights() -> Iterator[Table]:
         "`referring`, seeds that no baseline was tuned on",
         ("language_gap", "success_right", "success_other", "chosen"),
         _flown(
-            "referring",
-            ("hover", "follow", "attribute-servo", "eyas-words"),
-            seeds=THREE_SETS[1:2],
+            "referring", ("hover", "follow", "attribute-servo", "eyas-words"), seeds=THREE_SETS[1:2]
         ),
     )
     yield Table(

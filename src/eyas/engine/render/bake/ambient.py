@@ -118,11 +118,7 @@ def _near(decks: NDArray[np.float32], square: int) -> NDArray[np.bool_]:
 
 
 def height_map(
-    scene: Scene,
-    frame: NDArray[np.float64],
-    shape: tuple[int, int],
-    *,
-    structures: bool = False,
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int], *, structures: bool = False
 ) -> NDArray[np.float32]:
     """Return the height of the highest solid above the ground in each texel [m], or that of the
     highest elevated road.

@@ -60,10 +60,7 @@ def _water(scene: Scene) -> NDArray[np.float64]:
 
 
 def _map(
-    scene: Scene,
-    frame: NDArray[np.float64],
-    shape: tuple[int, int],
-    water: NDArray[np.float64],
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int], water: NDArray[np.float64]
 ) -> NDArray[np.uint16]:
     from PIL import Image, ImageDraw  # only where mist or leaves lie
 

@@ -7,10 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.engine.mesh.assembly import concatenate
-from eyas.engine.render.kernels.visibility.clusters import (
-    CLUSTER,
-    UV_ROWS,
-)
+from eyas.engine.render.kernels.visibility.clusters import CLUSTER, UV_ROWS
 from eyas.engine.render.pack.clusters import (
     bounds_of,
     by_clusters,

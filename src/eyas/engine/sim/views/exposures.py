@@ -156,12 +156,7 @@ class Exposures:
         return counts[0], np.minimum(counts[1] | 1, height)
 
     def _draw(
-        self,
-        chosen: Chosen,
-        exposure: Exposure,
-        pieces: Pieces,
-        picture: Picture,
-        until: DrawStage,
+        self, chosen: Chosen, exposure: Exposure, pieces: Pieces, picture: Picture, until: DrawStage
     ) -> None:
         """Draw passes into as many pictures."""
         of = pieces.view[pieces.passed]

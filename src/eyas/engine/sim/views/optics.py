@@ -17,12 +17,7 @@ from eyas.engine.camera.link import Link
 from eyas.engine.camera.near_infrared import near_infrared
 from eyas.engine.camera.shutter import Shutter
 from eyas.engine.camera.temperature import SurfaceTemperatures
-from eyas.engine.camera.thermal import (
-    ThermalConfig,
-    ThermalFrames,
-    ThermalImager,
-    slot_heat,
-)
+from eyas.engine.camera.thermal import ThermalConfig, ThermalFrames, ThermalImager, slot_heat
 from eyas.engine.camera.tone import ToneCurve
 from eyas.engine.core.counter_rng import SEEDS
 from eyas.engine.core.variation import sample

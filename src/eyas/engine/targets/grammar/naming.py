@@ -124,9 +124,7 @@ def _relations(
         for bearing in _shuffled(tuple(Bearing), rng):
             for reference in descriptions(view, other):
                 claim = looks[0]._replace(
-                    bearing=bearing,
-                    other_body=reference.body,
-                    other_colour=reference.colour,
+                    bearing=bearing, other_body=reference.body, other_colour=reference.colour
                 )
                 if distinguishes(reference, view, other) and holds(claim, view)[row]:
                     yield from (

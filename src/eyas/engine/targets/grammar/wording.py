@@ -54,13 +54,7 @@ class WordingSet(NamedTuple):
 
 WORDINGS: Mapping[Wording, WordingSet] = {
     Wording.TRAINING: WordingSet(
-        sentences=(
-            "{}",
-            "follow {}",
-            "track {}",
-            "keep your eye on {}",
-            "the target is {}",
-        ),
+        sentences=("{}", "follow {}", "track {}", "keep your eye on {}", "the target is {}"),
         doing={
             MotionWord.STANDING: ("standing still", "that stands still"),
             MotionWord.MOVING: ("on the move", "that is {}"),
@@ -85,13 +79,7 @@ WORDINGS: Mapping[Wording, WordingSet] = {
         },
     ),
     Wording.TEST: WordingSet(
-        sentences=(
-            "stay with {}",
-            "do not lose {}",
-            "fly after {}",
-            "watch only {}",
-            "we want {}",
-        ),
+        sentences=("stay with {}", "do not lose {}", "fly after {}", "watch only {}", "we want {}"),
         doing={
             MotionWord.STANDING: ("which has stopped", "waiting in its place"),
             MotionWord.MOVING: ("which keeps {}", "under way"),

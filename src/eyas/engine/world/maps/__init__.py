@@ -12,8 +12,5 @@ from eyas.engine.world.maps.recipe import MapRecipe
 __all__ = ["MAPS", "MapRecipe"]
 
 MAPS: Registry[MapRecipe] = Registry(
-    "world.map",
-    MapRecipe,
-    group="eyas.maps",
-    files="eyas.map_files",
+    "world.map", MapRecipe, group="eyas.maps", files="eyas.map_files"
 )

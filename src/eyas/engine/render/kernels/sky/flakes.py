@@ -79,11 +79,7 @@ def let_flakes_fall(
 
 @kernel
 def _let_fall(
-    band: Band,
-    instant: float,
-    falling: Falling,
-    white: tuple[float, float, float],
-    canvas: Canvas,
+    band: Band, instant: float, falling: Falling, white: tuple[float, float, float], canvas: Canvas
 ) -> None:
     """Draw one thing that falls; `white` is the radiance of a white flake."""
     pale = bytes_of(band.light, band.lit.air.exposure, white)

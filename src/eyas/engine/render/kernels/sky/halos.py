@@ -107,11 +107,7 @@ def _of_vehicle(band: Band, body: Caster, brakes: bool, canvas: Canvas) -> None:
 
 @kernel
 def _draw(
-    band: Band,
-    place: tuple[float, float, float],
-    peak: float,
-    white: bool,
-    canvas: Canvas,
+    band: Band, place: tuple[float, float, float], peak: float, white: bool, canvas: Canvas
 ) -> None:
     """Draw the halo of a lamp at a place [m]."""
     view, eye, (x, y, z) = band.camera, band.camera.eye, place

@@ -6,17 +6,7 @@ from eyas.engine.render.kernels.bundles import Illumination
 from eyas.engine.render.kernels.hash_noise import hashed
 from eyas.engine.render.kernels.scalars import f4, u4
 from eyas.lanes import kernel
-from eyas.lanes.vector import (
-    greater,
-    lesser,
-    like,
-    magnitude,
-    root,
-    select,
-    to_f4,
-    to_i4,
-    to_u4,
-)
+from eyas.lanes.vector import greater, lesser, like, magnitude, root, select, to_f4, to_i4, to_u4
 
 _STAR_ROWS = f4(72.0)  # Rows of cells from the horizon to the zenith, of equal area
 

@@ -10,16 +10,7 @@ from eyas.engine.render.kernels.colours import Vector
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.engine.render.kernels.wind import sways
 from eyas.lanes import kernel
-from eyas.lanes.vector import (
-    any_of,
-    bit_pattern,
-    like,
-    magnitude,
-    root,
-    select,
-    to_i4,
-    transposed,
-)
+from eyas.lanes.vector import any_of, bit_pattern, like, magnitude, root, select, to_i4, transposed
 
 
 class Frame(NamedTuple):
@@ -73,10 +64,7 @@ def _linear(value: float) -> float:
 
 @kernel(inline=True)
 def _frame_of(
-    poses: NDArray[np.float32],
-    colours: NDArray[np.float32],
-    lamps: NDArray[np.uint8],
-    index: int,
+    poses: NDArray[np.float32], colours: NDArray[np.float32], lamps: NDArray[np.uint8], index: int
 ) -> Frame:
     """Return row `index` of poses, shape (., 3, 4), and if there are any of colours, (., 3), and of
     lamps, (.,).

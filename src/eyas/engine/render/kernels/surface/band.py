@@ -181,11 +181,7 @@ def _places_within(
 
 @kernel(inline=True)
 def _alike(
-    bent: bool,
-    four: Four,
-    places: tuple[Colour, Colour, Colour, Colour],
-    k: int,
-    across: int,
+    bent: bool, four: Four, places: tuple[Colour, Colour, Colour, Colour], k: int, across: int
 ) -> tuple[int, bool, int, float, float, float, float]:
     """Compare sample `k` of eight pixels with the others.
 

@@ -90,10 +90,7 @@ def water_slope(
     small_u, small_v, _, _ = colour_of(low, high)
     half = f4(0.5)
     # The small waves' own v runs west, their u north.
-    return (
-        (large_u - half) - half * (small_v - half),
-        (large_v - half) + half * (small_u - half),
-    )
+    return ((large_u - half) - half * (small_v - half), (large_v - half) + half * (small_u - half))
 
 
 @kernel(inline=True)

@@ -7,16 +7,7 @@ from eyas.engine.render.kernels.colours import Colour, clip, where
 from eyas.engine.render.kernels.hash_noise import noise, seen_noise
 from eyas.engine.render.kernels.scalars import f4, i4
 from eyas.lanes import kernel
-from eyas.lanes.vector import (
-    any_of,
-    gather,
-    greater,
-    like,
-    root,
-    select,
-    to_f4,
-    to_i4,
-)
+from eyas.lanes.vector import any_of, gather, greater, like, root, select, to_f4, to_i4
 
 
 class Bed(IntEnum):

@@ -10,14 +10,7 @@ from eyas.engine.render.kernels.scalars import f4, i4, u4
 from eyas.engine.render.kernels.sky.radiance import surroundings
 from eyas.engine.render.kernels.surface.snow import Bed
 from eyas.lanes import kernel
-from eyas.lanes.vector import (
-    any_of,
-    gather_pair,
-    like,
-    select,
-    to_f4,
-    to_i4,
-)
+from eyas.lanes.vector import any_of, gather_pair, like, select, to_f4, to_i4
 
 DRIVEN, OPEN = i4(int(Bed.DRIVEN)), i4(int(Bed.OPEN))
 LEAVES, POROUS = i4(int(Bed.LEAVES)), i4(int(Bed.POROUS))

@@ -121,11 +121,7 @@ def item_at(band: Band, k: int) -> tuple[NDArray[np.int32], Projection, Point, f
 
 @kernel(inline=True)
 def _is_hidden(
-    geometry: Geometry,
-    item: int,
-    drawn: NDArray[np.int32],
-    view: View,
-    tiles: NDArray[np.float32],
+    geometry: Geometry, item: int, drawn: NDArray[np.int32], view: View, tiles: NDArray[np.float32]
 ) -> bool:
     """Return whether a listed chunk or fixture is hidden; moving things always may be seen."""
     chunks = geometry.chunk_range.shape[0]
