@@ -192,7 +192,7 @@ def test_what_would_have_to_be_compiled_ends_in_a_line_that_names_the_extra(prog
     )
     assert ended.returncode == 2
     line = ended.stderr.splitlines()[-1]
-    assert line.startswith("error: ")
+    assert line.startswith("eyas: error: ")
     assert line.endswith(
         ": no machine code (what ships is not used, by EYAS_SHIPPED_CODE=0); "
         "to compile it: pip install 'eyas[compile]'"

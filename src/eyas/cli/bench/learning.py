@@ -47,7 +47,7 @@ def measure_learning(
             setattr(owner, method, _counted(before, part, wall, cpu))
         train(config, folder / "run", say=lambda _: None)
     shares = {part: spent / cpu[_ALL] for part, spent in cpu.items() if part != _ALL}
-    shares["Python"] = 1.0 - sum(shares.values())
+    shares["Python"] = max(0.0, 1.0 - sum(shares.values()))
     includes = ", ".join(f"{part} {share:.0%}" for part, share in shares.items())
     rate, spent = decisions / wall[_ALL], 1e6 * cpu[_ALL] / decisions
     return Measurement("learning, preset fast", rate, "decisions/s", includes, updates, spent)

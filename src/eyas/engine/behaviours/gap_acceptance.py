@@ -126,7 +126,7 @@ def _tracks_of(vehicles: Motion, kind: int, samples: int) -> _KindTracks:
     rows, middle = vehicles.table[:samples, vehicles.kind == kind], KINDS[kind].ahead
     length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
     x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf)).ravel()
-    at = np.argsort(x)
+    at = np.argsort(x, kind="stable")
     reach = 0.5 * (float(length) + float(width)) + abs(middle)
     return _KindTracks(rows, x[at], rows["y"].ravel()[at], at, _largest(kind), middle, reach)
 

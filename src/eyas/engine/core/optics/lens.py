@@ -73,7 +73,8 @@ def lens_of(
                 low, high = (middle, high) if rising else (low, middle)
             end = low
             break
-    return Lens(model, *k, *(p if model == BROWN else (0.0, 0.0)), right, below, end)
+    numbers = (*k, *(p if model == BROWN else (0.0, 0.0)), right, below, end)
+    return Lens(model, *map(float, numbers))  # kernels ship for this type alone
 
 
 def _slope_of(k: tuple[float, float, float, float], radius: float) -> float:

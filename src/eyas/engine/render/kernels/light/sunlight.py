@@ -18,7 +18,7 @@ from eyas.lanes.vector import (
 
 TILE_BITS = i4(TILE.bit_length() - 1)
 
-_EMPTY = i4((TILE + 1) ** 2)  # Texels of the first tile, in which nothing casts a shadow
+_EMPTY = i4((TILE + 1) * (TILE + 1))  # Texels of the first tile, in which nothing casts a shadow
 
 
 @kernel(inline=True)
