@@ -102,6 +102,7 @@ def test_a_baked_map_is_kept_and_a_damaged_one_made_anew(geometry, tmp_path):
     flipped = bytearray(whole)
     flipped[len(whole) // 2] ^= 0x55
     for damaged in (b"", b"no arrays", whole[: len(whole) // 2], bytes(flipped)):
+        file.unlink()  # it is mapped
         file.write_bytes(damaged)
         np.testing.assert_array_equal(
             bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path).heights, first.heights
