@@ -97,6 +97,7 @@ def _around(walls: NDArray[np.bool_], axis: int) -> slice:
 
 def winds_over(heights: NDArray[np.float64]) -> NDArray[np.int16]:
     """Return the table of a `WindField` over buildings of these heights [m], shape (R, C)."""
+    heights = np.ascontiguousarray(heights)  # the kind for which code ships
     rows, columns = heights.shape
     table = np.empty((_DIRECTIONS, _KEPT, rows, columns, 3), np.int16)
     for direction in range(_DIRECTIONS):
