@@ -208,6 +208,8 @@ OWN = {
     "engine.traffic.signals:load_plan": _PACKAGE,
     "engine.world.maps.recipe:MapRecipe.attribution": _PACKAGE,
     "engine.world.maps.recipe:_digest_of": _PACKAGE,
+    "engine.world.maps.recipe:MapRecipe.shipped_plan": _PACKAGE,
+    "lanes.shipped:features": _PACKAGE,
     "maps.plan.file:plan_of": _CACHE,
     "engine.world.roads.network_file:save_network": _OUTPUT,
 }
