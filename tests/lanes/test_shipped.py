@@ -11,7 +11,7 @@ import llvmlite.binding as llvm
 import numpy as np
 import pytest
 
-from eyas.gpu.cuda import code
+from eyas.gpu.cuda import code as ptx
 from eyas.gpu.render import stages as stages_of_cards
 from eyas.lanes import CompiledCall, ParallelCall, VariableError, entry, shipped
 from eyas.lanes.container import unpacked
@@ -195,7 +195,7 @@ def test_what_a_library_calls_outside_is_refused_when_it_is_made(codes, tmp_path
 
 
 def test_what_a_card_draws_with_ships():
-    (_, table), _ = unpacked(lzma.decompress(code.ARCHIVE.read_bytes()))
+    (_, table), _ = unpacked(lzma.decompress(ptx.ARCHIVE.read_bytes()))
     ships = [name.partition("-")[0].strip("_") for name, _ in table]
     stages = [one for one in vars(stages_of_cards).values() if isinstance(one, ParallelCall)]
     assert sum(name.startswith("each_view") for name in ships) == len(stages) == 7
@@ -204,15 +204,9 @@ def test_what_a_card_draws_with_ships():
 
 def test_machine_code_names_no_file_of_the_machine_that_made_it():
     """numba would put the path of a file beside each exception that may be raised in it."""
-    folder = shipped.FOLDER
-    codes = [library.read_bytes() for library in folder.glob("*.so")]
+    codes = [library.read_bytes() for library in shipped.FOLDER.glob("*.so")]
     assert len(codes) == 3
-    for packed in (*folder.glob("*.xz"), *folder.glob("*.eyp")):
-        _, pieces = unpacked(lzma.decompress(packed.read_bytes()))
-        bitcode = packed.suffix == ".xz"
-        codes += [
-            str(llvm.parse_bitcode(bytes(p))).encode() if bitcode else bytes(p) for p in pieces
-        ]
+    codes += map(bytes, unpacked(lzma.decompress(ptx.ARCHIVE.read_bytes())).pieces)
     assert len(codes) > 20
     assert not {name for code in codes for name in re.findall(rb"[\w./-]*/[\w.-]+\.py\b", code)}
 
