@@ -75,7 +75,7 @@ def main() -> None:
     city = load_city(arguments.views)
     assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
     drawers: list[Drawer] = [Ours(city, SIDE, "eyas", finest_renderer(assets))]
-    for module in ("peer_moderngl", "peer_panda3d", "peer_pybullet", "peer_hyperlux"):
+    for module in ("peer_moderngl", "peer_panda3d", "peer_pybullet"):
         try:
             drawers.append(importlib.import_module(module).Peer(city, SIDE))
         except Exception as error:  # a missing driver may raise anything

@@ -5,7 +5,7 @@ import logging
 import pytest
 
 from eyas.engine.core.cache import first_start
-from eyas.engine.core.cache.first_start import told
+from eyas.engine.core.cache.first_start import reported
 from eyas.engine.core.cache.folder import EntryKind
 
 
@@ -20,7 +20,7 @@ def lines(monkeypatch, caplog):
     def make(**kinds):
         caplog.clear()
         for kind, seconds in kinds.items():
-            with told(EntryKind[kind]):
+            with reported(EntryKind[kind]):
                 clock[0] += seconds
         assert all(record.passing for record in caplog.records)
         return [message for message in caplog.messages if message]

@@ -16,7 +16,7 @@ import numpy as np
 
 from eyas.engine.core.cache.array_file import Content, array_file, map_arrays
 from eyas.engine.core.cache.entries import write_entry
-from eyas.engine.core.cache.first_start import told
+from eyas.engine.core.cache.first_start import reported
 from eyas.engine.core.cache.flat import flatten, restore
 from eyas.engine.core.cache.folder import EntryKind, cache_limit
 from eyas.engine.core.identity.program import UnknownCodeError, code_of
@@ -96,7 +96,7 @@ def _made_and_kept(
     kind: EntryKind, make: Callable[[], Thing], of: type[Thing], path: Path | None, limit: int
 ) -> Thing:
     """Return what is made, and keep it as an entry if that has a path."""
-    with told(kind):
+    with reported(kind):
         made = make()
     flat, arrays = flatten(made)
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])

@@ -1,4 +1,4 @@
-"""What a start tells that finds something missing in the cache: what is made, how much is left."""
+"""The line of a start that finds something missing in the cache: what is made, how much is left."""
 
 import logging
 import time
@@ -22,8 +22,10 @@ _made: dict[EntryKind, float] = {}  # How long this process has made what [s]
 
 
 @contextmanager
-def told(kind: EntryKind) -> Iterator[None]:
-    """Tell that something is made meanwhile, in a record that passes: it has `passing`."""
+def reported(kind: EntryKind) -> Iterator[None]:
+    """Report that something is being made, in a record of the log that has `passing`: the next one
+    takes its place on a terminal.
+    """
     log, start, kinds = logging.getLogger("eyas"), time.perf_counter(), list(_STAGES)
     if kind not in _STAGES:
         yield
