@@ -31,6 +31,7 @@ MAPS = ("citystreet", "downtown", "lake", "village", "desert", "farmland")
 PITCH = {6: 0.35, 13: 0.8, 22: 1.1, 40: 1.3}
 """Pitch down [rad] at each height of the camera above the target [m]."""
 SIZE = (480, 640)
+FOCAL = 320.0 / math.tan(math.pi / 8)  # Of a picture that is 45 degrees wide [pixels]
 VEHICLES = {"car", "truck", "bus", "motorcycle"}
 SCORE, OVERLAP, VISIBLE = 0.12, 0.5, 0.9
 
@@ -53,43 +54,87 @@ def rotation(yaw: float, pitch: float) -> np.ndarray:
     return np.stack([forward, left, np.cross(forward, left)], axis=1)
 
 
+def view(
+    eye: np.ndarray,  # Optical centre [m]
+    turned: np.ndarray,  # Camera to world
+    target: int,  # The actor whose box is asked for
+    field_of_view: float = math.pi / 4,  # [rad]
+) -> Views:
+    """Return one view."""
+    return Views(
+        position=eye[None],
+        rotation=turned[None],
+        world=np.zeros(1, np.int32),
+        subject=np.full(1, ACTOR_OBJECT + target, np.int32),
+        field_of_view=field_of_view,
+        instant=np.zeros(1),
+    )
+
+
+def looked_at(
+    world: StillWorld, time: float, target: int, turned: np.ndarray, away: float, name: str
+) -> View | None:
+    """Return a view of a vehicle `away` metres ahead; None: less than `VISIBLE` of it shows."""
+    picture = Picture.create(1, *SIZE, subject=True)
+    eye = world.actors(time).position[0, target] - turned[:, 0] * away
+    world.draw(view(eye, turned, target), time, picture, 4)
+    visible, whole = picture.subject_pixels[0]
+    left, top, right, bottom = (int(edge) for edge in picture.subject_box[0])
+    inside = left and top and right < SIZE[1] and bottom < SIZE[0]
+    if whole == 0 or visible < VISIBLE * whole or not inside:
+        return None
+    return View(picture.rgb[0], (left, top, right, bottom), name)
+
+
 def sampled(world: StillWorld, height: int, behind: bool, rng: np.random.Generator) -> View | None:
-    """Return a view of a random vehicle at a random time; None: it is not seen well enough."""
+    """Return a view of a random vehicle at a random time; None: too little of it shows."""
     time = float(rng.uniform(30.0, 500.0))
     actors = world.actors(time)
     target = int(rng.choice(np.flatnonzero(actors.present[0])))
     yaw = float(actors.yaw[0, target] if behind else rng.uniform(-math.pi, math.pi))
     turned = rotation(yaw, PITCH[height])
-    views = Views(
-        position=(actors.position[0, target] - turned[:, 0] * height / math.sin(PITCH[height]))[
-            None
-        ],
-        rotation=turned[None],
-        world=np.zeros(1, np.int32),
-        subject=np.full(1, ACTOR_OBJECT + target, np.int32),
-        field_of_view=math.pi / 4,
-        instant=np.zeros(1),
-    )
-    picture = Picture.create(1, *SIZE, subject=True)
-    world.draw(views, time, picture, 4)
-    seen, whole = picture.subject_pixels[0]
-    left, top, right, bottom = (int(edge) for edge in picture.subject_box[0])
-    if whole == 0 or seen < VISIBLE * whole or not (left and top and right < 640 and bottom < 480):
-        return None
-    return View(picture.rgb[0], (left, top, right, bottom), "behind" if behind else "side")
+    away = height / math.sin(PITCH[height])
+    return looked_at(world, time, target, turned, away, "behind" if behind else "side")
 
 
-def views_of(map_name: str, height: int, count: int, seed: int, kind: str) -> list[View]:
-    """Return views of a map by day, half of them from behind."""
+def views_of(
+    map_name: str, height: int, count: int, seed: int, kind: str, weather: str = "day"
+) -> list[View]:
+    """Return views of a map, half of them from behind."""
     mix = TrafficConfig(vehicle_type=VehicleType(kind)) if kind else TrafficConfig()
-    assets = load_assets(WorldConfig(map=map_name, weather="day"), mix)
+    assets = load_assets(WorldConfig(map=map_name, weather=weather), mix)
     rng = np.random.default_rng([seed, height, MAPS.index(map_name)])
     found: list[View] = []
     while len(found) < count:
         world = StillWorld(assets, int(rng.integers(1 << 30)))
-        view = sampled(world, height, len(found) % 2 == 0, rng)
-        if view is not None:
-            found.append(view._replace(name=f"{map_name} {view.name}"))
+        drawn = sampled(world, height, len(found) % 2 == 0, rng)
+        if drawn is not None:
+            found.append(drawn._replace(name=f"{map_name} {drawn.name}"))
+    return found
+
+
+def views_at(
+    map_name: str, pitch: float, longest: int, count: int, seed: int, weather: str = "day"
+) -> list[View]:
+    """Return views of vehicles whose boxes are about `longest` pixels long, any side to the camera.
+
+    A second picture corrects the distance of the first.
+    """
+    assets = load_assets(WorldConfig(map=map_name, weather=weather), TrafficConfig())
+    rng = np.random.default_rng([seed, round(100 * pitch), MAPS.index(map_name)])
+    found: list[View] = []
+    while len(found) < count:
+        world = StillWorld(assets, int(rng.integers(1 << 30)))
+        time = float(rng.uniform(30.0, 500.0))
+        target = int(rng.choice(np.flatnonzero(world.actors(time).present[0])))
+        turned = rotation(float(rng.uniform(-math.pi, math.pi)), pitch)
+        away = 4.5 * FOCAL / longest
+        first = looked_at(world, time, target, turned, away, map_name)
+        if first is not None:
+            left, top, right, bottom = first.box
+            away *= max(right - left, bottom - top) / longest
+            second = looked_at(world, time, target, turned, away, map_name)
+            found += [second] if second is not None else []
     return found
 
 
