@@ -8,11 +8,13 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import av
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont
 
 import eyas
+from eyas.engine.exports.label import read_labels
 
 FILMS = Path(__file__).parents[1] / "docs" / "films" / "films"
 COMMON = {
@@ -20,7 +22,7 @@ COMMON = {
     "video": {"channels": 1, "episode_frames": 150, "writers": ["mp4", "labels"]},
 }
 CHOSEN: dict[str, dict[str, object]] = {
-    "follow": {"seed": 4},
+    "follow": {"seed": 4, "camera.width": 960, "camera.height": 540},
     "orbit": {"video.flight": "orbit", "world.map": "village", "seed": 2},
     "search": {"video.flight": "search", "world.map": "downtown", "seed": 3},
     "night": {"world.weather": "night", "world.map": "downtown", "seed": 5},
@@ -76,10 +78,21 @@ def write_film(path: Path, pictures: list[Image.Image], rate: int) -> None:
         container.mux(stream.encode())
 
 
+def marked(picture: Image.Image, label: dict[str, Any]) -> Image.Image:
+    """Return a picture with the target's box, its words and the reward."""
+    left, top, right, bottom = label["target_box"]
+    pen, font = ImageDraw.Draw(picture), ImageFont.load_default(22)
+    words = f"{label['target_words']}   reward {label['reward']:.2f}"
+    if right > left:
+        pen.rectangle((left - 3, top - 3, right + 2, bottom + 2), outline="#ff3b7f", width=3)
+    pen.text((16, 12), words, "white", font, stroke_width=2, stroke_fill="black")
+    return picture
+
+
 def write_animation(path: Path, pictures: list[Image.Image]) -> None:
-    """Write every second picture, smaller, as an animated WebP."""
-    small = [picture.resize((320, 240), Image.Resampling.LANCZOS) for picture in pictures[::2]]
-    small[0].save(path, save_all=True, append_images=small[1:], duration=80, loop=0, quality=45)
+    """Write every third picture as an animated WebP."""
+    shown = pictures[::3]
+    shown[0].save(path, save_all=True, append_images=shown[1:], duration=120, loop=0, quality=40)
 
 
 def main() -> None:
@@ -92,7 +105,11 @@ def main() -> None:
             else:
                 settings = eyas.updated(eyas.make_config(COMMON), nested(CHOSEN[name]))
                 run = eyas.record(settings, Path(folder) / "run")
-                pictures, rate = frames(run / "DRONE0" / "episode0" / "episode.mp4"), 25
+                episode = run / "DRONE0" / "episode0"
+                pictures, rate = frames(episode / "episode.mp4"), 25
+                if name == "follow":
+                    labels = read_labels(episode / "labels.jsonl")
+                    pictures = [marked(*pair) for pair in zip(pictures, labels, strict=True)]
         write_film(FILMS / f"{name}.mp4", pictures, rate)
         if name == "follow":  # README's, which plays on GitHub
             write_animation(FILMS.parents[1] / "images" / "follow.webp", pictures)
