@@ -254,6 +254,9 @@ def verify(
     seed: Annotated[
         int | None, typer.Option("--seed", help="Which episodes; by default drawn afresh.")
     ] = None,
+    fresh: Annotated[
+        int, typer.Option("--fresh", help="Episodes of secret seeds to fly as well.")
+    ] = 0,
     trust: Annotated[
         bool, typer.Option("--trust", help="Run the code that entries name or bring.")
     ] = False,
@@ -265,7 +268,7 @@ def verify(
     from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
 
     found = []
-    for finding in verify(folder, share=share, seed=seed, trust=trust):
+    for finding in verify(folder, share=share, seed=seed, fresh=fresh, trust=trust):
         typer.echo(finding.line)
         found.append(finding.verdict)
     if EntryVerdict.DIFFERENT in found:

@@ -1,6 +1,7 @@
 """Episodes: which there are, and what each is called."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from eyas.engine.core.errors import ConfigError
@@ -51,7 +52,11 @@ class EpisodeSpec(NamedTuple):
 
 
 def episodes_of(
-    places: list[Place], directions: tuple[float, ...], count: int, first_seed: int = FIRST_SEED
+    places: Sequence[Place],
+    directions: tuple[float, ...],
+    count: int,
+    first_seed: int = FIRST_SEED,
+    recordings: Sequence[int | None] = (None,),
 ) -> list[EpisodeSpec]:
     """Return `count` episodes for each place and direction.
 
@@ -60,10 +65,16 @@ def episodes_of(
 
     Args:
         directions: Start directions [rad].
+        recordings: Seeds of the recorded traffic that episodes take in turn; None: the protocol's.
     """
-    turns = len(directions)
+    turns, taken = len(directions), len(recordings)
     return [
-        EpisodeSpec(place, direction, first_seed + number * turns + turn)
+        EpisodeSpec(
+            place,
+            direction,
+            first_seed + number * turns + turn,
+            recordings[(number + turn) % taken],
+        )
         for place in places
         for number in range(count)
         for turn, direction in enumerate(directions)

@@ -6,8 +6,9 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.benchmark.episodes.episode import EpisodeSpec, Place, episodes_of
+from eyas.benchmark.episodes.episode import EpisodeSpec, Place
 from eyas.benchmark.episodes.episode_batch import EpisodeGroup, episode_groups
+from eyas.benchmark.episodes.starts import visible_at_start
 from eyas.benchmark.protocols.protocol import Protocol
 from eyas.engine.core.errors import SpawnError
 from eyas.engine.settings.env import EnvConfig
@@ -25,7 +26,7 @@ def with_neighbours(
 ) -> list[EpisodeSpec]:
     """Choose the first episodes of each place and direction whose target has a neighbour.
 
-    They are those of `episodes_of`, with others left out.
+    They are those of `Protocol.starts`, with others left out.
 
     Raises:
         SpawnError: There are too few.
@@ -55,7 +56,7 @@ def _chosen(
     found = []
     for place in places:
         for turn in range(len(protocol.directions)):
-            tried = episodes_of([place], protocol.directions, count * _TRIED, first_seed)
+            tried = protocol.starts([place], count * _TRIED, first_seed)
             own = tried[turn :: len(protocol.directions)]
             chosen = list(islice(_in_company(own, protocol, count, company), count))
             if len(chosen) < count:
@@ -74,9 +75,11 @@ def _in_company(
     """Yield the episodes with so many others; a few are begun at a time."""
     for start in range(0, len(episodes), 4 * step):
         part = episodes[start : start + 4 * step]
+        shown = visible_at_start(part, protocol)
         for group in episode_groups(part, protocol, EnvConfig()):
             for row in np.flatnonzero(_nearby(group, company[1]) >= company[0]).tolist():
-                yield part[group.rows[row]]
+                if shown[group.rows[row]]:
+                    yield part[group.rows[row]]
 
 
 def _nearby(group: EpisodeGroup, distance: float) -> NDArray[np.int64]:

@@ -1,7 +1,9 @@
 """Measures flights: from the true state and the target's pixels, whatever a policy was trained for.
 
 The reward is that of the protocol, read at every control step; the target's pixels are counted at
-every fourth one.
+every fourth one. A target is followed while it is in the picture, near and large enough
+(`Protocol.farthest`, `LEAST_SIZE`): otherwise a drone that stays where it is and only turns its
+camera would follow everything.
 """
 
 from typing import NamedTuple, TypedDict
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 
 from eyas.benchmark.episodes.episode import EpisodeSpec
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch, EpisodeGroup
-from eyas.benchmark.protocols.protocol import Protocol
+from eyas.benchmark.protocols.protocol import LEAST_SIZE, Protocol
 from eyas.benchmark.records.record import EpisodeRecord, PublishedFigures, Trace
 from eyas.engine.core.rng import stream
 from eyas.engine.policies.policy import Failure
@@ -82,7 +84,7 @@ def _gaps(in_view: NDArray[np.bool_], first: int) -> list[tuple[int, int]]:
 Floats = NDArray[np.float64]
 
 LOOK = 4  # Control steps between two counts of the target's pixels
-_TRACE = 20  # Control steps between two points of a trace
+TRACE = 20  # Control steps between two points of a trace
 TRACE_PERIOD = 0.16  # Time between two points, with control steps of 8 ms [s]
 
 _PUBLISHED_ACTIONS = 305, 363
@@ -103,17 +105,24 @@ class _Measured(NamedTuple):
     position: Floats  # Place of the drone [m], shape (N, 3)
     acceleration: Floats  # Acceleration of the drone [m/s^2], shape (N, 3)
     target: Floats  # Centre of the target, east, north, up [m], shape (N, 3)
+    away: Floats  # Distance of the target's centre from the camera [m], shape (N,)
+    wide: Floats  # Width of the picture at that distance [m], shape (N,)
+    side: Floats  # Longest side of the target [m], shape (N,)
     middle: Floats  # Ground point in the middle of the picture, east, north [m], (N, 2)
 
 
 def _measured(group: EpisodeGroup) -> _Measured:
-    trackers, _, targets, episodes, _ = group.simulation.snapshot
+    trackers, cameras, targets, episodes, _ = group.simulation.snapshot
+    away = np.linalg.norm(targets.centre - cameras.position, axis=1)
     return _Measured(
         reward=episodes.reward,
         reason=episodes.reason,
         position=trackers.position,
         acceleration=trackers.acceleration,
         target=targets.centre,
+        away=away,
+        wide=away * cameras.field_of_view,
+        side=targets.size.max(axis=1),
         middle=episodes.view_centre[:, :2],
     )
 
@@ -135,7 +144,8 @@ class Meter:
         count, steps = batch.count, protocol.steps
         self._batch, self._protocol = batch, protocol
         self._reward = np.zeros((count, steps))
-        self._trace = np.zeros((count, steps // _TRACE, 4))
+        self._followed = np.zeros((count, steps), np.bool_)
+        self._trace = np.zeros((count, steps // TRACE, 4))
         self._sums = _Sums(*(np.zeros((count, *own)) for own in ((), (), (), (), (2,))))
         self.length = np.zeros(count, np.int64)  # Control steps flown, shape (N,)
         self.reason = np.zeros(count, np.int64)  # `DoneReason` of each, shape (N,)
@@ -147,6 +157,8 @@ class Meter:
         now, last = self._batch.gathered(_measured), self._last
         step, sums = self.length[rows], self._sums
         self._reward[rows, step] = now.reward[rows]
+        near = (now.away <= self._protocol.farthest) & (now.side >= LEAST_SIZE * now.wide)
+        self._followed[rows, step] = (now.reward > 0.0)[rows] & near[rows]
         self.length[rows] += 1
         self.reason[rows] = now.reason[rows]
         place, target = now.position[rows], now.target[rows, :2]
@@ -157,12 +169,13 @@ class Meter:
         sums.height[rows] += place[:, 2] - now.target[rows, 2]
         self._last = now
         # All active flights have begun together, so that they have flown equally many steps.
-        if len(rows) and (step[0] + 1) % _TRACE == 0:
-            self._trace[rows, step[0] // _TRACE] = np.concatenate((place[:, :2], target), axis=1)
+        if len(rows) and (step[0] + 1) % TRACE == 0:
+            self._trace[rows, step[0] // TRACE] = np.concatenate((place[:, :2], target), axis=1)
         if len(rows) and (step[0] + 1) % LOOK == 0:
             pixels = self._batch.pixels()[rows]
-            sums.shares[rows, 0] += pixels[:, 0] > 0
-            sums.shares[rows, 1] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
+            visible = np.where(near[rows], pixels[:, 0], 0)
+            sums.shares[rows, 0] += visible > 0
+            sums.shares[rows, 1] += visible / np.maximum(pixels[:, 1], 1)
 
     def record(
         self,
@@ -175,6 +188,7 @@ class Meter:
         """Return the record of a flight that has ended."""
         protocol, length = self._protocol, int(self.length[row])
         reward, flown = self._reward[row, :length], max(length, 1)
+        followed = self._followed[row, :length]
         reason = DoneReason(int(self.reason[row]))
         broken_off = failure is not None or reason in _CRASHES
         shares = self._sums.shares[row] / (protocol.steps // LOOK)
@@ -190,11 +204,11 @@ class Meter:
             reason=reason.name.lower() if failure is None else "policy_failed",
             duration=length * protocol.period,
             cr=float(reward.sum()),
-            tsr=int((reward > 0.0).sum()) / protocol.steps,
+            tsr=int(followed.sum()) / protocol.steps,
             seen=float(shares[0]),
             visible=float(shares[1]),
             clear=clear,
-            **watched(reward > 0.0, protocol.period, broken_off=broken_off),
+            **watched(followed, protocol.period, broken_off=broken_off),
             crashed=reason in _CRASHES,
             centre_error=float(self._sums.error[row]) / flown,
             path=float(self._sums.path[row]),
@@ -202,11 +216,11 @@ class Meter:
             jerk=float(np.sqrt(self._sums.jerk[row] / flown)),
             published=published(reward, protocol.steps, episode.seed),
             figures=figures,
-            trace=self._trace_of(row, length // _TRACE),
+            trace=self._trace_of(row, length // TRACE),
         )
 
     def _trace_of(self, row: int, points: int) -> Trace:
-        reward = self._reward[row, : points * _TRACE].reshape(points, _TRACE).mean(axis=1)
+        reward = self._reward[row, : points * TRACE].reshape(points, TRACE).mean(axis=1)
         places = self._trace[row, :points].round(2).tolist()
         return Trace(
             reward=tuple(reward.round(4).tolist()),

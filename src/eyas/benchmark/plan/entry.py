@@ -18,6 +18,8 @@ class EntryClass(StrEnum):
 
     PIXELS = "pixels"  # What its camera and its own sensors show
     WORDS = "text+pixels"  # Pixels, and words or the attributes that they name
+    DEPTH = "depth"  # Distances of pixels, without noise and whatever the weather
+    LIDAR = "lidar"  # Distances that a lidar measures
     BOX = "box"  # Pixels, and the true box in the first picture
     PRIVILEGED = "privileged"
     """More than a drone can know: the true state, classes of pixels, or code that flies in the
@@ -25,8 +27,10 @@ class EntryClass(StrEnum):
 
 
 _TRUTH = {ObservationPart.PRIVILEGED, ObservationPart.CLASSES}
-"""Parts of observations that no sensor shows; depth is not among them, for some drones measure
-it."""
+"""Parts of observations that no sensor shows."""
+
+_RANGES = {ObservationPart.LIDAR: EntryClass.LIDAR, ObservationPart.DEPTH: EntryClass.DEPTH}
+"""Parts that measure distances, which night and fog do not dim: some drones have them."""
 
 _WORDS = {"words", "attributes"}
 """Names of what is told in words, at the start or in each observation."""
@@ -49,10 +53,13 @@ class ResultEntry(Config):
 
 
 def entry_class(policy: Policy, *, beside: bool = False) -> EntryClass:
-    """Return the class of a policy."""
+    """Return the class of a policy: of several that fit, the one that knows most."""
     parts = set(policy.env.observation.parts)
     if beside or "truth" in policy.told or parts & _TRUTH:
         return EntryClass.PRIVILEGED
+    for part, own in _RANGES.items():
+        if part in parts:
+            return own
     if "box" in policy.told:
         return EntryClass.BOX
     if _WORDS & (policy.told | {str(part) for part in parts}):

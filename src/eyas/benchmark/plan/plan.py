@@ -3,7 +3,8 @@
 import json
 import re
 import shlex
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
@@ -73,6 +74,27 @@ class EvaluationPlan(Config):
         """The protocol, with the changes."""
         protocol = protocol_named(self.protocol)
         return protocol.changed(self.settings) if self.settings else protocol
+
+    def parts_of(self, episodes: Sequence[EpisodeSpec]) -> list[list[EpisodeSpec]]:
+        """Return episodes in batches, in which no two share a start unless they are a team's.
+
+        In another weather, or as another variant, a start has the same traffic: a policy that flew
+        both at once could do in one what it sees in the other.
+        """
+        size = 1 if self.latency == "measured" else self.batch
+        if self.rules.team:
+            whole = max(size // len(self.rules.variants), 1) * len(self.rules.variants)
+            return [list(episodes[at : at + whole]) for at in range(0, len(episodes), whole)]
+        met = Counter[tuple[object, ...]]()
+        rounds: list[list[EpisodeSpec]] = []
+        for episode in episodes:
+            place, direction, seed, traffic, _ = episode
+            start = (place.map, place.target, direction, seed, traffic)
+            if met[start] == len(rounds):
+                rounds.append([])
+            rounds[met[start]].append(episode)
+            met[start] += 1
+        return [own[at : at + size] for own in rounds for at in range(0, len(own), size)]
 
     @property
     def followed(self) -> tuple[str, ...]:
@@ -180,13 +202,9 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         for target in plan.followed
     ]
     count = plan.episodes or protocol.episodes
-    size = 1 if plan.latency == "measured" else plan.batch
-    if protocol.team:
-        size = max(size // len(protocol.variants), 1) * len(protocol.variants)
     found = []
     for seed in plan.seeds:
-        episodes = protocol.choose(places, protocol, count, seed)
-        found += [episodes[at : at + size] for at in range(0, len(episodes), size)]
+        found += plan.parts_of(protocol.choose(places, protocol, count, seed))
     return found
 
 

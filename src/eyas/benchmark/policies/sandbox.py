@@ -1,7 +1,8 @@
 """Policies whose code is not ours, flown in a process of their own.
 
 Whoever's Python runs beside the simulator can read it: by `gc`, by frames, by what it imports. In a
-process of its own it has what it is sent: observations, and what the protocol tells at the start.
+process of its own it has what it is sent: observations, and what the protocol tells at the start;
+`isolation.py` closes the rest.
 Messages are JSON and raw arrays in both directions, never pickles, which would run its code here.
 """
 
@@ -12,6 +13,7 @@ import math
 import os
 import subprocess
 import sys
+import weakref
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import IO, Any, TypeVar
@@ -19,6 +21,7 @@ from typing import IO, Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.benchmark.policies.isolation import close_memory, wrapped
 from eyas.engine.core.config import validated
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.policies.policy import Decision, Failure, PolicyFailedError, PolicyInput, Start
@@ -92,8 +95,9 @@ class _Child:
 
     def __init__(self, said: str, changes: Mapping[str, Any], *, sampled: bool) -> None:
         paths = [path for path in sys.path if path]
+        close_memory()
         self._process = subprocess.Popen(
-            [sys.executable, "-c", f"from {_WORKER} import main; main()"],
+            [*wrapped(), sys.executable, "-c", f"from {_WORKER} import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)},
@@ -155,7 +159,7 @@ class _Child:
 
 
 _CHILDREN: dict[str, _Child] = {}
-"""The running processes: batches of one evaluation share one, which takes a second to start."""
+"""Processes that have not flown yet, by what they have opened."""
 
 _KEPT = 4  # Largest number of them
 
@@ -174,20 +178,35 @@ def open_sandboxed(said: str, changes: Mapping[str, Any], *, sampled: bool) -> "
         ConfigError: There is no such policy, or it cannot be loaded.
     """
     key = json.dumps([said, changes, sampled, sys.path])
-    child = _CHILDREN.get(key)
+    make = partial(_Child, said, changes, sampled=sampled)
+    child = _CHILDREN.pop(key, None)
     if child is None or not child.alive:
-        _CHILDREN.pop(key, None)
-        child = _CHILDREN[key] = _Child(said, changes, sampled=sampled)
-        while len(_CHILDREN) > _KEPT:
-            _CHILDREN.pop(next(iter(_CHILDREN))).close()
-    return SandboxedPolicy(child)
+        child = make()
+    _CHILDREN[key] = child
+    while len(_CHILDREN) > _KEPT:
+        _CHILDREN.pop(next(iter(_CHILDREN))).close()
+    return SandboxedPolicy(child, partial(_taken, key, make))
+
+
+def _taken(key: str, make: Callable[[], _Child]) -> _Child:
+    """Return a process that has not flown yet, which now does."""
+    child = _CHILDREN.pop(key, None)
+    return child if child is not None and child.alive else make()
 
 
 class SandboxedPolicy:
-    """A policy in a process of its own."""
+    """A policy in a process of its own, a new one for each batch of episodes: what it remembers of
+    one start would help it in the next, which has the same traffic in another weather.
+    """
 
-    def __init__(self, child: _Child) -> None:
-        self._child = child
+    def __init__(
+        self,
+        child: _Child,
+        take: Callable[[], _Child],  # Returns a process that has not flown yet
+    ) -> None:
+        self._child: _Child | None = None
+        self._take = take
+        self._end: Callable[[], object] = lambda: None  # Ends the process of the last batch
         self.env = validated(EnvConfig, child.answer["env"])
         self.sampled = bool(child.answer["sampled"])
         self.told = frozenset(map(str, child.answer["told"]))
@@ -203,6 +222,9 @@ class SandboxedPolicy:
         if start.told is not None and self.told & {"words", "attributes"}:
             head["words"] = list(start.told.words)
             arrays.append(start.told.attributes)
+        self._end()
+        self._child = self._take()
+        self._end = weakref.finalize(self, self._child.close)
         self._child.ask(head, arrays, lambda *_: None)
 
     def act(self, sight: PolicyInput) -> Decision:
@@ -213,6 +235,7 @@ class SandboxedPolicy:
         arrays: list[Array] = [sight.deciding, *(part[sight.deciding] for part in parts.values())]
         if sight.heard is not None:
             arrays.append(sight.heard)
+        assert self._child is not None, "a batch begins before it acts"
         return self._child.ask(head, arrays, partial(_decision, len(sight.deciding)))
 
 

@@ -10,6 +10,7 @@ from typing import IO, Any
 
 import numpy as np
 
+from eyas.benchmark.policies.isolation import give_up_rights
 from eyas.benchmark.policies.own_policy import no_action
 from eyas.benchmark.policies.sandbox import Array, receive, send
 from eyas.benchmark.policies.table import open_policy
@@ -25,6 +26,7 @@ def main() -> None:
     incoming, outgoing = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
+    give_up_rights()
     opened, _ = receive(incoming)
     sys.path[:] = opened["paths"]
     try:

@@ -2,7 +2,7 @@
 
 from eyas.benchmark.flight.evasion import EvasionScenario, evading
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
-from eyas.engine.traffic.library import EVADING_MIX
+from eyas.engine.traffic.library import EVADING_MIX, TEST_TRAFFIC
 
 EVADE = Protocol(
     "evade",
@@ -19,4 +19,5 @@ EVADE = Protocol(
     rank="kept",
     choose=evading,
     scenario=EvasionScenario,
+    recordings=TEST_TRAFFIC[:1],
 )

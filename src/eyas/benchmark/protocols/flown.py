@@ -4,6 +4,7 @@ import math
 
 from eyas.benchmark.episodes.setting_out import AT_REST, AT_SPEED, at_rest_and_at_speed
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 FLOWN = Protocol(
     "flown",
@@ -26,4 +27,5 @@ FLOWN = Protocol(
     groups={"start": lambda record: record.variant},
     tells_solvable=True,
     oracles={"actions": "velocity"},
+    recordings=TEST_TRAFFIC,
 )

@@ -1,7 +1,10 @@
 """Episodes that last: is the target kept, found, and kept apart from others that look like it?"""
 
+from eyas.benchmark.episodes.first_fitting import with_visible_targets
 from eyas.benchmark.episodes.neighbours import with_neighbours
+from eyas.benchmark.protocols.envelope import Envelope, Gimbal
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 LONG = Protocol(
     "long",
@@ -12,7 +15,18 @@ LONG = Protocol(
     },
     columns=("kept", "tsr", "flawless", "worst_fifth", "losses", "search_time", "crashed"),
     tells_solvable=True,
+    choose=with_visible_targets,
+    recordings=TEST_TRAFFIC,
 )
+
+GIMBAL = LONG.like(
+    "gimbal",
+    "60 s: as long, with a camera that turns; a target counts within 40 m of it",
+    envelope=Envelope(gimbal=Gimbal()),
+    farthest=40.0,
+)
+"""Looking is not tracking: from the height of the start, a drone that stays behind has lost after
+40 m what it could point its camera at for 700 m more."""
 
 SEARCH = Protocol(
     "search",
@@ -23,6 +37,7 @@ SEARCH = Protocol(
         "done": {"total_steps": 10_000, "no_reward_steps": NEVER},
     },
     columns=("to_find", "tsr", "worst_fifth", "kept", "losses", "search_time", "crashed"),
+    recordings=TEST_TRAFFIC,
 )
 
 DISTRACTOR = Protocol(
@@ -36,4 +51,5 @@ DISTRACTOR = Protocol(
     alike=True,
     tells_solvable=True,
     choose=with_neighbours,
+    recordings=TEST_TRAFFIC,
 )

@@ -26,6 +26,14 @@ if TYPE_CHECKING:
     from eyas.engine.sim.simulation import Simulation
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+LEAST_SIZE = 1.5 / 84.0
+"""Share of the picture's width that a target's longest side must span to count as followed: what
+the smallest one, a robot of .34 m, has at 24 m. A car has less from 320 m on."""
+
+FARTHEST = 60.0
+"""See `Protocol.farthest`: twice as far as a target in the picture of a drone at the largest height
+can be, so that it binds only where a camera turns."""
+
 NEVER = 2**31 - 1  # Value of `done.no_reward_steps` with which a lost target ends no episode
 
 Chooser = Callable[[Sequence[Place], "Protocol", int, int], list[EpisodeSpec]]
@@ -81,7 +89,7 @@ def in_order(
     places: Sequence[Place], protocol: "Protocol", count: int, first_seed: int
 ) -> list[EpisodeSpec]:
     """Choose the episodes of consecutive seeds, whatever happens in them; see `Chooser`."""
-    episodes = episodes_of(list(places), protocol.directions, count, first_seed)
+    episodes = protocol.starts(places, count, first_seed)
     if not protocol.variants:
         return episodes
     return [each._replace(variant=own) for each in episodes for own in protocol.variants]
@@ -99,6 +107,8 @@ class Protocol:
     episodes: int = 25
     """Default number of episodes for each place and direction: a hundred for each place."""
     maps: tuple[str, ...] = ("citystreet",)  # Where it is flown unless a user names other maps
+    recordings: tuple[int, ...] = ()
+    """Seeds of the recorded traffic that its episodes take in turn; none: that of the settings."""
     elsewhere: bool = False
     """Whether it is not flown on maps on which policies are taught: on those of Eyas only with
     seeds from `eyas.engine.core.rng.TEST_SEEDS` on."""
@@ -125,6 +135,8 @@ class Protocol:
     """Changes of `env` for the oracles, before those of a user's: it is theirs that the drone can
     be flown, and no part of what is measured."""
     envelope: Envelope = ENVELOPE  # What drones may do
+    farthest: float = FARTHEST
+    """Distance from the camera over which a target does not count as followed [m]."""
 
     @cached_property
     def settings(self) -> EyasConfig:
@@ -151,6 +163,11 @@ class Protocol:
             others: Other fields, such as `maps`, `episodes` or `columns`.
         """
         return replace(self.changed(changes or {}), name=name, title=title, **others)
+
+    def starts(self, places: Sequence[Place], count: int, first_seed: int) -> list[EpisodeSpec]:
+        """Return the episodes of consecutive seeds, so many for each place and direction."""
+        recordings = self.recordings or (None,)
+        return episodes_of(places, self.directions, count, first_seed, recordings)
 
     @property
     def steps(self) -> int:
@@ -184,7 +201,14 @@ class Protocol:
         meaning = {name: value for name, value in settings.items() if value != {}}
         content = [meaning, self.directions, self.alike, self.first_box]
         content += [self.variants, self.team] if self.variants else []
-        content += [astuple(self.envelope), _name_of(self.choose), _name_of(self.scenario)]
+        content += [self.recordings] if self.recordings else []
+        content += [
+            astuple(self.envelope),
+            self.farthest,
+            LEAST_SIZE,
+            _name_of(self.choose),
+            _name_of(self.scenario),
+        ]
         content += [] if self.stage is None else [_name_of(self.stage)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 

@@ -3,6 +3,7 @@
 from eyas.benchmark.episodes.target_losses import COVERED, with_losses
 from eyas.benchmark.flight.recovery import RecoveryScenario
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 _LENGTH = {"total_steps": 45_000, "no_reward_steps": NEVER}
 
@@ -15,6 +16,7 @@ RECOVER = Protocol(
     rank="recovered",
     choose=with_losses,
     scenario=RecoveryScenario,
+    recordings=TEST_TRAFFIC[:1],
 )
 
 RECOVER_CAMERA = Protocol(
@@ -30,4 +32,5 @@ RECOVER_CAMERA = Protocol(
     choose=with_losses,
     scenario=RecoveryScenario,
     variants={name: {} for name in COVERED},
+    recordings=TEST_TRAFFIC,
 )

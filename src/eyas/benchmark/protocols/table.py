@@ -20,6 +20,7 @@ PROTOCOLS: Registry[Protocol] = Registry(
         "unseen": f"{_ROOM}.published:UNSEEN",
         "corrupted": f"{_ROOM}.corrupted:CORRUPTED",
         "long": f"{_ROOM}.lasting:LONG",
+        "gimbal": f"{_ROOM}.lasting:GIMBAL",
         "search": f"{_ROOM}.lasting:SEARCH",
         "distractor": f"{_ROOM}.lasting:DISTRACTOR",
         "flown": f"{_ROOM}.flown:FLOWN",

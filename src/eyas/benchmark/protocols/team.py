@@ -1,7 +1,9 @@
 """Several drones follow one target together, and one camera is blind for a while."""
 
+from eyas.benchmark.episodes.first_fitting import with_visible_targets
 from eyas.benchmark.flight.team import TeamScenario
 from eyas.benchmark.protocols.protocol import NEVER, Protocol
+from eyas.engine.traffic.library import TEST_TRAFFIC
 
 _BESIDE = {"start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}}}
 
@@ -17,6 +19,8 @@ PAIR = Protocol(
     rank="team_seen",
     variants={"drone-1": {}, "drone-2": _BESIDE},
     team=True,
+    choose=with_visible_targets,
+    recordings=TEST_TRAFFIC,
     scenario=TeamScenario,
 )
 

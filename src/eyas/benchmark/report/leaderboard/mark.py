@@ -13,6 +13,7 @@ from pathlib import Path
 from platformdirs import user_data_dir
 
 from eyas.benchmark.records.result import EPISODES, STAMP
+from eyas.benchmark.report.leaderboard.fresh import FreshFigure
 from eyas.engine.core.config import Config, validated
 from eyas.engine.core.decoding import read_json
 from eyas.engine.core.errors import EyasError
@@ -39,6 +40,8 @@ class Mark(Config):
     """Number of the evaluation's episodes."""
     content: str
     """Hash of plan and records, see `content_hash`."""
+    fresh: FreshFigure | None = None
+    """What the policy has reached in episodes of secret seeds; None: it has not flown any."""
     signature: str = ""
 
 

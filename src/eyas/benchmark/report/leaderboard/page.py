@@ -24,8 +24,10 @@ FIRST_LINE = (
 FIGURES = (
     "Each figure is the mean of all episodes, with its 95 % interval below: how it would vary with "
     "other starts in the same places. An entry is verified if this machine has flown some of its "
-    "episodes again, chosen at random, and they were equal to the byte; what a card says of a "
-    "policy, and the machine it was timed on, are its authors' words."
+    "episodes again, chosen at random, and they were equal to the byte. Seeds of all tables are "
+    "public, so that equal records may be learned by heart: fresh episodes have seeds that were "
+    "drawn when this machine flew them. What a card says of a policy, and the machine it was timed "
+    "on, are its authors' words."
 )
 ORACLES = "They know more than a drone can see, and are not ranked with the others."
 _STYLE = """
@@ -115,7 +117,8 @@ def _table(entries: Sequence[Submission]) -> str:
 
     columns = rules.columns
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
-    names = ["policy", "class", "latency [ms]", *heads, "failed", "flown again", "timed on"]
+    fresh = f"{rules.rank}, fresh episodes"
+    names = ["policy", "class", "latency [ms]", fresh, *heads, "failed", "flown again", "timed on"]
     head = "".join(f"<th>{html.escape(name)}</th>" for name in [*names, "command"])
     body = "\n".join(f"<tr>{_line(*pair, columns)}</tr>" for pair in sorted(rows, key=order))
     return (
@@ -128,6 +131,7 @@ def _line(entry: Submission, row: TableRow, columns: Sequence[str]) -> str:
     plan = entry.stamp.plan
     failed = sum(record.error is not None for record in entry.records)
     cells = [_policy(entry), entry.entry.entry_class.value, html.escape(plan.latency)]
+    cells.append(_fresh(entry))
     for name in columns:
         mean, _, interval = cell(row.figures.get(name)).partition(" ")
         cells.append(f'{mean}<br><span class="interval">{interval}</span>')
@@ -136,6 +140,16 @@ def _line(entry: Submission, row: TableRow, columns: Sequence[str]) -> str:
     cells += [str(failed), again, html.escape(entry.hardware)]
     cells.append(f"<code>{html.escape(plan.command)}</code>")
     return "".join(f"<td>{text}</td>" for text in cells)
+
+
+def _fresh(entry: Submission) -> str:
+    """Return the figure in episodes that its authors cannot have known."""
+    found = None if entry.mark is None else entry.mark.fresh
+    if found is None:
+        return "none: may be learned by heart"
+    interval = f"[{found.low:.3f}, {found.high:.3f}], n {found.episodes}"
+    claim = "" if found.confirmed else "<br>the claim is outside"
+    return f'{found.mean:.3f}<br><span class="interval">{interval}{claim}</span>'
 
 
 def _policy(entry: Submission) -> str:

@@ -11,6 +11,7 @@ from eyas.benchmark.evaluation import TIMING
 from eyas.benchmark.plan.entry import ResultEntry
 from eyas.benchmark.plan.plan import Stamp
 from eyas.benchmark.protocols.table import PROTOCOLS
+from eyas.benchmark.records.consistency import contradictions
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import STAMP, load_run
 from eyas.benchmark.report.leaderboard.mark import Mark, fitting_mark
@@ -135,7 +136,7 @@ def complete_run(folder: Path) -> tuple[Stamp, ResultEntry, list[EpisodeRecord]]
 
 
 def _problems(stamp: Stamp, records: Sequence[EpisodeRecord]) -> Iterator[str]:
-    """Yield figures that no flight can have, of which no mean could be made."""
+    """Yield figures that no flight can have, of which no mean could be made, or not together."""
     for name, figure in figures_of(stamp.plan.rules, records).items():
         low = -_BEYOND if figure.signed else 0.0
         high = _BEYOND if figure.high is None else figure.high + 1e-6
@@ -146,6 +147,9 @@ def _problems(stamp: Stamp, records: Sequence[EpisodeRecord]) -> Iterator[str]:
                     f"episode {record.name!r:.80}: {name} is {value:g}; allowed: {low:g} to "
                     f"{high:.6g}"
                 )
+    for record in records:
+        for found in contradictions(record, stamp.plan.rules):
+            yield f"episode {record.name!r:.80} contradicts itself: {found}"
 
 
 def _text_in(path: Path, name: str) -> str:

@@ -22,6 +22,7 @@ from eyas.benchmark.policies.shipped import shipped_names
 from eyas.benchmark.policies.table import FILES, POLICIES
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import EPISODES
+from eyas.benchmark.report.leaderboard.fresh import LEAST, fresh_figure
 from eyas.benchmark.report.leaderboard.mark import MARK, Mark, content_hash, signed
 from eyas.benchmark.report.leaderboard.submission import complete_run, folders_in
 from eyas.engine.core.errors import ConfigError, EyasError
@@ -38,6 +39,7 @@ class EntryVerdict(StrEnum):
     """What is known of an entry."""
 
     VERIFIED = "verified"
+    UNCONFIRMED = "equal, but not confirmed"  # By fresh episodes
     DIFFERENT = "not as flown"
     UNKNOWN = "not verifiable"
 
@@ -64,7 +66,12 @@ class _DifferenceError(EyasError):
 
 
 def verify(
-    folder: Path, *, share: float = SHARE, seed: int | None = None, trust: bool = False
+    folder: Path,
+    *,
+    share: float = SHARE,
+    seed: int | None = None,
+    fresh: int = 0,
+    trust: bool = False,
 ) -> Iterator[EntryFinding]:
     """Fly a part of each entry again; yield what was found, and mark those that are equal.
 
@@ -73,17 +80,20 @@ def verify(
 
     Args:
         share: Which part of the episodes, more than 0 and at most 1; at least one batch.
-        seed: Which ones; None: nobody can know before.
+        seed: Which ones; None: drawn afresh.
+        fresh: Number of episodes of secret seeds that are flown as well; 0: none.
 
     Raises:
         EyasError: There is no such folder, the share is wrong, or a mark cannot be written.
     """
     if not 0.0 < share <= 1.0:
         raise ConfigError(f"--share: {share:g} is not allowed: more than 0, at most 1")
+    if fresh and fresh < LEAST:
+        raise ConfigError(f"--fresh: {fresh} is not allowed: 0, or {LEAST} or more episodes")
     seed = secrets.randbits(32) if seed is None else seed
     for path in folders_in(folder):
         try:
-            mark = _flown_again(path, share, seed, trust=trust)
+            mark = _flown_again(path, share, seed, fresh, trust=trust)
         except _DifferenceError as error:
             (path / MARK).unlink(missing_ok=True)
             yield EntryFinding(path, EntryVerdict.DIFFERENT, str(error))
@@ -92,10 +102,14 @@ def verify(
         else:
             write_atomic(path / MARK, (signed(mark).model_dump_json(indent=1) + "\n").encode())
             told = f"{len(mark.flown)} of {mark.episodes} episodes (--seed {seed}) are equal"
-            yield EntryFinding(path, EntryVerdict.VERIFIED, told)
+            verdict = EntryVerdict.VERIFIED
+            if mark.fresh is not None:
+                told = f"{told}; {mark.fresh.line}"
+                verdict = verdict if mark.fresh.confirmed else EntryVerdict.UNCONFIRMED
+            yield EntryFinding(path, verdict, told)
 
 
-def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
+def _flown_again(folder: Path, share: float, seed: int, fresh: int, *, trust: bool) -> Mark:
     """Return the mark of an entry whose episodes are equal when they are flown again."""
     content = content_hash(folder)  # before anything is read of it
     made, entry, records = complete_run(folder)
@@ -112,7 +126,12 @@ def _flown_again(folder: Path, share: float, seed: int, *, trust: bool) -> Mark:
             _compare(lines[place], records[place], record)
         flown += [record.name for record in again]
     return Mark(
-        build=made.build.id, seed=seed, flown=tuple(flown), episodes=len(records), content=content
+        build=made.build.id,
+        seed=seed,
+        flown=tuple(flown),
+        episodes=len(records),
+        content=content,
+        fresh=fresh_figure(plan, records, fresh) if fresh else None,
     )
 
 

@@ -59,9 +59,11 @@ def town_traffic_file(map_seed: int, traffic_seed: int) -> str:
 
 def drivers_file(
     drivers: str,  # How they behave, a value of `traffic.drivers`
+    traffic_seed: int | None = None,  # One kept for tests; None: the canonical one
 ) -> str:
     """Return the file in a map's package with the traffic of drivers who want to be lost."""
-    return f"traffic-{drivers}.npz"
+    seed = "" if traffic_seed is None else f"-seed-{traffic_seed}"
+    return f"traffic-{drivers}{seed}.npz"
 
 
 def respawn_file(group_size: int) -> str:
