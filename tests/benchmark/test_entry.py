@@ -12,10 +12,11 @@ import pytest
 
 from eyas.benchmark.evaluation import run
 from eyas.benchmark.plan.entry import EntryClass, entry_class
-from eyas.benchmark.plan.plan import EvaluationPlan, check
+from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
 from eyas.benchmark.policies.sandbox import receive, send
 from eyas.benchmark.policies.table import open_policy
 from eyas.benchmark.protocols.envelope import ENVELOPE
+from eyas.benchmark.protocols.table import PROTOCOLS
 from eyas.engine.core.errors import ConfigError
 
 HERE = Path(__file__).parent
@@ -60,7 +61,8 @@ def test_shipped_networks_see_pixels_only():
 @pytest.mark.parametrize(
     ("parts", "expected"),
     [
-        (["image", "depth"], "pixels"),
+        (["image", "depth"], "depth"),
+        (["image", "lidar"], "lidar"),
         (["image", "sensors"], "pixels"),
         (["image", "classes"], "privileged"),
         (["image", "privileged"], "privileged"),
@@ -130,6 +132,21 @@ def test_speeds_beyond_the_envelope_are_one_line(change, line):
         check(EvaluationPlan(policy="follow", env={"speeds": change}))
 
 
+def test_the_camera_turns_in_a_protocol_of_its_own_only():
+    turning = {"actions": "velocity+gimbal"}
+    for name in set(PROTOCOLS.names()) - {"gimbal"}:
+        with pytest.raises(ConfigError, match="protocol of its own, 'gimbal'"):
+            check(EvaluationPlan(policy="own_policies:forward", protocol=name, env=turning))
+    with pytest.raises(ConfigError, match="protocol of its own"):
+        check(EvaluationPlan(policy="gimbal-servo"))
+    check(EvaluationPlan(policy="gimbal-servo", protocol="gimbal"))
+    for name, value in (("pitch_rate", 20.0), ("yaw_rate", 20.0), ("least_pitch", -1.6)):
+        env = {"gimbal": {name: value}}
+        plan = EvaluationPlan(policy="gimbal-servo", protocol="gimbal", env=env)
+        with pytest.raises(ConfigError, match=f"env.gimbal.{name}"):
+            check(plan)
+
+
 def test_speeds_inside_the_envelope_are_a_choice():
     check(EvaluationPlan(policy="follow", env={"speeds": {"forward_speed": 12.0}}))
 
@@ -173,10 +190,38 @@ def test_a_process_knows_no_seeds(fly):
 
 
 @pytest.mark.slow
-def test_batches_share_a_process_that_is_not_this_one(fly):
+def test_each_batch_has_a_process_of_its_own(fly):
     lines = {record.error for record in fly("cheats:Counts", batch=1)}
-    assert len(lines) == 1
-    assert f"process {os.getpid()}" not in lines.pop()
+    assert len(lines) == 4
+
+
+@pytest.mark.slow
+def test_one_that_remembers_a_start_does_no_better_in_another_weather(fly):
+    """It flies by night what it flew by day from the same start, which it knows by its GPS."""
+    first = fly("cheats:Remembers", weathers=("day",))
+    both = fly("cheats:Remembers", weathers=("day", "night"))
+    assert [one.path for one in both] == [one.path for one in first] * 2
+
+
+def test_starts_that_weathers_or_variants_share_are_in_batches_of_their_own():
+    for name, weathers in (("paper", ("day", "night")), ("recover-camera", ("day",))):
+        plan = EvaluationPlan(policy="hover", protocol=name, weathers=weathers, episodes=1)
+        parts = batches(plan)
+        assert sum(map(len, parts)) == plan.count
+        for part in parts:
+            starts = {(each.place.map, each.direction, each.seed) for each in part}
+            assert len(starts) == len(part)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux")
+def test_the_evaluators_memory_and_command_line_are_closed(fly, monkeypatch):
+    monkeypatch.setattr("eyas.benchmark.policies.sandbox.wrapped", lambda: ())  # as without bwrap
+    for record in fly("cheats:Reader"):
+        assert (
+            record.error == "RuntimeError: {'mem': 'closed', 'environ': 'closed', 'maps': 'closed'}"
+        )
+    words = Path("/proc/self/cmdline").read_bytes().rstrip(b"\0").split(b"\0")
+    assert len(words) <= 2
 
 
 @pytest.mark.slow
@@ -226,7 +271,7 @@ def test_an_evaluation_that_is_killed_leaves_no_process(tmp_path):
         "import sys; sys.path.insert(0, sys.argv[1])\n"
         "from eyas.benchmark.policies.sandbox import open_sandboxed\n"
         "policy = open_sandboxed('cheats:Spinner', {}, sampled=False)\n"
-        "print(policy._child._process.pid, flush=True)\n"
+        "print(policy._take()._process.pid, flush=True)\n"
         "sys.stdin.read()"
     )
     parent = subprocess.Popen(

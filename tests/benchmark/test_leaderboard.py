@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -68,6 +69,55 @@ def test_equal_flights_are_marked_and_the_page_says_so(board):
     assert only(board / "hover", share=0.01, seed=1).why.startswith("2 of 8")  # a whole batch
 
 
+def test_what_was_learned_by_heart_is_equal_but_fresh_episodes_do_not_confirm_it(
+    board, tmp_path, monkeypatch
+):
+    ways = [json.loads(line)["trace"]["drone"] for line in lines_of(board / "follow")]
+    known = tmp_path / "ways.json"
+    known.write_text(json.dumps(ways))
+    monkeypatch.setenv("KNOWN_WAYS", str(known))
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+    shutil.rmtree(board)
+    plan = EvaluationPlan(policy="cheats:ByHeart", maps=("simpleway-grass",), episodes=2, batch=2)
+    records = run(plan, board / "cheat", quiet=True)
+    assert sum(record.tsr for record in records) / len(records) > 0.7
+    assert only(board, trust=True).verdict is EntryVerdict.VERIFIED
+    assert "none: may be learned by heart" in shown(board)
+    found = only(board, fresh=40, trust=True)
+    assert found.verdict is EntryVerdict.UNCONFIRMED
+    assert "episodes of secret seeds" in found.line
+    assert "the claim is outside" in shown(board)
+
+
+def test_honest_figures_are_confirmed_by_fresh_episodes(board):
+    for found in verify(board, fresh=40):
+        assert found.verdict is EntryVerdict.VERIFIED, found.line
+    assert "none: may be" not in shown(board)
+    with pytest.raises(EyasError, match="--fresh: 3 is not allowed"):
+        list(verify(board, fresh=3))
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"tsr": 1.0, "losses": 0, "lost_after": None}, "tsr is 1, by its trace at most"),
+        ({"cr": 374.0}, "its trace adds up to"),
+        ({"losses": 3, "lost_after": None}, "losses 3"),
+        ({"found_after": None}, "found_after is None"),
+        ({"seen": 0.0, "visible": 0.3}, "seen is 0"),
+        ({"duration": 1.0}, "its trace has"),
+    ],
+)
+def test_figures_that_contradict_each_other_leave_an_entry_out(board, caplog, changes, said):
+    path = board / "hover" / "episodes.jsonl"
+    records = [json.loads(line) for line in lines_of(board / "hover")]
+    records[0] |= changes
+    path.write_text("".join(json.dumps(record) + "\n" for record in records))
+    left = [entry.folder.name for entry in submissions_in(board)]
+    assert left == ["follow"]
+    assert said in caplog.text
+
+
 def test_which_episodes_are_flown_again_cannot_be_known_before(board):
     seeds = {only(board / "hover").why.partition("--seed ")[2] for _ in range(3)}
     assert len(seeds) == 3
@@ -106,11 +156,11 @@ def test_an_edited_figure_is_caught_and_named(board):
     list(verify(board / "hover"))
     lines = lines_of(board / "hover")
     record = json.loads(lines[5])
-    lines[5] = json.dumps(record | {"cr": 374.0}).replace(" ", "").encode() + b"\n"
+    lines[5] = json.dumps(record | {"path": 374.0}).replace(" ", "").encode() + b"\n"
     (board / "hover" / "episodes.jsonl").write_bytes(b"".join(lines))
     found = only(board / "hover", share=1.0)
     assert found.verdict is EntryVerdict.DIFFERENT
-    assert f"{record['name']}: 'cr' is 374.0, flown again {record['cr']}" in found.line
+    assert f"{record['name']}: 'path' is 374.0, flown again {record['path']}" in found.line
     assert not (board / "hover" / "verified.json").exists()
     answer = CliRunner().invoke(app, ["leaderboard", "verify", str(board), "--share", "1"])
     assert answer.exit_code == 1

@@ -86,10 +86,22 @@ def test_an_unknown_table_is_refused_with_the_nearest_name(tmp_path):
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_a_table_was_flown_by_the_networks_and_in_the_protocols_of_now(name):
+def test_a_table_that_other_networks_or_protocols_have_flown_is_marked(name):
     said = expected(name)
     assert said is not None
-    assert said.flown_with == flown_with(TABLES[name]), f"python tools/write_tables.py {name}"
+    today = said.flown_with == flown_with(TABLES[name])
+    assert ("Flown before a change of" in markdown(TABLES[name], said)) != today
+
+
+def test_a_row_or_a_part_of_the_episodes_is_flown_and_compared(small, tmp_path, capsys):
+    small["small"] = made(SMALL, tmp_path / "made", quiet=True)
+    capsys.readouterr()
+    assert run(("small",), tmp_path / "row", row="follow", quiet=True)
+    assert [path.name for path in (tmp_path / "row" / "small").iterdir()] == ["follow"]
+    run(("small",), tmp_path / "part", share=0.5, quiet=True)
+    assert "means of the documents lie in the intervals" in capsys.readouterr().out
+    with pytest.raises(UnknownNameError, match="--row"):
+        run(("small",), tmp_path, row="nothing")
 
 
 @pytest.mark.slow

@@ -9,7 +9,8 @@ import pytest
 
 from eyas.benchmark.episodes.episode import Place
 from eyas.benchmark.episodes.episode_batch import EpisodeBatch
-from eyas.benchmark.episodes.even_choice import CELL, TRIED
+from eyas.benchmark.episodes.even_choice import TRIED
+from eyas.benchmark.episodes.starts import CELL
 from eyas.benchmark.flight.policy_runner import SOLVED
 from eyas.benchmark.plan.plan import EvaluationPlan, batches, check
 from eyas.benchmark.protocols.table import PROTOCOLS

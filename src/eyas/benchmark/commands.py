@@ -282,15 +282,24 @@ def reproduce(
     out: Annotated[
         Path, to_write("Folder for their evaluations; continued if interrupted.")
     ] = Path("runs/reproduce"),
+    row: Annotated[
+        str | None, typer.Option("--row", help="Only the row with this in its label.")
+    ] = None,
+    share: Annotated[
+        float, typer.Option("--share", help="Part of the episodes to fly, for example 0.05.")
+    ] = 1.0,
     quiet: Quiet = False,
 ) -> None:
-    """Fly tables of the documents again, and tell whether every printed digit is equal."""
+    """Fly tables of the documents again, and say whether every printed digit is equal.
+
+    Of a part of the episodes it says whether the documents' means lie in the intervals.
+    """
     from eyas.benchmark.report.reproduce.run import listing, run
 
     if not tables:
         typer.echo(listing())
         return
-    if not run(tuple(tables), out, quiet=quiet):
+    if not run(tuple(tables), out, row=row, share=share, quiet=quiet):
         raise typer.Exit(1)
 
 

@@ -74,6 +74,10 @@ def read_card(folder: Path) -> ModelCard | None:
         raise DataFileError(f"{path}: not a card: {error}") from None
 
 
+class ContradictionError(DataFileError):
+    """Records have figures that no flight can have, or not together."""
+
+
 class Submission(NamedTuple):
     """One evaluation."""
 
@@ -131,7 +135,7 @@ def complete_run(folder: Path) -> tuple[Stamp, ResultEntry, list[EpisodeRecord]]
     if len({record.name for record in records}) < len(records):
         raise DataFileError("an episode is there twice")
     for problem in _problems(stamp, records):
-        raise DataFileError(problem)
+        raise ContradictionError(problem)
     return stamp, stamp.entry, records
 
 

@@ -24,7 +24,11 @@ from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import EPISODES
 from eyas.benchmark.report.leaderboard.fresh import LEAST, fresh_figure
 from eyas.benchmark.report.leaderboard.mark import MARK, Mark, content_hash, signed
-from eyas.benchmark.report.leaderboard.submission import complete_run, folders_in
+from eyas.benchmark.report.leaderboard.submission import (
+    ContradictionError,
+    complete_run,
+    folders_in,
+)
 from eyas.engine.core.errors import ConfigError, EyasError
 from eyas.engine.core.files import read_limited, write_atomic
 from eyas.engine.settings.env import EnvConfig
@@ -94,7 +98,7 @@ def verify(
     for path in folders_in(folder):
         try:
             mark = _flown_again(path, share, seed, fresh, trust=trust)
-        except _DifferenceError as error:
+        except (_DifferenceError, ContradictionError) as error:
             (path / MARK).unlink(missing_ok=True)
             yield EntryFinding(path, EntryVerdict.DIFFERENT, str(error))
         except EyasError as error:

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from eyas.benchmark.evaluation import run as evaluate
+from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.records.record import EpisodeRecord
 from eyas.benchmark.records.result import RESULT, UNITS, cell, load_run
 from eyas.benchmark.report.reproduce.tables import (
@@ -18,28 +19,74 @@ from eyas.benchmark.report.reproduce.tables import (
     table_named,
 )
 from eyas.benchmark.statistics.table_rows import rows_of
+from eyas.engine.core.errors import ConfigError, UnknownNameError
 from eyas.engine.core.files import write_atomic
 from eyas.engine.core.identity.build import this_build
 
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 
-def run(names: tuple[str, ...], out: Path, *, quiet: bool = False) -> bool:
+
+def run(
+    names: tuple[str, ...],
+    out: Path,
+    *,
+    row: str | None = None,
+    share: float = 1.0,
+    quiet: bool = False,
+) -> bool:
     """Fly tables again, or what an interrupted run has left; print them; return whether all cells
     are those of the documents.
 
+    Args:
+        row: Label of the only row to fly, or a part of it; None: all.
+        share: Which part of the episodes, more than 0 and at most 1; of a part, it is told whether
+            the documents' means lie in its intervals.
+
     Raises:
-        EyasError: There is no such table, or the folder is taken.
+        EyasError: There is no such table or row, or the folder is taken.
     """
-    tables = [table_named(name) for name in names]
-    equal = [_reproduced(table, out / table.name, quiet=quiet) for table in tables]
+    if not 0.0 < share <= 1.0:
+        raise ConfigError(f"--share: {share:g} is not allowed: more than 0, at most 1")
+    tables = [_part_of(table_named(name), row, share) for name in names]
+    equal = [_reproduced(table, out / table.name, quiet=quiet, share=share) for table in tables]
     return all(equal)
 
 
-def _reproduced(table: Table, out: Path, *, quiet: bool) -> bool:
+def _part_of(table: Table, row: str | None, share: float) -> Table:
+    """Return a table with one row, or with fewer episodes; these are in folders of their own."""
+    rows = table.rows
+    if row is not None:
+        rows = tuple(each for each in rows if row in each.label)
+        if not rows:
+            labels = [each.label for each in table.rows]
+            raise UnknownNameError("--row", row, labels)
+    if share < 1.0:
+        rows = tuple(each._replace(plan=_fewer(each.plan, share)) for each in rows)
+    return table._replace(rows=rows)
+
+
+def _fewer(plan: EvaluationPlan, share: float) -> EvaluationPlan:
+    """Return a plan with a share of the episodes: first those of one set, then fewer."""
+    wanted = share * plan.count
+    one = plan.model_copy(update={"seeds": plan.seeds[:1]})
+    count = max(round((one.episodes or one.rules.episodes) * wanted / one.count), 1)
+    return one.model_copy(update={"episodes": min(count, one.episodes or one.rules.episodes)})
+
+
+def _reproduced(table: Table, out: Path, *, quiet: bool, share: float) -> bool:
+    if share < 1.0:
+        out = out.with_name(f"{out.name}-{share:g}")
     found, wanted = made(table, out, quiet=quiet), expected(table.name)
     print(f"{table.title} (docs/{table.page})\n\n{markdown(table, found)}\n")
     if wanted is None:
         print(f"{table.name}: the documents have no figures to compare with")
         return False
+    labels = {row.label for row in table.rows}
+    wanted = wanted.model_copy(
+        update={"rows": tuple(row for row in wanted.rows if row.label in labels)}
+    )
+    if share < 1.0:
+        return _near(table.name, found, wanted)
     differences = _differences(found, wanted)
     for line in differences:
         print(f"{table.name}: {line}")
@@ -73,6 +120,24 @@ def made(table: Table, out: Path, *, quiet: bool = False, keep: bool = False) ->
     return Expected(
         build_id=build.id, world=build.world, flown_with=flown_with(table), rows=tuple(rows)
     )
+
+
+def _near(name: str, found: Expected, wanted: Expected) -> bool:
+    """Print and return whether the documents' means lie in the intervals of fewer episodes."""
+    outside, known = [], 0
+    for few, all_ in zip(found.rows, wanted.rows, strict=True):
+        for column, text in few.cells.items():
+            numbers = _NUMBER.findall(text)
+            mean = _NUMBER.search(all_.cells[column])
+            if len(numbers) == 3 and mean is not None:
+                known += 1
+                low, high = (float(number) for number in numbers[1:])
+                if not low <= float(mean[0]) <= high:
+                    outside.append(f"{few.label}, {column}: {text} here, {mean[0]} there")
+    for line in outside:
+        print(f"{name}: {line}")
+    print(f"{name}: {known - len(outside)} of {known} means of the documents lie in the intervals")
+    return not outside
 
 
 def _is_flown(folder: Path, row: Row) -> bool:
@@ -110,6 +175,10 @@ def markdown(table: Table, said: Expected) -> str:
         f"| {row.label} | {row.n} | {' | '.join(row.cells[name] for name in table.columns)} |"
         for row in said.rows
     ]
+    now = flown_with(table)
+    others = [name for name in now if said.flown_with.get(name) != now[name]]
+    if others:
+        lines += ["", f"Flown before a change of {', '.join(others)}, by build `{said.build_id}`."]
     return "\n".join(lines)
 
 

@@ -235,9 +235,8 @@ def _long_flights() -> Iterator[Table]:
         ("evade", _SEERS, ("kept", "held", "losses", "tsr"), "evade"),
     ):
         rows = _flown(name, policies)
-        if name != "recover-camera":
-            seeds = FLOWN_SETS if name == "recover" else FLOWN_SETS[:1]
-            rows += _flown(name, ("eyas",), seeds=seeds)
+        seeds = FLOWN_SETS if name == "recover" else FLOWN_SETS[:1]
+        rows += _flown(name, ("eyas",), seeds=seeds)
         yield Table(name, f"protocols/{page}.md", f"`{name}`", columns, rows)
     yield Table(
         "flown",
