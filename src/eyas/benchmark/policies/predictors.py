@@ -1,6 +1,6 @@
 """Where a hidden target should be: further straight on, or along the lanes of the map.
 
-Both are baselines: they neither turn with a target nor search for it.
+All are baselines: they neither turn with a target nor search for it.
 """
 
 from collections.abc import Mapping
@@ -26,6 +26,27 @@ class ConstantVelocity:
     def places(self, clue: Clue) -> Floats:
         """Return where the targets are after going straight on, shape (N, 2)."""
         places: Floats = clue.last.place + clue.last.velocity * clue.age[:, None]
+        return places
+
+
+class StraightAndWait:
+    """The target goes straight on for a distance, and is waited for there.
+
+    The distance is the length of the covers of the village: a floor that a policy in `recover` must
+    be above, as the two others never wait.
+    """
+
+    def __init__(self, distance: float = 45.0) -> None:  # [m]
+        self._distance = distance
+
+    def begin(self, start: Start) -> None:
+        """No-op: this predictor is stateless."""
+
+    def places(self, clue: Clue) -> Floats:
+        """Return where the targets are waited for, shape (N, 2)."""
+        speed = np.asarray(exact.hypot(*clue.last.velocity.T))
+        time = np.minimum(clue.age, self._distance / np.maximum(speed, 1e-3))
+        places: Floats = clue.last.place + clue.last.velocity * time[:, None]
         return places
 
 
@@ -66,6 +87,11 @@ class AlongLanes:
 def constant_velocity(changes: Mapping[str, Any]) -> SightOracle:
     """Return the oracle that goes straight on."""
     return SightOracle(changes, ConstantVelocity())
+
+
+def wait_45(changes: Mapping[str, Any]) -> SightOracle:
+    """Return the oracle that goes straight on for 45 m, and waits there."""
+    return SightOracle(changes, StraightAndWait())
 
 
 def road_graph(changes: Mapping[str, Any]) -> SightOracle:

@@ -22,6 +22,7 @@ _BUILT_IN = {
     "follow": f"{_ROOM}.follow:Follow",
     "sighted": f"{_ROOM}.road_search:sighted",
     "constant-velocity": f"{_ROOM}.predictors:constant_velocity",
+    "wait-45": f"{_ROOM}.predictors:wait_45",
     "road-graph": f"{_ROOM}.predictors:road_graph",
     "relay": f"{_ROOM}.relay:relay",
     "servo": f"{_ROOM}.servo:Servo",
@@ -43,7 +44,7 @@ POLICIES: Registry[Callable[..., Any]] = Registry(
 """Built in are classes and functions that take changes of `env`; what installed packages
 add is what `package.module:name` may be, see `load_callable`."""
 
-ORACLES = ("follow", "sighted", "constant-velocity", "road-graph", "relay")
+ORACLES = ("follow", "sighted", "constant-velocity", "wait-45", "road-graph", "relay")
 """Policies that know the truth; they fly by seven actions or, where `env.actions` says so, by
 velocities."""
 

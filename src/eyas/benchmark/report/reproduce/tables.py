@@ -136,7 +136,7 @@ _CONDITIONS = tuple(
     for weather in ("day", "night", "foggy", "snow")
 )
 _ORACLES = ("follow", "sighted", "road-graph", "constant-velocity")
-_LASTING = ("hover", *_ORACLES)
+_LASTING = ("hover", *_ORACLES, "wait-45")
 _PAPER = ("cr", "tsr", "flawless", "worst_fifth")
 _RECOVERED = ("recovered", "recovery_time", "followed_wrong", "nt2f", "tsr")
 _BY_LENGTH = ("recovered", "recovered_2s", "recovered_5s", "recovered_10s", "recovered_15s")
