@@ -3,13 +3,15 @@
 What is painted here ships as data: after a change run `python -m art.ship textures`.
 """
 
-import lzma
+import io
+import zipfile
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from art.textures import bodywork, facades, ground, land, people, plants, roofs, wear
 from eyas.engine.world.build.materials import TEXTURES
@@ -98,4 +100,13 @@ def pack_textures() -> tuple[dict[Path, bytes], str]:
     """Return the file that ships, and the digest of its unpacked bytes."""
     painted = painted_textures()
     content = b"".join(painted[name].tobytes() for name in TEXTURES)
-    return {FILE: lzma.compress(content, preset=9)}, sha256(content).hexdigest()
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name in TEXTURES:
+            picture = io.BytesIO()
+            # `exact` keeps the colours of transparent pixels, which mip levels average.
+            Image.fromarray(painted[name]).save(
+                picture, "WEBP", lossless=True, exact=True, quality=75, method=6
+            )
+            archive.writestr(zipfile.ZipInfo(f"{name}.webp"), picture.getvalue())
+    return {FILE: packed.getvalue()}, sha256(content).hexdigest()

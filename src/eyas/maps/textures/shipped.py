@@ -1,20 +1,22 @@
 """The textures as they ship: what `art/textures` paints, packed by `python -m art.ship`.
 
-To unpack them takes a seventh of the time of painting, and the engine needs no painter.
+A zip file with a lossless WebP picture of each, which any viewer opens. To unpack them takes a
+twentieth of the time of painting, and the engine needs no painter.
 """
 
-import lzma
+import zipfile
 from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from eyas.engine.core.errors import DataFileError
 from eyas.engine.render.textures.fields import SIZE
 from eyas.engine.world.build.materials import TEXTURES
 
-FILE = Path(__file__).with_name("textures.xz")
+FILE = Path(__file__).with_name("textures.zip")
 
 SHA256 = "a7052a9f4d67592c764aea7416694476d9fa156e2e53f6182b9b9684e588d580"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
@@ -30,13 +32,15 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
     Raises:
         DataFileError: The installation is damaged.
     """
-    count = len(TEXTURES) * SIZE * SIZE * 4
-    try:
-        content = lzma.LZMADecompressor().decompress(FILE.read_bytes(), count)
-    except (OSError, lzma.LZMAError, EOFError) as error:
-        raise DataFileError(f"{FILE}: cannot read: {error}; install Eyas again") from None
-    if sha256(content).hexdigest() != SHA256:
-        raise DataFileError(f"{FILE}: damaged; install Eyas again")
     # Order of the layers: that of the table of materials.
-    layers = np.frombuffer(content, np.uint8).reshape(len(TEXTURES), SIZE, SIZE, 4)
+    layers = np.zeros((len(TEXTURES), SIZE, SIZE, 4), np.uint8)
+    try:
+        with zipfile.ZipFile(FILE) as packed:
+            for layer, name in zip(layers, TEXTURES, strict=True):
+                with packed.open(f"{name}.webp") as file, Image.open(file) as picture:
+                    layer[:] = picture.convert("RGBA") if picture.size == (SIZE, SIZE) else 0
+    except (OSError, KeyError, ValueError, SyntaxError, zipfile.BadZipFile) as error:
+        raise DataFileError(f"{FILE}: cannot read: {error}; install Eyas again") from None
+    if sha256(layers.tobytes()).hexdigest() != SHA256:
+        raise DataFileError(f"{FILE}: damaged; install Eyas again")
     return dict(zip(TEXTURES, layers, strict=True))
