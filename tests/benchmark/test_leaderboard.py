@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from eyas.benchmark.evaluation import run
 from eyas.benchmark.plan.plan import EvaluationPlan
 from eyas.benchmark.report.leaderboard import page
 from eyas.benchmark.report.leaderboard.mark import KEY_VARIABLE
+from eyas.benchmark.report.leaderboard.pack import pack
 from eyas.benchmark.report.leaderboard.submission import read_card, submissions_in
 from eyas.benchmark.report.leaderboard.verify import EntryVerdict, verify
 from eyas.cli.app import app
@@ -116,6 +118,18 @@ def test_figures_that_contradict_each_other_leave_an_entry_out(board, caplog, ch
     left = [entry.folder.name for entry in submissions_in(board)]
     assert left == ["follow"]
     assert said in caplog.text
+
+
+def test_an_entry_is_packed_and_can_be_verified_from_its_file(board, tmp_path):
+    with pytest.raises(EyasError, match=r"card.json: missing"):
+        pack(board / "hover")
+    (board / "hover" / "card.json").write_text('{"name": "Hoverer"}')
+    assert pack(board / "hover", tmp_path / "sent.zip").startswith(str(tmp_path / "sent.zip"))
+    with zipfile.ZipFile(tmp_path / "sent.zip") as sent:
+        assert {"run.json", "episodes.jsonl", "result.json", "card.json"} <= set(sent.namelist())
+        assert "videos/median.mp4" in sent.namelist()
+        sent.extractall(tmp_path / "got")
+    assert only(tmp_path / "got").verdict is EntryVerdict.VERIFIED
 
 
 def test_which_episodes_are_flown_again_cannot_be_known_before(board):

@@ -246,6 +246,17 @@ def page(
 
 
 @leaderboard.command()
+def pack(
+    run: Annotated[Path, typer.Argument(metavar="RUN", help="Folder of a finished evaluation.")],
+    out: Annotated[Path | None, to_write("The file; by default RUN.zip.")] = None,
+) -> None:
+    """Make one file of an evaluation, to be sent in as an entry."""
+    from eyas.benchmark.report.leaderboard.pack import pack
+
+    typer.echo(pack(run, out))
+
+
+@leaderboard.command()
 def verify(
     folder: _Entries,
     share: Annotated[

@@ -1,0 +1,60 @@
+"""One file with all that a leaderboard needs of an evaluation, to be sent in."""
+
+import io
+import zipfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from eyas.benchmark.evaluation import TIMING
+from eyas.benchmark.policies.shipped import shipped_names
+from eyas.benchmark.policies.table import FILES, POLICIES
+from eyas.benchmark.records.result import EPISODES, RESULT, STAMP
+from eyas.benchmark.report.films import FOLDER, film
+from eyas.benchmark.report.leaderboard.submission import CARD, complete_run, read_card
+from eyas.engine.core.errors import ConfigError
+from eyas.engine.core.files import read_limited, write_atomic
+
+_LARGEST = 1 << 31  # Largest size of a file of an entry [bytes]
+_MEDIAN = f"{FOLDER}/median.mp4"
+
+
+def pack(folder: Path, out: Path | None = None) -> str:
+    """Write the zip file of an entry; return a line about it.
+
+    It holds the records, the card, the policy's file if it has one, and a film of the median flight
+    where PyAV is installed.
+
+    Args:
+        folder: Folder of a finished evaluation with a `card.json`.
+        out: The file; None: `<folder>.zip`.
+
+    Raises:
+        EyasError: The evaluation is not finished, contradicts itself or has no card, or its policy
+            is not there.
+    """
+    stamp, _, records = complete_run(folder)
+    if read_card(folder) is None:
+        raise ConfigError(
+            f'{folder / CARD}: missing: an entry says what it is, for example {{"name": "Kestrel"}}'
+        )
+    policy, notes = stamp.plan.policy, []
+    names = [STAMP, EPISODES, RESULT, CARD]
+    names += [TIMING] if (folder / TIMING).is_file() else []
+    files = {name: folder / name for name in names}
+    if Path(policy).suffix in FILES:
+        files[Path(policy).name] = Path(policy)
+    elif policy not in POLICIES.built_in and policy not in shipped_names():
+        notes.append("without the code of its policy, which can't be flown again: send a file")
+    if find_spec("av") is None:
+        notes.append("without a film (extra video)")
+    else:
+        if not (folder / _MEDIAN).is_file():
+            film(folder, stamp.plan, records)
+        files[_MEDIAN] = folder / _MEDIAN
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, path in files.items():
+            archive.writestr(zipfile.ZipInfo(name), read_limited(path, _LARGEST))
+    target = out or folder.with_name(f"{folder.name}.zip")
+    write_atomic(target, packed.getvalue())
+    return "; ".join([f"{target}: {len(records)} episodes of '{stamp.plan.protocol}'", *notes])
