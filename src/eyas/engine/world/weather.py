@@ -118,21 +118,22 @@ WINTER_DAY = replace(
     flakes=0.5,
 )
 
-# All at slightly more than a third of the day's brightness, as in the original: a high moon, a sky
-# that is not quite black, the glow of the town at the horizon; lamps and windows add the rest.
+# Exposed for streets under their lamps: the moon gives a fiftieth of that light, the glow of the
+# town above it some more, so that what no lamp lights is nearly black.
 CLEAR_NIGHT = replace(
     CLEAR_DAY,
     sun_direction=(0.48, -0.42, 0.77),
-    sun_colour=(0.086, 0.092, 0.108),
-    zenith_colour=(0.0035, 0.005, 0.012),
-    horizon_colour=(0.024, 0.024, 0.032),
-    ambient_up=(0.062, 0.066, 0.082),
-    ambient_down=(0.030, 0.029, 0.028),
-    fog_colour=(0.024, 0.024, 0.032),
+    sun_colour=(0.016, 0.0175, 0.021),
+    zenith_colour=(0.0028, 0.0034, 0.006),
+    horizon_colour=(0.036, 0.030, 0.025),
+    ambient_up=(0.021, 0.021, 0.023),
+    ambient_down=(0.012, 0.0105, 0.0085),
+    fog_colour=(0.026, 0.023, 0.021),
     fog_density=1.0 / 3000.0,
-    clouds=0.15,
+    clouds=0.0,
+    exposure=1.0,
     luminosity=0.3,
-    # A lit street is then at about 1 cd/m^2, as EN 13201 asks of roads of class M3.
+    # A lit street is then at 1 to 2 cd/m^2, as EN 13201 asks of roads of classes M3 to M1.
     luminance=25.0,
     lamps=1.0,
     windows=0.3,
@@ -142,20 +143,20 @@ CLEAR_NIGHT = replace(
 # town's light back, and so does the ground that is white.
 _FOG_NIGHT = replace(
     CLEAR_NIGHT,
-    sun_colour=(0.003, 0.003, 0.004),
-    zenith_colour=(0.030, 0.030, 0.033),
-    horizon_colour=(0.042, 0.041, 0.041),
-    ambient_up=(0.070, 0.070, 0.074),
-    ambient_down=(0.034, 0.033, 0.032),
-    fog_colour=(0.036, 0.035, 0.035),
+    sun_colour=(0.002, 0.002, 0.0022),
+    zenith_colour=(0.026, 0.023, 0.020),
+    horizon_colour=(0.046, 0.039, 0.032),
+    ambient_up=(0.034, 0.031, 0.028),
+    ambient_down=(0.016, 0.014, 0.012),
+    fog_colour=(0.040, 0.035, 0.030),
     fog_density=FOG.fog_density,
     foggy=True,
     clouds=1.0,
 )
 _WINTER_NIGHT = replace(
     CLEAR_NIGHT,
-    ambient_down=(0.048, 0.050, 0.056),
-    clouds=WINTER_DAY.clouds,
+    ambient_down=(0.019, 0.018, 0.018),
+    clouds=0.0,
     exposure=WINTER_DAY.exposure,
     snow=1.0,
     flakes=WINTER_DAY.flakes,

@@ -65,13 +65,12 @@ _WINTER = replace(
 _NIGHT = replace(
     CLEAR_NIGHT,
     sun_direction=(0.55, 0.66, 0.51),
-    sun_colour=(0.075, 0.056, 0.038),
-    zenith_colour=(0.0030, 0.0032, 0.0060),
-    horizon_colour=(0.085, 0.030, 0.012),
-    ambient_up=(0.040, 0.030, 0.024),
-    ambient_down=(0.022, 0.015, 0.009),
-    fog_colour=(0.040, 0.018, 0.010),
-    clouds=0.0,
+    sun_colour=(0.015, 0.013, 0.011),
+    zenith_colour=(0.0028, 0.0030, 0.0050),
+    horizon_colour=(0.040, 0.018, 0.010),
+    ambient_up=(0.014, 0.012, 0.010),
+    ambient_down=(0.008, 0.006, 0.004),
+    fog_colour=(0.016, 0.010, 0.008),
 )
 
 _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}

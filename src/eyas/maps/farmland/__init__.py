@@ -31,13 +31,8 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 
 def _weather(weather: Weather) -> Weather:
     day = replace(weather.day, lamps=max(weather.day.lamps, _BY_DAY))
-    # Under its black sky, the original's farmland keeps half of the day's light.
-    night = replace(
-        weather.night,
-        sun_colour=(0.16, 0.17, 0.19),
-        ambient_up=(0.115, 0.12, 0.14),
-        ambient_down=(0.056, 0.052, 0.046),
-    )
+    # No town is near: stars above a pale rim of the sky.
+    night = replace(weather.night, horizon_colour=(0.012, 0.012, 0.013))
     if not day.foggy and not day.rain:
         day = replace(day, fog_density=_CLEAR)
     return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))

@@ -1,5 +1,6 @@
 """The lake district: a suburb of long blocks, each a pond or a strip of forest of one kind."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
@@ -25,7 +26,9 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 
 
 def _weather(weather: Weather) -> Weather:
-    return weather.each(lambda light: in_fog(light, 400.0))
+    # Few windows light the woods.
+    few = replace(weather.night, windows=min(weather.night.windows, 0.08))
+    return replace(weather, night=few).each(lambda light: in_fog(light, 400.0))
 
 
 LAKE = MapRecipe(

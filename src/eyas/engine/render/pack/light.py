@@ -38,6 +38,9 @@ CELL = 8.0  # Side of a square of the grid of street lamps [m]
 _WALLS = np.array((1.03, 1.0, 0.95))
 """Colour of walls and pavements on average, whose brightness does not matter here."""
 
+_FRONTS = np.array((0.95, 0.76, 0.52))
+"""Light of shops, signs and windows in a closed street where all windows are lit."""
+
 _LUMA = np.array((0.2126, 0.7152, 0.0722))
 """Weights of linear red, green and blue in luminance (ITU-R BT.709)."""
 
@@ -45,9 +48,9 @@ REACH = 32.0  # Distance beyond which a lamp's light is negligible [m]: below 1/
 
 MOST = 8  # Most lamps that are listed for a square
 
-PAPER = 1.05
+PAPER = 0.6
 """Intensity over squared distance [m] that lights paper as the sun does: the original's lamps of
-intensity 30 then give the road below about half the light of the sun."""
+intensity 30 then give the road below about as much light as the sun."""
 
 
 class Baked(NamedTuple):
@@ -161,13 +164,14 @@ def _weather(
 def _tinge(lighting: Lighting) -> NDArray[np.float64]:
     """Return `Illumination.tinge`: as bright as the sky's light in its place, of the walls' colour.
 
-    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden.
+    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden. By night fronts
+    shine themselves.
     """
     sky = np.asarray(lighting.ambient_up)
     thrown = (0.5 * np.asarray(lighting.sun_colour) + sky) * _WALLS
     bright = exact.product(sky, _LUMA) / max(exact.product(thrown, _LUMA), 1e-9)
     tinge: NDArray[np.float64] = (thrown * bright - sky) * (BOUNCED / (1.0 - BOUNCED))
-    return tinge
+    return tinge + lighting.windows * _FRONTS
 
 
 def tone_table() -> NDArray[np.uint8]:

@@ -1,4 +1,4 @@
-"""Glare of vehicles' lamps at night: the light that a lens scatters round what is far too bright.
+"""Glare of the lamps of vehicles and streets at night: the light that a lens scatters round what is far too bright.
 
 A halo belongs to the lens, and would lie over everything. Here what stands in front of a lamp has
 none of it: then a lamp that is hidden has no halo, and no band need know what others show.
@@ -50,11 +50,18 @@ _HEAD, _TAIL, _BRAKE = 700.0, 9.0, 36.0
 """Peak radiance times the square of the distance [m^2]: as thousands of candela of a dipped beam,
 and the 12 and 60 of UN Regulation 7, through a lens that scatters some thousandth of the light."""
 
+_STREET = 1500.0
+"""The same of a street lamp in the middle of its beam; out of it, where its cover hides the light
+source, `_ASTRAY` of that."""
+
+_ASTRAY = 0.12
+
 _BRIGHTEST = 3.0  # Largest peak: nearer lamps are larger than the core
 
 _FAINTEST = 0.02  # Peak below which there is nothing to see
 
 _WHITE: Colour = (f4(1.0), f4(0.94), f4(0.82))
+_WARM: Colour = (f4(1.0), f4(0.80), f4(0.52))
 _RED: Colour = (f4(1.0), f4(0.06), f4(0.035))
 
 
@@ -63,7 +70,8 @@ def draw_halos(
     band: Band,
     canvas: Canvas,  # Its colours
 ) -> None:
-    """Add the halos of the lamps of all vehicles that face the camera to a band."""
+    """Add the halos of street lamps, and of vehicles' lamps that face the camera, to a band."""
+    _of_street_lamps(band, canvas)
     movers, world, eye = band.movers, band.world, band.camera.eye
     slots, lamps = movers.part.shape[1], movers.lamps
     first = next_thing(band, 0)
@@ -78,6 +86,23 @@ def draw_halos(
                 brakes = lamps.shape[1] > 0 and (lamps[world, first] & BRAKING) == BRAKING
                 _of_vehicle(band, address_of(caster_of(band, first, last)), brakes, canvas)
         first = next_thing(band, last)
+
+
+@kernel(inline=True)
+def _of_street_lamps(band: Band, canvas: Canvas) -> None:
+    eye, lamps = band.camera.eye, band.light.lamp
+    for index in range(len(lamps)):
+        lamp = lamps[index]
+        x, y, z = float(lamp[0]), float(lamp[1]), float(lamp[2])
+        over_x, over_y, over_z = eye.x - x, eye.y - y, eye.z - z
+        square = over_x * over_x + over_y * over_y + over_z * over_z + 1.0
+        if square < _FARTHEST * _FARTHEST:
+            away = math.sqrt(square)
+            if sphere_is_visible(band.camera.planes, x, y, z, away * _ANGLE):
+                facing = (lamp[3] * over_x + lamp[4] * over_y + lamp[5] * over_z) / away
+                peak = _STREET * max(facing, _ASTRAY) / square
+                if peak > _FAINTEST:
+                    _draw(band, (x, y, z), peak, _WARM, canvas)
 
 
 @kernel(inline=True)
@@ -102,12 +127,12 @@ def _of_vehicle(band: Band, body: Caster, brakes: bool, canvas: Canvas) -> None:
             facing *= facing * max(1.0 - 2.2 * over_z * over_z / square, 0.12)
         peak = (_HEAD if which < 2 else rear) * facing / square
         if peak > _FAINTEST:
-            _draw(band, (x, y, z), peak, which < 2, canvas)
+            _draw(band, (x, y, z), peak, _WHITE if which < 2 else _RED, canvas)
 
 
 @kernel
 def _draw(
-    band: Band, place: tuple[float, float, float], peak: float, white: bool, canvas: Canvas
+    band: Band, place: tuple[float, float, float], peak: float, tint: Colour, canvas: Canvas
 ) -> None:
     """Draw the halo of a lamp at a place [m]."""
     view, eye, (x, y, z) = band.camera, band.camera.eye, place
@@ -123,8 +148,7 @@ def _draw(
     if first >= last or start >= stop:
         return
     strength = f4(min(peak, _BRIGHTEST) * band.lit.air.lamps)
-    red, green, blue = _WHITE if white else _RED
-    colour = strength * red, strength * green, strength * blue
+    colour = strength * tint[0], strength * tint[1], strength * tint[2]
     exposed = f4(band.lit.air.exposure)
     # A pixel cannot show a core that is smaller than itself.
     core = f4((_CORE / _ANGLE) ** 2 + 0.16 / (tall * wide))

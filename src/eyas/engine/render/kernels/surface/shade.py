@@ -73,6 +73,10 @@ SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
 
+_DARK_SKY = f4(0.04)  # Green of the sky overhead below which it is night
+
+_FAINT = f4(0.015)  # Luminance at which half of the colour is lost, white in the sun being 1
+
 
 @kernel(inline=True)
 def water_slope(
@@ -305,6 +309,10 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
+    if lit.zenith.y < _DARK_SKY:  # a camera's grain leaves no colour to what is hardly lit
+        bright = f4(0.22) * red + f4(0.71) * green + f4(0.07) * blue
+        grey = bright, bright, bright
+        red, green, blue = blended((red, green, blue), grey, _FAINT / (_FAINT + bright))
     if row >= 0:
         shining = instance_frame(band, row).lamps
         if shining != i4(0):
