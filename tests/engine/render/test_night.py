@@ -7,7 +7,8 @@ import pytest
 import shapely
 
 from eyas.engine.mesh.flat import flat_polygon
-from eyas.engine.render.pack.light import lamp_grid
+from eyas.engine.render.kernels.light.tone import TONE_TOP
+from eyas.engine.render.pack.light import lamp_grid, tone_table
 from eyas.engine.sim.assets import load_assets
 from eyas.engine.state.draw import DrawList, PartLibrary, Picture
 from eyas.engine.state.scene import Lamps
@@ -38,10 +39,9 @@ def paper(half: float = 100.0):
 
 
 def radiance(pixels: np.ndarray) -> np.ndarray:
-    """Undo sRGB and the tone curve `1 - exp(-1.35 x)`."""
-    encoded = pixels.astype(float) / 255
-    tone = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return -np.log(1 - tone) / 1.35
+    """Undo the tone curve."""
+    table = tone_table()
+    return np.interp(pixels, table, np.arange(len(table))) * (TONE_TOP / len(table))
 
 
 @pytest.fixture

@@ -6,6 +6,8 @@ import pytest
 from eyas.dat.settings.adapter import from_original
 from eyas.engine.core.optics.pinhole import rays
 from eyas.engine.envs.tracking_env import TrackingEnv
+from eyas.engine.render.kernels.light.tone import TONE_TOP
+from eyas.engine.render.pack.light import tone_table
 from eyas.engine.sim.build import build_simulation
 from eyas.engine.sim.config import SimConfig
 from eyas.engine.sim.worlds import each_alone, together
@@ -78,10 +80,9 @@ def test_the_air_veils_what_lies_at_a_distance_as_one_over_the_visibility_says()
 
 
 def radiance(rgb):
-    """Undo sRGB and `tone_table`."""
-    encoded = rgb / 255.0
-    tone = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
-    return -np.log(1.0 - tone) / 1.35
+    """Undo `tone_table`."""
+    table = tone_table()
+    return np.interp(rgb, table, np.arange(len(table))) * (TONE_TOP / len(table))
 
 
 def test_visibility_where_there_is_no_fog_is_told_to_have_no_effect(caplog):

@@ -32,7 +32,7 @@ from eyas.engine.camera.photosites import (
 from eyas.engine.core.errors import ConfigError
 from eyas.engine.render.kernels.pixels import pack
 from eyas.engine.render.kernels.scalars import f4, i4
-from eyas.engine.render.pack.light import encoded_tone
+from eyas.engine.render.pack.light import SHOULDER, encoded_tone
 from eyas.lanes import PackedBundle, exact, kernel, parallel, thread_count
 from eyas.lanes.vector import (
     WIDTH,
@@ -59,7 +59,7 @@ def tone_of_sensor() -> NDArray[np.uint8]:
 
     The curve is that of pictures without a sensor, stretched so that saturation is white.
     """
-    return encoded_tone(_WHITE, 1.0 - float(exact.exp(-1.35 * _WHITE)))
+    return encoded_tone(_WHITE, 1.0 - float(exact.exp(-SHOULDER * _WHITE)))
 
 
 class Development:

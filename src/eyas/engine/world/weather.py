@@ -72,15 +72,19 @@ _STEEP = 1.0 / math.sqrt(0.55 * 0.55 + 0.6 * 0.6 + 1.0)  # Scales the sun's dire
 CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
-    sun_colour=(1.02, 0.96, 0.84),
+    # On level ground 4.1 times the sky's light, as from 50 degrees through clear air (Bird and
+    # Hulstrom, A simplified clear sky model, SERI/TR-642-761, 1981).
+    sun_colour=(1.56, 1.49, 1.32),
     zenith_colour=(0.042, 0.130, 0.42),
     horizon_colour=(0.45, 0.64, 0.94),
-    ambient_up=(0.325, 0.35, 0.395),
-    ambient_down=(0.16, 0.155, 0.13),
+    ambient_up=(0.255, 0.282, 0.328),
+    ambient_down=(0.15, 0.142, 0.118),
     fog_colour=(0.47, 0.61, 0.82),
     # Clear air that tints the far edge of the map slightly blue.
     fog_density=1.0 / 7000.0,
     clouds=0.35,
+    # White paper in this sun has radiance 1.3.
+    luminance=23_000.0,
 )
 
 # The original's plain grey sky (0.75, 0.75, 0.74) as radiance, and its weak bluish sun behind it.

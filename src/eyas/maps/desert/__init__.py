@@ -25,12 +25,12 @@ __all__ = ["DESERT", "DESERT_BARE", "desert_weather"]
 # The original's sky is pale yellow to white, its sun the same as everywhere.
 _DAY = replace(
     CLEAR_DAY,
-    sun_colour=(1.06, 0.97, 0.80),
+    sun_colour=(1.62, 1.49, 1.25),
     zenith_colour=(0.66, 0.61, 0.42),
     horizon_colour=(1.0, 0.88, 0.56),
     # Sand reflects more light upwards than grass.
-    ambient_up=(0.36, 0.35, 0.30),
-    ambient_down=(0.26, 0.22, 0.14),
+    ambient_up=(0.26, 0.255, 0.225),
+    ambient_down=(0.26, 0.22, 0.15),
     fog_colour=(0.84, 0.76, 0.56),
     fog_density=1.0 / 5000.0,
     clouds=0.0,

@@ -32,7 +32,7 @@ from eyas.maps.plan.plan import (
 )
 from eyas.maps.street.lamps import lamps_along
 
-SAND = replace(material("sand", (1.0, 0.92, 0.67)), surface=Surface.DESERT)
+SAND = replace(material("sand", (1.0, 0.96, 0.88)), surface=Surface.DESERT)
 """The ground, the dunes, and the drifts on the roads."""
 
 _DUSTY = replace(SAND, surface=Surface.DESERT_DRIFT)  # Asphalt under a thin layer of sand

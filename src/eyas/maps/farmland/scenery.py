@@ -16,7 +16,7 @@ from eyas.maps.farmland.roads import ROAD_WIDTH, road_graph
 from eyas.maps.plan.plan import Chance, Far, Field
 from eyas.maps.plants.gardens import scattered
 
-SOIL = material("soil", (1.0, 0.90, 0.66))  # The ground between fields
+SOIL = material("soil", (1.0, 0.96, 0.90))  # The ground between fields
 _MEADOW = material("lawn", (0.9, 0.94, 0.84))
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""

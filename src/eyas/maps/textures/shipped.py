@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "a7052a9f4d67592c764aea7416694476d9fa156e2e53f6182b9b9684e588d580"
+SHA256 = "28b52ace23246bf366793ce752ab3a72ff9c1bd2dd44f3bbea83beecb3570502"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

@@ -43,7 +43,7 @@ from eyas.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.maps.village.roads import NAME
 from eyas.maps.village.scenery import grown, trodden, yard_things
 
-GRASS = replace(material("lawn", (0.62, 0.76, 0.745)), surface=Surface.HILLSIDE)
+GRASS = replace(material("lawn", (0.86, 0.93, 0.90)), surface=Surface.HILLSIDE)
 """The valley and its hills."""
 
 _VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
