@@ -66,11 +66,11 @@ _NIGHT = replace(
     CLEAR_NIGHT,
     sun_direction=(0.55, 0.66, 0.51),
     sun_colour=(0.015, 0.013, 0.011),
-    zenith_colour=(0.0028, 0.0030, 0.0050),
-    horizon_colour=(0.040, 0.018, 0.010),
+    zenith_colour=(0.0017, 0.0019, 0.0032),
+    horizon_colour=(0.024, 0.011, 0.0065),
     ambient_up=(0.014, 0.012, 0.010),
     ambient_down=(0.008, 0.006, 0.004),
-    fog_colour=(0.016, 0.010, 0.008),
+    fog_colour=(0.010, 0.0065, 0.005),
 )
 
 _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}

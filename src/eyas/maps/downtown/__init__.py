@@ -29,10 +29,10 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 _LIT = replace(
     CLEAR_NIGHT,
     zenith_colour=(0.0012, 0.0016, 0.004),
-    horizon_colour=(0.026, 0.021, 0.017),
+    horizon_colour=(0.020, 0.016, 0.013),
     ambient_up=(0.042, 0.039, 0.037),
     ambient_down=(0.030, 0.025, 0.019),
-    fog_colour=(0.020, 0.017, 0.015),
+    fog_colour=(0.014, 0.012, 0.010),
     windows=0.26,
 )
 

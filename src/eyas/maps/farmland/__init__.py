@@ -32,7 +32,7 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 def _weather(weather: Weather) -> Weather:
     day = replace(weather.day, lamps=max(weather.day.lamps, _BY_DAY))
     # No town is near: stars above a pale rim of the sky.
-    night = replace(weather.night, horizon_colour=(0.012, 0.012, 0.013))
+    night = replace(weather.night, horizon_colour=(0.008, 0.008, 0.009))
     if not day.foggy and not day.rain:
         day = replace(day, fog_density=_CLEAR)
     return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))

@@ -54,8 +54,8 @@ _DARK = replace(
     sun_colour=(0.014, 0.016, 0.017),
     ambient_up=(0.016, 0.018, 0.018),
     ambient_down=(0.008, 0.009, 0.008),
-    horizon_colour=(0.011, 0.012, 0.013),
-    fog_colour=(0.010, 0.011, 0.012),
+    horizon_colour=(0.007, 0.0075, 0.0085),
+    fog_colour=(0.006, 0.0065, 0.007),
     windows=0.2,
 )
 
