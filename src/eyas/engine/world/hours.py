@@ -146,7 +146,8 @@ def _by_day(light: Lighting, direction: Colour) -> Lighting:
         fog_colour=_scaled(_dimmed(light.fog_colour, 0.3 * longer), 0.5 + 0.5 * sky),
         ambient_up=_scaled(light.ambient_up, sky),
         ambient_down=_scaled(light.ambient_down, sky),
-        exposure=light.exposure / math.sqrt(sky),
+        # The camera meters streets, which a low sun leaves to the sky.
+        exposure=light.exposure / float(exact.power(sky, 0.85)),
     )
 
 

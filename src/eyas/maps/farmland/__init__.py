@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
-_BY_DAY = 0.35
+_BY_DAY = 0.2
 """Lamps by day: as in the original they are never off, and leave a warm glow on the road."""
 _CLEAR = 1.0 / 18_000.0  # Density of air in which the mountains are seen
 

@@ -24,6 +24,8 @@ _TAIL = f4(0.16 / 255.0)  # The same for tail lamps
 
 _FULL = f4(0.4536)  # Cosine of the angle up to which a beam is even: the original's 1.1 rad.
 
+DARK_SKY = f4(0.04)  # Green of the sky overhead below which it is night
+
 _BAYS = f4(4.0)  # Windows along a side of one repeat of a facade's texture
 
 

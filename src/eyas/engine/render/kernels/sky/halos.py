@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
 from eyas.engine.render.kernels.colours import Colour
+from eyas.engine.render.kernels.light.lamps import DARK_SKY
 from eyas.engine.render.kernels.light.caster import Caster, caster_of, has_lamps
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
@@ -31,12 +32,21 @@ from eyas.lanes.vector import (
     greater,
     lane_numbers,
     lesser,
+    magnitude,
     root,
     select,
     to_f4,
     to_i4,
     to_u4,
 )
+
+_FILM = 0.38  # Share of a wet road under a film that mirrors, see `surface.wet`
+
+_GLOSS = (14.0, 60.0)
+"""How much brighter the mirror images of head and tail lamps on such a road are than their halos:
+all their light, not the little that a lens scatters, but drawn out."""
+
+_STREAK = (0.35, 4.0)  # Half the width of such an image [m], and its height over its width
 
 _FARTHEST = 140.0  # Distance beyond which lamps have no halo [m]
 
@@ -57,6 +67,8 @@ source, `_ASTRAY` of that."""
 _ASTRAY = 0.12
 
 _BRIGHTEST = 3.0  # Largest peak: nearer lamps are larger than the core
+
+_NOWHERE = -1e9
 
 _FAINTEST = 0.02  # Peak below which there is nothing to see
 
@@ -91,6 +103,8 @@ def draw_halos(
 @kernel(inline=True)
 def _of_street_lamps(band: Band, canvas: Canvas) -> None:
     eye, lamps = band.camera.eye, band.light.lamp
+    if band.lit.zenith.y > DARK_SKY:
+        return
     for index in range(len(lamps)):
         lamp = lamps[index]
         x, y, z = float(lamp[0]), float(lamp[1]), float(lamp[2])
@@ -101,8 +115,7 @@ def _of_street_lamps(band: Band, canvas: Canvas) -> None:
             if sphere_is_visible(band.camera.planes, x, y, z, away * _ANGLE):
                 facing = (lamp[3] * over_x + lamp[4] * over_y + lamp[5] * over_z) / away
                 peak = _STREET * max(facing, _ASTRAY) / square
-                if peak > _FAINTEST:
-                    _draw(band, (x, y, z), peak, _WARM, canvas)
+                _draw(band, (x, y, z), peak, _NOWHERE, _WARM, canvas)
 
 
 @kernel(inline=True)
@@ -121,25 +134,44 @@ def _of_vehicle(band: Band, body: Caster, brakes: bool, canvas: Canvas) -> None:
         facing = end * (over_x * body.along_x + over_y * body.along_y) / math.sqrt(square)
         if facing <= 0.0:
             continue
+        wet, peak = float(band.lit.air.wet), (_HEAD if which < 2 else rear) * facing / square
+        if wet > 0.0 and band.glass.on == 0:
+            # The road mirrors it as far below as it is above, by Schlick's formula.
+            graze = 1.0 - (over_z + 2.0 * (z - body.bottom)) / math.sqrt(square)
+            share = _FILM * wet * (0.02 + 0.98 * graze * graze * graze * graze * graze)
+            share *= _GLOSS[0] if which < 2 else _GLOSS[1]
+            below, tint = 2.0 * body.bottom - z, _WHITE if which < 2 else _RED
+            _draw(band, (x, y, below), min(share * peak, 0.5), body.bottom, tint, canvas)
         # A dipped beam is cut off above the lamps: some of its light still goes up.
         facing *= facing
         if which < 2:
             facing *= facing * max(1.0 - 2.2 * over_z * over_z / square, 0.12)
         peak = (_HEAD if which < 2 else rear) * facing / square
-        if peak > _FAINTEST:
-            _draw(band, (x, y, z), peak, _WHITE if which < 2 else _RED, canvas)
+        _draw(band, (x, y, z), peak, _NOWHERE, _WHITE if which < 2 else _RED, canvas)
 
 
 @kernel
 def _draw(
-    band: Band, place: tuple[float, float, float], peak: float, tint: Colour, canvas: Canvas
+    band: Band,
+    place: tuple[float, float, float],  # Of the lamp [m], or of its mirror image
+    peak: float,
+    road: float,  # z of the road that mirrors it, or `_NOWHERE`
+    tint: Colour,
+    canvas: Canvas,
 ) -> None:
-    """Draw the halo of a lamp at a place [m]."""
+    """Draw the halo of a lamp, or its image in a wet road."""
+    if peak < _FAINTEST:
+        return
     view, eye, (x, y, z) = band.camera, band.camera.eye, place
     ahead, left, up = seen_from(view, x - eye.x, y - eye.y, z - eye.z)
     if ahead < 0.5:
         return
-    row, column, tall, wide = on_screen(band, ahead, left, up, _ANGLE * ahead)
+    mirrored = road > _NOWHERE
+    row, column, tall, wide = on_screen(
+        band, ahead, left, up, _STREAK[0] + 0.01 * ahead if mirrored else _ANGLE * ahead
+    )
+    if mirrored:
+        tall *= _STREAK[1]
     top = i8(view.top // view.down) if band.glass.on == 0 else i8(band.glass.top)
     first = max(i8(math.floor(row - tall)) - top, 0)
     last = min(i8(math.ceil(row + tall)) - top, band.lines)
@@ -147,7 +179,8 @@ def _draw(
     stop = min(i8(math.ceil(column + wide)), band.columns)
     if first >= last or start >= stop:
         return
-    strength = f4(min(peak, _BRIGHTEST) * band.lit.air.lamps)
+    air = band.lit.air
+    strength = f4(min(peak, _BRIGHTEST) * max(air.lamps, 0.3 * air.daytime_lamps))
     colour = strength * tint[0], strength * tint[1], strength * tint[2]
     exposed = f4(band.lit.air.exposure)
     # A pixel cannot show a core that is smaller than itself.
@@ -159,6 +192,8 @@ def _draw(
             x = (to_f4(lane_numbers()) + f4(j + 0.5 - column)) * f4(1.0 / wide)
             away = f4(y * y) + x * x
             share = _seen(band, i, j, away, core, f4(ahead))
+            if mirrored:
+                share = _on_road(band, i, j, away, road)
             if any_of(share > f4(0.0)):
                 _add(canvas, i, j, share, colour, exposed)
 
@@ -180,6 +215,20 @@ def _seen(
     behind = lesser(greater((depth - ahead) * f4(0.8) + f4(1.6), zero), one)
     share = core / (core + away) - core / (core + one)
     return select(inside, behind * share, zero)
+
+
+@kernel(inline=True)
+def _on_road(band: Band, i: int, j: int, away: float, road: float) -> float:
+    """Return the shares of the peak of a mirror image in eight pixels that show the road."""
+    view, zero, one = band.camera, f4(0.0), f4(1.0)
+    keys = keys_of(band.key, i * view.down, j * view.across, view.across)
+    depth = one / greater(distance_inverse(keys), f4(1e-6))
+    rise = view.up.z * (0.5 * view.height - view.top - (i + 0.5) * view.down) / view.focal_y
+    aside = f4(0.5 * view.width - (j + 0.5) * view.across) - to_f4(lane_numbers()) * f4(view.across)
+    slope = f4(view.ahead.z + rise) + f4(view.left.z / view.focal_x) * aside
+    level = greater(one - f4(5.0) * magnitude(slope * depth + f4(view.eye.z - road)), zero)
+    fade = one - away
+    return select((away < one) & (keys > i8(0)), fade * fade * level, zero)
 
 
 @kernel(inline=True)

@@ -6,10 +6,10 @@ from numpy.typing import NDArray
 from eyas.engine.render.kernels.bundles import Band
 from eyas.engine.render.kernels.colours import Colour, Vector, blended, where
 from eyas.engine.render.kernels.light.ambient import openness
-from eyas.engine.render.kernels.light.lamps import night_light, window_light
+from eyas.engine.render.kernels.light.lamps import DARK_SKY, night_light, window_light
 from eyas.engine.render.kernels.light.sunlight import sunlight
 from eyas.engine.render.kernels.scalars import f4, i4, u4
-from eyas.engine.render.kernels.sky.fog import land_fog
+from eyas.engine.render.kernels.sky.fog import bank_light, land_fog
 from eyas.engine.render.kernels.sky.mist import aired
 from eyas.engine.render.kernels.sky.radiance import reflection
 from eyas.engine.render.kernels.surface.attributes import attributes_of, instance_frame
@@ -72,8 +72,6 @@ TILES = f4(1.0 / 8.0)  # Repeats of the texture in a metre where u is something 
 SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
-
-_DARK_SKY = f4(0.04)  # Green of the sky overhead below which it is night
 
 _FAINT = f4(0.015)  # Luminance at which half of the colour is lost, white in the sun being 1
 
@@ -309,7 +307,7 @@ def shade_point(
         )
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
-    if lit.zenith.y < _DARK_SKY:  # a camera's grain leaves no colour to what is hardly lit
+    if lit.zenith.y < DARK_SKY:  # a camera's grain leaves no colour to what is hardly lit
         bright = f4(0.22) * red + f4(0.71) * green + f4(0.07) * blue
         grey = bright, bright, bright
         red, green, blue = blended((red, green, blue), grey, _FAINT / (_FAINT + bright))
@@ -341,5 +339,10 @@ def shade_point(
         red, green, blue = aired(light, lit, colour, eye, point, way, distance * stretch)
     elif lit.fog_density > zero:
         hidden = land_fog(light, lit, eye, point, distance * stretch)
-        red, green, blue = blended((red, green, blue), lit.fog, hidden)
+        if air.banks > zero:
+            shine = bank_light(lit, way[2])
+            haze = shine * lit.fog.x, shine * lit.fog.y, shine * lit.fog.z
+            red, green, blue = blended((red, green, blue), haze, hidden)
+        else:
+            red, green, blue = blended((red, green, blue), lit.fog, hidden)
     return red, green, blue
