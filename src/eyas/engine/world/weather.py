@@ -112,12 +112,12 @@ WINTER_DAY = replace(
     zenith_colour=(0.24, 0.42, 0.80),
     horizon_colour=(0.50, 0.62, 0.80),
     # Snow reflects light upwards.
-    ambient_up=(0.27, 0.315, 0.40),
+    ambient_up=(0.30, 0.345, 0.43),
     ambient_down=(0.35, 0.37, 0.40),
     fog_colour=(0.55, 0.64, 0.76),
     fog_density=1.0 / 6000.0,
     clouds=0.45,
-    exposure=0.75,
+    exposure=0.88,
     snow=1.0,
     flakes=0.5,
 )
@@ -160,8 +160,7 @@ _FOG_NIGHT = replace(
 _WINTER_NIGHT = replace(
     CLEAR_NIGHT,
     ambient_down=(0.019, 0.018, 0.018),
-    clouds=0.0,
-    exposure=WINTER_DAY.exposure,
+    exposure=1.4,
     snow=1.0,
     flakes=WINTER_DAY.flakes,
 )
