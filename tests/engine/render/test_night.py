@@ -31,7 +31,8 @@ HEIGHT = 7.2
 
 def lamps_at(places) -> Lamps:
     position = np.array([(x, y, HEIGHT) for x, y in places], np.float32)
-    return Lamps(position, np.tile(np.array([0, 0, -1], np.float32), (len(places), 1)))
+    down = np.tile(np.array([0, 0, -1], np.float32), (len(places), 1))
+    return Lamps(position, down, intensity=17.0)
 
 
 def paper(half: float = 100.0):
@@ -58,11 +59,12 @@ def lit_plane(drawn, renderer_of):
     return see
 
 
-def test_a_lamp_lights_with_the_square_of_the_distance_up_to_its_cut_off(lit_plane):
+def test_a_lamp_throws_light_aside_up_to_its_cut_off(lit_plane):
     distances = np.array([0.0, 4.0, 8.0, 12.0])
     light = lit_plane(lamps_at([(0, 0)]), distances)
     square = distances**2 + HEIGHT**2
-    expected = HEIGHT / square**1.5  # cosine over distance squared; even up to 1.1 rad
+    # Cosine over distance squared, and up to 2.5 times as much to the sides, even up to 1.1 rad.
+    expected = HEIGHT / square**0.5 / (0.4 * square + 0.6 * HEIGHT**2)
     assert light[0] == pytest.approx(0.55, abs=0.06)
     np.testing.assert_allclose(light / light[0], expected / expected[0], atol=0.02)
     narrow = dataclasses.replace(lamps_at([(0, 0)]), cut_off=1.15)

@@ -48,6 +48,7 @@ _MIXED = tuple(
 _LAMPS = ("lamps", "windows", "daytime_lamps")
 """Lights that are switched on as the sun sinks, from the horizon to as far below it as
 `_LOW_SUN`."""
+_LONGEST = 2.6  # Exposure under a low sun, over the day's: then lamps are lit
 _LOWEST = 1.5  # Height of the sun below which the formulas of daylight would go on to black [deg]
 
 
@@ -147,7 +148,7 @@ def _by_day(light: Lighting, direction: Colour) -> Lighting:
         ambient_up=_scaled(light.ambient_up, sky),
         ambient_down=_scaled(light.ambient_down, sky),
         # The camera meters streets, which a low sun leaves to the sky.
-        exposure=light.exposure / float(exact.power(sky, 0.85)),
+        exposure=light.exposure * min(float(exact.power(sky, -0.75)), _LONGEST),
     )
 
 

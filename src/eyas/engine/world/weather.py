@@ -171,15 +171,15 @@ _WINTER_NIGHT = replace(
 _OVERCAST_DAY = replace(
     CLEAR_DAY,
     sun_colour=(0.0, 0.0, 0.0),
-    zenith_colour=(0.46, 0.48, 0.51),
-    horizon_colour=(0.42, 0.44, 0.47),
-    ambient_up=(0.44, 0.455, 0.48),
-    ambient_down=(0.15, 0.148, 0.137),
-    fog_colour=(0.46, 0.48, 0.51),
+    zenith_colour=(0.37, 0.385, 0.41),
+    horizon_colour=(0.335, 0.35, 0.375),
+    ambient_up=(0.35, 0.362, 0.382),
+    ambient_down=(0.12, 0.118, 0.11),
+    fog_colour=(0.37, 0.385, 0.41),
     fog_density=1.0 / 5000.0,
     clouds=1.0,
-    exposure=1.45,
-    luminance=10_000.0,
+    exposure=1.9,
+    luminance=12_500.0,
 )
 _OVERCAST_NIGHT = replace(_FOG_NIGHT, fog_density=CLEAR_NIGHT.fog_density, foggy=False)
 

@@ -89,7 +89,7 @@ def track_map(scene: Scene) -> TrackMap:
     left = np.concatenate([normal for _, normal in stations])
     # Paths wander and their wear varies, from lane to lane too; neighbouring points agree.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
-    wander = 0.1 * sway + 0.26 * _waves(middle, 37.0, 4)
+    wander = 0.06 * sway + 0.24 * _waves(middle, 37.0, 4)
     share = np.random.default_rng(5).uniform(0.72, 1.0, len(ways))
     strength = np.array([much for _, much in ways]) * share
     strength = np.repeat(strength, [len(points) for points, _ in stations])

@@ -168,5 +168,5 @@ def window_light(
     blue = bright * select(warm, like(u, f4(0.33)), select(cold, like(u, f4(1.0)), f4(0.64)))
     # A bay is two pixels wide at level 5, and one at level 6.
     far = lesser(greater(f4(1.0 / 256.0) * to_f4(detail - i4(1280)), f4(0.0)), f4(1.0))
-    near, mean = f4(1.0) - far, f4(0.55) * share * far
-    return (near * red + mean, near * green + f4(0.72) * mean, near * blue + f4(0.46) * mean)
+    near, mean = f4(1.0) - far, f4(0.29) * share * far
+    return (near * red + mean, near * green + f4(0.75) * mean, near * blue + f4(0.48) * mean)
