@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "28b52ace23246bf366793ce752ab3a72ff9c1bd2dd44f3bbea83beecb3570502"
+SHA256 = "c14c85a549f2ba3eea2f3035679f769e1149689a59ee7ade71976535346f315c"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

@@ -211,7 +211,8 @@ def shade_point(
             u, v = select(sandy, SAND * along, u), select(sandy, SAND * down, v)
             density = select(sandy, like(density, SAND), density)
     span = f4(256.0) * density * distance * pixel
-    detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
+    lean = one / greater(magnitude(cosine), f4(0.1))
+    detail = detail_of(span * span * lean)
     blend = pixel < SHARP
     bright = like(span, one)
     if kinds & WET != 0:
@@ -230,7 +231,7 @@ def shade_point(
             light, lit.sun, air.offset, point, normal, sun_share,
             surface == FOLIAGE, kinds & LEAFY != 0,
         )  # fmt: skip
-    open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    open_share, worn = openness(light, point[0], point[1], point[2], normal[0], normal[1])
     low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
     asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
     red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
@@ -256,6 +257,12 @@ def shade_point(
         red, green, blue = wild(
             surface, kinds, look, (red, green, blue), at.u, point, normal[2], footprint
         )
+    if row < 0:  # ground and roofs are nowhere alike; but far away, where that would flicker
+        close = lesser(greater(f4(2.0) - distance * pixel * lean, zero), one)
+        worn *= close * greater(normal[2], zero)
+        red *= one + f4(1.2) * worn
+        green *= one + worn
+        blue *= one + f4(0.7) * worn
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         bare_r, bare_g, bare_b = red, green, blue
