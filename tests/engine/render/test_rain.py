@@ -91,7 +91,9 @@ def test_a_lamp_is_mirrored_between_it_and_the_eye(seen):
     )
     night = dataclasses.replace(night, zenith_colour=(0.0,) * 3)
     road = plate("asphalt")
-    road.lamps = Lamps(np.array([[24.0, 0.0, 8.0]], np.float32), np.array([[0, 0, -1.0]], "f4"), 16.0)
+    road.lamps = Lamps(
+        np.array([[24.0, 0.0, 8.0]], np.float32), np.array([[0, 0, -1.0]], "f4"), 16.0
+    )
     view = {"pitch": 0.4, "height": 8.0, "size": (120, 161)}
     dry = seen(road, night, **view)
     wet = seen(road, dataclasses.replace(night, wet=1.0), **view)

@@ -281,7 +281,7 @@ def _develop_mosaic(
     view: int,
     rows: tuple[int, int],  # First, and after the last
     raw: NDArray[np.float32],
-    noise: tuple[float, float],  # Strength of the denoiser, and the grain; see `denoised`
+    noise: tuple[float, float],  # Strength of the filter, and the grain; see `denoised`
 ) -> None:
     """Develop some rows of a picture behind a mosaic, whose photosites have been read."""
     (first, last), (strength, grain) = rows, noise

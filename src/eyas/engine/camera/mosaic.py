@@ -112,7 +112,7 @@ def denoised(
     strength: float,  # 0 to 1
     grain: float,  # Value of some electrons, the deviation of a dark photosite
 ) -> Colours:
-    """Return colours as the denoisers of cameras leave them at high gain.
+    """Return colours as the noise filters of cameras leave them at high gain.
 
     Colour is the mean over 5x5 photosites, and lost where that is hardly above the grain; half of
     the grain of their brightness stays.

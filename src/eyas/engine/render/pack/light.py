@@ -166,8 +166,8 @@ def _weather(
 def _tinge(lighting: Lighting) -> NDArray[np.float64]:
     """Return `Illumination.tinge`: as bright as the sky's light in its place, of the walls' colour.
 
-    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden. By night fronts
-    shine themselves.
+    Walls lie half in the sun. `BOUNCED` is what arrives where all the sky is hidden. By night
+    fronts shine themselves.
     """
     sky = np.asarray(lighting.ambient_up)
     thrown = (0.5 * np.asarray(lighting.sun_colour) + sky) * _WALLS

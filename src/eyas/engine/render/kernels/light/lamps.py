@@ -55,7 +55,7 @@ def _street_light(
     """Return how much light of street lamps a surface gets.
 
     A lamp is a spot without shadow, whose optics throw up to 2.5 times as much to the sides as
-    straight down, so that light reaches along the road (batwing distributions of road luminaires);
+    straight down, so that light reaches along the road (batwing distributions of road lamps);
     from 1.1 rad off its axis it fades, and from the cut-off on there is nothing.
     """
     frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
@@ -158,7 +158,9 @@ def window_light(
     across, up = _BAYS * u + f4(1024.0), _BAYS * v + f4(1024.0)
     across, up = across - to_f4(to_i4(across)), up - to_f4(to_i4(up))
     drawn = to_f4(bits >> u4(26)) * f4(1.6 / 63.0)
-    bright *= select((across < drawn - f4(0.9)) | (up > drawn + f4(0.25)), f4(0.35), like(u, f4(1.0)))
+    bright *= select(
+        (across < drawn - f4(0.9)) | (up > drawn + f4(0.25)), f4(0.35), like(u, f4(1.0))
+    )
     bright = select(to_f4(bits & low) * unit < odds, bright, f4(0.0))
     # Warm lamps in homes, 2,700 K; tubes, 4,000 K; few of daylight.
     kind = (bits >> u4(22)) & u4(15)

@@ -46,8 +46,7 @@ def bank_light(lit: Illumination, rise: float) -> float:
     """Return how bright fog is in a direction, over the same at the horizon, given its upward part.
 
     Droplets scatter forward: seen from above, against dark ground, fog is darker than against the
-    sky (Nishita et al., Display of clouds taking into account multiple anisotropic scattering,
-    SIGGRAPH 1996).
+    sky.
     """
     return f4(1.0) + lit.air.banks * f4(0.6) * lesser(rise, f4(0.0))
 

@@ -1,4 +1,4 @@
-"""Glare of the lamps of vehicles and streets at night: the light that a lens scatters round what is far too bright.
+"""Glare of lamps at night: the light that a lens scatters round what is far too bright.
 
 A halo belongs to the lens, and would lie over everything. Here what stands in front of a lamp has
 none of it: then a lamp that is hidden has no halo, and no band need know what others show.
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from eyas.engine.render.kernels.bundles import Band, Canvas
 from eyas.engine.render.kernels.colours import Colour
-from eyas.engine.render.kernels.light.lamps import DARK_SKY
 from eyas.engine.render.kernels.light.caster import Caster, caster_of, has_lamps
+from eyas.engine.render.kernels.light.lamps import DARK_SKY
 from eyas.engine.render.kernels.pixels import keys_of, pack, write_pixels, write_plane
 from eyas.engine.render.kernels.samples import own_rows, pixel_row
 from eyas.engine.render.kernels.scalars import f4, i4, i8
@@ -60,11 +60,11 @@ _HEAD, _TAIL, _BRAKE = 700.0, 9.0, 36.0
 """Peak radiance times the square of the distance [m^2]: as thousands of candela of a dipped beam,
 and the 12 and 60 of UN Regulation 7, through a lens that scatters some thousandth of the light."""
 
-_STREET = 1500.0
+_STREET = 2500.0
 """The same of a street lamp in the middle of its beam; out of it, where its cover hides the light
 source, `_ASTRAY` of that."""
 
-_ASTRAY = 0.12
+_ASTRAY = 0.22
 
 _BRIGHTEST = 3.0  # Largest peak: nearer lamps are larger than the core
 
