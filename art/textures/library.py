@@ -111,11 +111,12 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     "lawn_mown": (0.077, 0.112, 0.032),
     "soil": (0.152, 0.118, 0.080),
     "sand": (0.400, 0.330, 0.232),
+    "dry_leaves": (0.088, 0.068, 0.046),
     "crops": (0.092, 0.104, 0.048),
     "crops_ripe": (0.250, 0.190, 0.092),
-    "crops_green": (0.060, 0.094, 0.031),
-    "crops_yellow": (0.280, 0.245, 0.048),
-    "crops_lilac": (0.130, 0.104, 0.160),
+    "crops_green": (0.066, 0.090, 0.035),
+    "crops_yellow": (0.240, 0.220, 0.058),
+    "crops_lilac": (0.122, 0.106, 0.142),
     "crops_tan": (0.235, 0.190, 0.128),
 }
 """Mean share of light that a texture reflects, of red, green and blue; of others, as painted."""

@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "c14c85a549f2ba3eea2f3035679f769e1149689a59ee7ade71976535346f315c"
+SHA256 = "4af755e2cb69f86ca8b34b7fa39d1a26925f178276fc02f07de27bc06d00321a"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 
