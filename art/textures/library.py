@@ -93,7 +93,7 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     # membranes .5 to .6 with a few years' dirt.
     "asphalt": (0.156, 0.152, 0.145),
     "asphalt_light": (0.215, 0.208, 0.195),
-    "asphalt_patch": (0.085, 0.084, 0.082),
+    "asphalt_patch": (0.100, 0.099, 0.096),
     "paving": (0.275, 0.248, 0.222),
     "concrete": (0.300, 0.288, 0.264),
     "clinker": (0.165, 0.100, 0.078),
@@ -137,11 +137,9 @@ def _measured(name: str) -> NDArray[np.uint8]:
     )
     own[..., :3] = np.round(255.0 * encoded)
     if name == "asphalt_paint":
-        own[..., 3] = np.round(own[..., 3] * (ALBEDO["paint"][1] / _PAINTED))
+        painted = linear(wear.paint()[..., 1] / 255.0).mean()
+        own[..., 3] = np.round(own[..., 3] * (ALBEDO["paint"][1] / painted))
     return own
-
-
-_PAINTED = 0.80  # Mean brightness of `wear.paint` as painted, linear
 
 
 def painted_textures() -> dict[str, NDArray[np.uint8]]:

@@ -63,9 +63,7 @@ _NEAR = 90.0  # Reach of the ground that is cut into small squares beside a road
 _LAMPS = 48
 _ZEBRAS_EVERY = 4  # One stop line in so many has a crossing
 _LITTER = 5.0  # Most by which the floor of a wood reaches beyond it or ends within [m]
-_SHIFT, _GAPS = 2.2, 0.3
-"""Most by which stands stand off their grid [m], and the share of them that the rim of a wood
-lacks: no wood is a box."""
+_SHIFT = 3.5  # Most by which stands stand off their grid, so that no wood is a box [m]
 _STANDS = 3  # Different stands of each kind of tree
 _OCCUPIED = 0.45
 
@@ -187,11 +185,9 @@ def _stands(strip: Strip, rng: np.random.Generator) -> list[Placed]:
     for x in np.arange(west + STAND / 2, east, STAND).tolist():
         for y in np.arange(south + STAND / 2, north, STAND).tolist():
             stand = kinds[int(rng.integers(_STANDS))].name
-            rim = min(x - west, east - x, y - south, north - y) < STAND
-            east_, north_ = rounded(np.array([x, y]) + rng.uniform(-_SHIFT, _SHIFT, 2)).tolist()
+            place = rounded(np.array([x, y]) + rng.uniform(-_SHIFT, _SHIFT, 2))
             turn, size = float(rng.uniform(0, 2 * np.pi)), float(rng.uniform(0.7, 1.2))
-            if rng.random() > _GAPS * rim:
-                made.append(Placed(stand, east_, north_, FLOOR_HEIGHT, turn, size))
+            made.append(Placed.at(stand, place, FLOOR_HEIGHT, turn, size))
     return made
 
 

@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "4af755e2cb69f86ca8b34b7fa39d1a26925f178276fc02f07de27bc06d00321a"
+SHA256 = "bc999fe8d50e2099135b2b0b9ac423995db10013385c01c3db67517c9aaef9d8"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

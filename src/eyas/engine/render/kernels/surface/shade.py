@@ -256,8 +256,8 @@ def shade_point(
         red, green, blue = wild(
             surface, kinds, look, (red, green, blue), at.u, point, normal[2], east, footprint
         )
-    if row < 0:  # ground and roofs are nowhere alike; but far away, where that would flicker
-        close = lesser(greater(f4(2.0) - distance * pixel * lean, zero), one)
+    if row < 0:  # ground and roofs are nowhere alike, less so far away, where that would flicker
+        close = lesser(greater(f4(2.0) - distance * pixel * lean, f4(0.4)), one)
         worn *= close * greater(normal[2], zero)
         red *= one + f4(1.12) * worn
         green *= one + worn
