@@ -93,7 +93,7 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     # membranes .5 to .6 with a few years' dirt.
     "asphalt": (0.156, 0.152, 0.145),
     "asphalt_light": (0.215, 0.208, 0.195),
-    "asphalt_patch": (0.085, 0.084, 0.082),
+    "asphalt_patch": (0.100, 0.099, 0.096),
     "paving": (0.275, 0.248, 0.222),
     "concrete": (0.300, 0.288, 0.264),
     "clinker": (0.165, 0.100, 0.078),
@@ -111,11 +111,12 @@ ALBEDO: dict[str, tuple[float, float, float]] = {
     "lawn_mown": (0.077, 0.112, 0.032),
     "soil": (0.152, 0.118, 0.080),
     "sand": (0.400, 0.330, 0.232),
+    "dry_leaves": (0.088, 0.068, 0.046),
     "crops": (0.092, 0.104, 0.048),
     "crops_ripe": (0.250, 0.190, 0.092),
-    "crops_green": (0.060, 0.094, 0.031),
-    "crops_yellow": (0.280, 0.245, 0.048),
-    "crops_lilac": (0.130, 0.104, 0.160),
+    "crops_green": (0.066, 0.090, 0.035),
+    "crops_yellow": (0.240, 0.220, 0.058),
+    "crops_lilac": (0.122, 0.106, 0.142),
     "crops_tan": (0.235, 0.190, 0.128),
 }
 """Mean share of light that a texture reflects, of red, green and blue; of others, as painted."""
@@ -136,11 +137,9 @@ def _measured(name: str) -> NDArray[np.uint8]:
     )
     own[..., :3] = np.round(255.0 * encoded)
     if name == "asphalt_paint":
-        own[..., 3] = np.round(own[..., 3] * (ALBEDO["paint"][1] / _PAINTED))
+        painted = linear(wear.paint()[..., 1] / 255.0).mean()
+        own[..., 3] = np.round(own[..., 3] * (ALBEDO["paint"][1] / painted))
     return own
-
-
-_PAINTED = 0.80  # Mean brightness of `wear.paint` as painted, linear
 
 
 def painted_textures() -> dict[str, NDArray[np.uint8]]:

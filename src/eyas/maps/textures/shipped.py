@@ -16,7 +16,7 @@ from eyas.engine.world.build.materials import TEXTURES
 
 FILE = Path(__file__).with_name("textures.xz")
 
-SHA256 = "c14c85a549f2ba3eea2f3035679f769e1149689a59ee7ade71976535346f315c"
+SHA256 = "bc999fe8d50e2099135b2b0b9ac423995db10013385c01c3db67517c9aaef9d8"
 """Of the unpacked bytes: it stands for them in the keys of what is made of textures."""
 
 

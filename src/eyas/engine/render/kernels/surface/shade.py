@@ -254,15 +254,16 @@ def shade_point(
     if kinds & UNTENDED != 0:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         look = Look(geometry.texture, at.layer, detail, alpha)
+        east = magnitude(normal[0]) > magnitude(normal[1])
         red, green, blue = wild(
-            surface, kinds, look, (red, green, blue), at.u, point, normal[2], footprint
+            surface, kinds, look, (red, green, blue), at.u, point, normal[2], east, footprint
         )
-    if row < 0:  # ground and roofs are nowhere alike; but far away, where that would flicker
-        close = lesser(greater(f4(2.0) - distance * pixel * lean, zero), one)
+    if row < 0:  # ground and roofs are nowhere alike, less so far away, where that would flicker
+        close = lesser(greater(f4(2.0) - distance * pixel * lean, f4(0.4)), one)
         worn *= close * greater(normal[2], zero)
-        red *= one + f4(1.2) * worn
+        red *= one + f4(1.12) * worn
         green *= one + worn
-        blue *= one + f4(0.7) * worn
+        blue *= one + f4(0.85) * worn
     if air.snow > zero:
         footprint = distance * pixel / greater(magnitude(cosine), f4(0.1))
         bare_r, bare_g, bare_b = red, green, blue
