@@ -117,7 +117,7 @@ WINTER_DAY = replace(
     fog_colour=(0.55, 0.64, 0.76),
     fog_density=1.0 / 6000.0,
     clouds=0.45,
-    exposure=0.88,
+    exposure=0.82,
     snow=1.0,
     flakes=0.5,
 )
