@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import Weather, in_fog
+from eyas.engine.world.weather import Weather, in_fog, metered
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -25,7 +25,7 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 
 
 def _weather(weather: Weather) -> Weather:
-    return weather.each(lambda light: in_fog(light, 400.0))
+    return metered(weather.each(lambda light: in_fog(light, 400.0)), 0.88)
 
 
 LAKE = MapRecipe(
