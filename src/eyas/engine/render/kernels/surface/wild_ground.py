@@ -122,7 +122,9 @@ def _edged(
         share = clip(f4(0.9) * (ragged - f4(0.3)))
         light = f4(0.150) + f4(0.05) * fine
         result = where(
-            surface == DRIFT, blended(result, (light, light, f4(0.96) * light), share), result
+            surface == DRIFT,
+            blended(result, (f4(1.03) * light, light, f4(0.94) * light), share),
+            result,
         )
     if kinds & VERGES != 0:
         ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
