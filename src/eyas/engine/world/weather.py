@@ -296,6 +296,13 @@ def unchanged(weather: Weather) -> Weather:
     return weather
 
 
+def metered(weather: Weather, exposure: float) -> Weather:
+    """Return a weather whose days a camera exposes by a factor more: land that is darker than
+    most, or less: land that is paler.
+    """
+    return replace(weather, day=replace(weather.day, exposure=exposure * weather.day.exposure))
+
+
 def in_fog(light: Lighting, visibility: float) -> Lighting:
     """Return light and air with another visibility range [m], if there is fog."""
     return replace(light, fog_density=1.0 / visibility) if light.foggy else light

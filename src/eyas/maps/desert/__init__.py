@@ -14,6 +14,7 @@ from eyas.engine.world.weather import (
     RAIN,
     WINTER_DAY,
     Weather,
+    metered,
 )
 
 if TYPE_CHECKING:
@@ -79,13 +80,14 @@ _SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
 _SKY = ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
 _CLOSED = {weather.name for weather in (RAIN, OVERCAST, DUST)}
 """Weathers whose sky no sun shines through."""
+_PALE = 0.78  # Exposure of sand, which is twice as pale as grass
 
 
 def desert_weather(weather: Weather) -> Weather:
     """Return how a weather is in the desert."""
     if weather.name in _CLOSED:
-        return weather.each(_sandy)
-    return weather.each(lambda light: _SKIES.get(light) or _dusty(light))
+        return metered(weather.each(_sandy), _PALE)
+    return metered(weather.each(lambda light: _SKIES.get(light) or _dusty(light)), _PALE)
 
 
 def _dusty(light: Lighting) -> Lighting:

@@ -93,7 +93,7 @@ def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.
             if rng.random() < _TONGUES and length(there - here) > 0.1:
                 onwards = unit(there - here)
                 turn = exact.atan2(onwards[1], onwards[0])
-                made.append(blob(here, half, turn, rng, corners=32, full=1.0))
+                made.append(blob(here, half, turn, rng, corners=18, full=1.0))
     return made
 
 

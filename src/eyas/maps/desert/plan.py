@@ -56,7 +56,7 @@ _SPACING = (6.0, 13.0)
 DRIFT_HEIGHT = 0.03  # z of the drifts: above all paint [m]
 _FRINGE_HEIGHT, _TONGUE_HEIGHT = 0.022, 0.026
 """z of the thin sand around them, and of the tongues at the kerbs, which cross it [m]."""
-_THIN = 1.6  # Width of the thin sand around tongues [m]
+_THIN = 1.2  # Width of the thin sand around tongues [m]
 _SNOWED = 22  # Number of dunes under snow in winter, as in the original
 
 
@@ -120,7 +120,8 @@ def _white(dunes: int, rng: np.random.Generator) -> tuple[int, ...]:
 def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     """Return the drifts on the roads, with thin sand around them."""
     sand = shapely.union_all([*(drift.area for drift in desert.drifts), *desert.tongues])
-    thin = shapely.buffer(shapely.union_all(desert.tongues), _THIN, quad_segs=3)
+    thin = shapely.buffer(shapely.union_all(desert.tongues), _THIN, quad_segs=1)
+    thin = shapely.simplify(thin, 0.3)
     dusty = shapely.union_all([thin, *(drift.fringe for drift in desert.drifts)])
     edge = shapely.intersection(shapely.difference(dusty, sand), desert.roads)
     return [

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import CLEAR_NIGHT, Weather, in_fog
+from eyas.engine.world.weather import CLEAR_NIGHT, Weather, in_fog, metered
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -39,7 +39,8 @@ _LIT = replace(
 
 def _weather(weather: Weather) -> Weather:
     # In the original the fog is too thin to be seen from above; here it veils the end of a block.
-    return weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+    lit = weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+    return metered(lit, 1.25)  # most of the streets lie in shade
 
 
 DOWNTOWN = MapRecipe(

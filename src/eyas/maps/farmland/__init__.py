@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import Weather, in_fog, unchanged
+from eyas.engine.world.weather import Weather, in_fog, metered, unchanged
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -35,7 +35,8 @@ def _weather(weather: Weather) -> Weather:
     night = replace(weather.night, horizon_colour=(0.008, 0.008, 0.009))
     if not day.foggy and not day.rain:
         day = replace(day, fog_density=_CLEAR)
-    return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
+    foggy = replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
+    return metered(foggy, 0.88)
 
 
 def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.engine.world.maps.recipe import MapRecipe, Original
-from eyas.engine.world.weather import Weather, in_fog
+from eyas.engine.world.weather import Weather, in_fog, metered
 
 if TYPE_CHECKING:
     from eyas.engine.state.roads import RoadGraph, RoadNetwork
@@ -28,7 +28,8 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 def _weather(weather: Weather) -> Weather:
     # Few windows light the woods.
     few = replace(weather.night, windows=min(weather.night.windows, 0.08))
-    return replace(weather, night=few).each(lambda light: in_fog(light, 400.0))
+    foggy = replace(weather, night=few).each(lambda light: in_fog(light, 400.0))
+    return metered(foggy, 0.88)
 
 
 LAKE = MapRecipe(

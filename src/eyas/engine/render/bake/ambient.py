@@ -19,6 +19,7 @@ from eyas.engine.render.kernels.light.ambient import (
     bake_openness,
 )
 from eyas.engine.render.textures.fields import SIZE, fractal, source
+from eyas.engine.state.mesh import Surface
 from eyas.engine.state.scene import ObjectClass, Scene
 from eyas.engine.state.terrain import reliefs
 from eyas.lanes import PackedBundle, exact, thread_count
@@ -106,7 +107,13 @@ def _wear(
     near = blurred(blurred(road, 2), 1)
     verge = 4.0 * near * (1.0 - near)  # 1 where a road ends
     firm = np.maximum(road, solid > 0)
-    light = (40.0 - 22.0 * firm) * noise + 14.0 * verge * (1.0 + 0.6 * noise) - 16.0 * (crowns > 0)
+    # Sand has waves of its own.
+    most = 22.0 if any(one.surface == Surface.DESERT for one in mesh.palette) else 40.0
+    light = (
+        (most - 0.55 * most * firm) * noise
+        + 14.0 * verge * (1.0 + 0.6 * noise)
+        - 16.0 * (crowns > 0)
+    )
     return np.round(np.clip(128.0 + light, 0.0, 255.0)).astype(np.uint32)
 
 

@@ -44,7 +44,7 @@ _FRONTS = np.array((0.95, 0.76, 0.52))
 _LUMA = np.array((0.2126, 0.7152, 0.0722))
 """Weights of linear red, green and blue in luminance (ITU-R BT.709)."""
 
-SHOULDER, _CONTRAST = 1.5, 0.55  # See `tone_table`; contrast 1 is a smooth step
+SHOULDER, _CONTRAST = 1.6, 0.75  # See `tone_table`; contrast 1 is a smooth step
 
 REACH = 32.0  # Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it
 

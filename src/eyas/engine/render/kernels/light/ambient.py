@@ -173,6 +173,7 @@ def openness(
     z: float,  # The point [m]
     normal_x: float,  # Eastward component of the normal: walls see the sky in front of them
     normal_y: float,  # Northward component of the normal
+    level: bool,  # Whether any of the points is ground or a roof; one answer for all lanes
 ) -> tuple[float, float]:
     """Return the share of the sky's light that reaches a point, 0 to 1, and by which share the
     ground there is lighter than its texture.
@@ -202,8 +203,11 @@ def openness(
         above = z - (frame.ground + base)
         climb = one - lesser(greater(above / greater(top - base, one), zero), one)
         share = select(inside, one - hidden * climb * climb, one)
-    worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(128.0))
-    return share, select(inside, worn, zero)
+    worn = like(x, zero)
+    if level:
+        worn = f4(1.0 / WEAR) * (_blend(a, b, c, d, 24, across, down) - f4(128.0))
+        worn = select(inside, worn, zero)
+    return share, worn
 
 
 @kernel(inline=True)

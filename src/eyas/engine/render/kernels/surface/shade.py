@@ -231,7 +231,9 @@ def shade_point(
             light, lit.sun, air.offset, point, normal, sun_share,
             surface == FOLIAGE, kinds & LEAFY != 0,
         )  # fmt: skip
-    open_share, worn = openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    worn_here = row < 0 and any_of(normal[2] > f4(0.2))
+    x, y, z = point
+    open_share, worn = openness(light, x, y, z, normal[0], normal[1], worn_here)
     low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
     asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
     red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
@@ -258,7 +260,7 @@ def shade_point(
         red, green, blue = wild(
             surface, kinds, look, (red, green, blue), at.u, point, normal[2], east, footprint
         )
-    if row < 0:  # ground and roofs are nowhere alike, less so far away, where that would flicker
+    if worn_here:  # ground and roofs are nowhere alike, less so far away, where that would flicker
         close = lesser(greater(f4(2.0) - distance * pixel * lean, f4(0.4)), one)
         worn *= close * greater(normal[2], zero)
         red *= one + f4(1.12) * worn

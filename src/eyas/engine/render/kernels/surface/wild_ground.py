@@ -122,7 +122,9 @@ def _edged(
         share = clip(f4(0.9) * (ragged - f4(0.3)))
         light = f4(0.150) + f4(0.05) * fine
         result = where(
-            surface == DRIFT, blended(result, (light, light, f4(0.96) * light), share), result
+            surface == DRIFT,
+            blended(result, (f4(1.03) * light, light, f4(0.94) * light), share),
+            result,
         )
     if kinds & VERGES != 0:
         ragged = along + f4(0.5) * clump + f4(0.9) * fine + f4(0.2) * wide
@@ -189,13 +191,13 @@ def desert(look: Look, colour: Colour, point: Colour, rise: float) -> Colour:
     light = one + (one - f4(0.75) * stony) * f4(1.15) * ridge + f4(0.2) * wide + f4(0.3) * grit
     red, green, blue = light * colour[0], light * colour[1], light * colour[2]
     pebble = f4(0.85) + f4(1.5) * grit + f4(0.3) * patch
-    gravel = (f4(0.27) * pebble, f4(0.205) * pebble, f4(0.138) * pebble)
-    red, green, blue = blended((red, green, blue), gravel, f4(0.66) * stony)
+    gravel = (f4(0.215) * pebble, f4(0.178) * pebble, f4(0.140) * pebble)
+    red, green, blue = blended((red, green, blue), gravel, f4(0.75) * stony)
     # Grass finds water at the edges of the stony flats.
     dry = level * clip(f4(4.2) * (f4(0.34) - magnitude(bare + f4(0.45))))
     tuft = f4(0.2) + f4(2.6) * grit + f4(1.0) * patch
     blades = f4(0.9) + f4(0.9) * grit
-    straw = (f4(0.190) * blades, f4(0.172) * blades, f4(0.075) * blades)
+    straw = (f4(0.140) * blades, f4(0.140) * blades, f4(0.066) * blades)
     return blended((red, green, blue), straw, f4(0.9) * dry * clip(tuft))
 
 
@@ -253,8 +255,9 @@ def heath(
     scrub = f4(0.75) * cover * clip(lush + f4(6.0) * ragged - f4(0.96))
     # The grain of the soil shows through, and with it the size of what is seen.
     bright = (f4(0.8) + f4(0.5) * blade) * (f4(0.45) + colour[1] * _PER_SOIL)
-    grass = f4(0.215) * bright, f4(0.195) * bright, f4(0.088) * bright
-    shrub = f4(0.070) * bright, f4(0.088) * bright, f4(0.036) * bright
+    fresh = f4(0.055) * clip(lush + lush)
+    grass = (f4(0.185) - fresh) * bright, f4(0.172) * bright, (f4(0.082) - f4(0.3) * fresh) * bright
+    shrub = f4(0.056) * bright, f4(0.074) * bright, f4(0.030) * bright
     red, green, blue = blended(blended(colour, grass, cover), shrub, scrub)
     dust = f4(1.0) + f4(0.2) * wide
     return red * dust, green * dust, blue * dust
