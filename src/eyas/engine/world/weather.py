@@ -117,7 +117,7 @@ WINTER_DAY = replace(
     fog_colour=(0.55, 0.64, 0.76),
     fog_density=1.0 / 6000.0,
     clouds=0.45,
-    exposure=0.82,
+    exposure=0.78,
     snow=1.0,
     flakes=0.5,
 )
@@ -135,7 +135,7 @@ CLEAR_NIGHT = replace(
     fog_colour=(0.017, 0.0145, 0.0125),
     fog_density=1.0 / 3000.0,
     clouds=0.0,
-    exposure=1.8,
+    exposure=2.1,
     luminosity=0.3,
     # A lit street is then at 1 to 2 cd/m^2, as EN 13201 asks of roads of classes M3 to M1.
     luminance=25.0,
