@@ -73,7 +73,7 @@ SAND = f4(1.0 / 6.0)  # The same of sand
 
 _WIDEST = f4(2.0 * MARGIN)
 
-_FAINT = f4(0.015)  # Luminance at which half of the colour is lost, white in the sun being 1
+_FAINT = f4(0.013)  # Radiance at which half of the colour is lost
 
 
 @kernel(inline=True)
@@ -318,9 +318,11 @@ def shade_point(
     else:
         red, green, blue = red * light_r, green * light_g, blue * light_b
     if lit.zenith.y < DARK_SKY:  # a camera's grain leaves no colour to what is hardly lit
-        bright = f4(0.22) * red + f4(0.71) * green + f4(0.07) * blue
-        grey = bright, bright, bright
-        red, green, blue = blended((red, green, blue), grey, _FAINT / (_FAINT + bright))
+        bright = greater(red, green)
+        faint = _FAINT / (_FAINT + bright)
+        red += faint * (bright - red)
+        green += faint * (bright - green)
+        blue += faint * (bright - blue)
     if row >= 0:
         shining = instance_frame(band, row).lamps
         if shining != i4(0):
